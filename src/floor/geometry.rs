@@ -1,0 +1,325 @@
+use std::fmt;
+
+use glam::Vec2;
+use serde::Serialize;
+use thiserror::Error;
+
+use super::Rect;
+
+/// One tile, by column (east) and row (north), both from 0 at the south-west.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
+pub struct TileId {
+    /// Column, counted eastwards from 0.
+    pub column: u16,
+    /// Row, counted northwards from 0.
+    pub row: u16,
+}
+
+impl TileId {
+    /// The tile in `column` and `row`.
+    #[must_use]
+    pub const fn new(column: u16, row: u16) -> Self {
+        Self { column, row }
+    }
+}
+
+impl fmt::Display for TileId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "({}, {})", self.column, self.row)
+    }
+}
+
+/// A corner of a tile, and the sensor near it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum Corner {
+    /// South-west.
+    SouthWest,
+    /// South-east.
+    SouthEast,
+    /// North-west.
+    NorthWest,
+    /// North-east.
+    NorthEast,
+}
+
+impl Corner {
+    /// All four, in the order every sensor array of this crate uses: sw, se, nw, ne.
+    pub const ALL: [Self; 4] = [Self::SouthWest, Self::SouthEast, Self::NorthWest, Self::NorthEast];
+
+    /// Position in [`Corner::ALL`], 0 to 3.
+    #[must_use]
+    pub const fn index(self) -> usize {
+        self as usize
+    }
+
+    /// Which way the corner lies from the tile's centre: -1 or 1 along each axis.
+    #[must_use]
+    pub const fn direction(self) -> Vec2 {
+        match self {
+            Self::SouthWest => Vec2::new(-1.0, -1.0),
+            Self::SouthEast => Vec2::new(1.0, -1.0),
+            Self::NorthWest => Vec2::new(-1.0, 1.0),
+            Self::NorthEast => Vec2::new(1.0, 1.0),
+        }
+    }
+
+    /// The short name used in files: `sw`, `se`, `nw` or `ne`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SouthWest => "sw",
+            Self::SouthEast => "se",
+            Self::NorthWest => "nw",
+            Self::NorthEast => "ne",
+        }
+    }
+}
+
+impl fmt::Display for Corner {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+/// One force sensor: its tile and corner.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct SensorId {
+    /// The tile the sensor supports.
+    pub tile: TileId,
+    /// The corner it sits under.
+    pub corner: Corner,
+}
+
+impl fmt::Display for SensorId {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "tile {} {}", self.tile, self.corner)
+    }
+}
+
+/// Where the tiles of one floor and the sensors under them are.
+///
+/// Tiles are numbered row by row from the south-west: `row * columns + column`.
+/// That number, the *tile index*, orders every per-tile array of this crate.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Geometry {
+    columns: u16,
+    rows: u16,
+    tile_m: f32,
+    pitch_m: f32,
+    sensor_inset_m: f32,
+}
+
+/// Why a floor of these measures cannot exist.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum GeometryError {
+    /// The grid has no tile, or more than [`Geometry::MAX_SIDE`] along a side.
+    #[error("a floor has 1 to {max} columns and rows, not {columns} x {rows}", max = Geometry::MAX_SIDE)]
+    Grid {
+        /// Columns asked for.
+        columns: u16,
+        /// Rows asked for.
+        rows: u16,
+    },
+    /// A tile's side is not a length between 5 cm and 5 m.
+    #[error("tile_m must be between 0.05 and 5 m, not {0}")]
+    Tile(f32),
+    /// Tiles overlap, or lie further apart than they are wide.
+    #[error("pitch_m must be at least tile_m and at most twice as much, not {0}")]
+    Pitch(f32),
+    /// The sensors would lie outside the tile or beyond its centre.
+    #[error("sensor_inset_m must be at least 0 and less than half of tile_m, not {0}")]
+    Inset(f32),
+}
+
+impl Geometry {
+    /// Most columns, and most rows, that a floor may have.
+    pub const MAX_SIDE: u16 = 256;
+
+    /// A floor of `columns` x `rows` tiles.
+    ///
+    /// `tile_m` is the side of one plate, `pitch_m` the distance between the
+    /// centres of neighbours, `sensor_inset_m` how far inside the plate's edges
+    /// the sensors sit.
+    ///
+    /// # Errors
+    /// [`GeometryError`] names the measure that cannot be and the range it may have.
+    pub fn new(
+        columns: u16,
+        rows: u16,
+        tile_m: f32,
+        pitch_m: f32,
+        sensor_inset_m: f32,
+    ) -> Result<Self, GeometryError> {
+        let side = 1..=Self::MAX_SIDE;
+        if !side.contains(&columns) || !side.contains(&rows) {
+            return Err(GeometryError::Grid { columns, rows });
+        }
+        if !(0.05..=5.0).contains(&tile_m) {
+            return Err(GeometryError::Tile(tile_m));
+        }
+        if !(tile_m..=2.0 * tile_m).contains(&pitch_m) {
+            return Err(GeometryError::Pitch(pitch_m));
+        }
+        if !(0.0..0.5 * tile_m).contains(&sensor_inset_m) {
+            return Err(GeometryError::Inset(sensor_inset_m));
+        }
+        Ok(Self { columns, rows, tile_m, pitch_m, sensor_inset_m })
+    }
+
+    /// The paper's tiles (30.4 cm, sensors 2 cm inside the edges) in a grid of another size.
+    ///
+    /// # Errors
+    /// [`GeometryError::Grid`] if a side is 0 or above [`Geometry::MAX_SIDE`].
+    pub fn of_paper_tiles(columns: u16, rows: u16) -> Result<Self, GeometryError> {
+        Self::new(columns, rows, 0.304, 0.304, 0.02)
+    }
+
+    /// Number of columns, at least 1.
+    #[must_use]
+    pub const fn columns(&self) -> u16 {
+        self.columns
+    }
+
+    /// Number of rows, at least 1.
+    #[must_use]
+    pub const fn rows(&self) -> u16 {
+        self.rows
+    }
+
+    /// Side of one plate, in metres.
+    #[must_use]
+    pub const fn tile_m(&self) -> f32 {
+        self.tile_m
+    }
+
+    /// Distance between the centres of neighbouring tiles, in metres.
+    #[must_use]
+    pub const fn pitch_m(&self) -> f32 {
+        self.pitch_m
+    }
+
+    /// Distance of the sensors from the plate's edges, in metres.
+    #[must_use]
+    pub const fn sensor_inset_m(&self) -> f32 {
+        self.sensor_inset_m
+    }
+
+    /// Number of tiles, at least 1.
+    #[must_use]
+    pub const fn tile_count(&self) -> usize {
+        self.columns as usize * self.rows as usize
+    }
+
+    /// The whole floor.
+    #[must_use]
+    pub fn bounds(&self) -> Rect {
+        Rect::from_min_size(
+            Vec2::ZERO,
+            Vec2::new(f32::from(self.columns), f32::from(self.rows)) * self.pitch_m,
+        )
+    }
+
+    /// All tiles in index order: row by row from the south-west.
+    pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
+        let columns = self.columns;
+        (0..self.rows).flat_map(move |row| (0..columns).map(move |column| TileId::new(column, row)))
+    }
+
+    /// The index of `tile`; `None` if it is not on this floor.
+    #[must_use]
+    pub fn index(&self, tile: TileId) -> Option<usize> {
+        (tile.column < self.columns && tile.row < self.rows)
+            .then(|| usize::from(tile.row) * usize::from(self.columns) + usize::from(tile.column))
+    }
+
+    /// The tile at `index`, the inverse of [`Geometry::index`]; meaningless past the last tile.
+    #[must_use]
+    pub fn tile_at_index(&self, index: usize) -> TileId {
+        let columns = usize::from(self.columns);
+        TileId::new((index % columns) as u16, (index / columns) as u16)
+    }
+
+    /// The tile whose pitch cell holds `point`; `None` outside the floor or for NaN.
+    #[must_use]
+    pub fn tile_under(&self, point: Vec2) -> Option<TileId> {
+        self.bounds().contains(point).then(|| {
+            let cell = (point / self.pitch_m).floor();
+            let column = (cell.x as u16).min(self.columns - 1);
+            let row = (cell.y as u16).min(self.rows - 1);
+            TileId::new(column, row)
+        })
+    }
+
+    /// The centre of `tile`, also for tiles beyond the floor.
+    #[must_use]
+    pub fn centre(&self, tile: TileId) -> Vec2 {
+        (Vec2::new(f32::from(tile.column), f32::from(tile.row)) + 0.5) * self.pitch_m
+    }
+
+    /// The plate of `tile`.
+    #[must_use]
+    pub fn plate(&self, tile: TileId) -> Rect {
+        Rect::from_centre_size(self.centre(tile), Vec2::splat(self.tile_m))
+    }
+
+    /// Half the distance between neighbouring sensors of one tile, in metres.
+    #[must_use]
+    pub fn sensor_reach_m(&self) -> f32 {
+        0.5 * self.tile_m - self.sensor_inset_m
+    }
+
+    /// Where the sensor under `corner` of `tile` sits.
+    #[must_use]
+    pub fn sensor(&self, tile: TileId, corner: Corner) -> Vec2 {
+        self.centre(tile) + corner.direction() * self.sensor_reach_m()
+    }
+
+    /// A length or point in tile units (1.0 = one pitch) in metres.
+    #[must_use]
+    pub fn metres_from_tiles(&self, tiles: Vec2) -> Vec2 {
+        tiles * self.pitch_m
+    }
+}
+
+impl Default for Geometry {
+    /// The paper's floor: 6 x 6 tiles of 30.4 cm, sensors 2 cm inside the edges.
+    fn default() -> Self {
+        Self { columns: 6, rows: 6, tile_m: 0.304, pitch_m: 0.304, sensor_inset_m: 0.02 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_papers_floor_has_144_sensors_2_cm_inside_the_edges() {
+        let floor = Geometry::default();
+        assert_eq!(floor.tile_count() * Corner::ALL.len(), 144);
+        let sw = floor.sensor(TileId::new(0, 0), Corner::SouthWest);
+        assert!(sw.distance(Vec2::splat(0.02)) < 1e-6, "{sw}");
+        let ne = floor.sensor(TileId::new(5, 5), Corner::NorthEast);
+        assert!(ne.distance(Vec2::splat(6.0 * 0.304 - 0.02)) < 1e-6, "{ne}");
+    }
+
+    #[test]
+    fn index_and_tile_are_inverse() {
+        let floor = Geometry::of_paper_tiles(3, 2).unwrap();
+        for (index, tile) in floor.tiles().enumerate() {
+            assert_eq!(floor.index(tile), Some(index));
+            assert_eq!(floor.tile_at_index(index), tile);
+            assert_eq!(floor.tile_under(floor.centre(tile)), Some(tile));
+        }
+        assert_eq!(floor.index(TileId::new(3, 0)), None);
+        assert_eq!(floor.tile_under(Vec2::new(-0.01, 0.1)), None);
+        assert_eq!(floor.tile_under(Vec2::NAN), None);
+    }
+
+    #[test]
+    fn impossible_measures_are_refused_by_name() {
+        assert!(matches!(Geometry::new(0, 6, 0.3, 0.3, 0.02), Err(GeometryError::Grid { .. })));
+        assert!(matches!(Geometry::new(6, 6, f32::NAN, 0.3, 0.02), Err(GeometryError::Tile(_))));
+        assert!(matches!(Geometry::new(6, 6, 0.3, 0.2, 0.02), Err(GeometryError::Pitch(_))));
+        assert!(matches!(Geometry::new(6, 6, 0.3, 0.3, 0.15), Err(GeometryError::Inset(_))));
+    }
+}

@@ -1,0 +1,13 @@
+//! The floor: its geometry and the hardware that listens and moves under it.
+//!
+//! Floor space has its origin at the south-west corner of the floor, x east
+//! (right), y north (away from the user), in metres. [`Geometry`] knows where
+//! tiles and sensors are; [`Floor`] adds what is wired to them.
+
+mod geometry;
+mod hardware;
+mod rect;
+
+pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
+pub use hardware::{Actuator, Board, Calibration, Floor};
+pub use rect::Rect;

@@ -1,0 +1,27 @@
+//! User interfaces on the floor: force-sensing tiles in, foot controls and tactile feedback out.
+//!
+//! ```text
+//! datagram -wire-> SensorPacket (counts, 1 kHz) -sense-> ForceFrame (N)
+//!   -> Contacts (m, N) -> Cursor -widget-> WidgetEvent -> EventSink
+//!   WidgetEvent -response-> Cue ==ring==> Renderer -> samples -> ActuatorSink
+//!   Engine ==latest Snapshot==> preview
+//! ```
+//!
+//! SI units everywhere. Floor space has its origin at the floor's south-west
+//! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
+//! tile are always in the order south-west, south-east, north-west, north-east.
+
+pub mod engine;
+pub mod feel;
+pub mod floor;
+pub mod layout;
+pub mod schema;
+pub mod sense;
+pub mod sim;
+pub mod sink;
+pub mod source;
+pub mod units;
+pub mod widget;
+pub mod wire;
+
+pub use glam;

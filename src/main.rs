@@ -1,0 +1,3 @@
+//! The program `underfoot`.
+
+fn main() {}

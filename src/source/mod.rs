@@ -1,0 +1,45 @@
+//! Where sensor packets come from: a socket, a simulated floor, a recording.
+
+use std::time::Duration;
+
+use thiserror::Error;
+
+use crate::units::Instant;
+use crate::wire::{LinkCounters, SensorPacket};
+
+/// A floor's stream of sensor packets, with the clock they are stamped by.
+pub trait SensorSource: Send {
+    /// The next packet, waiting for it at most `patience`; `None` if none came.
+    ///
+    /// A free-running source (a simulation, a recording) advances its own
+    /// clock instead of waiting.
+    ///
+    /// # Errors
+    /// [`SourceError`] says whether trying again can help.
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError>;
+
+    /// The present moment on the clock that stamps [`SensorPacket::received`].
+    fn now(&self) -> Instant;
+
+    /// What the source itself received and refused so far; zero where it can refuse nothing.
+    fn counters(&self) -> LinkCounters {
+        LinkCounters::default()
+    }
+}
+
+/// Why a source gives no packets.
+#[derive(Debug, Error)]
+pub enum SourceError {
+    /// The stream has ended: the scenario is over, the recording is played. Not a failure.
+    #[error("the source has ended")]
+    Ended,
+    /// The socket cannot be had or failed; `message` says what to do.
+    #[error("{message}")]
+    Socket {
+        /// One sentence for the person who started the program.
+        message: String,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+}

@@ -1,0 +1,45 @@
+use arrayvec::ArrayVec;
+
+use crate::units::Instant;
+
+/// Most channels that one board may send.
+pub const MAX_CHANNELS: usize = 64;
+
+/// What the channels of one board read, in channel order.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Readings {
+    /// Raw converter counts, 0 to 65535; `None` for one that was outside that range.
+    Counts(ArrayVec<Option<u16>, MAX_CHANNELS>),
+    /// Newtons, already calibrated by the board; may hold NaN or infinities as they came.
+    Newtons(ArrayVec<f32, MAX_CHANNELS>),
+}
+
+impl Readings {
+    /// Number of channels read.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        match self {
+            Self::Counts(counts) => counts.len(),
+            Self::Newtons(forces) => forces.len(),
+        }
+    }
+
+    /// Whether no channel was read.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+}
+
+/// One sample of one board, as it came off the wire.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorPacket {
+    /// The board's number: its place in [`crate::floor::Floor::boards`].
+    pub board: u16,
+    /// The board's sample counter, one step a millisecond, wrapping at 2^32.
+    pub sequence: u32,
+    /// When it arrived, on the clock of the [`crate::source::SensorSource`].
+    pub received: Instant,
+    /// What its channels read.
+    pub readings: Readings,
+}
