@@ -2,6 +2,7 @@ use glam::Vec2;
 use serde::Serialize;
 use smallvec::SmallVec;
 
+use super::Quality;
 use crate::floor::TileId;
 use crate::units::Newtons;
 
@@ -11,7 +12,7 @@ use crate::units::Newtons;
 pub struct ContactId(pub u32);
 
 /// The part of a contact that one tile carries.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct TileLoad {
     /// The tile.
     pub tile: TileId,
@@ -23,8 +24,56 @@ pub struct TileLoad {
     pub centroid: Vec2,
 }
 
+/// How uncertain a position is: the symmetric 2 x 2 covariance matrix, in square metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Covariance {
+    /// Variance eastwards.
+    pub xx: f32,
+    /// Covariance of east and north.
+    pub xy: f32,
+    /// Variance northwards.
+    pub yy: f32,
+}
+
+impl Covariance {
+    /// The same variance in every direction, from a standard deviation in metres.
+    #[must_use]
+    pub fn isotropic(deviation_m: f32) -> Self {
+        let variance = deviation_m * deviation_m;
+        Self { xx: variance, xy: 0.0, yy: variance }
+    }
+
+    /// Half axes of the ellipse that holds the true point 95 times in 100, longer one first, in metres.
+    ///
+    /// # Source
+    /// Square roots of the eigenvalues times sqrt(5.991), the 95 % quantile of
+    /// chi-squared with two degrees of freedom.
+    #[must_use]
+    pub fn ellipse_95_m(self) -> (f32, f32) {
+        let mean = 0.5 * (self.xx + self.yy);
+        let spread = (0.25 * (self.xx - self.yy).powi(2) + self.xy * self.xy).sqrt();
+        let half = |variance: f32| 2.4477 * variance.max(0.0).sqrt();
+        (half(mean + spread), half(mean - spread))
+    }
+
+    /// Squared distance of `offset` (metres) from the middle in units of the standard
+    /// deviation along it: at most 5.991 inside the 95 % ellipse; infinite for a singular matrix.
+    #[must_use]
+    pub fn mahalanobis_squared(self, offset: Vec2) -> f32 {
+        let det = self.xx * self.yy - self.xy * self.xy;
+        if det <= 0.0 {
+            return f32::INFINITY;
+        }
+        (self.yy * offset.x * offset.x - 2.0 * self.xy * offset.x * offset.y + self.xx * offset.y * offset.y)
+            / det
+    }
+}
+
 /// One foot (or other object) on the floor.
-#[derive(Clone, Debug, PartialEq)]
+///
+/// `Contact::default()` is a nameless contact of no force at the origin, for
+/// filling in what one doesn't care about.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Contact {
     /// Its name, the same for as long as it stays down.
     pub id: ContactId,
@@ -36,4 +85,56 @@ pub struct Contact {
     pub velocity: Vec2,
     /// The tiles that carry it, heaviest first, at least one.
     pub tiles: SmallVec<[TileLoad; 4]>,
+    /// How uncertain `centroid` is. A contact of a few newtons may be uncertain by
+    /// several centimetres, and should then operate nothing.
+    pub covariance: Covariance,
+    /// Whether it shares its tiles with another contact in a way the forces cannot
+    /// tell apart: the sum of the two is sure, each one's part is a guess.
+    pub ambiguous: bool,
+    /// The worst quality among the tiles that carry it; never worse than
+    /// [`Quality::Degraded`], since tiles of which less is known carry no contact.
+    pub quality: Quality,
+    /// The paper's difference vector between the centroids of its two heaviest tiles,
+    /// heavier minus lighter; `None` on a single tile.
+    ///
+    /// Its direction hints at the foot's: along the foot where that is a line,
+    /// turned towards the seam's normal the rounder the foot is (a disc always
+    /// gives the normal), and its sign says nothing about heel and toe.
+    ///
+    /// # Source
+    /// Paper, section 3.2 and figure 7.
+    pub difference: Option<Vec2>,
+}
+
+impl Contact {
+    /// The paper's difference vector of `tiles`, heaviest first; see [`Contact::difference`].
+    #[must_use]
+    pub(super) fn difference_of(tiles: &[TileLoad]) -> Option<Vec2> {
+        match tiles {
+            [first, second, ..] => Some(first.centroid - second.centroid),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn ellipse_of_a_round_covariance_is_a_circle_of_2_45_deviations() {
+        let (long, short) = Covariance::isotropic(0.01).ellipse_95_m();
+        assert!((long - 0.024_477).abs() < 1e-5 && (short - long).abs() < 1e-5);
+        let on_the_rim = Covariance::isotropic(0.01).mahalanobis_squared(Vec2::new(long, 0.0));
+        assert!((on_the_rim - 5.991).abs() < 0.01, "{on_the_rim}");
+        assert_eq!(Covariance::default().mahalanobis_squared(Vec2::X), f32::INFINITY);
+    }
+
+    #[test]
+    fn a_slanted_covariance_keeps_its_long_axis() {
+        let slanted = Covariance { xx: 2.0, xy: 1.9, yy: 2.0 };
+        let (long, short) = slanted.ellipse_95_m();
+        assert!(long > 4.0 * short);
+        assert!(slanted.mahalanobis_squared(Vec2::ONE) < slanted.mahalanobis_squared(Vec2::new(1.0, -1.0)));
+    }
 }

@@ -1,11 +1,33 @@
 //! From calibrated forces to feet: frames, contacts and the cursor.
+//!
+//! ```text
+//! ForceFrame -loaded-> loaded tiles (F, M per tile; Eq. 2-3)
+//!   -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
+//!   -cursor-> the contact that operates a region
+//! ```
+//!
+//! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
+//! among them, one picker per region.
 
+mod cluster;
 mod contact;
 mod cursor;
+mod doubt;
+mod eq4;
+mod force_table;
 mod frame;
+mod loaded;
+mod pool;
 mod quality;
+mod sensing;
+mod tile;
 
-pub use contact::{Contact, ContactId, TileLoad};
-pub use cursor::Cursor;
+pub use contact::{Contact, ContactId, Covariance, TileLoad};
+pub use cursor::{Cursor, CursorPicker, Stickiness};
+pub use doubt::SensorDoubt;
+pub use force_table::{ForceTable, ForceTableError};
 pub use frame::ForceFrame;
+pub use loaded::LoadThreshold;
 pub use quality::Quality;
+pub use sensing::{Method, Sensing, SensingConfig};
+pub use tile::{LoadedTile, TileReading, Wrench, known_corners};

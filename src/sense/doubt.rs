@@ -1,0 +1,62 @@
+use glam::Vec2;
+
+use super::contact::Covariance;
+use super::tile::LoadedTile;
+use crate::floor::{Corner, Geometry};
+
+/// What is not known about the sensors, however well they are calibrated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SensorDoubt {
+    /// Standard deviation of a sensor's zero, in newtons.
+    pub offset_n: f32,
+    /// Standard deviation of a sensor's gain after calibration, as a share of the reading.
+    pub gain: f32,
+}
+
+impl Default for SensorDoubt {
+    /// Half a newton of offset, 5 % of gain: what remains after a calibration (paper, section 2.2).
+    fn default() -> Self {
+        Self { offset_n: 0.5, gain: 0.05 }
+    }
+}
+
+impl SensorDoubt {
+    /// Covariance of a centroid at `point` that carries `force` in all, as far as the
+    /// sensors of `tile` are to blame; those of all its tiles add up.
+    ///
+    /// `share` of the tile's load is the contact's own: its gain errors count for that part.
+    ///
+    /// # Source
+    /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
+    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)².
+    #[must_use]
+    pub fn covariance(
+        &self,
+        geometry: &Geometry,
+        tile: &LoadedTile,
+        share: f32,
+        point: Vec2,
+        force: f32,
+    ) -> Covariance {
+        let mut sum = Covariance::default();
+        let reach = geometry.sensor_reach_m();
+        let scale = 1.0 / (force * force).max(1e-6);
+        for corner in Corner::ALL {
+            let arm = tile.centre + corner.direction() * reach - point;
+            let gained = self.gain * share * tile.corners[corner.index()];
+            let variance = (self.offset_n * self.offset_n + gained * gained) * scale;
+            sum.xx += arm.x * arm.x * variance;
+            sum.xy += arm.x * arm.y * variance;
+            sum.yy += arm.y * arm.y * variance;
+        }
+        sum
+    }
+}
+
+impl std::ops::AddAssign for Covariance {
+    fn add_assign(&mut self, other: Self) {
+        self.xx += other.xx;
+        self.xy += other.xy;
+        self.yy += other.yy;
+    }
+}

@@ -1,0 +1,179 @@
+use super::tile::{LoadedTile, TileReading, known_corners};
+use super::{ForceFrame, Quality};
+use crate::floor::Geometry;
+use crate::units::Newtons;
+
+/// Marks a tile without load in the map from tile to list position.
+const NONE: u32 = u32::MAX;
+
+/// From which force on a tile counts as loaded.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LoadThreshold {
+    /// An empty tile becomes loaded at this force.
+    pub on: Newtons,
+    /// A loaded tile stays so down to this force; at most `on`.
+    pub off: Newtons,
+}
+
+impl Default for LoadThreshold {
+    /// 6 N on, 4 N off: above four sensors with half a newton of offset each and
+    /// their noise, far below a tapping toe (our choice).
+    fn default() -> Self {
+        Self { on: Newtons(6.0), off: Newtons(4.0) }
+    }
+}
+
+/// The tiles under load, found anew each frame.
+///
+/// One pass over the floor adds four numbers per tile and compares the sum;
+/// everything after that, here and behind, grows with the loaded tiles alone.
+#[derive(Clone, Debug)]
+pub(super) struct LoadedTiles {
+    geometry: Geometry,
+    threshold: LoadThreshold,
+    sums: Vec<f32>,
+    /// Position in `list` per tile of the floor, or `NONE`.
+    place: Vec<u32>,
+    list: Vec<LoadedTile>,
+    /// Indices that pass the lower threshold, reused.
+    candidates: Vec<u32>,
+}
+
+impl LoadedTiles {
+    pub(super) fn new(geometry: Geometry, threshold: LoadThreshold) -> Self {
+        let tiles = geometry.tile_count();
+        Self {
+            geometry,
+            threshold,
+            sums: vec![0.0; tiles],
+            place: vec![NONE; tiles],
+            list: Vec::with_capacity(tiles.min(4096)),
+            candidates: Vec::with_capacity(tiles),
+        }
+    }
+
+    pub(super) fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The loaded tiles in tile-index order.
+    pub(super) fn list(&self) -> &[LoadedTile] {
+        &self.list
+    }
+
+    /// Position in [`Self::list`] of the tile at `column`, `row`; `None` off the floor or without load.
+    pub(super) fn find(&self, column: i32, row: i32) -> Option<usize> {
+        let columns = i32::from(self.geometry.columns());
+        let on_floor = (0..columns).contains(&column) && (0..i32::from(self.geometry.rows())).contains(&row);
+        if !on_floor {
+            return None;
+        }
+        let place = *self.place.get((row * columns + column) as usize)?;
+        (place != NONE).then_some(place as usize)
+    }
+
+    /// What the tile at `index` feels; nothing for an index past the last tile.
+    pub(super) fn reading(&self, index: usize) -> TileReading {
+        let force = Newtons(self.sums.get(index).copied().unwrap_or_default());
+        match self.place.get(index).and_then(|&place| self.list.get(place as usize)) {
+            Some(loaded) => TileReading {
+                force: Newtons(loaded.wrench.force),
+                centroid: Some(loaded.centroid),
+                quality: loaded.quality,
+            },
+            None => TileReading { force, centroid: None, quality: Quality::Live },
+        }
+    }
+
+    /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not looked at.
+    pub(super) fn update(&mut self, frame: &ForceFrame) {
+        self.candidates.clear();
+        let off = self.threshold.off.0;
+        let missing = frame.forces.len().min(frame.quality.len());
+        if let Some(rest) = self.sums.get_mut(missing..) {
+            rest.fill(0.0);
+        }
+        let readings = frame.forces.iter().zip(&frame.quality);
+        for (index, (sum, (forces, quality))) in self.sums.iter_mut().zip(readings).enumerate() {
+            let [sw, se, nw, ne] = *forces;
+            *sum = (sw + se) + (nw + ne);
+            if *sum >= off || *quality != [Quality::Live; 4] {
+                self.candidates.push(index as u32);
+            }
+        }
+        self.sift(frame);
+    }
+
+    /// From candidates to loaded tiles.
+    fn sift(&mut self, frame: &ForceFrame) {
+        // Which tiles were loaded in the last frame must be known until the new list stands.
+        let mut list = std::mem::take(&mut self.list);
+        let previous = list.len();
+        for &index in &self.candidates {
+            let index = index as usize;
+            let was_loaded = self.place[index] != NONE;
+            let least = if was_loaded { self.threshold.off } else { self.threshold.on };
+            list.extend(
+                known_corners(frame.forces[index], frame.quality[index])
+                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least)),
+            );
+        }
+        for old in list.drain(..previous) {
+            self.place[old.index as usize] = NONE;
+        }
+        for (position, loaded) in list.iter().enumerate() {
+            self.place[loaded.index as usize] = position as u32;
+        }
+        self.list = list;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn frame_with(geometry: &Geometry, index: usize, forces: [f32; 4]) -> ForceFrame {
+        let mut frame = ForceFrame::empty(geometry);
+        frame.forces[index] = forces;
+        frame
+    }
+
+    #[test]
+    fn a_tile_needs_more_to_become_loaded_than_to_stay_so() {
+        let geometry = Geometry::default();
+        let mut tiles = LoadedTiles::new(geometry, LoadThreshold::default());
+        for (force, loaded) in [(5.0, 0), (6.5, 1), (5.0, 1), (3.9, 0), (5.0, 0)] {
+            tiles.update(&frame_with(&geometry, 8, [force / 4.0; 4]));
+            assert_eq!(tiles.list().len(), loaded, "at {force} N");
+        }
+        assert_eq!(tiles.reading(8).force, Newtons(5.0));
+        assert_eq!(tiles.reading(8).centroid, None);
+    }
+
+    #[test]
+    fn a_dead_sensor_leaves_its_tile_usable_two_do_not() {
+        let geometry = Geometry::default();
+        let mut tiles = LoadedTiles::new(geometry, LoadThreshold::default());
+        let mut frame = frame_with(&geometry, 3, [25.0, 25.0, 25.0, 0.0]);
+        frame.quality[3][3] = Quality::Faulty;
+        tiles.update(&frame);
+        assert_eq!(tiles.reading(3).force, Newtons(100.0));
+        assert_eq!(tiles.reading(3).quality, Quality::Degraded);
+        frame.quality[3][0] = Quality::Stale;
+        tiles.update(&frame);
+        assert!(tiles.list().is_empty());
+    }
+
+    #[test]
+    fn a_frame_of_another_size_is_no_accident() {
+        let mut tiles = LoadedTiles::new(Geometry::default(), LoadThreshold::default());
+        for side in [1, 2, 12] {
+            let other = Geometry::of_paper_tiles(side, side).unwrap();
+            tiles.update(&frame_with(&other, 0, [50.0; 4]));
+            assert_eq!(tiles.list().len(), 1);
+        }
+        assert_eq!(tiles.find(0, 0), Some(0));
+        assert_eq!(tiles.find(-1, 0), None);
+        assert_eq!(tiles.find(6, 0), None);
+    }
+}

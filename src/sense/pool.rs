@@ -1,0 +1,57 @@
+use super::Quality;
+use super::contact::{Contact, ContactId, Covariance};
+
+/// The contacts of one frame, in objects that are used again and again.
+///
+/// A contact on more than four tiles keeps its list on the heap; using the
+/// objects again keeps those lists too, so nothing is allocated once the floor
+/// has been as full as it gets.
+#[derive(Clone, Debug, Default)]
+pub(super) struct ContactPool {
+    contacts: Vec<Contact>,
+    used: usize,
+}
+
+impl ContactPool {
+    pub(super) fn with_capacity(contacts: usize) -> Self {
+        Self { contacts: Vec::with_capacity(contacts), used: 0 }
+    }
+
+    pub(super) fn clear(&mut self) {
+        self.used = 0;
+    }
+
+    /// A contact called `id` with nothing else known of it.
+    pub(super) fn add(&mut self, id: ContactId) -> &mut Contact {
+        if self.used == self.contacts.len() {
+            self.contacts.push(Contact::default());
+        }
+        self.used += 1;
+        let contact = &mut self.contacts[self.used - 1];
+        contact.id = id;
+        contact.tiles.clear();
+        contact.covariance = Covariance::default();
+        contact.ambiguous = false;
+        contact.quality = Quality::Live;
+        contact.difference = None;
+        contact
+    }
+
+    pub(super) fn sort_by_id(&mut self) {
+        if let Some(used) = self.contacts.get_mut(..self.used) {
+            used.sort_unstable_by_key(|contact| contact.id);
+        }
+    }
+
+    pub(super) fn contacts(&self) -> &[Contact] {
+        self.contacts.get(..self.used).unwrap_or_default()
+    }
+}
+
+impl Contact {
+    /// Orders the tiles, heaviest first, and takes the difference vector from them.
+    pub(super) fn finish(&mut self) {
+        self.tiles.sort_unstable_by(|a, b| b.force.0.total_cmp(&a.force.0).then(a.index.cmp(&b.index)));
+        self.difference = Self::difference_of(&self.tiles);
+    }
+}

@@ -1,0 +1,187 @@
+use super::cluster::Clusters;
+use super::doubt::SensorDoubt;
+use super::eq4::Eq4;
+use super::loaded::{LoadThreshold, LoadedTiles};
+use super::pool::ContactPool;
+use super::tile::TileReading;
+use super::{Contact, ForceFrame};
+use crate::floor::Geometry;
+use crate::units::Instant;
+
+/// How contacts are made from tile forces.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Method {
+    /// The paper's own: one contact per group of connected tiles (Eq. 4).
+    Eq4,
+    /// Feet followed through time, several in one group of tiles.
+    #[default]
+    Tracker,
+}
+
+/// What sensing assumes about the floor.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct SensingConfig {
+    /// From which force on a tile counts as loaded.
+    pub threshold: LoadThreshold,
+    /// What is not known about the sensors.
+    pub doubt: SensorDoubt,
+}
+
+/// From force frames to contacts, one frame at a time.
+///
+/// The same frames always give the same contacts, to the bit.
+#[derive(Clone, Debug)]
+pub struct Sensing {
+    tiles: LoadedTiles,
+    clusters: Clusters,
+    eq4: Eq4,
+    pool: ContactPool,
+    last: Option<Instant>,
+}
+
+impl Sensing {
+    /// Sensing on a floor of this geometry, with nobody on it yet.
+    #[must_use]
+    pub fn new(geometry: Geometry, method: Method) -> Self {
+        Self::with_config(geometry, method, SensingConfig::default())
+    }
+
+    /// Like [`Sensing::new`], with other assumptions about the floor.
+    #[must_use]
+    pub fn with_config(geometry: Geometry, _method: Method, config: SensingConfig) -> Self {
+        let tiles = geometry.tile_count();
+        Self {
+            tiles: LoadedTiles::new(geometry, config.threshold),
+            clusters: Clusters::with_capacity(tiles),
+            eq4: Eq4::new(tiles, config.doubt),
+            pool: ContactPool::with_capacity(64),
+            last: None,
+        }
+    }
+
+    /// The contacts after `frame`, ordered by id.
+    ///
+    /// Frames are taken at the times they carry; one that is no later than the
+    /// last counts as no time passed. A frame of another floor's size is read
+    /// as far as both go.
+    ///
+    /// # Real-time
+    /// Allocates nothing once the floor has been as full as it gets.
+    pub fn update(&mut self, frame: &ForceFrame) -> &[Contact] {
+        let dt = self.last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
+        self.last = Some(frame.at);
+        self.tiles.update(frame);
+        self.clusters.update(&self.tiles);
+        self.eq4.update(&self.tiles, &self.clusters, dt, &mut self.pool);
+        self.pool.contacts()
+    }
+
+    /// The contacts after the last frame, ordered by id.
+    #[must_use]
+    pub fn contacts(&self) -> &[Contact] {
+        self.pool.contacts()
+    }
+
+    /// What each tile felt in the last frame, in tile-index order.
+    pub fn tiles(&self) -> impl ExactSizeIterator<Item = TileReading> + '_ {
+        (0..self.tiles.geometry().tile_count()).map(|index| self.tiles.reading(index))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::floor::{Corner, TileId};
+    use crate::sense::Quality;
+
+    /// Lays a point load on the floor as four equal springs under a rigid plate.
+    fn press(frame: &mut ForceFrame, geometry: &Geometry, at: Vec2, force: f32) {
+        let tile = geometry.tile_under(at).unwrap();
+        let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
+        for corner in Corner::ALL {
+            frame.forces[geometry.index(tile).unwrap()][corner.index()] +=
+                0.25 * force * (1.0 + corner.direction().dot(arm));
+        }
+    }
+
+    fn eq4() -> (Geometry, Sensing) {
+        let geometry = Geometry::default();
+        (geometry, Sensing::new(geometry, Method::Eq4))
+    }
+
+    #[test]
+    fn a_point_load_of_100_n_swept_over_a_tile_is_found_within_a_tenth_of_a_millimetre() {
+        let (geometry, mut sensing) = eq4();
+        for step in 0..400_u16 {
+            let along = f32::from(step % 20) / 20.0;
+            let across = f32::from(step / 20) / 20.0;
+            let at = (Vec2::new(2.0, 3.0) + Vec2::new(along, across) + 0.01) * 0.304;
+            let mut frame = ForceFrame::empty(&geometry);
+            press(&mut frame, &geometry, at, 100.0);
+            let contacts = sensing.update(&frame);
+            assert_eq!(contacts.len(), 1);
+            assert!(contacts[0].centroid.distance(at) < 1e-4, "{at}: {contacts:?}");
+        }
+    }
+
+    #[test]
+    fn eq4_weighs_the_tiles_of_one_foot() {
+        let (geometry, mut sensing) = eq4();
+        let mut frame = ForceFrame::empty(&geometry);
+        press(&mut frame, &geometry, Vec2::new(0.28, 0.1), 300.0);
+        press(&mut frame, &geometry, Vec2::new(0.36, 0.14), 100.0);
+        let contacts = sensing.update(&frame);
+        assert_eq!(contacts.len(), 1);
+        assert!(contacts[0].centroid.distance(Vec2::new(0.30, 0.11)) < 1e-5);
+        assert_eq!(contacts[0].tiles[0].tile, TileId::new(0, 0));
+        assert_eq!(contacts[0].tiles.len(), 2);
+        assert!(contacts[0].difference.unwrap().distance(Vec2::new(-0.08, -0.04)) < 1e-5);
+    }
+
+    #[test]
+    fn a_name_lasts_as_long_as_the_foot_and_is_never_used_again() {
+        let (geometry, mut sensing) = eq4();
+        let mut ids = Vec::new();
+        for step in 0..600_u16 {
+            let mut frame = ForceFrame::empty(&geometry);
+            frame.at = Instant::from_millis(step.into());
+            // Three steps of a point that slides over seams and corners, with a pause between.
+            if step % 200 < 180 {
+                let at = Vec2::splat(0.2 + f32::from(step % 200) * 0.002);
+                press(&mut frame, &geometry, at, 200.0);
+            }
+            ids.extend(sensing.update(&frame).first().map(|contact| contact.id.0));
+        }
+        ids.dedup();
+        assert_eq!(ids, [1, 2, 3]);
+    }
+
+    #[test]
+    fn a_light_contact_is_less_certain_than_a_heavy_one() {
+        let (geometry, mut sensing) = eq4();
+        let mut radius = |force| {
+            let mut frame = ForceFrame::empty(&geometry);
+            press(&mut frame, &geometry, Vec2::splat(0.45), force);
+            sensing.update(&frame)[0].covariance.ellipse_95_m().0
+        };
+        assert!(radius(10.0) > 0.02);
+        assert!(radius(400.0) < 0.02);
+    }
+
+    #[test]
+    fn tiles_report_force_and_centroid() {
+        let (geometry, mut sensing) = eq4();
+        let mut frame = ForceFrame::empty(&geometry);
+        press(&mut frame, &geometry, Vec2::new(0.45, 0.15), 80.0);
+        frame.quality[1][2] = Quality::Stale;
+        sensing.update(&frame);
+        let readings: Vec<_> = sensing.tiles().collect();
+        assert_eq!(readings.len(), 36);
+        assert!((readings[1].force.0 - 80.0).abs() < 1e-3);
+        assert!(readings[1].centroid.unwrap().distance(Vec2::new(0.45, 0.15)) < 1e-4);
+        assert_eq!(readings[1].quality, Quality::Degraded);
+        assert_eq!(readings[0], TileReading { centroid: None, ..TileReading::live() });
+    }
+}
