@@ -3,8 +3,14 @@
 //! Each step takes the time and one [`Input`] and gives back what happened.
 //! Nothing here knows of floors, layouts or feedback.
 
+mod button;
+mod control;
 mod event;
+mod press;
+mod slider;
+mod switch;
 
+pub use control::{Control, Emitted, Input, SetError};
 pub use event::{EventKind, Value, WidgetEvent, WidgetId};
 
 use std::time::Duration;
@@ -76,4 +82,26 @@ pub enum Behaviour {
     Switch(SwitchSpec),
     /// A slider.
     Slider(SliderSpec),
+}
+
+impl Behaviour {
+    /// When it engages.
+    #[must_use]
+    pub const fn thresholds(&self) -> Thresholds {
+        match self {
+            Self::Button(spec) => spec.thresholds,
+            Self::Switch(spec) => spec.thresholds,
+            Self::Slider(spec) => spec.thresholds,
+        }
+    }
+
+    /// The word for it in messages: `button`, `switch` or `slider`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Button(_) => "button",
+            Self::Switch(_) => "switch",
+            Self::Slider(_) => "slider",
+        }
+    }
 }

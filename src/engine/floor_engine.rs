@@ -1,0 +1,202 @@
+use crate::feel::{Cue, Rubs};
+use crate::floor::Geometry;
+use crate::layout::Layout;
+use crate::sense::{Contact, ForceFrame, Method, Sensing};
+use crate::widget::{Behaviour, SetError, Value, WidgetEvent};
+
+use super::interact::Interaction;
+use super::response::{self, LastSpots};
+use super::{Snapshot, TileState, WidgetState};
+
+/// A floor with a page of controls on it: frames in, events and cues out.
+///
+/// It reads no clock and draws no random number: what it does follows from the
+/// frames and the calls alone. In steady state it allocates nothing.
+#[derive(Debug)]
+pub struct Engine {
+    geometry: Geometry,
+    layout: Layout,
+    waiting_layout: Option<Layout>,
+    layout_revision: u64,
+    sensing: Sensing,
+    interaction: Interaction,
+    last_spots: LastSpots,
+    last_frame: ForceFrame,
+    /// What calls between two steps led to; reported by the next step.
+    pending: Vec<WidgetEvent>,
+    events: Vec<WidgetEvent>,
+    cues: Vec<Cue>,
+    rubs: Rubs,
+}
+
+/// What one frame led to.
+#[derive(Clone, Copy, Debug)]
+pub struct Step<'a> {
+    /// What the controls did, in order.
+    pub events: &'a [WidgetEvent],
+    /// Clicks to be felt.
+    pub cues: &'a [Cue],
+    /// Feet sliding on controls now.
+    pub rubs: &'a Rubs,
+    /// The feet on the floor.
+    pub contacts: &'a [Contact],
+}
+
+impl Engine {
+    /// An engine for the controls of `layout` on a floor of this geometry.
+    ///
+    /// Every control must first be seen unloaded before it works.
+    #[must_use]
+    pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
+        Self {
+            interaction: Interaction::new(&layout, &geometry),
+            sensing: Sensing::new(geometry, method),
+            last_frame: ForceFrame::empty(&geometry),
+            geometry,
+            layout,
+            waiting_layout: None,
+            layout_revision: 0,
+            last_spots: LastSpots::default(),
+            pending: Vec::new(),
+            events: Vec::new(),
+            cues: Vec::new(),
+            rubs: Rubs::new(),
+        }
+    }
+
+    /// Takes in one frame; frames must come in time order and be of this floor's size.
+    ///
+    /// A frame with missing tiles is taken as an unsensed floor: every control is cancelled.
+    pub fn step(&mut self, frame: &ForceFrame) -> Step<'_> {
+        self.events.clear();
+        self.events.append(&mut self.pending);
+        self.cues.clear();
+        self.rubs.clear();
+        let contacts = self.sensing.update(frame);
+        self.interaction.step(frame, contacts, &self.layout, &mut self.events);
+        self.cues.extend(self.events.iter().filter_map(|event| {
+            response::cue(event, frame.received, &self.layout, contacts, &self.last_spots)
+        }));
+        for sliding in self.interaction.sliding() {
+            if let Some(rub) = response::rub(sliding, &self.layout, contacts) {
+                response::push(&mut self.rubs, rub);
+            }
+        }
+        let interaction = &self.interaction;
+        self.last_spots.update(contacts, |id| interaction.holds(id));
+        self.last_frame.clone_from(frame);
+        self.take_waiting_layout();
+        Step { events: &self.events, cues: &self.cues, rubs: &self.rubs, contacts: self.sensing.contacts() }
+    }
+
+    /// The layout in use.
+    #[must_use]
+    pub fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Takes another layout, keeping the values of controls that both have.
+    ///
+    /// With a foot engaged, the change waits until the foot has let go; if the
+    /// engaged control is gone from the new layout it is cancelled at the next step.
+    pub fn set_layout(&mut self, layout: Layout) {
+        self.waiting_layout = Some(layout);
+        self.take_waiting_layout();
+    }
+
+    /// What the control named `id` holds; `None` for a button or an unknown name.
+    #[must_use]
+    pub fn value(&self, id: &str) -> Option<Value> {
+        self.interaction.controls().get(self.layout.widget_index(id)?)?.value()
+    }
+
+    /// Gives the control named `id` a value; no event follows, for the caller knows.
+    ///
+    /// # Errors
+    /// [`SetError`] says whether trying again can help; the control stays as it was.
+    pub fn set_value(&mut self, id: &str, value: Value) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        self.interaction.control_mut(widget).ok_or(SetError::Unknown)?.set_value(value)
+    }
+
+    /// Switches the control named `id` off or on; switching off cancels its press (reported by the next step).
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_enabled(&mut self, id: &str, enabled: bool) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        let now = self.last_frame.at;
+        self.interaction.set_disabled(widget, !enabled, &self.layout, now, &mut self.pending);
+        Ok(())
+    }
+
+    /// Writes the present state into `snapshot`; link state and counters are the caller's to fill.
+    pub fn snapshot(&self, snapshot: &mut Snapshot) {
+        snapshot.at = self.last_frame.at;
+        snapshot.layout_revision = self.layout_revision;
+        snapshot.contacts.clear();
+        snapshot.contacts.extend_from_slice(self.sensing.contacts());
+        snapshot.cursors.clear();
+        snapshot.cursors.extend(self.interaction.cursors());
+        snapshot.widgets.clear();
+        snapshot.widgets.extend(self.interaction.controls().iter().map(|control| WidgetState {
+            pressed: control.is_engaged(),
+            value: control.value(),
+            press_share: control.press_share(),
+            needs_lift: control.needs_lift(),
+            disabled: control.is_disabled(),
+        }));
+        snapshot.tiles.clear();
+        let frame = &self.last_frame;
+        snapshot.tiles.extend(self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).map(
+            |((tile, forces), quality)| TileState {
+                forces: *forces,
+                quality: *quality,
+                force: tile.force,
+                centroid: tile.centroid,
+            },
+        ));
+    }
+
+    fn take_waiting_layout(&mut self) {
+        let now = self.last_frame.at;
+        let Some(waiting) = &self.waiting_layout else { return };
+        let vanished: Vec<usize> = self
+            .interaction
+            .engaged()
+            .filter(|&widget| {
+                self.layout
+                    .widgets
+                    .get(widget)
+                    .is_none_or(|old| !has_like(waiting, old.id.as_str(), &old.behaviour))
+            })
+            .collect();
+        for widget in vanished {
+            self.interaction.cancel(widget, &self.layout, now, &mut self.pending);
+        }
+        if self.interaction.is_engaged() {
+            return;
+        }
+        let Some(layout) = self.waiting_layout.take() else { return };
+        let mut interaction = Interaction::new(&layout, &self.geometry);
+        for (index, widget) in layout.widgets.iter().enumerate() {
+            let old = self.layout.widget_index(widget.id.as_str());
+            let old = old.and_then(|old| self.interaction.controls().get(old));
+            if let (Some(old), Some(new)) = (old, interaction.control_mut(index)) {
+                // A control that changed its behaviour starts from its own initial value.
+                let _ = old.value().map(|value| new.set_value(value));
+                new.set_disabled(old.is_disabled());
+            }
+        }
+        self.interaction = interaction;
+        self.layout = layout;
+        self.layout_revision += 1;
+    }
+}
+
+fn has_like(layout: &Layout, id: &str, behaviour: &Behaviour) -> bool {
+    layout
+        .widget_index(id)
+        .and_then(|widget| layout.widgets.get(widget))
+        .is_some_and(|widget| std::mem::discriminant(&widget.behaviour) == std::mem::discriminant(behaviour))
+}

@@ -1,0 +1,90 @@
+//! Which cue answers which event: the one place where controls meet feel.
+
+use crate::feel::{Cue, Rub, Rubs, Spot, Spots};
+use crate::layout::Layout;
+use crate::sense::{Contact, ContactId};
+use crate::units::Instant;
+use crate::widget::{EventKind, WidgetEvent};
+
+use super::interact::Sliding;
+
+/// The cue that answers `event`, on the tiles under the contact that caused it; `None` if it has none.
+///
+/// A cancel is not felt as a release: the foot has left, or the floor can't be trusted.
+pub(super) fn cue(
+    event: &WidgetEvent,
+    received: Instant,
+    layout: &Layout,
+    contacts: &[Contact],
+    last_spots: &LastSpots,
+) -> Option<Cue> {
+    let widget = &layout.widgets.get(layout.widget_index(event.id.as_str())?)?;
+    let click = match event.kind {
+        EventKind::Pressed => widget.feel.press.as_ref(),
+        EventKind::Released => widget.feel.release.as_ref(),
+        EventKind::Clicked | EventKind::Cancelled | EventKind::Changed(_) => None,
+    }?;
+    let id = event.contact?;
+    let spots = match contacts.iter().find(|contact| contact.id == id) {
+        Some(contact) => spots(contact),
+        None => last_spots.of(id)?,
+    };
+    Some(Cue { at: event.at, received, spots, click: click.clone() })
+}
+
+/// What a foot sliding on a control feels like now; `None` if the control has no friction.
+pub(super) fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
+    let friction = layout.widgets.get(sliding.widget)?.feel.drag?;
+    let contact = contacts.iter().find(|contact| contact.id == sliding.contact)?;
+    Some(Rub {
+        key: contact.id.0,
+        spots: spots(contact),
+        friction,
+        speed_m_s: contact.velocity.length(),
+        force: contact.force,
+    })
+}
+
+/// Appends `rub` unless the list is full, which takes more feet than a floor control page has room for.
+pub(super) fn push(rubs: &mut Rubs, rub: Rub) {
+    // The rubs beyond the limit are the latest to land; they stay silent until one ends.
+    let _ = rubs.try_push(rub);
+}
+
+/// The tiles under a contact with their weights in Eq. 4, renormalised over the heaviest four.
+///
+/// # Source
+/// `w_k = F_k / F` (paper, Eq. 4).
+fn spots(contact: &Contact) -> Spots {
+    let felt = || contact.tiles.iter().take(Spots::new().capacity());
+    let total: f32 = felt().map(|load| load.force.0).sum();
+    felt()
+        .filter(|_| total > 0.0)
+        .map(|load| Spot {
+            tile: u16::try_from(load.index).unwrap_or(u16::MAX),
+            weight: load.force.0 / total,
+        })
+        .collect()
+}
+
+/// Where contacts were felt last, so that a release is felt where the foot was although it has just left.
+#[derive(Debug, Default)]
+pub(super) struct LastSpots(Vec<(ContactId, Spots)>);
+
+impl LastSpots {
+    /// Remembers the contacts of this frame; those that were gone in the last one too are forgotten
+    /// unless `keep` says that a control still waits for them.
+    pub(super) fn update(&mut self, contacts: &[Contact], keep: impl Fn(ContactId) -> bool) {
+        self.0.retain(|(id, _)| keep(*id) || contacts.iter().any(|contact| contact.id == *id));
+        for contact in contacts {
+            match self.0.iter_mut().find(|(id, _)| *id == contact.id) {
+                Some((_, known)) => *known = spots(contact),
+                None => self.0.push((contact.id, spots(contact))),
+            }
+        }
+    }
+
+    fn of(&self, id: ContactId) -> Option<Spots> {
+        self.0.iter().find(|(known, _)| *known == id).map(|(_, spots)| spots.clone())
+    }
+}

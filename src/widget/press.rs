@@ -1,0 +1,278 @@
+//! The press that every control shares: from a foot's force to down and up.
+//!
+//! ```text
+//!  force    press  ---------------/\---------------------
+//!           release -----/\-----/----\------------/\------
+//!
+//!  1  above press for `dwell`                      -> Pressed
+//!  2  below release before `dwell` is over         -> nothing
+//!  3  between the two while down                   -> stays down
+//!  4  below release for LIFT_TIME while down       -> Released
+//!  5  below release for less than that while down  -> nothing (one bad sample is no lift)
+//!  6  off the control while down                   -> Cancelled
+//!  7  sensing lost while down                      -> Cancelled
+//!  8  above press within `lockout` of a release    -> waits until the lockout is over
+//!  9  already loaded at start, after a loss, or by a foot that slid on
+//!                                                  -> nothing until seen below release
+//! 10  untrusted force while up                     -> nothing; while down it holds and may release
+//! ```
+
+use std::time::Duration;
+
+use super::{Input, Thresholds};
+use crate::units::{Instant, Newtons};
+
+/// How long the force must stay below the release threshold before a lift counts (our choice).
+///
+/// A press is never delayed by this; a release is, by less than anybody feels.
+pub(super) const LIFT_TIME: Duration = Duration::from_millis(4);
+
+/// What became of a press.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Outcome {
+    Pressed,
+    Released,
+    Cancelled,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum State {
+    /// Must be seen unloaded before anything counts.
+    NeedsLift,
+    /// At rest; presses count again from `ready` on.
+    Up { ready: Instant },
+    /// Loaded enough since `since`, waiting for the dwell to pass.
+    Arming { since: Instant },
+    /// Engaged.
+    Down,
+    /// Engaged, but unloaded since `since`.
+    Lifting { since: Instant },
+}
+
+/// One control's press.
+#[derive(Clone, Debug)]
+pub(super) struct Press {
+    at: Thresholds,
+    state: State,
+    force: Newtons,
+}
+
+impl Press {
+    /// A press that must first be seen unloaded.
+    pub(super) fn new(at: Thresholds) -> Self {
+        Self { at, state: State::NeedsLift, force: Newtons::ZERO }
+    }
+
+    pub(super) fn is_engaged(&self) -> bool {
+        matches!(self.state, State::Down | State::Lifting { .. })
+    }
+
+    pub(super) fn needs_lift(&self) -> bool {
+        self.state == State::NeedsLift
+    }
+
+    /// Whether a step with [`Input::Clear`] would change nothing.
+    pub(super) fn is_at_rest(&self) -> bool {
+        matches!(self.state, State::Up { .. }) && self.force == Newtons::ZERO
+    }
+
+    /// Force of the foot on it as a share of the press threshold, at least 0.
+    pub(super) fn share(&self) -> f32 {
+        (self.force / self.at.press).max(0.0)
+    }
+
+    /// Whether the force is closer to the press than to the release threshold: a foot that means to stay.
+    pub(super) fn is_firm(&self) -> bool {
+        self.is_engaged() && self.force >= (self.at.press + self.at.release) * 0.5
+    }
+
+    /// Ends the press without committing; a foot still on it must lift first.
+    pub(super) fn cancel(&mut self) -> Option<Outcome> {
+        let engaged = self.is_engaged();
+        self.state = State::NeedsLift;
+        engaged.then_some(Outcome::Cancelled)
+    }
+
+    pub(super) fn step(&mut self, now: Instant, input: Input) -> Option<Outcome> {
+        use State::{Arming, Down, Lifting, NeedsLift, Up};
+        // A foot that is not there presses with nothing.
+        let (force, trusted) = match input {
+            Input::Foot { force, trusted, .. } => (force, trusted),
+            Input::Clear => (Newtons::ZERO, true),
+            Input::SlidOn { force } => {
+                self.force = force;
+                return self.cancel();
+            }
+            Input::SlidOff => {
+                self.force = Newtons::ZERO;
+                let engaged = self.is_engaged();
+                self.state = Up { ready: now };
+                return engaged.then_some(Outcome::Cancelled);
+            }
+            Input::Lost => {
+                self.force = Newtons::ZERO;
+                return self.cancel();
+            }
+        };
+        self.force = force;
+        let loaded = force >= self.at.release;
+        let (state, outcome) = match self.state {
+            NeedsLift if loaded || !trusted => (NeedsLift, None),
+            NeedsLift => (Up { ready: now }, None),
+
+            Up { ready } if trusted && force >= self.at.press && now >= ready => {
+                if self.at.dwell.is_zero() {
+                    (Down, Some(Outcome::Pressed))
+                } else {
+                    (Arming { since: now }, None)
+                }
+            }
+            Up { ready } => (Up { ready }, None),
+
+            Arming { .. } if !loaded || !trusted => (Up { ready: now }, None),
+            Arming { since } if now.since(since) >= self.at.dwell => (Down, Some(Outcome::Pressed)),
+            Arming { since } => (Arming { since }, None),
+
+            Down if loaded => (Down, None),
+            Down => (Lifting { since: now }, None),
+
+            Lifting { .. } if loaded => (Down, None),
+            Lifting { since } if now.since(since) >= LIFT_TIME => {
+                (Up { ready: now + self.at.lockout }, Some(Outcome::Released))
+            }
+            Lifting { since } => (Lifting { since }, None),
+        };
+        self.state = state;
+        outcome
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+
+    const AT: Thresholds = Thresholds {
+        press: Newtons(60.0),
+        release: Newtons(40.0),
+        dwell: Duration::from_millis(20),
+        lockout: Duration::from_millis(20),
+    };
+
+    /// One press fed millisecond by millisecond.
+    struct Bench {
+        press: Press,
+        now: Instant,
+        outcomes: Vec<(u64, Outcome)>,
+    }
+
+    impl Bench {
+        /// A press that has been seen unloaded.
+        fn ready() -> Self {
+            let mut bench = Self { press: Press::new(AT), now: Instant::START, outcomes: Vec::new() };
+            bench.give(Input::Clear, 1);
+            bench
+        }
+
+        fn give(&mut self, input: Input, millis: u64) {
+            for _ in 0..millis {
+                self.now = self.now + Duration::from_millis(1);
+                if let Some(outcome) = self.press.step(self.now, input) {
+                    self.outcomes.push((self.now.micros() / 1000, outcome));
+                }
+            }
+        }
+
+        fn force(&mut self, newtons: f32, millis: u64) {
+            self.give(foot(newtons), millis);
+        }
+    }
+
+    fn foot(newtons: f32) -> Input {
+        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::splat(0.5) }
+    }
+
+    #[test]
+    fn line_1_presses_once_the_dwell_has_passed() {
+        let mut bench = Bench::ready();
+        bench.force(80.0, 100);
+        // Loaded from 2 ms on, 20 ms dwell.
+        assert_eq!(bench.outcomes, [(22, Outcome::Pressed)]);
+    }
+
+    #[test]
+    fn line_2_a_graze_is_no_press() {
+        let mut bench = Bench::ready();
+        bench.force(80.0, 15);
+        bench.force(10.0, 30);
+        assert_eq!(bench.outcomes, []);
+    }
+
+    #[test]
+    fn lines_3_and_4_hysteresis_holds_until_below_release() {
+        let mut bench = Bench::ready();
+        bench.force(80.0, 30);
+        bench.force(45.0, 200);
+        assert!(bench.press.is_engaged());
+        bench.force(35.0, 10);
+        assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (236, Outcome::Released)]);
+    }
+
+    #[test]
+    fn line_5_one_bad_sample_is_no_lift() {
+        let mut bench = Bench::ready();
+        bench.force(80.0, 30);
+        bench.force(0.0, 1);
+        bench.force(80.0, 30);
+        assert_eq!(bench.outcomes, [(22, Outcome::Pressed)]);
+    }
+
+    #[test]
+    fn lines_6_and_7_sliding_off_and_losing_the_floor_cancel() {
+        for end in [Input::SlidOff, Input::Lost] {
+            let mut bench = Bench::ready();
+            bench.force(80.0, 30);
+            bench.give(end, 5);
+            assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (32, Outcome::Cancelled)], "{end:?}");
+        }
+    }
+
+    #[test]
+    fn line_8_a_bounce_waits_for_the_lockout() {
+        let mut bench = Bench::ready();
+        bench.force(80.0, 30);
+        bench.force(0.0, 6);
+        bench.force(80.0, 60);
+        // Released at 36 ms; locked out until 56 ms; then the dwell.
+        assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (36, Outcome::Released), (76, Outcome::Pressed)]);
+    }
+
+    #[test]
+    fn line_9_a_loaded_control_must_first_be_seen_unloaded() {
+        let mut bench = Bench::ready();
+        bench.give(Input::Lost, 1);
+        bench.force(80.0, 500);
+        assert!(bench.press.needs_lift());
+        bench.force(10.0, 1);
+        bench.force(80.0, 30);
+        assert_eq!(bench.outcomes.len(), 1);
+        let mut slid = Bench::ready();
+        slid.give(Input::SlidOn { force: Newtons(80.0) }, 1);
+        slid.force(80.0, 500);
+        assert_eq!(slid.outcomes, []);
+    }
+
+    #[test]
+    fn line_10_untrusted_force_starts_nothing_but_may_release() {
+        let doubtful = |newtons| Input::Foot { force: Newtons(newtons), trusted: false, place: Vec2::ZERO };
+        let mut bench = Bench::ready();
+        bench.give(doubtful(200.0), 100);
+        assert_eq!(bench.outcomes, []);
+        bench.force(80.0, 30);
+        bench.give(doubtful(80.0), 100);
+        bench.give(doubtful(0.0), 10);
+        let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
+        assert_eq!(kinds, [Outcome::Pressed, Outcome::Released]);
+    }
+}
