@@ -1,3 +1,1 @@
-//! The program `underfoot`.
-
 fn main() {}

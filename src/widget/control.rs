@@ -255,8 +255,9 @@ mod tests {
         let mut light = switch();
         let pressed = (foot(80.0, 0.5), 50);
         let on = Changed(Value::Switch(true));
-        assert_eq!(play(&mut light, &[pressed, (foot(0.0, 0.5), 10)]), [Pressed, Released, on]);
-        assert_eq!(play(&mut light, &[pressed, (Input::Lost, 1)]), [Pressed, Cancelled]);
+        let pause = (Input::Clear, 100);
+        let inputs = [pressed, (foot(0.0, 0.5), 10), pause, pressed, (Input::Lost, 1)];
+        assert_eq!(play(&mut light, &inputs), [Pressed, Released, on, Pressed, Cancelled]);
         assert_eq!(light.value(), Some(Value::Switch(true)));
     }
 
