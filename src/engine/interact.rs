@@ -24,6 +24,8 @@ pub(super) struct Interaction {
     controls: Vec<Control>,
     /// Tiles under each control, by index.
     tiles: Vec<Vec<usize>>,
+    /// Whether each control lies on a tile that can't be sensed.
+    unsensed: Vec<bool>,
     /// Controls for which even an empty floor changes something.
     awake: Vec<usize>,
     landed: Vec<(ContactId, Instant)>,
@@ -62,7 +64,8 @@ impl Interaction {
         let controls: Vec<_> = layout.widgets.iter().map(|widget| Control::new(widget.behaviour)).collect();
         let tiles = layout.widgets.iter().map(|widget| tiles_under(widget, geometry)).collect();
         let awake = (0..controls.len()).collect();
-        Self { regions, controls, tiles, awake, landed: Vec::new() }
+        let unsensed = vec![false; controls.len()];
+        Self { regions, controls, tiles, unsensed, awake, landed: Vec::new() }
     }
 
     pub(super) fn controls(&self) -> &[Control] {
@@ -240,7 +243,8 @@ impl Interaction {
                     || region.over.is_some_and(|(over, _)| over == widget)
             });
             let Some(control) = self.controls.get_mut(widget) else { return false };
-            if touched {
+            let unsensed = self.unsensed.get(widget).is_some_and(|unsensed| *unsensed);
+            if touched || unsensed {
                 return true;
             }
             let emitted = control.step(now, Input::Clear);
@@ -253,11 +257,15 @@ impl Interaction {
     /// Controls on a tile that can't be sensed are lost.
     fn lose_unsensed(&mut self, frame: &ForceFrame, layout: &Layout, events: &mut Vec<WidgetEvent>) {
         if frame.quality.iter().flatten().all(|quality| *quality < Quality::Stale) {
+            self.unsensed.fill(false);
             return;
         }
         let is_unsensed = |tile: &usize| frame.quality.get(*tile).is_none_or(|tile| !is_sensed(tile));
         for widget in 0..self.controls.len() {
             let lost = self.tiles.get(widget).is_some_and(|tiles| tiles.iter().any(is_unsensed));
+            if let Some(unsensed) = self.unsensed.get_mut(widget) {
+                *unsensed = lost;
+            }
             let Some(control) = self.controls.get_mut(widget).filter(|_| lost) else { continue };
             let emitted = control.step(frame.at, Input::Lost);
             let held = self.release_hold(widget);

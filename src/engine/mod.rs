@@ -9,3 +9,6 @@ mod snapshot;
 
 pub use floor_engine::{Engine, Step};
 pub use snapshot::{LinkState, Snapshot, TileState, WidgetState};
+
+#[cfg(test)]
+mod tests;

@@ -228,8 +228,11 @@ mod tests {
 
     /// Gives each input for so many milliseconds, after the control has been seen unloaded.
     fn play(control: &mut Control, inputs: &[(Input, u64)]) -> Vec<EventKind> {
-        let mut now = Instant::from_millis(1);
-        control.step(now, Input::Clear);
+        let mut now = Instant::START;
+        for millis in 0..25 {
+            now = Instant::from_millis(millis);
+            control.step(now, Input::Clear);
+        }
         let mut events = Vec::new();
         for &(input, millis) in inputs {
             for _ in 0..millis {

@@ -13,7 +13,7 @@
 //!  7  sensing lost while down                      -> Cancelled
 //!  8  above press within `lockout` of a release    -> waits until the lockout is over
 //!  9  already loaded at start, after a loss, or by a foot that slid on
-//!                                                  -> nothing until seen below release
+//!                                                  -> nothing until below release for UNLOAD_TIME
 //! 10  untrusted force while up                     -> nothing; while down it holds and may release
 //! ```
 
@@ -27,6 +27,10 @@ use crate::units::{Instant, Newtons};
 /// A press is never delayed by this; a release is, by less than anybody feels.
 pub(super) const LIFT_TIME: Duration = Duration::from_millis(4);
 
+/// How long a control must be seen unloaded before it works after a start or a loss
+/// (our choice: longer than a foot needs to be found again when packets return).
+const UNLOAD_TIME: Duration = Duration::from_millis(20);
+
 /// What became of a press.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Outcome {
@@ -37,8 +41,8 @@ pub(super) enum Outcome {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum State {
-    /// Must be seen unloaded before anything counts.
-    NeedsLift,
+    /// Must be seen unloaded before anything counts; it has been since `clear`.
+    NeedsLift { clear: Option<Instant> },
     /// At rest; presses count again from `ready` on.
     Up { ready: Instant },
     /// Loaded enough since `since`, waiting for the dwell to pass.
@@ -48,6 +52,8 @@ enum State {
     /// Engaged, but unloaded since `since`.
     Lifting { since: Instant },
 }
+
+const NEEDS_LIFT: State = State::NeedsLift { clear: None };
 
 /// One control's press.
 #[derive(Clone, Debug)]
@@ -60,7 +66,7 @@ pub(super) struct Press {
 impl Press {
     /// A press that must first be seen unloaded.
     pub(super) fn new(at: Thresholds) -> Self {
-        Self { at, state: State::NeedsLift, force: Newtons::ZERO }
+        Self { at, state: NEEDS_LIFT, force: Newtons::ZERO }
     }
 
     pub(super) fn is_engaged(&self) -> bool {
@@ -68,7 +74,7 @@ impl Press {
     }
 
     pub(super) fn needs_lift(&self) -> bool {
-        self.state == State::NeedsLift
+        matches!(self.state, State::NeedsLift { .. })
     }
 
     /// Whether a step with [`Input::Clear`] would change nothing.
@@ -89,7 +95,7 @@ impl Press {
     /// Ends the press without committing; a foot still on it must lift first.
     pub(super) fn cancel(&mut self) -> Option<Outcome> {
         let engaged = self.is_engaged();
-        self.state = State::NeedsLift;
+        self.state = NEEDS_LIFT;
         engaged.then_some(Outcome::Cancelled)
     }
 
@@ -117,8 +123,9 @@ impl Press {
         self.force = force;
         let loaded = force >= self.at.release;
         let (state, outcome) = match self.state {
-            NeedsLift if loaded || !trusted => (NeedsLift, None),
-            NeedsLift => (Up { ready: now }, None),
+            NeedsLift { .. } if loaded || !trusted => (NEEDS_LIFT, None),
+            NeedsLift { clear: Some(clear) } if now.since(clear) >= UNLOAD_TIME => (Up { ready: now }, None),
+            NeedsLift { clear } => (NeedsLift { clear: clear.or(Some(now)) }, None),
 
             Up { ready } if trusted && force >= self.at.press && now >= ready => {
                 if self.at.dwell.is_zero() {
@@ -160,6 +167,9 @@ mod tests {
         lockout: Duration::from_millis(20),
     };
 
+    /// Long enough unloaded, in milliseconds, for the press to work.
+    const SETTLED: u64 = 25;
+
     /// One press fed millisecond by millisecond.
     struct Bench {
         press: Press,
@@ -171,7 +181,7 @@ mod tests {
         /// A press that has been seen unloaded.
         fn ready() -> Self {
             let mut bench = Self { press: Press::new(AT), now: Instant::START, outcomes: Vec::new() };
-            bench.give(Input::Clear, 1);
+            bench.give(Input::Clear, SETTLED);
             bench
         }
 
@@ -179,7 +189,7 @@ mod tests {
             for _ in 0..millis {
                 self.now = self.now + Duration::from_millis(1);
                 if let Some(outcome) = self.press.step(self.now, input) {
-                    self.outcomes.push((self.now.micros() / 1000, outcome));
+                    self.outcomes.push((self.now.micros() / 1000 - SETTLED, outcome));
                 }
             }
         }
@@ -197,8 +207,8 @@ mod tests {
     fn line_1_presses_once_the_dwell_has_passed() {
         let mut bench = Bench::ready();
         bench.force(80.0, 100);
-        // Loaded from 2 ms on, 20 ms dwell.
-        assert_eq!(bench.outcomes, [(22, Outcome::Pressed)]);
+        // Loaded from 1 ms on, 20 ms dwell.
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed)]);
     }
 
     #[test]
@@ -216,7 +226,7 @@ mod tests {
         bench.force(45.0, 200);
         assert!(bench.press.is_engaged());
         bench.force(35.0, 10);
-        assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (236, Outcome::Released)]);
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (235, Outcome::Released)]);
     }
 
     #[test]
@@ -225,7 +235,7 @@ mod tests {
         bench.force(80.0, 30);
         bench.force(0.0, 1);
         bench.force(80.0, 30);
-        assert_eq!(bench.outcomes, [(22, Outcome::Pressed)]);
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed)]);
     }
 
     #[test]
@@ -234,7 +244,7 @@ mod tests {
             let mut bench = Bench::ready();
             bench.force(80.0, 30);
             bench.give(end, 5);
-            assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (32, Outcome::Cancelled)], "{end:?}");
+            assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (31, Outcome::Cancelled)], "{end:?}");
         }
     }
 
@@ -244,8 +254,8 @@ mod tests {
         bench.force(80.0, 30);
         bench.force(0.0, 6);
         bench.force(80.0, 60);
-        // Released at 36 ms; locked out until 56 ms; then the dwell.
-        assert_eq!(bench.outcomes, [(22, Outcome::Pressed), (36, Outcome::Released), (76, Outcome::Pressed)]);
+        // Released at 35 ms; locked out until 55 ms; then the dwell.
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (35, Outcome::Released), (75, Outcome::Pressed)]);
     }
 
     #[test]
@@ -254,7 +264,7 @@ mod tests {
         bench.give(Input::Lost, 1);
         bench.force(80.0, 500);
         assert!(bench.press.needs_lift());
-        bench.force(10.0, 1);
+        bench.force(10.0, 25);
         bench.force(80.0, 30);
         assert_eq!(bench.outcomes.len(), 1);
         let mut slid = Bench::ready();
