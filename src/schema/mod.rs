@@ -1,1 +1,41 @@
 //! RON files: floors, control kinds and layouts as written, checked into the types the engine uses.
+//!
+//! All problems of a file are found in one reading, each with its place; there
+//! is never a part of a layout. A file is read in these steps, one module each:
+//!
+//! ```text
+//! bytes -source-> text -scan-> brackets that close, bounded nesting
+//!   -syntax-> tree with spans -reader, fields-> numbers, texts, names in range
+//!   -page, kind, floor-> what was meant -checks-> Layout, Kind, Floor
+//! ```
+
+mod area;
+mod behaviour;
+mod builtin;
+mod checks;
+mod diagnostic;
+mod excerpt;
+mod feel;
+mod fields;
+mod floor;
+mod floor_text;
+mod kind;
+mod look;
+mod number;
+mod page;
+mod problem;
+mod reader;
+mod scan;
+mod source;
+mod suggest;
+mod syntax;
+mod version;
+mod words;
+
+pub use builtin::{builtin_layout, builtin_layouts};
+pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use floor::{load_floor, parse_floor};
+pub use floor_text::write_floor;
+pub use kind::{Kind, Kinds};
+pub use page::{Loaded, MAX_WIDGETS, load_layout, parse_layout};
+pub use version::FORMAT_VERSION;

@@ -1,0 +1,149 @@
+use std::fmt;
+use std::ops::Range;
+
+use glam::Vec2;
+
+use super::fields::Fields;
+use super::number::plain;
+use crate::floor::{Geometry, Rect};
+
+/// How far edges may miss each other and still count as touching, in tiles: far below any foot, far above rounding.
+const TOUCH: f64 = 1e-6;
+
+/// A rectangle as layouts write it: in tiles, from the floor's south-west corner.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Area {
+    min: [f64; 2],
+    max: [f64; 2],
+}
+
+impl Area {
+    /// The area in the fields `at` and `size`.
+    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
+        let side = f64::from(Geometry::MAX_SIDE);
+        let at = fields.read("at", None, |node| node.pair(-side..=side));
+        let size = fields.read("size", None, |node| node.pair(0.05..=side));
+        Some(Self::new(at?, size?))
+    }
+
+    pub(super) fn new(at: [f64; 2], size: [f64; 2]) -> Self {
+        Self { min: at, max: [at[0] + size[0], at[1] + size[1]] }
+    }
+
+    /// The whole floor.
+    pub(super) fn of_floor(geometry: &Geometry) -> Self {
+        Self::new([0.0; 2], [f64::from(geometry.columns()), f64::from(geometry.rows())])
+    }
+
+    pub(super) fn size(&self) -> [f64; 2] {
+        [self.max[0] - self.min[0], self.max[1] - self.min[1]]
+    }
+
+    pub(super) fn middle(&self) -> [f64; 2] {
+        [0.5 * (self.min[0] + self.max[0]), 0.5 * (self.min[1] + self.max[1])]
+    }
+
+    /// Whether `point` lies inside; west and south edges count, east and north ones don't.
+    pub(super) fn contains(&self, point: [f64; 2]) -> bool {
+        (0..2).all(|axis| self.min[axis] <= point[axis] && point[axis] < self.max[axis])
+    }
+
+    /// Whether all of this lies in `outer`, edges touching or not.
+    pub(super) fn within(&self, outer: &Self) -> bool {
+        (0..2).all(|axis| {
+            outer.min[axis] <= self.min[axis] + TOUCH && self.max[axis] <= outer.max[axis] + TOUCH
+        })
+    }
+
+    /// Width and depth of what the two share; `None` if they only touch or lie apart.
+    pub(super) fn shared(&self, other: &Self) -> Option<[f64; 2]> {
+        let along = |axis: usize| self.max[axis].min(other.max[axis]) - self.min[axis].max(other.min[axis]);
+        let shared = [along(0), along(1)];
+        shared.iter().all(|length| *length > TOUCH).then_some(shared)
+    }
+
+    /// The shortest move that takes this off `other` and keeps it on `floor`, in words.
+    pub(super) fn way_off(&self, other: &Self, floor: &Self) -> Option<String> {
+        let moves = [
+            (other.max[0] - self.min[0], 0, 1.0, "east"),
+            (self.max[0] - other.min[0], 0, -1.0, "west"),
+            (other.max[1] - self.min[1], 1, 1.0, "north"),
+            (self.max[1] - other.min[1], 1, -1.0, "south"),
+        ];
+        moves
+            .into_iter()
+            .filter(|&(distance, axis, sign, _)| self.moved(axis, sign * distance).within(floor))
+            .min_by(|a, b| a.0.total_cmp(&b.0))
+            .map(|(distance, _, _, direction)| {
+                format!("moved {} tiles {direction} it lies beside", plain(distance))
+            })
+    }
+
+    fn moved(mut self, axis: usize, distance: f64) -> Self {
+        self.min[axis] += distance;
+        self.max[axis] += distance;
+        self
+    }
+
+    /// The same rectangle in floor metres.
+    pub(super) fn in_metres(&self, geometry: &Geometry) -> Rect {
+        let metres =
+            |point: [f64; 2]| Vec2::from(point.map(|tiles| (tiles * f64::from(geometry.pitch_m())) as f32));
+        Rect::new(metres(self.min), metres(self.max))
+    }
+}
+
+impl fmt::Display for Area {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [west, south] = self.min.map(plain);
+        let [east, north] = self.max.map(plain);
+        write!(f, "({west}, {south}) to ({east}, {north})")
+    }
+}
+
+/// An area and where its `at` is written.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    pub(super) area: Area,
+    pub(super) at: Range<usize>,
+}
+
+impl Placed {
+    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
+        let area = Area::read(fields)?;
+        Some(Self { area, at: fields.span("at") })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn edges_that_meet_touch_in_spite_of_rounding() {
+        // 0.1 + 0.2 is a little more than 0.3.
+        let west = Area::new([0.1, 0.0], [0.2, 1.0]);
+        let east = Area::new([0.3, 0.0], [0.3, 1.0]);
+        assert_eq!(west.shared(&east), None);
+        assert!(Area::new([5.3, 0.0], [0.7, 1.0]).within(&Area::new([0.0, 0.0], [6.0, 6.0])));
+    }
+
+    #[test]
+    fn the_shortest_way_off_stays_on_the_floor() {
+        let floor = Area::new([0.0, 0.0], [6.0, 6.0]);
+        let below = Area::new([1.0, 1.0], [1.0, 1.0]);
+        let over = Area::new([1.75, 1.25], [1.0, 1.0]);
+        assert_eq!(over.shared(&below).unwrap(), [0.25, 0.75]);
+        assert!(over.way_off(&below, &floor).unwrap().starts_with("moved 0.25 tiles east"));
+        let edge = Area::new([4.5, 1.0], [1.0, 1.0]);
+        let outer = Area::new([5.0, 1.0], [1.0, 1.0]);
+        assert!(outer.way_off(&edge, &floor).unwrap().contains("1 tiles north"));
+    }
+
+    #[test]
+    fn tiles_become_metres_by_the_pitch() {
+        let rect = Area::new([2.0, 1.0], [1.0, 0.5]).in_metres(&Geometry::default());
+        assert!((rect.min - Vec2::new(0.608, 0.304)).length() < 1e-6);
+        assert!((rect.size() - Vec2::new(0.304, 0.152)).length() < 1e-6);
+    }
+}

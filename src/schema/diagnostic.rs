@@ -1,0 +1,207 @@
+use std::error::Error;
+use std::fmt;
+use std::ops::Range;
+
+use serde::Serialize;
+
+use super::excerpt::Excerpt;
+
+/// How bad a problem is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// The file cannot be used.
+    Error,
+    /// The file can be used, but probably not as meant.
+    Warning,
+}
+
+impl fmt::Display for Severity {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Error => "error",
+            Self::Warning => "warning",
+        })
+    }
+}
+
+/// One problem of one file, at its place.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// The file, as it was named when it was read.
+    pub path: String,
+    /// Line, from 1; 0 if the problem is the file as a whole.
+    pub line: usize,
+    /// Column in characters, from 1; 0 if the problem is the file as a whole.
+    pub column: usize,
+    /// Bytes of the file that the carets stand under; a byte-order mark counts.
+    pub span: Range<usize>,
+    /// The field, as a path from the file's root such as `widgets[2].press_n`; empty outside of any field.
+    pub field: String,
+    /// What is wrong, in one clause.
+    pub message: String,
+    /// What was expected there, written beside the carets; may be empty.
+    pub expected: String,
+    /// What to do about it.
+    pub help: Option<String>,
+    /// The line as written; a very long one is cut around the place.
+    pub source_line: String,
+    #[serde(skip)]
+    pub(super) excerpt: Excerpt,
+}
+
+impl Diagnostic {
+    /// A problem of the file at `path` as a whole, such as its absence.
+    pub(super) fn of_file(path: &str, message: String, help: Option<String>) -> Self {
+        Self {
+            severity: Severity::Error,
+            path: path.into(),
+            line: 0,
+            column: 0,
+            span: 0..0,
+            field: String::new(),
+            message,
+            expected: String::new(),
+            help,
+            source_line: String::new(),
+            excerpt: Excerpt::default(),
+        }
+    }
+}
+
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "{}: {}", self.severity, self.message)?;
+        let margin = self.line.max(1).ilog10() as usize + 1;
+        if self.line == 0 {
+            writeln!(f, "{:margin$}--> {}", "", self.path)?;
+        } else {
+            writeln!(f, "{:margin$}--> {}:{}:{}", "", self.path, self.line, self.column)?;
+            writeln!(f, "{:margin$} |", "")?;
+            writeln!(f, "{} | {}", self.line, self.excerpt.text)?;
+            let carets = self.excerpt.carets(&self.expected);
+            writeln!(f, "{:margin$} | {carets}", "")?;
+        }
+        if let Some(help) = &self.help {
+            writeln!(f, "{:margin$} = help: {help}", "")?;
+        }
+        Ok(())
+    }
+}
+
+/// The problems of one reading, in the order of the text; printed as a person wants to see them.
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Diagnostics {
+    list: Vec<Diagnostic>,
+    /// Problems beyond [`Diagnostics::LIMIT`] of one file, counted and not kept.
+    #[serde(skip)]
+    omitted: usize,
+}
+
+impl Diagnostics {
+    /// Most problems of one file that are kept; what is beyond is counted in the closing line.
+    pub const LIMIT: usize = 500;
+
+    pub(super) fn new(mut list: Vec<Diagnostic>, omitted: usize) -> Self {
+        list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
+        Self { list, omitted }
+    }
+
+    /// Whether there is nothing to say.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.list.is_empty()
+    }
+
+    /// Number of problems kept.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.list.len()
+    }
+
+    /// Number of errors, those beyond [`Diagnostics::LIMIT`] included.
+    #[must_use]
+    pub fn errors(&self) -> usize {
+        self.count(Severity::Error) + self.omitted
+    }
+
+    /// Number of warnings kept.
+    #[must_use]
+    pub fn warnings(&self) -> usize {
+        self.count(Severity::Warning)
+    }
+
+    /// The problems, file by file in the order of the text.
+    pub fn iter(&self) -> std::slice::Iter<'_, Diagnostic> {
+        self.list.iter()
+    }
+
+    /// Adds the problems of another reading after these.
+    pub fn append(&mut self, other: Self) {
+        self.list.extend(other.list);
+        self.omitted += other.omitted;
+    }
+
+    fn count(&self, severity: Severity) -> usize {
+        self.list.iter().filter(|problem| problem.severity == severity).count()
+    }
+}
+
+impl From<Diagnostic> for Diagnostics {
+    fn from(problem: Diagnostic) -> Self {
+        Self { list: vec![problem], omitted: 0 }
+    }
+}
+
+impl IntoIterator for Diagnostics {
+    type Item = Diagnostic;
+    type IntoIter = std::vec::IntoIter<Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.list.into_iter()
+    }
+}
+
+impl<'a> IntoIterator for &'a Diagnostics {
+    type Item = &'a Diagnostic;
+    type IntoIter = std::slice::Iter<'a, Diagnostic>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter()
+    }
+}
+
+impl fmt::Display for Diagnostics {
+    /// Every problem with its line and carets, then one line that counts them; nothing at all if there are none.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for problem in &self.list {
+            writeln!(f, "{problem}")?;
+        }
+        if self.omitted > 0 {
+            writeln!(f, "... and {} more", counted(self.omitted, "problem"))?;
+        }
+        let mut paths: Vec<&str> = self.list.iter().map(|problem| problem.path.as_str()).collect();
+        paths.dedup();
+        let place = match paths[..] {
+            [] => return Ok(()),
+            [path] => path.to_owned(),
+            _ => counted(paths.len(), "file"),
+        };
+        match (self.errors(), self.warnings()) {
+            (errors, 0) => write!(f, "{place}: {}", counted(errors, "error")),
+            (0, warnings) => write!(f, "{place}: {}", counted(warnings, "warning")),
+            (errors, warnings) => {
+                write!(f, "{place}: {}, {}", counted(errors, "error"), counted(warnings, "warning"))
+            }
+        }
+    }
+}
+
+impl Error for Diagnostics {}
+
+fn counted(count: usize, noun: &str) -> String {
+    if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}

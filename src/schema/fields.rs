@@ -1,0 +1,136 @@
+use std::ops::Range;
+
+use ron2::ast::StructField;
+
+use super::problem::Problem;
+use super::reader::{Node, Reader, bytes};
+use super::suggest::{did_you_mean, listed, nearest};
+use super::words::example;
+
+/// The named fields of one `Name(...)`, each to be read once.
+///
+/// Which names are valid follows from which are asked for;
+/// [`Fields::finish`] then reports the others.
+#[must_use = "unknown and missing fields are only reported by finish()"]
+pub(super) struct Fields<'r> {
+    reader: &'r Reader<'r>,
+    /// What the fields belong to, such as `Widget`.
+    owner: &'static str,
+    /// Where to point for what is missing.
+    open: Range<usize>,
+    written: Vec<Written<'r>>,
+    known: Vec<&'static str>,
+    missing: Vec<&'static str>,
+}
+
+struct Written<'r> {
+    field: &'r StructField<'r>,
+    taken: bool,
+}
+
+impl<'r> Fields<'r> {
+    pub(super) fn new(
+        reader: &'r Reader<'r>,
+        owner: &'static str,
+        open: Range<usize>,
+        fields: &'r [StructField<'r>],
+    ) -> Self {
+        let written = fields.iter().map(|field| Written { field, taken: false }).collect();
+        Self { reader, owner, open, written, known: Vec::new(), missing: Vec::new() }
+    }
+
+    /// What `read` makes of the field `name`; `otherwise` if it is not written.
+    ///
+    /// A field that is neither written nor has an `otherwise` is reported as missing.
+    pub(super) fn read<T>(
+        &mut self,
+        name: &'static str,
+        otherwise: Option<T>,
+        read: impl FnOnce(Node<'r>) -> Option<T>,
+    ) -> Option<T> {
+        match self.take(name) {
+            Some(node) => read(node),
+            None => {
+                if otherwise.is_none() {
+                    self.missing.push(name);
+                }
+                otherwise
+            }
+        }
+    }
+
+    /// The value of the field `name` if it is written.
+    pub(super) fn take(&mut self, name: &'static str) -> Option<Node<'r>> {
+        self.known.push(name);
+        let mut found: Option<&'r StructField<'r>> = None;
+        for written in self.written.iter_mut().filter(|written| written.field.name.name == name) {
+            written.taken = true;
+            match found {
+                None => found = Some(written.field),
+                Some(first) => {
+                    let line = self.reader.line(&bytes(&first.name.span));
+                    let message = format!("`{name}` is given twice");
+                    let problem = Problem::error(bytes(&written.field.name.span), message);
+                    self.reader.report(problem.expected(format!("the first is on line {line}")));
+                }
+            }
+        }
+        found.map(|field| Node { reader: self.reader, expr: &field.value, what: name }.inside())
+    }
+
+    /// Where the fields begin.
+    pub(super) fn start(&self) -> Range<usize> {
+        self.open.clone()
+    }
+
+    /// Where the value of `name` is written; where the fields begin if it is not.
+    pub(super) fn span(&self, name: &str) -> Range<usize> {
+        self.written_span(name).unwrap_or_else(|| self.start())
+    }
+
+    /// Where the value of `name` is written, if it is.
+    pub(super) fn written_span(&self, name: &str) -> Option<Range<usize>> {
+        let written = self.written.iter().find(|written| written.field.name.name == name)?;
+        Some(bytes(written.field.value.span()))
+    }
+
+    /// Notes a problem.
+    pub(super) fn report(&self, problem: Problem) {
+        self.reader.report(problem);
+    }
+
+    /// Reports fields nobody asked for, and those that were asked for and are missing.
+    pub(super) fn finish(mut self) {
+        let noun = self.owner.to_lowercase();
+        for written in self.written.iter().filter(|written| !written.taken) {
+            let name = &*written.field.name.name;
+            // A misspelt field is not missing as well.
+            if let Some(meant) = nearest(name, self.known.iter().copied()) {
+                self.missing.retain(|missing| *missing != meant);
+            }
+            let message = format!("unknown field `{name}`");
+            let problem = Problem::error(bytes(&written.field.name.span), message);
+            let help = did_you_mean(name, &self.known, '`');
+            self.reader.report(problem.expected(format!("a {noun} has no such field")).help_if(help));
+        }
+        self.report_missing();
+    }
+
+    /// Like [`Fields::finish`] where it cannot be known which other fields are valid.
+    pub(super) fn finish_leniently(mut self) {
+        self.report_missing();
+    }
+
+    fn report_missing(&mut self) {
+        let Some(&first) = self.missing.first() else { return };
+        let noun = self.owner.to_lowercase();
+        let message = format!("this {noun} has no {}", listed(&self.missing, '`'));
+        let expected = if self.missing.len() == 1 { "a field is missing" } else { "some fields are missing" };
+        let help = match (example(first), self.missing.len()) {
+            (Some(example), 1) => Some(format!("add {example}")),
+            _ => None,
+        };
+        let problem = Problem::error(self.open.clone(), message).expected(expected).help_if(help);
+        self.reader.report(Problem { missing: Some(first), ..problem });
+    }
+}

@@ -1,0 +1,286 @@
+use std::collections::HashMap;
+use std::ops::Range;
+use std::path::Path;
+
+use super::behaviour::single;
+use super::diagnostic::Diagnostics;
+use super::fields::Fields;
+use super::problem::Problem;
+use super::reader::{Node, Reader};
+use super::scan::Limits;
+use super::source::{Source, read_text};
+use super::version;
+use crate::floor::{Actuator, Board, Calibration, Corner, Floor, Geometry, GeometryError, SensorId, TileId};
+use crate::units::Newtons;
+use crate::wire::MAX_CHANNELS;
+
+/// Most boards of one floor.
+const MAX_BOARDS: usize = 16_384;
+
+/// The floor that the file at `path` describes.
+///
+/// # Errors
+/// Everything wrong with the file, or that it cannot be read.
+pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
+    let text = read_text(path)?;
+    parse_floor(&text, &path.display().to_string())
+}
+
+/// The floor that `text` describes; what it doesn't mention is as on [`Floor::of`] its geometry.
+///
+/// `name` is what diagnostics call the text, usually a path.
+///
+/// # Errors
+/// Everything wrong with the text.
+pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
+    let source = Source::new(name, text)?;
+    let reader = Reader::new(&source, "Floor", Limits::FLOOR);
+    if let Some(newer) = version::newer(&reader, "Floor") {
+        return Err(newer);
+    }
+    let floor = reader.root("floor").and_then(floor);
+    reader.conclude(floor).map(|(floor, _)| floor)
+}
+
+fn floor(node: Node<'_>) -> Option<Floor> {
+    let mut fields = node.fields("Floor")?;
+    fields.read("version", Some(1), version::read);
+    let geometry = geometry(&mut fields);
+    // A floor whose measures are wrong is read on as the paper's, but its tiles are not judged by that.
+    let mut floor = Floor::of(geometry.unwrap_or_default());
+    let grid = Grid { known: geometry };
+    let boards = fields.read("boards", Some(None), |node| boards(node, grid).map(Some));
+    let sensors = fields.read("sensors", Some(()), |node| sensors(node, grid, &mut floor));
+    let actuators = fields.read("actuators", Some(None), |node| actuators(node, grid).map(Some));
+    fields.finish();
+    geometry?;
+    sensors?;
+    if let Some(boards) = boards? {
+        floor.boards = boards;
+    }
+    if let Some(actuators) = actuators? {
+        floor.actuators = actuators;
+    }
+    Some(floor)
+}
+
+fn geometry(fields: &mut Fields<'_>) -> Option<Geometry> {
+    let paper = Geometry::default();
+    let side = 1..=u32::from(Geometry::MAX_SIDE);
+    let columns = fields.read("columns", Some(paper.columns().into()), |node| node.whole(side.clone()));
+    let rows = fields.read("rows", Some(paper.rows().into()), |node| node.whole(side));
+    let tile = fields.read("tile_m", Some(paper.tile_m()), |node| single(node, 0.05..=5.0));
+    // Tiles of another size lie edge to edge unless told otherwise.
+    let pitch =
+        fields.read("pitch_m", Some(tile.unwrap_or(paper.pitch_m())), |node| single(node, 0.05..=10.0));
+    let inset = fields.read("sensor_inset_m", Some(paper.sensor_inset_m()), |node| single(node, 0.0..=2.5));
+    let built = Geometry::new(columns? as u16, rows? as u16, tile?, pitch?, inset?);
+    built
+        .map_err(|error| {
+            let field = match error {
+                GeometryError::Grid { .. } => "columns",
+                GeometryError::Tile(_) => "tile_m",
+                GeometryError::Pitch(_) => "pitch_m",
+                GeometryError::Inset(_) => "sensor_inset_m",
+            };
+            let problem = Problem::error(fields.span(field), error.to_string());
+            fields.report(problem.expected("no such floor can be built"));
+        })
+        .ok()
+}
+
+/// The tiles that a file may speak of; any if its geometry could not be read.
+#[derive(Clone, Copy)]
+struct Grid {
+    known: Option<Geometry>,
+}
+
+impl Grid {
+    /// The tile written as `(column, row)`.
+    fn tile(self, node: Node<'_>) -> Option<TileId> {
+        let [column, row] = node.tuple("(column, row)")?;
+        self.tile_of(column, row)
+    }
+
+    fn tile_of(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
+        let most = u32::from(Geometry::MAX_SIDE);
+        let (columns, rows) =
+            self.known.map_or((most, most), |known| (known.columns().into(), known.rows().into()));
+        let column = Node { what: "column", ..column }.whole(0..=columns - 1);
+        let row = Node { what: "row", ..row }.whole(0..=rows - 1);
+        Some(TileId::new(column? as u16, row? as u16))
+    }
+}
+
+/// Where each of some things is first written.
+struct Seen<T> {
+    first: HashMap<T, Range<usize>>,
+}
+
+impl<T: std::hash::Hash + Eq> Seen<T> {
+    fn new() -> Self {
+        Self { first: HashMap::new() }
+    }
+
+    /// Reports that `thing`, which messages call `name`, has been written before.
+    fn check(&mut self, reader: &Reader<'_>, thing: T, name: impl FnOnce() -> String, span: Range<usize>) {
+        match self.first.get(&thing) {
+            Some(first) => {
+                let problem = Problem::error(span, format!("{} comes twice", name()));
+                reader.report(problem.expected(format!("the first is on line {}", reader.line(first))));
+            }
+            None => {
+                self.first.insert(thing, span);
+            }
+        }
+    }
+}
+
+/// Every element is read before the first that failed ends it, so that each is reported.
+fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
+    let read: Vec<Option<T>> = read.collect();
+    read.into_iter().collect()
+}
+
+fn boards(node: Node<'_>, grid: Grid) -> Option<Vec<Board>> {
+    let nodes = node.list("board", MAX_BOARDS)?;
+    let mut addresses = Seen::new();
+    let mut wired = Seen::new();
+    all(nodes.into_iter().enumerate().map(|(number, node)| {
+        let mut fields = node.fields("Board")?;
+        let usual = usual_address(number);
+        let address = fields.read("address", Some(usual), address);
+        if let Some(address) = &address {
+            addresses.check(
+                node.reader,
+                address.clone(),
+                || format!("the address {address}"),
+                fields.span("address"),
+            );
+        }
+        let channels = match (fields.take("tiles"), fields.take("channels")) {
+            (Some(tiles), None) => tiles_of_board(tiles, grid),
+            (None, Some(channels)) => channels_of_board(channels, grid),
+            (None, None) => {
+                let problem = Problem::error(fields.start(), "this board has neither `tiles` nor `channels`");
+                let help = "add tiles: [(0, 0), (1, 0)]: four channels each, sw se nw ne";
+                fields.report(problem.expected("what does it measure?").help(help));
+                None
+            }
+            (Some(_), Some(_)) => {
+                let problem =
+                    Problem::error(fields.span("channels"), "a board has `tiles` or `channels`, not both");
+                fields.report(problem.expected("one too many"));
+                None
+            }
+        };
+        fields.finish();
+        let channels = channels?;
+        for (sensor, span) in channels.iter().flatten() {
+            wired.check(node.reader, *sensor, || format!("the sensor of {sensor}"), span.clone());
+        }
+        let channels = channels.into_iter().map(|channel| channel.map(|(sensor, _)| sensor)).collect();
+        Some(Board { address: address?, channels })
+    }))
+}
+
+/// The address of the board of this number, unless told otherwise.
+pub(super) fn usual_address(number: usize) -> String {
+    format!("/underfoot/board/{number}")
+}
+
+/// What each channel of a board measures, and where that is written.
+type Channels = Vec<Option<(SensorId, Range<usize>)>>;
+
+/// Tiles as `(column, row)`, each with its four sensors in the usual order.
+fn tiles_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
+    let tiles = node.list("tile", MAX_CHANNELS / Corner::ALL.len())?;
+    let sensors = all(tiles.into_iter().map(|node| {
+        let tile = grid.tile(node)?;
+        Some(Corner::ALL.map(|corner| Some((SensorId { tile, corner }, node.span()))))
+    }))?;
+    Some(sensors.into_iter().flatten().collect())
+}
+
+/// Sensors as `(column, row, Sw)`, or `None` for a channel without one.
+fn channels_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
+    all(node.list("channel", MAX_CHANNELS)?.into_iter().map(|node| {
+        if node.is_none() {
+            return Some(None);
+        }
+        let [column, row, name] = node.tuple("(column, row, corner)")?;
+        let tile = grid.tile_of(column, row);
+        let corner = corner(Node { what: "corner", ..name });
+        Some(Some((SensorId { tile: tile?, corner: corner? }, node.span())))
+    }))
+}
+
+fn corner(node: Node<'_>) -> Option<Corner> {
+    let [sw, se, nw, ne] = Corner::ALL;
+    node.choice(&[("Sw", sw), ("Se", se), ("Nw", nw), ("Ne", ne)])
+}
+
+/// An OSC address that stands for itself: no pattern characters.
+fn address(node: Node<'_>) -> Option<String> {
+    let text = node.text(255)?;
+    let legal = |c: char| c.is_ascii_alphanumeric() || matches!(c, '/' | '_' | '-' | '.');
+    if text.len() > 1 && text.starts_with('/') && !text.ends_with('/') && text.chars().all(legal) {
+        return Some(text.to_owned());
+    }
+    let problem = Problem::error(node.span(), "`address` is no OSC address");
+    let expected = "expected parts of a-z, A-Z, 0-9, `_`, `-` and `.`, each after a `/`";
+    node.report(problem.expected(expected).help("write \"/underfoot/board/0\""));
+    None
+}
+
+/// Calibration and tare of the sensors that are listed.
+fn sensors(node: Node<'_>, grid: Grid, floor: &mut Floor) -> Option<()> {
+    let most = floor.geometry.tile_count().max(1) * Corner::ALL.len();
+    let mut seen = Seen::new();
+    for node in node.list("sensor", if grid.known.is_some() { most } else { usize::MAX })? {
+        let Some(mut fields) = node.fields("Sensor") else { continue };
+        let nominal = Calibration::NOMINAL;
+        let tile = fields.read("tile", None, |node| grid.tile(node));
+        let corner = fields.read("corner", None, corner);
+        let a_n = fields.read("a_n", Some(nominal.a_n), |node| single(node, 1e-6..=1000.0));
+        let b = fields.read("b_per_volt", Some(nominal.b_per_volt), |node| single(node, 1e-3..=20.0));
+        let tare = fields.read("tare_n", Some(0.0), |node| single(node, -5000.0..=5000.0));
+        let span = fields.span("tile");
+        fields.finish();
+        let (Some(tile), Some(corner)) = (tile, corner) else { continue };
+        let sensor = SensorId { tile, corner };
+        seen.check(node.reader, sensor, || format!("the sensor of {sensor}"), span);
+        let (Some(a_n), Some(b_per_volt), Some(tare)) = (a_n, b, tare) else { continue };
+        let index = floor.geometry.index(tile).unwrap_or(usize::MAX);
+        if let (Some(calibration), Some(tares)) =
+            (floor.calibration.get_mut(index), floor.tare.get_mut(index))
+        {
+            calibration[corner.index()] = Calibration { a_n, b_per_volt };
+            tares[corner.index()] = Newtons(tare);
+        }
+    }
+    Some(())
+}
+
+/// The actuators that are listed; tiles that are not have none.
+fn actuators(node: Node<'_>, grid: Grid) -> Option<Vec<Option<Actuator>>> {
+    let geometry = grid.known.unwrap_or_default();
+    let mut actuators = vec![None; geometry.tile_count()];
+    let mut seen = Seen::new();
+    for node in node.list("actuator", usize::MAX)? {
+        let Some(mut fields) = node.fields("Actuator") else { continue };
+        let tile = fields.read("tile", None, |node| grid.tile(node));
+        let channel = fields.read("channel", None, |node| node.whole(0..=4095));
+        let nominal = Actuator::nominal(0).full_scale.0;
+        let full_scale = fields.read("full_scale_n", Some(nominal), |node| single(node, 0.1..=10_000.0));
+        let span = fields.span("tile");
+        fields.finish();
+        let Some(tile) = tile else { continue };
+        seen.check(node.reader, tile, || format!("the actuator of tile {tile}"), span);
+        let slot = geometry.index(tile).and_then(|index| actuators.get_mut(index));
+        if let (Some(slot), Some(channel), Some(full_scale)) = (slot, channel, full_scale) {
+            *slot = Some(Actuator { channel: channel as u16, full_scale: Newtons(full_scale) });
+        }
+    }
+    Some(actuators)
+}

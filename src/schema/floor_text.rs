@@ -1,0 +1,135 @@
+use std::fmt::Write;
+
+use super::floor::usual_address;
+use super::version::FORMAT_VERSION;
+use crate::floor::{Actuator, Board, Calibration, Corner, Floor, SensorId, TileId};
+use crate::units::Newtons;
+
+/// The file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
+///
+/// What is as on [`Floor::of`] its geometry is left out. A sensor list of more
+/// than about 55,000 sensors is longer than the 4 MB that are read back, and so
+/// are numbers outside of the ranges that files may hold; both are refused on reading.
+#[must_use]
+pub fn write_floor(floor: &Floor) -> String {
+    let mut text = String::new();
+    // Writing to a String cannot fail.
+    let _ = write(floor, &mut text);
+    text
+}
+
+fn write(floor: &Floor, text: &mut String) -> std::fmt::Result {
+    let geometry = &floor.geometry;
+    let usual = Floor::of(*geometry);
+    writeln!(text, "// A floor: where its tiles are and what is wired to them.")?;
+    writeln!(text, "// Tiles are (column, row) from the south-west, lengths in metres, forces in newtons.")?;
+    writeln!(text, "Floor(")?;
+    writeln!(text, "    version: {FORMAT_VERSION},")?;
+    writeln!(text, "    columns: {},", geometry.columns())?;
+    writeln!(text, "    rows: {},", geometry.rows())?;
+    writeln!(text, "    tile_m: {:?},", geometry.tile_m())?;
+    writeln!(text, "    pitch_m: {:?},", geometry.pitch_m())?;
+    writeln!(text, "    sensor_inset_m: {:?},", geometry.sensor_inset_m())?;
+    writeln!(text)?;
+    if floor.boards == usual.boards {
+        writeln!(text, "    // Each row of tiles has its own boards, up to eight tiles a board.")?;
+    } else {
+        writeln!(text, "    // Which tiles, or which sensors, are on the channels of each board.")?;
+        writeln!(text, "    boards: [")?;
+        for (number, board) in floor.boards.iter().enumerate() {
+            write_board(board, number, text)?;
+        }
+        writeln!(text, "    ],")?;
+    }
+    write_sensors(floor, text)?;
+    if floor.actuators == usual.actuators {
+        writeln!(text, "    // Each tile has an actuator, channel by channel in tile order.")?;
+    } else {
+        writeln!(text, "    // Output channels; tiles that are not listed have no actuator.")?;
+        writeln!(text, "    actuators: [")?;
+        for (tile, actuator) in geometry.tiles().zip(&floor.actuators) {
+            if let Some(Actuator { channel, full_scale }) = actuator {
+                let tile = place(tile);
+                writeln!(
+                    text,
+                    "        (tile: {tile}, channel: {channel}, full_scale_n: {:?}),",
+                    full_scale.0
+                )?;
+            }
+        }
+        writeln!(text, "    ],")?;
+    }
+    writeln!(text, ")")
+}
+
+fn write_board(board: &Board, number: usize, text: &mut String) -> std::fmt::Result {
+    write!(text, "        (")?;
+    if board.address != usual_address(number) {
+        write!(text, "address: {:?}, ", board.address)?;
+    }
+    if let Some(tiles) = whole_tiles(&board.channels) {
+        let tiles: Vec<String> = tiles.into_iter().map(place).collect();
+        writeln!(text, "tiles: [{}]),", tiles.join(", "))
+    } else {
+        let channels: Vec<String> = board.channels.iter().map(channel).collect();
+        writeln!(text, "channels: [{}]),", channels.join(", "))
+    }
+}
+
+/// The tiles of a board that has all four sensors of each in the usual order.
+fn whole_tiles(channels: &[Option<SensorId>]) -> Option<Vec<TileId>> {
+    channels
+        .chunks(Corner::ALL.len())
+        .map(|four| {
+            let tile = four.first().copied().flatten()?.tile;
+            let usual = Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
+            (four == usual).then_some(tile)
+        })
+        .collect()
+}
+
+fn channel(sensor: &Option<SensorId>) -> String {
+    match sensor {
+        Some(SensorId { tile, corner }) => format!("({}, {}, {})", tile.column, tile.row, variant(*corner)),
+        None => "None".into(),
+    }
+}
+
+fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
+    let tiles = floor.geometry.tiles().zip(floor.calibration.iter().zip(&floor.tare));
+    let measured: Vec<_> = tiles
+        .flat_map(|(tile, (calibration, tare))| {
+            Corner::ALL.map(|corner| (tile, corner, calibration[corner.index()], tare[corner.index()]))
+        })
+        .filter(|(.., calibration, tare)| *calibration != Calibration::NOMINAL || *tare != Newtons::ZERO)
+        .collect();
+    if measured.is_empty() {
+        return writeln!(text, "    // No sensor has been calibrated: all are taken as nominal parts.");
+    }
+    writeln!(
+        text,
+        "    // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal."
+    )?;
+    writeln!(text, "    sensors: [")?;
+    for (tile, corner, Calibration { a_n, b_per_volt }, Newtons(tare)) in measured {
+        let (tile, corner) = (place(tile), variant(corner));
+        writeln!(
+            text,
+            "        (tile: {tile}, corner: {corner}, a_n: {a_n:?}, b_per_volt: {b_per_volt:?}, tare_n: {tare:?}),"
+        )?;
+    }
+    writeln!(text, "    ],")
+}
+
+fn place(tile: TileId) -> String {
+    format!("({}, {})", tile.column, tile.row)
+}
+
+fn variant(corner: Corner) -> &'static str {
+    match corner {
+        Corner::SouthWest => "Sw",
+        Corner::SouthEast => "Se",
+        Corner::NorthWest => "Nw",
+        Corner::NorthEast => "Ne",
+    }
+}

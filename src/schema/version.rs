@@ -1,0 +1,22 @@
+use super::diagnostic::Diagnostics;
+use super::problem::Problem;
+use super::reader::{Node, Reader};
+
+/// The version of the formats that this program reads and writes.
+pub const FORMAT_VERSION: u32 = 1;
+
+/// The version that a file says it is of.
+pub(super) fn read(node: Node<'_>) -> Option<u32> {
+    node.whole(1..=u32::MAX)
+}
+
+/// What to say of a file of a newer version than this program knows: that, and nothing else.
+pub(super) fn newer(reader: &Reader<'_>, kind: &'static str) -> Option<Diagnostics> {
+    let field = reader.root("")?.peek(kind, "version")?;
+    let version = field.peek_number().filter(|version| *version > f64::from(FORMAT_VERSION))?;
+    let message = format!("this {} is of version {version}", kind.to_lowercase());
+    let problem = Problem::error(field.span(), message)
+        .expected(format!("this program reads up to version {FORMAT_VERSION}"))
+        .help("it was made for a newer underfoot: a newer program will read it");
+    Some(reader.only(problem))
+}

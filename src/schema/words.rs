@@ -1,0 +1,63 @@
+//! What is known of fields by their names alone: units and how they are written.
+
+/// The unit of a field, by the end of its name, with a space before it; empty if it has none.
+pub(super) fn unit(field: &str) -> &'static str {
+    const UNITS: [(&str, &str); 6] = [
+        ("_m_s", " m/s"),
+        ("_per_volt", " per volt"),
+        ("_ms", " ms"),
+        ("_n", " N"),
+        ("hz", " Hz"),
+        ("_m", " m"),
+    ];
+    if matches!(field, "at" | "size") {
+        return " tiles";
+    }
+    UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
+}
+
+/// How a field might be written, for those who left it out.
+pub(super) fn example(field: &str) -> Option<&'static str> {
+    Some(match field {
+        "version" => "version: 1",
+        "title" => "title: \"Map navigation\"",
+        "id" => "id: \"zoom_in\"",
+        "kind" => "kind: \"button\"",
+        "at" => "at: (2.5, 3.0), the south-west corner in tiles",
+        "size" => "size: (0.6, 0.6), width and depth in tiles",
+        "regions" => "regions: [(id: \"map\", at: (0, 2), size: (6, 4))]",
+        "widgets" => "widgets: [(id: \"home\", kind: \"button\", at: (2, 3), size: (0.6, 0.6))]",
+        "name" => "name: \"my_button\"",
+        "behaviour" => "behaviour: Button",
+        "press_n" => "press_n: 60",
+        "release_n" => "release_n: 40",
+        "min" => "min: 0",
+        "max" => "max: 1",
+        "level_n" => "level_n: 12",
+        "modes" => "modes: [(hz: 180, decay_ms: 18, amplitude: 1.0)]",
+        "hz" => "hz: 180",
+        "decay_ms" => "decay_ms: 18",
+        "low_hz" => "low_hz: 80",
+        "high_hz" => "high_hz: 320",
+        "tile" => "tile: (0, 0), column and row",
+        "corner" => "corner: Sw",
+        "address" => "address: \"/underfoot/board/0\"",
+        "channel" => "channel: 0",
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_end_in_their_unit() {
+        assert_eq!(unit("press_n"), " N");
+        assert_eq!(unit("dwell_ms"), " ms");
+        assert_eq!(unit("full_speed_m_s"), " m/s");
+        assert_eq!(unit("low_hz"), " Hz");
+        assert_eq!(unit("tile_m"), " m");
+        assert_eq!(unit("amplitude"), "");
+    }
+}
