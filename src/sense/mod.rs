@@ -21,6 +21,7 @@ mod pool;
 mod quality;
 mod sensing;
 mod tile;
+mod track;
 
 pub use contact::{Contact, ContactId, Covariance, TileLoad};
 pub use cursor::{Cursor, CursorPicker, Stickiness};

@@ -4,6 +4,7 @@ use super::eq4::Eq4;
 use super::loaded::{LoadThreshold, LoadedTiles};
 use super::pool::ContactPool;
 use super::tile::TileReading;
+use super::track::Tracker;
 use super::{Contact, ForceFrame};
 use crate::floor::Geometry;
 use crate::units::Instant;
@@ -33,10 +34,16 @@ pub struct SensingConfig {
 #[derive(Clone, Debug)]
 pub struct Sensing {
     tiles: LoadedTiles,
-    clusters: Clusters,
-    eq4: Eq4,
+    maker: Maker,
     pool: ContactPool,
     last: Option<Instant>,
+}
+
+/// What makes contacts from loaded tiles.
+#[derive(Clone, Debug)]
+enum Maker {
+    Eq4(Clusters, Eq4),
+    Tracker(Tracker),
 }
 
 impl Sensing {
@@ -48,12 +55,14 @@ impl Sensing {
 
     /// Like [`Sensing::new`], with other assumptions about the floor.
     #[must_use]
-    pub fn with_config(geometry: Geometry, _method: Method, config: SensingConfig) -> Self {
+    pub fn with_config(geometry: Geometry, method: Method, config: SensingConfig) -> Self {
         let tiles = geometry.tile_count();
         Self {
             tiles: LoadedTiles::new(geometry, config.threshold),
-            clusters: Clusters::with_capacity(tiles),
-            eq4: Eq4::new(tiles, config.doubt),
+            maker: match method {
+                Method::Eq4 => Maker::Eq4(Clusters::with_capacity(tiles), Eq4::new(tiles, config.doubt)),
+                Method::Tracker => Maker::Tracker(Tracker::new(&geometry, config.doubt)),
+            },
             pool: ContactPool::with_capacity(64),
             last: None,
         }
@@ -71,8 +80,13 @@ impl Sensing {
         let dt = self.last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
         self.last = Some(frame.at);
         self.tiles.update(frame);
-        self.clusters.update(&self.tiles);
-        self.eq4.update(&self.tiles, &self.clusters, dt, &mut self.pool);
+        match &mut self.maker {
+            Maker::Eq4(clusters, eq4) => {
+                clusters.update(&self.tiles);
+                eq4.update(&self.tiles, clusters, dt, &mut self.pool);
+            }
+            Maker::Tracker(tracker) => tracker.update(&self.tiles, dt, &mut self.pool),
+        }
         self.pool.contacts()
     }
 

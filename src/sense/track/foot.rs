@@ -1,0 +1,273 @@
+//! One foot: what is known of it, and how that changes with time.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::patch::PatchOnTile;
+use crate::sense::contact::ContactId;
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::tile::LoadedTile;
+
+/// Numbers per foot: force and its rate, east and its rate, north and its rate, two half widths.
+pub(super) const STATES: usize = 8;
+pub(super) const FORCE: usize = 0;
+pub(super) const EAST: usize = 2;
+pub(super) const NORTH: usize = 4;
+pub(super) const HALF_EAST: usize = 6;
+pub(super) const HALF_NORTH: usize = 7;
+
+/// Half widths of the pressed patch, in metres: a heel alone, and a whole long shoe.
+pub(super) const HALF_LEAST: f64 = 0.03;
+pub(super) const HALF_MOST: f64 = 0.17;
+/// What one expects before anything is seen: half a forefoot or heel-and-arch (our choice).
+pub(super) const HALF_REST: f64 = 0.075;
+
+/// One foot on the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Foot {
+    pub id: ContactId,
+    /// Seconds since it landed.
+    pub age: f64,
+    pub state: [f64; STATES],
+    pub covariance: [[f64; STATES]; STATES],
+    /// Where it was expected before this frame, from its slow past.
+    pub past: Past,
+    /// Positions of the tiles it may press, in the list of loaded tiles.
+    pub tiles: SmallVec<[u32; 12]>,
+    /// Seconds for which it has been too light to be there.
+    pub faint: f64,
+    /// Which group of feet it is estimated with.
+    pub group: u32,
+    /// Whether its part cannot be told from another's.
+    pub ambiguous: bool,
+    /// Whether other feet share its tiles.
+    pub shared: bool,
+}
+
+/// A foot as its last few hundredths of a second foretell it: what a newcomer is measured against.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Past {
+    pub force: f64,
+    pub force_rate: f64,
+    pub centre: DVec2,
+    pub velocity: DVec2,
+    /// Slow force and moment (about the tile's centre) per tile.
+    pub loads: SmallVec<[SlowLoad; 8]>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SlowLoad {
+    pub index: u32,
+    pub force: f64,
+    pub moment: DVec2,
+    pub seen: bool,
+}
+
+/// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
+const PAST_S: f64 = 0.025;
+
+impl Foot {
+    pub(super) fn new(id: ContactId, force: f64, centre: DVec2, deviation: f64) -> Self {
+        let mut foot = Self {
+            id,
+            age: 0.0,
+            state: [force, 0.0, centre.x, 0.0, centre.y, 0.0, HALF_REST, HALF_REST],
+            covariance: [[0.0; STATES]; STATES],
+            past: Past { centre, ..Past::default() },
+            tiles: SmallVec::new(),
+            faint: 0.0,
+            group: 0,
+            ambiguous: false,
+            shared: false,
+        };
+        foot.be_sure(deviation);
+        for half in [HALF_EAST, HALF_NORTH] {
+            foot.covariance[half][half] = 0.025_f64.powi(2);
+        }
+        foot
+    }
+
+    /// Forgets what force and place had to do with each other and sets how sure both are.
+    pub(super) fn be_sure(&mut self, deviation: f64) {
+        for row in 0..HALF_EAST {
+            self.covariance[row] = [0.0; STATES];
+        }
+        for half in [HALF_EAST, HALF_NORTH] {
+            for other in &mut self.covariance[half][..HALF_EAST] {
+                *other = 0.0;
+            }
+        }
+        let place = deviation * deviation;
+        for (state, variance) in [
+            (FORCE, 9.0),
+            (FORCE + 1, 3000.0_f64.powi(2)),
+            (EAST, place),
+            (NORTH, place),
+            (EAST + 1, 0.2_f64.powi(2)),
+            (NORTH + 1, 0.2_f64.powi(2)),
+        ] {
+            self.covariance[state][state] = variance;
+        }
+    }
+
+    pub(super) fn force(&self) -> f64 {
+        self.state[FORCE]
+    }
+
+    pub(super) fn centre(&self) -> DVec2 {
+        DVec2::new(self.state[EAST], self.state[NORTH])
+    }
+
+    pub(super) fn velocity(&self) -> DVec2 {
+        DVec2::new(self.state[EAST + 1], self.state[NORTH + 1])
+    }
+
+    pub(super) fn half(&self) -> DVec2 {
+        DVec2::new(self.state[HALF_EAST], self.state[HALF_NORTH])
+    }
+
+    /// What of it falls on the cell from `low` to `high`.
+    pub(super) fn on(&self, (low, high): (DVec2, DVec2)) -> PatchOnTile {
+        PatchOnTile::new(low, high, self.centre(), self.half())
+    }
+
+    /// How far from its centre of pressure a load may appear and still be its own.
+    ///
+    /// A foot that has just landed on its heel still has its whole length to roll
+    /// over; one that stands reaches from its middle to toe and heel.
+    pub(super) fn extension(&self) -> f64 {
+        if self.age < 0.15 { 0.24 } else { 0.17 }
+    }
+
+    /// Lists the loaded tiles that its patch may press.
+    pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
+        self.tiles.clear();
+        let reach = self.half() * 1.1 + 0.01;
+        let low = ((self.centre() - reach) / pitch).floor();
+        let high = ((self.centre() + reach) / pitch).floor();
+        for row in low.y as i32..=high.y as i32 {
+            for column in low.x as i32..=high.x as i32 {
+                if let Some(position) = tiles.find(column, row) {
+                    self.tiles.push(position as u32);
+                }
+            }
+        }
+    }
+
+    /// Takes the tiles as its own and nobody else's (Eq. 4).
+    pub(super) fn alone(
+        &mut self,
+        list: &[LoadedTile],
+        dt: f64,
+        cell: impl Fn(&LoadedTile) -> (DVec2, DVec2),
+    ) {
+        let mut force = 0.0;
+        let mut sum = DVec2::ZERO;
+        for &position in &self.tiles {
+            let tile = &list[position as usize];
+            force += f64::from(tile.wrench.force);
+            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+        }
+        let centre = sum / force;
+        if dt > 0.0 {
+            let weight = 1.0 - (-dt / 0.015).exp();
+            let rate = (force - self.state[FORCE]) / dt;
+            let velocity = ((centre - self.centre()) / dt).clamp(DVec2::splat(-2.0), DVec2::splat(2.0));
+            self.state[FORCE + 1] += weight * (rate - self.state[FORCE + 1]);
+            self.state[EAST + 1] += weight * (velocity.x - self.state[EAST + 1]);
+            self.state[NORTH + 1] += weight * (velocity.y - self.state[NORTH + 1]);
+        }
+        self.state[FORCE] = force;
+        self.state[EAST] = centre.x;
+        self.state[NORTH] = centre.y;
+        self.be_sure(0.003);
+        self.ambiguous = false;
+        if self.tiles.len() > 1 {
+            self.learn_halves(list, dt, cell);
+        }
+    }
+
+    /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.
+    fn learn_halves(&mut self, list: &[LoadedTile], dt: f64, cell: impl Fn(&LoadedTile) -> (DVec2, DVec2)) {
+        let fade = (-dt / 0.3).exp();
+        let doubt = 0.03_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        for half in [HALF_EAST, HALF_NORTH] {
+            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
+            let variance = &mut self.covariance[half][half];
+            *variance = *variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
+        }
+        for position in 0..self.tiles.len() {
+            let tile = &list[self.tiles[position] as usize];
+            let on = self.on(cell(tile));
+            let missing = f64::from(tile.wrench.force) / self.force() - on.share();
+            for (half, slope) in [
+                (HALF_EAST, on.east.share_by[1] * on.north.share),
+                (HALF_NORTH, on.east.share * on.north.share_by[1]),
+            ] {
+                let variance = self.covariance[half][half];
+                let gain = variance * slope / (slope * slope * variance + doubt);
+                self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
+                self.covariance[half][half] = variance * (1.0 - gain * slope);
+            }
+        }
+    }
+
+    /// Moves the slow past on by `dt`.
+    pub(super) fn foretell(&mut self, dt: f64) {
+        self.age += dt;
+        self.past.centre += self.past.velocity * dt;
+        self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
+    }
+
+    /// Lets the slow past learn from where the foot is now.
+    pub(super) fn learn_past(&mut self, dt: f64) {
+        if dt <= 0.0 {
+            return;
+        }
+        // A critically damped alpha-beta filter: no overshoot, steady motion followed without lag.
+        let keep = (-dt / PAST_S).exp();
+        let (alpha, beta) = (1.0 - keep * keep, (1.0 - keep) * (1.0 - keep) / dt);
+        let offset = self.centre() - self.past.centre;
+        let gain = self.force() - self.past.force;
+        self.past.centre += alpha * offset;
+        self.past.velocity += beta * offset;
+        self.past.force += alpha * gain;
+        self.past.force_rate += beta * gain;
+    }
+
+    /// Lets the slow load of one tile learn; `force` and `moment` are the foot's own part of it.
+    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64) {
+        let weight = 1.0 - (-dt / PAST_S).exp();
+        let loads = &mut self.past.loads;
+        let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
+            loads.push(SlowLoad { index, ..SlowLoad::default() });
+            loads.len() - 1
+        });
+        let load = &mut loads[position];
+        load.force += weight * (force - load.force);
+        load.moment += weight * (moment - load.moment);
+        load.seen = true;
+    }
+
+    /// Drops the slow loads that were not learnt from since the last call.
+    pub(super) fn forget_loads(&mut self) {
+        self.past.loads.retain(|load| std::mem::take(&mut load.seen));
+    }
+
+    /// The slow load of one tile, nothing if it had none.
+    pub(super) fn slow_load(&self, index: u32) -> SlowLoad {
+        self.past.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
+    }
+
+    /// Goes back to where its past foretold it: somebody else is to blame for the difference.
+    pub(super) fn step_back(&mut self) {
+        self.state[FORCE] = self.past.force.min(self.state[FORCE]);
+        self.state[FORCE + 1] = self.past.force_rate.clamp(-2e4, 2e4);
+        self.state[EAST] = self.past.centre.x;
+        self.state[NORTH] = self.past.centre.y;
+        self.state[EAST + 1] = self.past.velocity.x.clamp(-2.0, 2.0);
+        self.state[NORTH + 1] = self.past.velocity.y.clamp(-2.0, 2.0);
+        self.be_sure(0.005);
+        self.covariance[FORCE][FORCE] = 400.0;
+    }
+}

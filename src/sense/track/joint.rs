@@ -1,0 +1,147 @@
+//! The feet that share tiles, estimated together.
+
+use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, NORTH, STATES};
+
+/// Most feet that are estimated together.
+pub(super) const MOST_FEET: usize = 4;
+const MOST: usize = MOST_FEET * STATES;
+
+/// An extended Kalman filter over the states of up to [`MOST_FEET`] feet.
+///
+/// Tiles that two feet share say only what the two add up to; which foot has
+/// what is carried by the covariance between them. So it must be one filter.
+#[derive(Clone, Debug)]
+pub(super) struct Joint {
+    states: usize,
+    pub(super) x: [f64; MOST],
+    p: [[f64; MOST]; MOST],
+}
+
+/// One row of an observation's slopes: which state, how much.
+pub(super) type Slope = (usize, f64);
+
+impl Joint {
+    pub(super) fn new() -> Self {
+        Self { states: 0, x: [0.0; MOST], p: [[0.0; MOST]; MOST] }
+    }
+
+    /// Starts over with no feet.
+    pub(super) fn clear(&mut self) {
+        self.states = 0;
+    }
+
+    /// Adds a foot with its own state and covariance, independent of those already in.
+    pub(super) fn add(&mut self, foot: &Foot) {
+        let at = self.states;
+        if at + STATES > MOST {
+            return;
+        }
+        self.states += STATES;
+        self.x[at..at + STATES].copy_from_slice(&foot.state);
+        for row in 0..STATES {
+            self.p[at + row][at..at + STATES].copy_from_slice(&foot.covariance[row]);
+            for other in 0..at {
+                self.p[at + row][other] = 0.0;
+                self.p[other][at + row] = 0.0;
+            }
+        }
+    }
+
+    /// Sets the covariance between two feet that are in.
+    pub(super) fn link(&mut self, first: usize, second: usize, cross: &[[f64; STATES]; STATES]) {
+        for (row, values) in cross.iter().enumerate() {
+            for (column, &value) in values.iter().enumerate() {
+                self.p[first * STATES + row][second * STATES + column] = value;
+                self.p[second * STATES + column][first * STATES + row] = value;
+            }
+        }
+    }
+
+    /// The covariance between two feet that are in.
+    pub(super) fn cross(&self, first: usize, second: usize) -> [[f64; STATES]; STATES] {
+        std::array::from_fn(|row| {
+            std::array::from_fn(|column| self.p[first * STATES + row][second * STATES + column])
+        })
+    }
+
+    /// Writes one foot's state and covariance back.
+    pub(super) fn take(&self, which: usize, foot: &mut Foot) {
+        let at = which * STATES;
+        foot.state.copy_from_slice(&self.x[at..at + STATES]);
+        for row in 0..STATES {
+            foot.covariance[row].copy_from_slice(&self.p[at + row][at..at + STATES]);
+        }
+    }
+
+    /// Lets `dt` pass for one pair (value, rate): the rate fades with `fade` and is
+    /// stirred with variance `stir`.
+    pub(super) fn drift(&mut self, value: usize, reach: f64, fade: f64, stir: f64) {
+        let rate = value + 1;
+        let n = self.states;
+        self.x[value] += reach * self.x[rate];
+        self.x[rate] *= fade;
+        for column in 0..n {
+            self.p[value][column] += reach * self.p[rate][column];
+            self.p[rate][column] *= fade;
+        }
+        for row in 0..n {
+            self.p[row][value] += reach * self.p[row][rate];
+            self.p[row][rate] *= fade;
+        }
+        self.p[rate][rate] += stir;
+    }
+
+    /// Lets one state relax towards `rest`, keeping `fade` of its distance, stirred with variance `stir`.
+    pub(super) fn relax(&mut self, state: usize, rest: f64, fade: f64, stir: f64) {
+        let n = self.states;
+        self.x[state] = rest + fade * (self.x[state] - rest);
+        for column in 0..n {
+            self.p[state][column] *= fade;
+        }
+        for row in 0..n {
+            self.p[row][state] *= fade;
+        }
+        self.p[state][state] += stir;
+    }
+
+    /// Takes in one scalar observation: what is missing from its prediction, the slopes, its variance.
+    pub(super) fn observe(&mut self, missing: f64, slopes: &[Slope], variance: f64) {
+        let n = self.states;
+        let mut gain = [0.0; MOST];
+        for &(state, slope) in slopes {
+            let row = &self.p[state];
+            for (gain, p) in gain[..n].iter_mut().zip(&row[..n]) {
+                *gain += slope * p;
+            }
+        }
+        let explained: f64 = slopes.iter().map(|&(state, slope)| slope * gain[state]).sum();
+        let total = explained + variance;
+        if total.is_nan() || total <= 0.0 {
+            return;
+        }
+        let scale = 1.0 / total;
+        for row in 0..n {
+            let step = gain[row] * scale;
+            self.x[row] += step * missing;
+            for (p, gain) in self.p[row][..n].iter_mut().zip(&gain[..n]) {
+                *p -= step * gain;
+            }
+        }
+    }
+
+    /// Keeps every state where a foot can be.
+    pub(super) fn confine(&mut self) {
+        for at in (0..self.states).step_by(STATES) {
+            let state = &mut self.x[at..at + STATES];
+            state[FORCE] = state[FORCE].max(0.0);
+            state[EAST + 1] = state[EAST + 1].clamp(-2.0, 2.0);
+            state[NORTH + 1] = state[NORTH + 1].clamp(-2.0, 2.0);
+            for half in [HALF_EAST, HALF_NORTH] {
+                state[half] = state[half].clamp(super::foot::HALF_LEAST, super::foot::HALF_MOST);
+            }
+        }
+        for state in 0..self.states {
+            self.p[state][state] = self.p[state][state].max(1e-12);
+        }
+    }
+}

@@ -1,0 +1,540 @@
+//! Several feet followed through time, also where they share tiles.
+//!
+//! Each foot is a force, a centre of pressure, their rates, and a patch around
+//! that centre. A foot alone on its tiles is measured by Eq. 4. Feet that share
+//! tiles are estimated together by an extended Kalman filter ([`joint`]) that
+//! predicts the force and both moments of every tile.
+//!
+//! A newcomer is what a tile carries that the feet already there cannot account
+//! for: load too far from all of them, or a leap of the common centroid that no
+//! foot makes.
+
+mod foot;
+mod joint;
+mod patch;
+
+use glam::DVec2;
+
+use self::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
+use self::joint::{Joint, MOST_FEET, Slope};
+use super::contact::{ContactId, Covariance, TileLoad};
+use super::doubt::SensorDoubt;
+use super::loaded::LoadedTiles;
+use super::pool::ContactPool;
+use super::tile::LoadedTile;
+use crate::floor::Geometry;
+use crate::units::Newtons;
+
+/// Follows feet over one floor.
+#[derive(Clone, Debug)]
+pub(super) struct Tracker {
+    doubt: SensorDoubt,
+    cells: Cells,
+    next: u32,
+    feet: Vec<Foot>,
+    links: Vec<Link>,
+    new_links: Vec<Link>,
+    joint: Box<Joint>,
+    /// Per loaded tile: the first foot that reaches it, or `NOBODY`.
+    owner: Vec<u32>,
+    orphans: Vec<u32>,
+    members: Vec<u32>,
+}
+
+const NOBODY: u32 = u32::MAX;
+
+/// The covariance between two feet that are estimated together.
+#[derive(Clone, Copy, Debug)]
+struct Link {
+    first: ContactId,
+    second: ContactId,
+    cross: [[f64; STATES]; STATES],
+}
+
+/// The cells of the floor's tiles, without gaps between them.
+#[derive(Clone, Copy, Debug)]
+struct Cells {
+    pitch: f64,
+}
+
+impl Cells {
+    fn of(&self, tile: &LoadedTile) -> (DVec2, DVec2) {
+        let low = DVec2::new(tile.tile.column.into(), tile.tile.row.into()) * self.pitch;
+        (low, low + self.pitch)
+    }
+}
+
+impl Tracker {
+    pub(super) fn new(geometry: &Geometry, doubt: SensorDoubt) -> Self {
+        let room = geometry.tile_count().min(1024);
+        Self {
+            doubt,
+            cells: Cells { pitch: geometry.pitch_m().into() },
+            next: 1,
+            feet: Vec::with_capacity(room),
+            links: Vec::with_capacity(room),
+            new_links: Vec::with_capacity(room),
+            joint: Box::new(Joint::new()),
+            owner: Vec::with_capacity(room),
+            orphans: Vec::with_capacity(room),
+            members: Vec::with_capacity(room),
+        }
+    }
+
+    /// Fills `pool` with this frame's contacts; `dt` seconds have passed since the last frame.
+    pub(super) fn update(&mut self, tiles: &LoadedTiles, dt: f32, pool: &mut ContactPool) {
+        let dt = f64::from(dt);
+        for foot in &mut self.feet {
+            foot.foretell(dt);
+            foot.reach(tiles, self.cells.pitch);
+        }
+        self.adopt(tiles.list());
+        self.find_newcomers(tiles);
+        self.feet.retain(|foot| !foot.tiles.is_empty());
+        self.group(tiles.list().len());
+        self.estimate(tiles, dt);
+        self.bury(tiles, dt);
+        self.learn(tiles, dt);
+        self.describe(tiles, pool);
+    }
+
+    fn name(&mut self) -> ContactId {
+        let id = ContactId(self.next);
+        self.next = self.next.wrapping_add(1);
+        id
+    }
+
+    /// Finds who reaches which tile, gives tiles nobody reaches to the nearest foot that
+    /// may have grown onto them, and lets new feet land on the rest.
+    fn adopt(&mut self, list: &[LoadedTile]) {
+        self.owner.clear();
+        self.owner.resize(list.len(), NOBODY);
+        for (which, foot) in self.feet.iter().enumerate() {
+            for &position in &foot.tiles {
+                self.owner[position as usize] = which as u32;
+            }
+        }
+        self.orphans.clear();
+        self.orphans
+            .extend((0..list.len() as u32).filter(|&position| self.owner[position as usize] == NOBODY));
+        self.orphans.sort_unstable_by(|&a, &b| {
+            let force = |position: u32| list[position as usize].wrench.force;
+            force(b).total_cmp(&force(a)).then(a.cmp(&b))
+        });
+        for orphan in 0..self.orphans.len() {
+            let position = self.orphans[orphan];
+            let tile = &list[position as usize];
+            let centroid = tile.centroid.as_dvec2();
+            let force = f64::from(tile.wrench.force);
+            let nearest = self
+                .feet
+                .iter()
+                .enumerate()
+                .map(|(which, foot)| (which, foot.centre().distance(centroid) - foot.extension()))
+                .min_by(|a, b| a.1.total_cmp(&b.1))
+                .filter(|&(_, beyond)| beyond < 0.0);
+            match nearest {
+                Some((which, _)) => {
+                    let foot = &mut self.feet[which];
+                    foot.tiles.push(position);
+                    if foot.age == 0.0 {
+                        // A foot that lands on several tiles at once: its middle is theirs.
+                        let whole = foot.force() + force;
+                        let centre = foot.centre() + (centroid - foot.centre()) * (force / whole);
+                        foot.state[FORCE] = whole;
+                        foot.state[EAST] = centre.x;
+                        foot.state[NORTH] = centre.y;
+                    }
+                    self.owner[position as usize] = which as u32;
+                }
+                None => {
+                    let mut foot = Foot::new(self.name(), force, centroid, 0.02);
+                    foot.tiles.push(position);
+                    self.owner[position as usize] = self.feet.len() as u32;
+                    self.feet.push(foot);
+                }
+            }
+        }
+    }
+
+    /// Lets feet land on tiles that others already press.
+    fn find_newcomers(&mut self, tiles: &LoadedTiles) {
+        let list = tiles.list();
+        for which in 0..self.feet.len() {
+            let foot = &self.feet[which];
+            if foot.age == 0.0 || foot.shared {
+                continue;
+            }
+            if let Some((force, centre, deviation)) = self.newcomer(foot, list) {
+                let mut newborn = Foot::new(self.name(), force, centre, deviation);
+                newborn.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
+                newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
+                newborn.reach(tiles, self.cells.pitch);
+                if newborn.tiles.is_empty() {
+                    continue;
+                }
+                self.feet[which].step_back();
+                self.feet.push(newborn);
+            }
+        }
+    }
+
+    /// Force, place and doubt of a foot that has landed among the tiles of `foot`, if one has.
+    fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<(f64, DVec2, f64)> {
+        let mut whole = 0.0;
+        let mut sum = DVec2::ZERO;
+        let near = if foot.age < 0.15 { 0.24 } else { 0.15 };
+        let mut best: Option<(f64, DVec2, f64)> = None;
+        for &position in &foot.tiles {
+            let tile = &list[position as usize];
+            let force = f64::from(tile.wrench.force);
+            let centroid = tile.centroid.as_dvec2();
+            whole += force;
+            sum += centroid * force;
+            let slow = foot.slow_load(tile.index);
+            let centre = tile.centre.as_dvec2();
+            let added = force - slow.force;
+            if added < 10.0 {
+                continue;
+            }
+            let moment = (centroid - centre) * force - slow.moment;
+            // Moment of what was added about the foot's own centre of pressure.
+            let about = moment + (centre - foot.past.centre) * added;
+            let place = centre + moment / added;
+            let (low, high) = self.cells.of(tile);
+            let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
+            if inside
+                && about.length() > added * near + slow.force * 0.012
+                && best.is_none_or(|best| best.0 < added)
+            {
+                let deviation = 0.02 + (slow.force * 0.006 / added).min(0.1);
+                best = Some((added, place.clamp(low, high), deviation));
+            }
+        }
+        if best.is_some() {
+            return best;
+        }
+        let leap = sum / whole - foot.past.centre;
+        if foot.age > 0.12 && whole > 120.0 && leap.length() > 0.02 {
+            let moment = leap * whole;
+            let added = (whole - foot.past.force).max(moment.length() / 0.45);
+            if added < whole {
+                let place = foot.past.centre + moment / added;
+                return Some((added, place, 0.08));
+            }
+        }
+        None
+    }
+
+    /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
+    fn group(&mut self, tiles: usize) {
+        self.owner.clear();
+        self.owner.resize(tiles, NOBODY);
+        for which in 0..self.feet.len() {
+            self.feet[which].group = which as u32;
+            for at in 0..self.feet[which].tiles.len() {
+                let position = self.feet[which].tiles[at] as usize;
+                let owner = self.owner[position];
+                if owner == NOBODY {
+                    self.owner[position] = which as u32;
+                    continue;
+                }
+                let (mine, theirs) = (self.feet[which].group, self.feet[owner as usize].group);
+                if mine != theirs {
+                    let (keep, drop) = (mine.min(theirs), mine.max(theirs));
+                    for foot in &mut self.feet[..=which] {
+                        if foot.group == drop {
+                            foot.group = keep;
+                        }
+                    }
+                }
+            }
+        }
+    }
+
+    fn estimate(&mut self, tiles: &LoadedTiles, dt: f64) {
+        self.new_links.clear();
+        for which in 0..self.feet.len() {
+            if self.feet[which].group != which as u32 {
+                continue;
+            }
+            self.members.clear();
+            for (other, foot) in self.feet.iter().enumerate().skip(which) {
+                if foot.group == which as u32 {
+                    self.members.push(other as u32);
+                }
+            }
+            let shared = self.members.len() > 1;
+            for &member in &self.members {
+                self.feet[member as usize].shared = shared;
+            }
+            if shared {
+                self.estimate_together(tiles, dt);
+            } else {
+                let cells = self.cells;
+                self.feet[which].alone(tiles.list(), dt, |tile| cells.of(tile));
+            }
+        }
+        std::mem::swap(&mut self.links, &mut self.new_links);
+    }
+
+    /// One step of the joint filter over the feet in `members`.
+    fn estimate_together(&mut self, tiles: &LoadedTiles, dt: f64) {
+        self.members.truncate(MOST_FEET);
+        let members = &self.members;
+        let list = tiles.list();
+        let joint = &mut self.joint;
+        joint.clear();
+        for &member in members {
+            joint.add(&self.feet[member as usize]);
+        }
+        for (first, &a) in members.iter().enumerate() {
+            for (second, &b) in members.iter().enumerate().skip(first + 1) {
+                let (a, b) = (self.feet[a as usize].id, self.feet[b as usize].id);
+                if let Some(link) = self.links.iter().find(|link| link.first == a && link.second == b) {
+                    joint.link(first, second, &link.cross);
+                }
+            }
+        }
+        predict(joint, members.len(), dt);
+        joint.confine();
+        for (which, &member) in members.iter().enumerate() {
+            joint.take(which, &mut self.feet[member as usize]);
+        }
+        observe(joint, members, &self.feet, list, &self.cells, dt);
+        joint.confine();
+        for (which, &member) in members.iter().enumerate() {
+            joint.take(which, &mut self.feet[member as usize]);
+        }
+        for (first, &a) in members.iter().enumerate() {
+            for (second, &b) in members.iter().enumerate().skip(first + 1) {
+                self.new_links.push(Link {
+                    first: self.feet[a as usize].id,
+                    second: self.feet[b as usize].id,
+                    cross: joint.cross(first, second),
+                });
+            }
+        }
+    }
+
+    /// Takes away feet that have been too light for too long.
+    fn bury(&mut self, _tiles: &LoadedTiles, dt: f64) {
+        for foot in &mut self.feet {
+            foot.faint = if foot.shared && foot.force() < 8.0 { foot.faint + dt } else { 0.0 };
+        }
+        self.feet.retain(|foot| foot.faint < 0.005);
+    }
+
+    /// Lets each foot's slow past learn from this frame.
+    fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
+        let list = tiles.list();
+        for foot in &mut self.feet {
+            foot.learn_past(dt);
+            for at in 0..foot.tiles.len() {
+                let tile = &list[foot.tiles[at] as usize];
+                let (force, moment) = if foot.shared {
+                    let on = foot.on(self.cells.of(tile));
+                    (on.share() * foot.force(), on.moment() * foot.force())
+                } else {
+                    let force = f64::from(tile.wrench.force);
+                    (force, (tile.centroid - tile.centre).as_dvec2() * force)
+                };
+                foot.learn_load(tile.index, force, moment, dt);
+            }
+            foot.forget_loads();
+        }
+    }
+
+    fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
+        let list = tiles.list();
+        pool.clear();
+        // What all feet together are expected to press on each tile.
+        for foot in &mut self.feet {
+            let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
+            foot.ambiguous = foot.shared && variance > 0.04_f64.powi(2);
+            let contact = pool.add(foot.id);
+            contact.centroid = foot.centre().as_vec2();
+            contact.force = Newtons(foot.force() as f32);
+            contact.velocity = foot.velocity().as_vec2();
+            contact.ambiguous = foot.ambiguous;
+            let mut covariance = if foot.shared {
+                Covariance {
+                    xx: foot.covariance[EAST][EAST] as f32,
+                    xy: foot.covariance[EAST][NORTH] as f32,
+                    yy: foot.covariance[NORTH][NORTH] as f32,
+                }
+            } else {
+                Covariance::default()
+            };
+            for &position in &foot.tiles {
+                let tile = &list[position as usize];
+                let (share, load) = part_of(foot, tile, &self.cells);
+                if load.force.0 > 0.0 {
+                    contact.tiles.push(load);
+                }
+                contact.quality = contact.quality.max(tile.quality);
+                covariance +=
+                    self.doubt.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
+            }
+            contact.covariance = covariance;
+            contact.finish();
+        }
+        pool.sort_by_id();
+    }
+}
+
+/// What `foot` presses on `tile`: as a share of the tile's load, and in newtons.
+fn part_of(foot: &Foot, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
+    let whole = TileLoad {
+        tile: tile.tile,
+        index: tile.index as usize,
+        force: Newtons(tile.wrench.force),
+        centroid: tile.centroid,
+    };
+    if !foot.shared {
+        return (1.0, whole);
+    }
+    let on = foot.on(cells.of(tile));
+    let force = (foot.force() * on.share()) as f32;
+    let share = (force / tile.wrench.force).min(1.0);
+    let arm = if on.share() > 1e-6 { (on.moment() / on.share()).as_vec2() } else { glam::Vec2::ZERO };
+    (share, TileLoad { force: Newtons(force.min(tile.wrench.force)), centroid: tile.centre + arm, ..whole })
+}
+
+/// Lets `dt` seconds pass for `feet` feet.
+fn predict(joint: &mut Joint, feet: usize, dt: f64) {
+    const FORCE_FADE_S: f64 = 0.03;
+    const FORCE_RATE: f64 = 5000.0;
+    const PLACE_FADE_S: f64 = 0.08;
+    const SPEED: f64 = 0.4;
+    const HALF_FADE_S: f64 = 0.3;
+    const HALF_SPREAD: f64 = 0.025;
+    for at in (0..feet * STATES).step_by(STATES) {
+        for (value, fade_s, rate) in
+            [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, SPEED), (NORTH, PLACE_FADE_S, SPEED)]
+        {
+            let fade = (-dt / fade_s).exp();
+            joint.drift(at + value, fade_s * (1.0 - fade), fade, rate * rate * (1.0 - fade * fade));
+        }
+        let fade = (-dt / HALF_FADE_S).exp();
+        for half in [HALF_EAST, HALF_NORTH] {
+            joint.relax(at + half, HALF_REST, fade, HALF_SPREAD * HALF_SPREAD * (1.0 - fade * fade));
+        }
+    }
+}
+
+/// Shows the joint filter what the tiles of its feet carry.
+fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile], cells: &Cells, dt: f64) {
+    // Errors of the patch model last for tens of milliseconds: many frames see the same one.
+    let frames = (0.02 / dt.max(1e-4)).max(1.0);
+    let shape = 0.06_f64.powi(2) * frames;
+    let mut seen: arrayvec::ArrayVec<u32, 64> = arrayvec::ArrayVec::new();
+    for &member in members {
+        for &position in &feet[member as usize].tiles {
+            if !seen.contains(&position) && !seen.is_full() {
+                seen.push(position);
+            }
+        }
+    }
+    let (mut force, mut sum) = (0.0, DVec2::ZERO);
+    for &position in &seen {
+        let tile = &list[position as usize];
+        force += f64::from(tile.wrench.force);
+        sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+    }
+    let middle = sum / force;
+    // The whole of it, free of any patch model.
+    let mut slopes = [[(0, 0.0); 2 * MOST_FEET]; 3];
+    for which in 0..members.len() {
+        let at = which * STATES;
+        let state = &joint.x[at..at + STATES];
+        slopes[0][which] = (at + FORCE, 1.0);
+        slopes[1][2 * which] = (at + FORCE, state[EAST] - middle.x);
+        slopes[1][2 * which + 1] = (at + EAST, state[FORCE]);
+        slopes[2][2 * which] = (at + FORCE, state[NORTH] - middle.y);
+        slopes[2][2 * which + 1] = (at + NORTH, state[FORCE]);
+    }
+    let n = members.len();
+    let start = joint.x;
+    let now = |joint: &Joint, slopes: &[Slope]| -> f64 {
+        // What the linearised prediction still misses after the observations so far.
+        slopes.iter().map(|&(state, slope)| slope * (joint.x[state] - start[state])).sum()
+    };
+    let whole: f64 = (0..n).map(|which| start[which * STATES + FORCE]).sum();
+    joint.observe(force - whole, &slopes[0][..n], 4.0);
+    for (axis, slopes) in [(EAST, slopes[1]), (NORTH, slopes[2])] {
+        let middle = if axis == EAST { middle.x } else { middle.y };
+        let moment: f64 =
+            (0..n).map(|which| start[which * STATES + FORCE] * (start[which * STATES + axis] - middle)).sum();
+        let missing = -moment - now(joint, &slopes[..2 * n]);
+        joint.observe(missing, &slopes[..2 * n], 0.09);
+    }
+    for &position in &seen {
+        let tile = &list[position as usize];
+        let cell = cells.of(tile);
+        let mut expected = [0.0; 3];
+        let mut rows: [arrayvec::ArrayVec<Slope, { 5 * MOST_FEET }>; 3] = Default::default();
+        let mut doubt = 0.0;
+        for (which, &member) in members.iter().enumerate() {
+            let foot = &feet[member as usize];
+            let on = foot.on(cell);
+            let (share, moment) = (on.share(), on.moment());
+            if share <= 0.0 {
+                continue;
+            }
+            let (f, at) = (foot.force(), which * STATES);
+            expected[0] += f * share;
+            expected[1] += f * moment.x;
+            expected[2] += f * moment.y;
+            doubt += f * f * 4.0 * share * (1.0 - share).max(0.0);
+            let (e, n) = (on.east, on.north);
+            for (row, value, by) in [
+                (
+                    0,
+                    share,
+                    [
+                        e.share_by[0] * n.share,
+                        e.share * n.share_by[0],
+                        e.share_by[1] * n.share,
+                        e.share * n.share_by[1],
+                    ],
+                ),
+                (
+                    1,
+                    moment.x,
+                    [
+                        e.moment_by[0] * n.share,
+                        e.moment * n.share_by[0],
+                        e.moment_by[1] * n.share,
+                        e.moment * n.share_by[1],
+                    ],
+                ),
+                (
+                    2,
+                    moment.y,
+                    [
+                        e.share_by[0] * n.moment,
+                        e.share * n.moment_by[0],
+                        e.share_by[1] * n.moment,
+                        e.share * n.moment_by[1],
+                    ],
+                ),
+            ] {
+                rows[row].push((at + FORCE, value));
+                for (state, slope) in [EAST, NORTH, HALF_EAST, HALF_NORTH].into_iter().zip(by) {
+                    rows[row].push((at + state, f * slope));
+                }
+            }
+        }
+        let measured = {
+            let force = f64::from(tile.wrench.force);
+            let arm = (tile.centroid - tile.centre).as_dvec2();
+            [force, force * arm.x, force * arm.y]
+        };
+        for (row, slopes) in rows.iter().enumerate() {
+            let (noise, lever) = if row == 0 { (2.0, 1.0) } else { (0.3, 0.06) };
+            let missing = measured[row] - expected[row] - now(joint, slopes);
+            joint.observe(missing, slopes, noise * noise + shape * doubt * lever * lever);
+        }
+    }
+}
