@@ -9,6 +9,7 @@
 //! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
 //! among them, one picker per region.
 
+mod calibration;
 mod cluster;
 mod contact;
 mod cursor;
@@ -23,6 +24,7 @@ mod sensing;
 mod tile;
 mod track;
 
+pub use calibration::{Fit, FitError, LoadPoint};
 pub use contact::{Contact, ContactId, Covariance, TileLoad};
 pub use cursor::{Cursor, CursorPicker, Stickiness};
 pub use doubt::SensorDoubt;

@@ -1,0 +1,305 @@
+//! Feet and objects on the floor, and what each tile has to carry of them.
+
+use glam::Vec2;
+use smallvec::{SmallVec, smallvec};
+
+use super::footprint::Print;
+use crate::floor::{Geometry, TileId};
+use crate::sense::TileLoad;
+use crate::units::{Instant, Newtons};
+
+/// A foot in its shoe, on the floor or above it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Foot {
+    /// The middle of the shoe, in floor metres.
+    pub position: Vec2,
+    /// Where the toes point, in radians counter-clockwise from north.
+    pub heading: f32,
+    /// Length of the bare foot, in metres: 0.22 to 0.30 for people.
+    pub length_m: f32,
+    /// What it presses with; zero or less if it is in the air.
+    pub force: Newtons,
+    /// How far the load has rolled from the heel (0) to the toes (1).
+    pub roll: f32,
+}
+
+impl Foot {
+    /// Where its force acts, in floor metres, whether or not there is a floor.
+    #[must_use]
+    pub fn centre_of_pressure(&self) -> Vec2 {
+        self.as_load().centre_of_pressure()
+    }
+
+    /// What each tile carries of it; see [`Load::on_tiles`].
+    #[must_use]
+    pub fn on_tiles(&self, geometry: &Geometry) -> SmallVec<[TileLoad; 4]> {
+        self.as_load().on_tiles(geometry)
+    }
+
+    /// The foot as a print that presses.
+    #[must_use]
+    pub const fn as_load(&self) -> Load {
+        Load {
+            print: Print::Shoe { length_m: self.length_m, roll: self.roll },
+            position: self.position,
+            heading: self.heading,
+            force: self.force,
+        }
+    }
+}
+
+/// Anything that presses on the floor: a foot, or a simple shape for an experiment.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Load {
+    /// Its shape.
+    pub print: Print,
+    /// The print's origin, in floor metres.
+    pub position: Vec2,
+    /// Where the print's y axis points, in radians counter-clockwise from north.
+    pub heading: f32,
+    /// What it presses with.
+    pub force: Newtons,
+}
+
+impl Load {
+    /// Where the whole force acts, in floor metres, whether or not there is a floor.
+    #[must_use]
+    pub fn centre_of_pressure(&self) -> Vec2 {
+        self.position + Vec2::from_angle(self.heading).rotate(self.print.centre_of_pressure())
+    }
+
+    /// What each tile carries, in tile-index order; empty for a load in the air, off the floor or not finite.
+    ///
+    /// Cells over a seam are shared between the tiles by area. A gap between
+    /// plates belongs to the tile on its own side. Cells beyond the floor's
+    /// edge load no tile: as long as half of the load or more is over the
+    /// floor, the cells on it carry the whole force (the rest hangs over);
+    /// with less, the force on the floor goes down to zero in proportion,
+    /// because the foot then stands on what is beside the floor.
+    #[must_use]
+    pub fn on_tiles(&self, geometry: &Geometry) -> SmallVec<[TileLoad; 4]> {
+        let finite = self.position.is_finite() && self.heading.is_finite() && self.force.is_finite();
+        if !finite || self.force <= Newtons::ZERO {
+            return SmallVec::new();
+        }
+        let turn = Vec2::from_angle(self.heading);
+        let half = self.print.half_size();
+        if !half.is_finite() {
+            return SmallVec::new();
+        }
+        // The upright box around the turned print.
+        let reach = Vec2::new(
+            turn.x.abs() * half.x + turn.y.abs() * half.y,
+            turn.y.abs() * half.x + turn.x.abs() * half.y,
+        );
+        let (low, high) = (self.position - reach, self.position + reach);
+        if let (Some(tile), true) =
+            (geometry.tile_under(low), geometry.tile_under(low) == geometry.tile_under(high))
+        {
+            return smallvec![self.part(geometry, tile, 1.0, self.centre_of_pressure())];
+        }
+        self.straddling(geometry, turn, low, high)
+    }
+
+    fn straddling(&self, geometry: &Geometry, turn: Vec2, low: Vec2, high: Vec2) -> SmallVec<[TileLoad; 4]> {
+        let Some(mut window) = Window::around(geometry, low, high) else { return SmallVec::new() };
+        self.print
+            .for_each_cell(|cell| window.add(self.position + turn.rotate(cell.at), cell.size, cell.share));
+        let carried = window.total();
+        let scale = 1.0 / carried.max(0.5);
+        window.parts().map(|(tile, share, at)| self.part(geometry, tile, share * scale, at)).collect()
+    }
+
+    fn part(&self, geometry: &Geometry, tile: TileId, share: f32, at: Vec2) -> TileLoad {
+        let index = geometry.index(tile).unwrap_or_default();
+        TileLoad { tile, index, force: self.force * share, centroid: at }
+    }
+}
+
+/// Who moves the feet.
+pub trait FootDriver: Send {
+    /// Fills `feet` with the feet on the floor, or above it with no force, at the moment `at`.
+    ///
+    /// `feet` is cleared first; moments are asked for in order. False once the
+    /// performance is over, with `feet` left empty.
+    fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool;
+}
+
+/// The tiles that a print may touch, with the load on each.
+struct Window {
+    pitch_m: f32,
+    first: TileId,
+    columns: usize,
+    /// Share of the load, and share times place, per tile.
+    sums: SmallVec<[(f32, Vec2); 16]>,
+}
+
+impl Window {
+    /// The tiles between two corners of an upright box; `None` if none of them is on the floor.
+    fn around(geometry: &Geometry, low: Vec2, high: Vec2) -> Option<Self> {
+        let pitch_m = geometry.pitch_m();
+        let last = Vec2::new(f32::from(geometry.columns() - 1), f32::from(geometry.rows() - 1));
+        let first = (low / pitch_m).floor().max(Vec2::ZERO);
+        let end = (high / pitch_m).floor().min(last);
+        (first.cmple(end).all()).then(|| {
+            let size = (end - first).as_usizevec2() + 1;
+            Self {
+                pitch_m,
+                first: TileId::new(first.x as u16, first.y as u16),
+                columns: size.x,
+                sums: smallvec![(0.0, Vec2::ZERO); size.x * size.y],
+            }
+        })
+    }
+
+    /// Shares a cell among the tiles under it, taking its edges as upright.
+    fn add(&mut self, at: Vec2, size: Vec2, share: f32) {
+        let (low, high) = (at - size * 0.5, at + size * 0.5);
+        let (x, y) = (self.split(low.x, high.x), self.split(low.y, high.y));
+        for (column, part_x, mid_x) in x {
+            for (row, part_y, mid_y) in y {
+                self.add_to(column, row, share * part_x * part_y, Vec2::new(mid_x, mid_y));
+            }
+        }
+    }
+
+    /// An interval cut at the seam it crosses: the tile, the share and the middle of each piece.
+    ///
+    /// Cells are smaller than tiles, so there is at most one seam.
+    fn split(&self, low: f32, high: f32) -> [(f32, f32, f32); 2] {
+        let (first, last) = ((low / self.pitch_m).floor(), (high / self.pitch_m).floor());
+        if first == last {
+            return [(first, 1.0, 0.5 * (low + high)), (first, 0.0, low)];
+        }
+        let seam = last * self.pitch_m;
+        let before = ((seam - low) / (high - low)).clamp(0.0, 1.0);
+        [(first, before, 0.5 * (low + seam)), (last, 1.0 - before, 0.5 * (seam + high))]
+    }
+
+    fn add_to(&mut self, column: f32, row: f32, share: f32, at: Vec2) {
+        let (column, row) = (column - f32::from(self.first.column), row - f32::from(self.first.row));
+        if share > 0.0 && column >= 0.0 && row >= 0.0 && (column as usize) < self.columns {
+            let index = row as usize * self.columns + column as usize;
+            if let Some((total, moment)) = self.sums.get_mut(index) {
+                *total += share;
+                *moment += at * share;
+            }
+        }
+    }
+
+    fn total(&self) -> f32 {
+        self.sums.iter().map(|(share, _)| share).sum()
+    }
+
+    fn parts(&self) -> impl Iterator<Item = (TileId, f32, Vec2)> + '_ {
+        self.sums.iter().enumerate().filter(|(_, (share, _))| *share > 0.0).map(|(index, (share, moment))| {
+            let (column, row) = (index % self.columns, index / self.columns);
+            let tile = TileId::new(self.first.column + column as u16, self.first.row + row as u16);
+            (tile, *share, *moment / *share)
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::TAU;
+
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn foot(position: Vec2, heading: f32, roll: f32) -> Foot {
+        Foot { position, heading, length_m: 0.27, force: Newtons(700.0), roll }
+    }
+
+    fn sum(loads: &[TileLoad]) -> (f32, Vec2) {
+        let force: f32 = loads.iter().map(|load| load.force.0).sum();
+        (force, loads.iter().map(|load| load.centroid * load.force.0).sum::<Vec2>() / force)
+    }
+
+    proptest! {
+        #[test]
+        fn tiles_carry_the_whole_foot_at_its_centre_of_pressure(
+            x in 0.2f32..1.6, y in 0.2f32..1.6, heading in 0.0..TAU, roll in 0.0f32..=1.0,
+        ) {
+            // 20 cm from the floor's edge the 28 cm shoe is entirely on it.
+            let foot = foot(Vec2::new(x, y), heading, roll);
+            let loads = foot.on_tiles(&Geometry::default());
+            let (force, at) = sum(&loads);
+            prop_assert!(loads.len() <= 4, "a shoe is shorter than a tile");
+            prop_assert!((force - 700.0).abs() < 0.1, "{force}");
+            prop_assert!(at.distance(foot.centre_of_pressure()) < 1e-4, "{at}");
+            for load in &loads {
+                let cell = crate::floor::Rect::from_centre_size(
+                    Geometry::default().centre(load.tile), Vec2::splat(0.304 + 1e-5));
+                prop_assert!(cell.contains(load.centroid), "{load:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_foot_on_a_cross_of_seams_loads_four_tiles() {
+        let cross = Vec2::splat(2.0 * 0.304);
+        let loads = foot(cross, 0.3, 0.4).on_tiles(&Geometry::default());
+        let tiles: Vec<_> = loads.iter().map(|load| (load.tile.column, load.tile.row)).collect();
+        assert_eq!(tiles, [(1, 1), (2, 1), (1, 2), (2, 2)]);
+    }
+
+    #[test]
+    fn load_passes_over_a_seam_without_steps() {
+        // A foot parallel to the seam, moved sideways a tenth of a millimetre at a time.
+        let geometry = Geometry::default();
+        let west = |step: usize| {
+            let x = 0.55 + step as f32 * 1e-4;
+            let loads = foot(Vec2::new(x, 0.456), 0.0, 0.4).on_tiles(&geometry);
+            loads.iter().filter(|load| load.tile.column == 1).map(|load| load.force.0).sum::<f32>()
+        };
+        let shares: Vec<f32> = (0..1200).map(west).collect();
+        assert_eq!(shares[0], 700.0);
+        assert_eq!(shares[1199], 0.0);
+        let steepest = shares.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
+        // 700 N over 11 cm are 0.64 N per step on average, a little more in the middle of the sole.
+        assert!(steepest < 1.2, "{steepest}");
+    }
+
+    #[test]
+    fn a_foot_hanging_over_the_edge_presses_with_all_its_force_until_it_stands_beside() {
+        let geometry = Geometry::default();
+        let force_at = |x: f32| sum(&foot(Vec2::new(x, 0.9), 0.0, 0.4).on_tiles(&geometry)).0;
+        assert!((force_at(0.005) - 700.0).abs() < 0.1, "more than half of it is on the floor");
+        assert!((50.0..650.0).contains(&force_at(-0.02)), "{}", force_at(-0.02));
+        assert!(foot(Vec2::new(-0.2, 0.9), 0.0, 0.4).on_tiles(&geometry).is_empty());
+        assert!(foot(Vec2::new(40.0, 0.9), 0.0, 0.4).on_tiles(&geometry).is_empty());
+    }
+
+    #[test]
+    fn heading_turns_the_toes_counter_clockwise_from_north() {
+        let west = foot(Vec2::ONE, TAU / 4.0, 1.0);
+        let toes = west.centre_of_pressure() - west.position;
+        assert!(toes.x < -0.05 && toes.y.abs() < 1e-3, "{toes}");
+    }
+
+    #[test]
+    fn nonsense_presses_on_nothing() {
+        let geometry = Geometry::default();
+        for broken in [
+            foot(Vec2::NAN, 0.0, 0.4),
+            foot(Vec2::ONE, f32::INFINITY, 0.4),
+            Foot { force: Newtons(f32::NAN), ..foot(Vec2::ONE, 0.0, 0.4) },
+            Foot { force: Newtons(-5.0), ..foot(Vec2::ONE, 0.0, 0.4) },
+            Foot { length_m: f32::NAN, ..foot(Vec2::ONE, 0.0, 0.4) },
+        ] {
+            assert!(broken.on_tiles(&geometry).is_empty(), "{broken:?}");
+        }
+    }
+
+    #[test]
+    fn small_tiles_share_a_foot_among_many() {
+        let geometry = Geometry::new(20, 20, 0.05, 0.05, 0.005).unwrap();
+        let foot = foot(Vec2::splat(0.5), 0.4, 0.4);
+        let loads = foot.on_tiles(&geometry);
+        assert!(loads.len() > 10, "{}", loads.len());
+        let (force, at) = sum(&loads);
+        assert!((force - 700.0).abs() < 0.1 && at.distance(foot.centre_of_pressure()) < 1e-4);
+    }
+}

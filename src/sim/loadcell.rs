@@ -1,0 +1,186 @@
+//! Calibrating a simulated floor the way a laboratory does: against a load cell.
+
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use thiserror::Error;
+
+use super::floor::SimFloor;
+use super::sensor::{counts, normal};
+use crate::floor::{Calibration, Corner, Floor, SensorId};
+use crate::sense::{Fit, FitError, LoadPoint};
+use crate::units::Newtons;
+use crate::wire::Readings;
+
+/// Loads put on each sensor, evenly over its range.
+const LOADS: usize = 40;
+
+/// Share of a sensor's range that is loaded: a saturated reading follows no law.
+const RANGE: f32 = 0.97;
+
+/// Readings averaged at each load.
+const READINGS: usize = 16;
+
+/// Error of the load cell, as a share of its reading (one standard deviation).
+const CELL_ERROR: f32 = 0.005;
+
+/// Readings averaged on the empty floor for the tare.
+const TARE_READINGS: usize = 200;
+
+/// A sensor that no law could be fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("{sensor}: {source}")]
+pub struct CalibrationError {
+    /// Which sensor.
+    pub sensor: SensorId,
+    /// Why.
+    #[source]
+    pub source: FitError,
+}
+
+/// `floor` with calibration and tare measured on its simulation `sim`.
+///
+/// Each sensor is loaded on the bench in 40 steps up to 97 % of its range against
+/// a load cell that is wrong by 0.5 %, and the law fitted; then the empty floor
+/// is read for the tare. The same `seed` gives the same calibration; faults are
+/// not on the bench. A floor whose boards send newtons needs no calibration
+/// and comes back with its tare zero.
+///
+/// # Errors
+/// [`CalibrationError`] names the first sensor that no law fits.
+pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, CalibrationError> {
+    let mut floor = floor.clone();
+    floor.tare.fill([Newtons::ZERO; 4]);
+    if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
+        return Ok(floor);
+    }
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    for (index, tile) in sim.geometry().tiles().enumerate() {
+        for corner in Corner::ALL {
+            let calibration = on_the_bench(sim, index, corner, &mut rng)
+                .map_err(|source| CalibrationError { sensor: SensorId { tile, corner }, source })?;
+            let (part, rest) = sim.bench(index, corner);
+            let empty: f32 = (0..TARE_READINGS)
+                .map(|_| calibration.force(read(part.volts(rest), sim.noise_v(), &mut rng)).0)
+                .sum();
+            // A floor of other size than its simulation keeps what has no counterpart.
+            if let (Some(laws), Some(tares)) = (floor.calibration.get_mut(index), floor.tare.get_mut(index)) {
+                laws[corner.index()] = calibration;
+                tares[corner.index()] = Newtons(empty / TARE_READINGS as f32);
+            }
+        }
+    }
+    Ok(floor)
+}
+
+fn on_the_bench(
+    sim: &SimFloor,
+    tile: usize,
+    corner: Corner,
+    rng: &mut Pcg64Mcg,
+) -> Result<Calibration, FitError> {
+    let (part, _) = sim.bench(tile, corner);
+    let range = RANGE * part.capacity();
+    let points: [LoadPoint; LOADS] = std::array::from_fn(|step| {
+        let force = range * (step + 1) as f32 / LOADS as f32;
+        let output = part.volts(force);
+        let volts: f32 = (0..READINGS).map(|_| Calibration::volts(read(output, sim.noise_v(), rng))).sum();
+        LoadPoint::new(volts / READINGS as f32, Newtons(force * (1.0 + CELL_ERROR * normal(rng))))
+    });
+    Fit::of(&points).map(|fit| fit.calibration)
+}
+
+/// One noisy reading of an output in volts.
+fn read(volts: f32, noise_v: f32, rng: &mut Pcg64Mcg) -> u16 {
+    counts(volts + noise_v * normal(rng))
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::floor::TileId;
+    use crate::sim::{Foot, PartConfig, Sensing, SimConfig};
+
+    /// Tared force and centroid of everything on the floor, through the floor's calibration.
+    fn sensed(floor: &Floor, readings: &[Readings]) -> (f32, Vec2) {
+        let (mut force, mut moment) = (0.0, Vec2::ZERO);
+        for (board, readings) in floor.boards.iter().zip(readings) {
+            let Readings::Counts(counts) = readings else { panic!("a board that sends counts") };
+            for (sensor, counts) in board.channels.iter().flatten().zip(counts) {
+                let (tile, corner) = (floor.geometry.index(sensor.tile).unwrap(), sensor.corner.index());
+                let newtons =
+                    floor.calibration[tile][corner].force(counts.unwrap()) - floor.tare[tile][corner];
+                // As sensing does, leave out sensors that only show noise.
+                if newtons.abs() > Newtons(1.0) {
+                    force += newtons.0;
+                    moment += floor.geometry.sensor(sensor.tile, sensor.corner) * newtons.0;
+                }
+            }
+        }
+        (force, moment / force)
+    }
+
+    fn standing(position: Vec2, force: f32) -> Foot {
+        Foot { position, heading: 0.3, length_m: 0.27, force: Newtons(force), roll: 0.45 }
+    }
+
+    #[test]
+    fn a_calibrated_floor_reads_a_standing_foot_as_well_as_the_paper_s() {
+        let floor = Floor::default();
+        let mut sim = SimFloor::new(&floor, SimConfig::default(), 20);
+        let nominal = sensed(&floor, sim.step(&[])).0;
+        let floor = calibrated(&floor, &sim, 1).unwrap();
+        assert!(nominal > 500.0, "36 plates weigh on an untared floor: {nominal}");
+        let (empty, _) = sensed(&floor, sim.step(&[]));
+        assert!(empty.abs() < 5.0, "{empty}");
+        // Eight places all over the floor, as one stands and as one presses a button.
+        let (mut errors, mut gains) = (Vec::new(), Vec::new());
+        for force in [120.0, 350.0] {
+            for step in 0..40 {
+                let place = Vec2::new(0.3 + 0.031 * step as f32, 1.5 - 0.029 * step as f32);
+                let foot = standing(place, force);
+                let (felt, at) = sensed(&floor, sim.step(&[foot]));
+                errors.push(at.distance(foot.centre_of_pressure()));
+                gains.push(felt / force);
+            }
+        }
+        errors.sort_by(f32::total_cmp);
+        gains.sort_by(f32::total_cmp);
+        // The paper: typically under 2 cm, under 5 cm at worst.
+        assert!(errors[40] < 0.02 && errors[79] < 0.05, "median {}, worst {}", errors[40], errors[79]);
+        assert!(errors[40] > 0.001, "a real floor is not exact: {}", errors[40]);
+        assert!(gains[0] > 0.75 && gains[79] < 1.25, "{} to {}", gains[0], gains[79]);
+    }
+
+    #[test]
+    fn exact_parts_come_back_within_the_load_cell_s_error() {
+        let floor = Floor::of(crate::floor::Geometry::of_paper_tiles(2, 2).unwrap());
+        let config = SimConfig { sensing: Sensing::Counts(PartConfig::exact()), ..SimConfig::default() };
+        let sim = SimFloor::new(&floor, config, 3);
+        let floor = calibrated(&floor, &sim, 5).unwrap();
+        for law in floor.calibration.iter().flatten() {
+            let gain = law.force(58_000) / Calibration::NOMINAL.force(58_000);
+            assert!((gain - 1.0).abs() < 0.005, "{law:?}");
+        }
+        let weight: Newtons = floor.tare[0].iter().copied().sum();
+        // 2.6 kg of plate and 4 x 5 N of mounting.
+        assert!((weight.0 - 45.5).abs() < 2.0, "{weight:?}");
+    }
+
+    #[test]
+    fn boards_that_send_newtons_need_none() {
+        let floor = Floor::default();
+        let sim = SimFloor::new(&floor, SimConfig::ideal(), 3);
+        assert_eq!(calibrated(&floor, &sim, 5), Ok(floor));
+    }
+
+    #[test]
+    fn the_same_seed_calibrates_alike() {
+        let floor = Floor::of(crate::floor::Geometry::of_paper_tiles(1, 1).unwrap());
+        let sim = SimFloor::new(&floor, SimConfig::default(), 3);
+        assert_eq!(calibrated(&floor, &sim, 5), calibrated(&floor, &sim, 5));
+        assert_ne!(calibrated(&floor, &sim, 5), calibrated(&floor, &sim, 6));
+        assert_eq!(sim.geometry().index(TileId::new(0, 0)), Some(0));
+    }
+}
