@@ -1,10 +1,19 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+mod latency;
+mod lockstep;
+mod manual;
+mod wav;
+
 use thiserror::Error;
 
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
+
+pub use latency::{HostClock, LatencyMeter, LatencyProbe, LatencySummary};
+pub use manual::ManualSink;
+pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 
 /// Something that plays the renderer's samples.
 pub trait ActuatorSink {

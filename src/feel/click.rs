@@ -1,0 +1,83 @@
+use super::{Click, ModalBank};
+
+/// What became of a click on one channel.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Struck {
+    /// Modes that ring now.
+    pub(super) modes: u32,
+    /// Modes that cannot be played: not finite, or outside the ranges of [`super::Mode`].
+    pub(super) refused: u32,
+    /// Ringing modes that had to make room.
+    pub(super) stolen: u32,
+}
+
+/// The loudest that one mode is struck, in full scales: far above anything the limiter lets through.
+const LOUDEST: f32 = 16.0;
+
+/// Strikes `click` on `bank`, so that the very next sample is the first that moves.
+///
+/// `gain` is full scales per unit of mode amplitude: the click's level times
+/// the spot's weight over the actuator's newtons at full scale. Modes start as
+/// sines, at zero, so nothing steps. A mode of no amplitude is left out
+/// without being counted; one louder than 16 full scales is struck at 16.
+///
+/// # Real-time
+/// No allocation.
+pub(super) fn strike(bank: &mut ModalBank, click: &Click, gain: f32) -> Struck {
+    let mut struck = Struck::default();
+    for mode in &click.modes {
+        let amplitude = mode.amplitude * gain;
+        let playable = (20.0..=1000.0).contains(&mode.frequency_hz)
+            && (0.001..=2.0).contains(&mode.decay_s)
+            && (-1.0..=1.0).contains(&mode.amplitude)
+            && !amplitude.is_nan();
+        if !playable {
+            struck.refused += 1;
+        } else if amplitude != 0.0 {
+            let stolen = bank.strike(mode.frequency_hz, mode.decay_s, amplitude.clamp(-LOUDEST, LOUDEST));
+            struck.modes += 1;
+            struck.stolen += u32::from(stolen);
+        }
+    }
+    struck
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feel::Mode;
+    use crate::units::Newtons;
+
+    fn click(modes: &[(f32, f32, f32)]) -> Click {
+        let modes = modes
+            .iter()
+            .map(|&(frequency_hz, decay_s, amplitude)| Mode { frequency_hz, decay_s, amplitude })
+            .collect();
+        Click { modes, level: Newtons(4.0) }
+    }
+
+    #[test]
+    fn modes_outside_their_ranges_are_refused_one_by_one() {
+        let mut bank = ModalBank::new(48_000.0, 8);
+        let mixed = click(&[
+            (150.0, 0.02, 1.0),
+            (f32::NAN, 0.02, 1.0),
+            (150.0, 0.0, 1.0),
+            (5000.0, 0.02, 1.0),
+            (150.0, 0.02, f32::INFINITY),
+            (250.0, 0.02, 0.0),
+        ]);
+        assert_eq!(strike(&mut bank, &mixed, 0.1), Struck { modes: 1, refused: 4, stolen: 0 });
+        assert_eq!(strike(&mut bank, &mixed, f32::NAN), Struck { modes: 0, refused: 6, stolen: 0 });
+        assert_eq!(bank.ringing(), 1);
+    }
+
+    #[test]
+    fn an_absurd_level_is_struck_at_the_loudest() {
+        let mut bank = ModalBank::new(48_000.0, 8);
+        strike(&mut bank, &click(&[(250.0, 0.02, 1.0)]), 1e30);
+        let mut out = [0.0; 480];
+        bank.render(&mut out);
+        assert!(out.iter().all(|x| x.abs() <= LOUDEST));
+    }
+}

@@ -1,0 +1,328 @@
+use std::sync::Arc;
+use std::time::Duration;
+
+use rtrb::RingBuffer;
+use triple_buffer::{Output, TripleBuffer};
+
+use super::click;
+use super::friction::Rubbing;
+use super::limiter::{Faults, Limiter, Ramp};
+use super::mix::{LANES, Mix, Wiring};
+use super::schedule::{Due, SampleClock, Schedule, WAITING};
+use super::scope::{ScopeReader, ScopeWriter, scope};
+use super::sender::{CueSender, Shared, count};
+use super::{FeelCounters, ModalBank, Rubs};
+use crate::floor::{Actuator, Floor};
+use crate::units::Instant;
+
+/// Different modes that ring at once on one channel, before the weakest has to make room.
+const MODES_PER_CHANNEL: usize = 64;
+
+/// What a renderer is made for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RendererConfig {
+    /// Samples per second, 8,000 to 768,000; what is outside is brought inside.
+    pub sample_rate: u32,
+    /// Channels in a frame.
+    pub channels: usize,
+    /// What moves each tile, in tile-index order.
+    pub actuators: Vec<Option<Actuator>>,
+    /// Most frames rendered in one go; longer blocks are rendered in parts.
+    pub max_block: usize,
+    /// How long after its cause a cue is played, so that the delay is the same for all.
+    pub delay: Duration,
+}
+
+impl RendererConfig {
+    /// A renderer for every actuator of `floor`, in blocks of up to 256 frames and without delay.
+    #[must_use]
+    pub fn of(floor: &Floor, sample_rate: u32) -> Self {
+        Self {
+            sample_rate,
+            channels: floor.channel_count(),
+            actuators: floor.actuators.clone(),
+            max_block: 256,
+            delay: Duration::ZERO,
+        }
+    }
+}
+
+/// The two ends of one wire: the sensing thread keeps the [`CueSender`], the audio side the [`Renderer`].
+///
+/// All memory is taken here.
+#[must_use]
+pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
+    let (cues, ring) = RingBuffer::new(WAITING);
+    let (input, rubs) = TripleBuffer::new(&Rubs::new()).split();
+    let shared = Arc::new(Shared::default());
+    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0 };
+
+    let sample_rate = config.sample_rate.clamp(8_000, 768_000);
+    let rate = sample_rate as f32;
+    let max_block = config.max_block.clamp(1, 8192);
+    let groups = config.channels.div_ceil(LANES);
+    let renderer = Renderer {
+        sample_rate,
+        channels: config.channels,
+        max_block,
+        delay: config.delay,
+        wiring: Wiring::new(config.actuators, config.channels),
+        shared,
+        turns: 0,
+        schedule: Schedule::new(ring),
+        clock: SampleClock::new(sample_rate),
+        rubs,
+        banks: vec![ModalBank::new(f64::from(sample_rate), MODES_PER_CHANNEL); config.channels],
+        rendered: vec![0; config.channels],
+        rubbing: Rubbing::new(rate),
+        mix: Mix::new(config.channels, max_block),
+        limiters: vec![Limiter::new(rate); groups],
+        ramp: Ramp::new(rate),
+        gains: vec![0.0; max_block],
+        onsets: Vec::with_capacity(WAITING),
+        scope: None,
+    };
+    (sender, renderer)
+}
+
+/// The first sample of a cue that moves a plate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Onset {
+    /// Which frame of the last block it lies in.
+    pub frame: usize,
+    /// When the packet arrived that caused it.
+    pub received: Instant,
+}
+
+/// Turns cues into actuator samples.
+///
+/// There are two ways to drive it. In lockstep, for files and tests,
+/// [`Renderer::render`] is told when each block starts on the clock that the
+/// cues are stamped with, and each cue begins at its own sample. A device that
+/// runs on a clock of its own calls [`Renderer::render_now`], and each cue
+/// begins with the block it meets; or it estimates each block's start on the
+/// cues' clock and calls [`Renderer::render`] with a delay long enough that no
+/// cue comes late: then all are felt equally late.
+///
+/// # Real-time
+/// Rendering does not allocate, lock, log, wait or call the system.
+#[derive(Debug)]
+pub struct Renderer {
+    sample_rate: u32,
+    channels: usize,
+    max_block: usize,
+    delay: Duration,
+    wiring: Wiring,
+    shared: Arc<Shared>,
+    /// How often silence was turned on and off, as far as is dealt with.
+    turns: u64,
+    schedule: Schedule,
+    clock: SampleClock,
+    rubs: Output<Rubs>,
+    banks: Vec<ModalBank>,
+    /// Frames of the block at hand that each bank has rendered.
+    rendered: Vec<usize>,
+    rubbing: Rubbing,
+    mix: Mix,
+    limiters: Vec<Limiter>,
+    ramp: Ramp,
+    gains: Vec<f32>,
+    onsets: Vec<Onset>,
+    scope: Option<ScopeWriter>,
+}
+
+impl Renderer {
+    /// Samples per second.
+    #[must_use]
+    pub fn sample_rate(&self) -> u32 {
+        self.sample_rate
+    }
+
+    /// Channels in a frame.
+    #[must_use]
+    pub fn channels(&self) -> usize {
+        self.channels
+    }
+
+    /// Most frames rendered in one go.
+    #[must_use]
+    pub fn max_block(&self) -> usize {
+        self.max_block
+    }
+
+    /// How long after its cause a cue is played.
+    #[must_use]
+    pub fn delay(&self) -> Duration {
+        self.delay
+    }
+
+    /// What could not be done so far.
+    #[must_use]
+    pub fn counters(&self) -> FeelCounters {
+        self.shared.counters()
+    }
+
+    /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from the first.
+    ///
+    /// Takes memory, so it belongs before the start.
+    pub fn scope(&mut self) -> Option<ScopeReader> {
+        if self.channels == 0 {
+            return None;
+        }
+        let (writer, reader) = scope(self.channels, self.sample_rate as f32);
+        self.scope = Some(writer);
+        Some(reader)
+    }
+
+    /// The cues whose first moving sample lies in the block rendered last, in order.
+    #[must_use]
+    pub fn onsets(&self) -> &[Onset] {
+        &self.onsets
+    }
+
+    /// Fills `out` with the frames from `block_start` on, each cue at its own sample.
+    ///
+    /// `out` is interleaved, [`Renderer::channels`] wide; samples that make no
+    /// whole frame are zero. A cue is due at its time plus the delay, on the
+    /// nearest sample. One whose time is past starts with the block and is
+    /// counted late; one for later blocks waits. Blocks may leave gaps.
+    ///
+    /// # Real-time
+    /// No allocation, lock, log or system call.
+    pub fn render(&mut self, out: &mut [f32], block_start: Instant) {
+        self.heed_silence();
+        self.clock.begin(block_start);
+        let (clock, delay) = (&self.clock, self.delay);
+        self.schedule.arrange(|cue| clock.frame_of(cue.at + delay));
+        let frames = self.render_block(out);
+        self.clock.advance(frames);
+    }
+
+    /// Fills `out` with the next frames; every cue that has arrived starts with the first of them.
+    ///
+    /// Like [`Renderer::render`], but the cues' times and the delay don't matter, and none is late.
+    ///
+    /// # Real-time
+    /// No allocation, lock, log or system call.
+    pub fn render_now(&mut self, out: &mut [f32]) {
+        self.heed_silence();
+        self.clock.forget();
+        self.schedule.arrange(|_| 0);
+        self.render_block(out);
+    }
+
+    fn render_block(&mut self, out: &mut [f32]) -> usize {
+        self.onsets.clear();
+        if self.channels == 0 {
+            out.fill(0.0);
+            return 0;
+        }
+        if self.rubs.update() {
+            let nowhere = self.rubbing.follow(self.rubs.output_buffer(), &self.wiring);
+            count(&self.shared.unfelt, nowhere);
+        }
+        let whole = out.len() - out.len() % self.channels;
+        let (out, rest) = out.split_at_mut(whole);
+        rest.fill(0.0);
+        for (part, out) in out.chunks_mut(self.max_block * self.channels).enumerate() {
+            self.render_part(out, part * self.max_block);
+        }
+        whole / self.channels
+    }
+
+    /// Turns the ramp the way the sender wants it.
+    fn heed_silence(&mut self) {
+        let turns = self.shared.turns();
+        if turns != self.turns {
+            self.turns = turns;
+            count(&self.shared.muted, self.schedule.forget(turns));
+            self.ramp.fade_out();
+        }
+        if self.ramp.is_down() && turns.is_multiple_of(2) {
+            self.ramp.fade_in();
+        }
+    }
+
+    /// Renders up to `max_block` frames; the first is number `first` of the block.
+    fn render_part(&mut self, out: &mut [f32], first: usize) {
+        let frames = out.len() / self.channels;
+        if self.ramp.is_down() {
+            out.fill(0.0);
+        } else {
+            self.mix.begin(frames);
+            if !self.ramp.is_falling() {
+                self.strike_cues(first, frames);
+            }
+            self.ring_on(frames);
+            self.rubbing.render(&mut self.mix, frames);
+            self.ramp.fill(&mut self.gains[..frames]);
+            self.limit(out, frames);
+            if self.ramp.is_down() {
+                self.banks.iter_mut().for_each(ModalBank::clear);
+                self.limiters.iter_mut().for_each(Limiter::clear);
+                self.rubbing.clear();
+            }
+        }
+        if let Some(scope) = &mut self.scope {
+            scope.observe(out);
+        }
+    }
+
+    /// Strikes every cue that is due in this part, rendering each bank up to the cue's sample first.
+    fn strike_cues(&mut self, first: usize, frames: usize) {
+        for Due { frame, cue, .. } in self.schedule.take_before(first + frames) {
+            // A clock that is estimated wavers by a sample; that is not late.
+            count(&self.shared.late, u32::from(frame < -1));
+            let frame = usize::try_from(frame).unwrap_or(0).clamp(first, first + frames - 1);
+            let mut felt = false;
+            for spot in &cue.spots {
+                let Some(output) = self.wiring.output(spot.tile) else {
+                    count(&self.shared.unfelt, 1);
+                    continue;
+                };
+                let bank = &mut self.banks[output.channel];
+                let rendered = &mut self.rendered[output.channel];
+                if !bank.is_silent() {
+                    bank.render(&mut self.mix.row(output.channel)[*rendered..frame - first]);
+                }
+                *rendered = frame - first;
+                let struck =
+                    click::strike(bank, &cue.click, cue.click.level.0 * spot.weight * output.per_newton);
+                count(&self.shared.refused, struck.refused);
+                count(&self.shared.stolen, struck.stolen);
+                felt |= struck.modes > 0;
+            }
+            if felt && self.onsets.len() < WAITING {
+                self.onsets.push(Onset { frame, received: cue.received });
+            }
+        }
+    }
+
+    /// Renders the rest of every bank.
+    fn ring_on(&mut self, frames: usize) {
+        for (channel, (bank, rendered)) in self.banks.iter_mut().zip(&mut self.rendered).enumerate() {
+            if !bank.is_silent() {
+                bank.render(&mut self.mix.row(channel)[*rendered..frames]);
+            }
+            *rendered = 0;
+        }
+    }
+
+    /// Limits and interleaves the mix into `out`.
+    fn limit(&mut self, out: &mut [f32], frames: usize) {
+        out.fill(0.0);
+        let mut faults = Faults::default();
+        for (group, limiter) in self.limiters.iter_mut().enumerate() {
+            if !self.mix.is_open(group) && limiter.is_idle() {
+                continue;
+            }
+            let rows = self.mix.group(group);
+            let found =
+                limiter.process(&rows, &self.gains[..frames], &mut out[group * LANES..], self.channels);
+            faults.not_finite += found.not_finite;
+            faults.overloaded += found.overloaded;
+        }
+        count(&self.shared.not_finite, faults.not_finite);
+        count(&self.shared.overloaded, faults.overloaded);
+    }
+}

@@ -1,0 +1,145 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+use rtrb::Producer;
+use triple_buffer::Input;
+
+use super::{Cue, Rubs};
+
+/// What the renderer could not do, counted since it was made.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FeelCounters {
+    /// Cues that found the ring to the renderer full.
+    pub dropped: u64,
+    /// Cues that came while everything was silenced.
+    pub muted: u64,
+    /// Cues that were played later than their time.
+    pub late: u64,
+    /// Spots of cues and rubs without an actuator that could play them.
+    pub unfelt: u64,
+    /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
+    pub refused: u64,
+    /// Ringing modes that had to make room for others.
+    pub stolen: u64,
+    /// Samples that were not finite and became silence.
+    pub not_finite: u64,
+    /// Samples beyond eight full scales, cut off there.
+    pub overloaded: u64,
+}
+
+/// What both ends share.
+#[derive(Debug, Default)]
+pub(super) struct Shared {
+    pub(super) dropped: AtomicU64,
+    pub(super) muted: AtomicU64,
+    pub(super) late: AtomicU64,
+    pub(super) unfelt: AtomicU64,
+    pub(super) refused: AtomicU64,
+    pub(super) stolen: AtomicU64,
+    pub(super) not_finite: AtomicU64,
+    pub(super) overloaded: AtomicU64,
+    /// Calls of `silence` and `resume` so far: odd means silence. A count, not
+    /// a flag, so that the renderer can't miss a silence that was soon lifted.
+    turns: AtomicU64,
+}
+
+impl Shared {
+    pub(super) fn turns(&self) -> u64 {
+        self.turns.load(Ordering::Acquire)
+    }
+
+    pub(super) fn counters(&self) -> FeelCounters {
+        let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
+        FeelCounters {
+            dropped: read(&self.dropped),
+            muted: read(&self.muted),
+            late: read(&self.late),
+            unfelt: read(&self.unfelt),
+            refused: read(&self.refused),
+            stolen: read(&self.stolen),
+            not_finite: read(&self.not_finite),
+            overloaded: read(&self.overloaded),
+        }
+    }
+}
+
+/// Adds to a counter; in the usual case of zero, nothing is touched.
+pub(super) fn count(counter: &AtomicU64, by: u32) {
+    if by > 0 {
+        counter.fetch_add(u64::from(by), Ordering::Relaxed);
+    }
+}
+
+/// A cue on its way, and how often silence had been turned on and off when it left.
+#[derive(Clone, Debug)]
+pub(super) struct Message {
+    pub(super) cue: Cue,
+    pub(super) turns: u64,
+}
+
+/// The sensing thread's end of the wire to the renderer; none of its calls waits or allocates.
+#[derive(Debug)]
+pub struct CueSender {
+    pub(super) cues: Producer<Message>,
+    pub(super) rubs: Input<Rubs>,
+    pub(super) shared: Arc<Shared>,
+    pub(super) turns: u64,
+}
+
+impl CueSender {
+    /// Sends a cue to be played; the answer is whether it is on its way.
+    ///
+    /// It isn't if everything is silenced, or if the renderer has not taken
+    /// any of the last 256 cues; both are counted.
+    pub fn send(&mut self, cue: &Cue) -> bool {
+        if self.is_silenced() {
+            count(&self.shared.muted, 1);
+            return false;
+        }
+        let sent = self.cues.push(Message { cue: cue.clone(), turns: self.turns }).is_ok();
+        count(&self.shared.dropped, u32::from(!sent));
+        sent
+    }
+
+    /// Says which feet rub, and how, from now on.
+    ///
+    /// To be called with every frame, also with no rubs: what was said last
+    /// holds for 50 ms and then fades out, in case whoever sends has died.
+    pub fn rubs(&mut self, rubs: &Rubs) {
+        self.rubs.input_buffer_mut().clone_from(rubs);
+        self.rubs.publish();
+    }
+
+    /// Fades everything out within 5 ms and forgets all cues that were sent, because sensing is lost or somebody says stop.
+    ///
+    /// It cannot be overtaken or lost in a full ring. Lasts until [`CueSender::resume`].
+    pub fn silence(&mut self) {
+        if !self.is_silenced() {
+            self.turn();
+        }
+    }
+
+    /// Plays what is sent from now on.
+    pub fn resume(&mut self) {
+        if self.is_silenced() {
+            self.turn();
+        }
+    }
+
+    /// Whether [`CueSender::silence`] holds.
+    #[must_use]
+    pub fn is_silenced(&self) -> bool {
+        self.turns % 2 == 1
+    }
+
+    /// What could not be done so far.
+    #[must_use]
+    pub fn counters(&self) -> FeelCounters {
+        self.shared.counters()
+    }
+
+    fn turn(&mut self) {
+        self.turns += 1;
+        self.shared.turns.store(self.turns, Ordering::Release);
+    }
+}

@@ -1,0 +1,434 @@
+use std::fs::File;
+use std::io::{self, BufWriter};
+use std::path::{Path, PathBuf};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant as WallInstant};
+
+use hound::{SampleFormat, WavSpec, WavWriter};
+
+use super::lockstep::Lockstep;
+use super::{ActuatorSink, LatencyProbe, SinkError};
+use crate::feel::Renderer;
+use crate::units::Instant;
+
+/// Blocks that may wait for the disk: two seconds of them when time passes in milliseconds.
+const WAITING: usize = 2000;
+
+/// How often the file's header is brought up to date, so that a killed process leaves a readable file.
+const FLUSH: Duration = Duration::from_secs(1);
+
+/// Bytes of samples after which another file is begun: a WAV file's sizes have 32 bits.
+const FILE_BYTES: u64 = u32::MAX as u64 - 4096;
+
+/// How samples are written.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WavFormat {
+    /// 24-bit integers, as the paper's converters take them.
+    #[default]
+    Pcm24,
+    /// 32-bit floating point.
+    Float32,
+}
+
+/// What to do when the disk is slower than the floor.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WhenFull {
+    /// Leave out samples and write silence in their place, so that sensing is never held up: for a live floor.
+    #[default]
+    LeaveOut,
+    /// Wait for the disk: for work faster than real time.
+    Wait,
+}
+
+/// How a [`WavSink`] records.
+#[derive(Clone, Debug, Default)]
+pub struct WavOptions {
+    /// When the first sample is, on the floor's sample clock.
+    pub start: Instant,
+    /// How samples are written.
+    pub format: WavFormat,
+    /// What to do when the disk is too slow.
+    pub when_full: WhenFull,
+    /// Measures the latency of the cues, if wanted.
+    pub latency: Option<LatencyProbe>,
+}
+
+/// What a finished recording consists of.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct WavSummary {
+    /// The files, in order: more than one if the samples passed 4 GB.
+    pub files: Vec<PathBuf>,
+    /// Frames in all of them together.
+    pub frames: u64,
+    /// Frames of silence that stand for samples the disk was too slow for.
+    pub left_out: u64,
+}
+
+/// Records the actuator channels in a WAV file, written by a thread of its own.
+///
+/// The file can be read up to the last second whatever becomes of the process.
+/// A recording of more than 4 GB goes on in `NAME-2.wav`, `NAME-3.wav` and so on.
+#[derive(Debug)]
+pub struct WavSink {
+    lockstep: Lockstep,
+    path: PathBuf,
+    when_full: WhenFull,
+    probe: Option<LatencyProbe>,
+    pieces: Option<SyncSender<Piece>>,
+    writer: Option<JoinHandle<Result<WavSummary, SinkError>>>,
+    /// Frames that were left out since the last piece that went through.
+    gap: u64,
+    left_out: u64,
+}
+
+/// What the writer is handed.
+enum Piece {
+    /// Interleaved samples.
+    Samples(Vec<f32>),
+    /// So many frames of silence.
+    Gap(u64),
+}
+
+impl WavSink {
+    /// Begins a recording at `path`, replacing what was there.
+    ///
+    /// # Errors
+    /// [`SinkError::File`] if the file can't be made, or a WAV file can't have that many channels (or none).
+    pub fn create(
+        path: impl Into<PathBuf>,
+        renderer: Renderer,
+        options: WavOptions,
+    ) -> Result<Self, SinkError> {
+        let path = path.into();
+        let files = Files::create(path.clone(), &renderer, options.format, FILE_BYTES)?;
+        let (sender, receiver) = sync_channel(WAITING);
+        let writer = thread::Builder::new()
+            .name("wav".into())
+            .spawn(move || write_all(files, &receiver))
+            .map_err(|source| SinkError::File { path: path.clone(), source })?;
+        Ok(Self {
+            lockstep: Lockstep::new(renderer, options.start),
+            path,
+            when_full: options.when_full,
+            probe: options.latency,
+            pieces: Some(sender),
+            writer: Some(writer),
+            gap: 0,
+            left_out: 0,
+        })
+    }
+
+    /// Ends the recording; the answer says what there is to find where.
+    ///
+    /// # Errors
+    /// [`SinkError::File`] if the file couldn't be written to its end.
+    pub fn finish(mut self) -> Result<WavSummary, SinkError> {
+        self.close()
+    }
+
+    /// The renderer inside, for its rate and counters.
+    #[must_use]
+    pub fn renderer(&self) -> &Renderer {
+        self.lockstep.renderer()
+    }
+
+    /// The renderer inside, for its scope.
+    pub fn renderer_mut(&mut self) -> &mut Renderer {
+        self.lockstep.renderer_mut()
+    }
+
+    /// Frames left out so far because the disk was too slow.
+    #[must_use]
+    pub fn left_out(&self) -> u64 {
+        self.left_out
+    }
+
+    fn close(&mut self) -> Result<WavSummary, SinkError> {
+        if let Some(pieces) = self.pieces.take()
+            && self.gap > 0
+        {
+            // If this fails, so did the writer, and its answer says why.
+            let _ = pieces.send(Piece::Gap(self.gap));
+        }
+        let broken = || SinkError::File {
+            path: self.path.clone(),
+            source: io::Error::other("the recording has ended already"),
+        };
+        let writer = self.writer.take().ok_or_else(broken)?;
+        let mut summary = writer.join().map_err(|_| broken())??;
+        summary.left_out = self.left_out;
+        Ok(summary)
+    }
+}
+
+impl ActuatorSink for WavSink {
+    fn advance(&mut self, now: Instant) -> Result<(), SinkError> {
+        let Self { lockstep, when_full, probe, pieces, gap, left_out, .. } = self;
+        let width = lockstep.renderer().channels().max(1);
+        let passed_on = lockstep.advance(now, |block, onsets| {
+            let pieces = pieces.as_ref().ok_or(())?;
+            if let Some(probe) = probe {
+                probe.handed_on(onsets);
+            }
+            let frames = (block.len() / width) as u64;
+            if !pass_on(pieces, *when_full, gap, block)? {
+                *gap += frames;
+                *left_out += frames;
+            }
+            Ok::<(), ()>(())
+        });
+        match passed_on {
+            Ok(()) => Ok(()),
+            // The writer has given up: its answer says why.
+            Err(()) => Err(match self.close() {
+                Err(error) => error,
+                Ok(_) => SinkError::File {
+                    path: self.path.clone(),
+                    source: io::Error::other("the recording ended early"),
+                },
+            }),
+        }
+    }
+}
+
+/// Hands a block to the writer, after the gap before it, if any; the answer is whether there was room.
+fn pass_on(
+    pieces: &SyncSender<Piece>,
+    when_full: WhenFull,
+    gap: &mut u64,
+    block: &[f32],
+) -> Result<bool, ()> {
+    if when_full == WhenFull::Wait {
+        return pieces.send(Piece::Samples(block.to_vec())).map(|()| true).map_err(|_| ());
+    }
+    if *gap > 0 {
+        match pieces.try_send(Piece::Gap(*gap)) {
+            Ok(()) => *gap = 0,
+            Err(TrySendError::Full(_)) => return Ok(false),
+            Err(TrySendError::Disconnected(_)) => return Err(()),
+        }
+    }
+    match pieces.try_send(Piece::Samples(block.to_vec())) {
+        Ok(()) => Ok(true),
+        Err(TrySendError::Full(_)) => Ok(false),
+        Err(TrySendError::Disconnected(_)) => Err(()),
+    }
+}
+
+impl Drop for WavSink {
+    fn drop(&mut self) {
+        if self.writer.is_some()
+            && let Err(error) = self.close()
+        {
+            tracing::error!("{error}");
+        }
+    }
+}
+
+/// The writer's whole life: pieces come until the sink lets go.
+fn write_all(mut files: Files, pieces: &Receiver<Piece>) -> Result<WavSummary, SinkError> {
+    let mut flushed = WallInstant::now();
+    loop {
+        match pieces.recv_timeout(FLUSH) {
+            Ok(Piece::Samples(samples)) => files.write(&samples)?,
+            Ok(Piece::Gap(frames)) => files.write_silence(frames)?,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return files.finish(),
+        }
+        if flushed.elapsed() >= FLUSH {
+            files.flush()?;
+            flushed = WallInstant::now();
+        }
+    }
+}
+
+/// The file being written, and those that are full.
+struct Files {
+    first: PathBuf,
+    done: Vec<PathBuf>,
+    path: PathBuf,
+    writer: WavWriter<BufWriter<File>>,
+    frames_per_file: u64,
+    frames_in_file: u64,
+    frames: u64,
+}
+
+impl Files {
+    fn create(path: PathBuf, renderer: &Renderer, format: WavFormat, limit: u64) -> Result<Self, SinkError> {
+        let (bits_per_sample, sample_format) = match format {
+            WavFormat::Pcm24 => (24, SampleFormat::Int),
+            WavFormat::Float32 => (32, SampleFormat::Float),
+        };
+        // The format has 16 bits for the bytes of a frame and 32 for those of a second.
+        let frame_bytes = renderer.channels() as u64 * u64::from(bits_per_sample / 8);
+        let second_bytes = frame_bytes * u64::from(renderer.sample_rate());
+        if frame_bytes == 0 || frame_bytes > u64::from(u16::MAX) || second_bytes > u64::from(u32::MAX) {
+            let channels = renderer.channels();
+            let message = format!("a WAV file can't have {channels} channels at this rate");
+            let source = io::Error::new(io::ErrorKind::InvalidInput, message);
+            return Err(SinkError::File { path, source });
+        }
+        let spec = WavSpec {
+            channels: renderer.channels() as u16,
+            sample_rate: renderer.sample_rate(),
+            bits_per_sample,
+            sample_format,
+        };
+        let writer = open(&path, spec)?;
+        Ok(Self {
+            first: path.clone(),
+            done: Vec::new(),
+            path,
+            writer,
+            frames_per_file: (limit / frame_bytes).max(1),
+            frames_in_file: 0,
+            frames: 0,
+        })
+    }
+
+    fn write(&mut self, samples: &[f32]) -> Result<(), SinkError> {
+        let spec = self.writer.spec();
+        for frame in samples.chunks_exact(usize::from(spec.channels)) {
+            self.make_room(spec)?;
+            for sample in frame {
+                match spec.sample_format {
+                    SampleFormat::Float => self.writer.write_sample(*sample),
+                    SampleFormat::Int => self.writer.write_sample((sample * 8_388_607.0).round() as i32),
+                }
+                .map_err(|error| file_error(&self.path, error))?;
+            }
+            self.frames_in_file += 1;
+            self.frames += 1;
+        }
+        Ok(())
+    }
+
+    fn write_silence(&mut self, frames: u64) -> Result<(), SinkError> {
+        let frame = vec![0.0; usize::from(self.writer.spec().channels)];
+        (0..frames).try_for_each(|_| self.write(&frame))
+    }
+
+    /// Begins the next file if this one is full.
+    fn make_room(&mut self, spec: WavSpec) -> Result<(), SinkError> {
+        if self.frames_in_file < self.frames_per_file {
+            return Ok(());
+        }
+        let next = numbered(&self.first, self.done.len() + 2);
+        let full = std::mem::replace(&mut self.writer, open(&next, spec)?);
+        full.finalize().map_err(|error| file_error(&self.path, error))?;
+        self.done.push(std::mem::replace(&mut self.path, next));
+        self.frames_in_file = 0;
+        Ok(())
+    }
+
+    fn flush(&mut self) -> Result<(), SinkError> {
+        self.writer.flush().map_err(|error| file_error(&self.path, error))
+    }
+
+    fn finish(mut self) -> Result<WavSummary, SinkError> {
+        self.writer.finalize().map_err(|error| file_error(&self.path, error))?;
+        self.done.push(self.path);
+        Ok(WavSummary { files: self.done, frames: self.frames, left_out: 0 })
+    }
+}
+
+/// Begins a WAV file whose header is on the disk at once.
+fn open(path: &Path, spec: WavSpec) -> Result<WavWriter<BufWriter<File>>, SinkError> {
+    let mut writer = WavWriter::create(path, spec).map_err(|error| file_error(path, error))?;
+    writer.flush().map_err(|error| file_error(path, error))?;
+    Ok(writer)
+}
+
+/// `floor.wav` becomes `floor-2.wav`.
+fn numbered(path: &Path, number: usize) -> PathBuf {
+    let mut name = path.file_stem().unwrap_or_default().to_os_string();
+    name.push(format!("-{number}"));
+    if let Some(extension) = path.extension() {
+        name.push(".");
+        name.push(extension);
+    }
+    path.with_file_name(name)
+}
+
+fn file_error(path: &Path, error: hound::Error) -> SinkError {
+    let source = match error {
+        hound::Error::IoError(source) => source,
+        other => io::Error::other(other),
+    };
+    SinkError::File { path: path.to_path_buf(), source }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feel::{RendererConfig, renderer};
+    use crate::floor::{Floor, Geometry};
+
+    fn small_floor() -> Renderer {
+        let floor = Floor::of(Geometry::of_paper_tiles(3, 1).unwrap());
+        renderer(RendererConfig::of(&floor, 48_000)).1
+    }
+
+    fn read(path: &Path) -> Vec<f32> {
+        hound::WavReader::open(path).unwrap().samples::<f32>().map(Result::unwrap).collect()
+    }
+
+    /// What a process leaves that is killed between two flushes.
+    #[test]
+    fn the_file_is_readable_while_it_is_written() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.wav");
+        let mut files = Files::create(path.clone(), &small_floor(), WavFormat::Float32, FILE_BYTES).unwrap();
+        assert_eq!(read(&path), []);
+        files.write(&[0.5, -0.25, 0.0]).unwrap();
+        files.flush().unwrap();
+        files.write(&[1.0, 1.0, 1.0]).unwrap();
+        assert_eq!(read(&path), [0.5, -0.25, 0.0]);
+        files.finish().unwrap();
+        assert_eq!(read(&path).len(), 6);
+    }
+
+    #[test]
+    fn a_recording_too_long_for_one_file_goes_on_in_the_next() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.wav");
+        // Room for two frames of three 4-byte samples.
+        let mut files = Files::create(path, &small_floor(), WavFormat::Float32, 30).unwrap();
+        files.write(&[0.1, 0.1, 0.1, 0.2, 0.2, 0.2, 0.3, 0.3, 0.3]).unwrap();
+        files.write_silence(2).unwrap();
+        let summary = files.finish().unwrap();
+        assert_eq!(summary.frames, 5);
+        assert_eq!(summary.files, ["floor.wav", "floor-2.wav", "floor-3.wav"].map(|n| folder.path().join(n)));
+        assert_eq!(read(&summary.files[1]), [0.3, 0.3, 0.3, 0.0, 0.0, 0.0]);
+        assert_eq!(read(&summary.files[2]), [0.0; 3]);
+    }
+
+    #[test]
+    fn a_slow_disk_costs_samples_but_not_their_time() {
+        let (sender, receiver) = sync_channel(2);
+        let mut gap = 0;
+        assert_eq!(pass_on(&sender, WhenFull::LeaveOut, &mut gap, &[0.1]), Ok(true));
+        assert_eq!(pass_on(&sender, WhenFull::LeaveOut, &mut gap, &[0.2]), Ok(true));
+        assert_eq!(pass_on(&sender, WhenFull::LeaveOut, &mut gap, &[0.3]), Ok(false));
+        gap += 1;
+        receiver.recv().unwrap();
+        receiver.recv().unwrap();
+        assert_eq!(pass_on(&sender, WhenFull::LeaveOut, &mut gap, &[0.4]), Ok(true));
+        assert!(matches!(receiver.recv(), Ok(Piece::Gap(1))));
+        assert!(matches!(receiver.recv(), Ok(Piece::Samples(samples)) if samples == [0.4]));
+        drop(receiver);
+        assert_eq!(pass_on(&sender, WhenFull::LeaveOut, &mut gap, &[0.5]), Err(()));
+    }
+
+    #[test]
+    fn a_floor_without_actuators_cannot_be_recorded() {
+        let mut floor = Floor::default();
+        floor.actuators.fill(None);
+        let renderer = renderer(RendererConfig::of(&floor, 48_000)).1;
+        let folder = tempfile::tempdir().unwrap();
+        let error =
+            WavSink::create(folder.path().join("a.wav"), renderer, WavOptions::default()).unwrap_err();
+        assert!(error.to_string().contains("0 channels"), "{error}");
+    }
+}
