@@ -15,6 +15,9 @@ pub mod engine;
 pub mod feel;
 pub mod floor;
 pub mod layout;
+#[cfg(feature = "program")]
+pub mod picture;
+pub mod scene;
 pub mod schema;
 pub mod sense;
 pub mod sim;

@@ -1,0 +1,100 @@
+//! Drawings as files: SVG, and PNG without a display or a system font.
+
+mod svg;
+#[cfg(test)]
+mod tests;
+
+pub use svg::svg;
+
+use std::ops::RangeInclusive;
+use std::path::{Path, PathBuf};
+use std::sync::{Arc, LazyLock};
+
+use resvg::tiny_skia::{Pixmap, Transform};
+use resvg::usvg::{self, Tree, fontdb::Database};
+use thiserror::Error;
+
+use crate::scene::Scene;
+
+/// Widths that a picture may have, in pixels.
+pub const WIDTHS: RangeInclusive<u32> = 16..=16_384;
+
+/// Why a drawing could not become a picture.
+#[derive(Debug, Error)]
+pub enum PictureError {
+    /// The picture would be too small or too large for memory; ask for another width.
+    #[error("a picture is {} to {} pixels wide and at most as high, not {width} x {height}", WIDTHS.start(), WIDTHS.end())]
+    Size {
+        /// Width asked for.
+        width: u32,
+        /// Height that follows from it.
+        height: u32,
+    },
+    /// The drawing has no extent, or one that is not a number.
+    #[error("the drawing cannot be painted: {0}")]
+    Drawing(String),
+    /// The file cannot be written.
+    #[error("cannot write {path}: {source}")]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
+    },
+}
+
+/// The drawing as a PNG file's bytes, `width_px` pixels wide and as high as its shape asks.
+///
+/// The same drawing gives the same bytes on every machine: letters come from
+/// fonts within the program.
+///
+/// # Errors
+/// [`PictureError::Size`] for a width outside [`WIDTHS`] or a height above them,
+/// [`PictureError::Drawing`] for a scene that was never drawn.
+pub fn png(scene: &Scene, width_px: u32) -> Result<Vec<u8>, PictureError> {
+    let size = scene.bounds().size();
+    let height = (width_px as f32 * size.y / size.x).round();
+    let fits = WIDTHS.contains(&width_px) && (1.0..=*WIDTHS.end() as f32).contains(&height);
+    if !height.is_finite() {
+        return Err(PictureError::Drawing("it has no extent".into()));
+    }
+    let height_px = height as u32;
+    let too_large = PictureError::Size { width: width_px, height: height_px };
+    if !fits {
+        return Err(too_large);
+    }
+    let options =
+        usvg::Options { font_family: FAMILY.into(), fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
+    let tree =
+        Tree::from_str(&svg(scene), &options).map_err(|error| PictureError::Drawing(error.to_string()))?;
+    let mut pixels = Pixmap::new(width_px, height_px).ok_or(too_large)?;
+    let scale =
+        Transform::from_scale(width_px as f32 / tree.size().width(), height_px as f32 / tree.size().height());
+    resvg::render(&tree, scale, &mut pixels.as_mut());
+    pixels.encode_png().map_err(|error| PictureError::Drawing(error.to_string()))
+}
+
+/// Writes the drawing to `path`: as SVG if its name ends in `.svg`, otherwise as a PNG `width_px` wide.
+///
+/// # Errors
+/// Those of [`png`], and [`PictureError::File`] if the file cannot be written.
+pub fn write(scene: &Scene, path: &Path, width_px: u32) -> Result<(), PictureError> {
+    let is_svg = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
+    let bytes = if is_svg { svg(scene).into_bytes() } else { png(scene, width_px)? };
+    std::fs::write(path, bytes).map_err(|source| PictureError::File { path: path.to_path_buf(), source })
+}
+
+const FAMILY: &str = "Ubuntu";
+
+/// The program's own letters, and nothing of the machine's, so that pictures are the same everywhere.
+static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
+    let mut fonts = Database::new();
+    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
+    // Stands in for signs that Ubuntu lacks: arrows, box drawing, mathematics.
+    fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
+    fonts.set_sans_serif_family(FAMILY);
+    fonts.set_serif_family(FAMILY);
+    fonts.set_monospace_family("Hack");
+    Arc::new(fonts)
+});

@@ -1,0 +1,210 @@
+use std::fmt::{self, Write};
+
+use glam::Vec2;
+
+use crate::floor::Rect;
+use crate::scene::{Anchor, Lettering, Mark, Paint, Scene};
+
+/// The drawing as a stand-alone SVG document, one user unit to a millimetre of floor.
+///
+/// Printed at its own size it is as large as the floor. The letters are meant
+/// for Ubuntu Light; a viewer without it takes its own sans serif.
+#[must_use]
+pub fn svg(scene: &Scene) -> String {
+    let size = mm(scene.bounds().size());
+    // A mark takes about 120 bytes.
+    let mut page =
+        Page { out: String::with_capacity(400 + 130 * scene.marks().len()), bounds: scene.bounds() };
+    // Writing to a `String` cannot fail.
+    let _ = page.document(scene, size);
+    page.out
+}
+
+/// Metres in the document's millimetres.
+fn mm(metres: Vec2) -> Vec2 {
+    metres * 1000.0
+}
+
+struct Page {
+    out: String,
+    bounds: Rect,
+}
+
+impl Page {
+    fn document(&mut self, scene: &Scene, size: Vec2) -> fmt::Result {
+        let Vec2 { x, y } = size;
+        write!(
+            self.out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{x:.1}mm\" height=\"{y:.1}mm\" \
+             viewBox=\"0 0 {x:.1} {y:.1}\" font-family=\"Ubuntu Light, Ubuntu, sans-serif\" font-weight=\"300\">\n\
+             <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
+            scene.background()
+        )?;
+        for mark in scene.marks() {
+            self.mark(scene, mark)?;
+        }
+        self.out.write_str("</svg>\n")
+    }
+
+    /// A floor point on the page: x to the right, y down, in millimetres.
+    fn place(&self, point: Vec2) -> Vec2 {
+        mm(Vec2::new(point.x - self.bounds.min.x, self.bounds.max.y - point.y))
+    }
+
+    fn mark(&mut self, scene: &Scene, mark: &Mark) -> fmt::Result {
+        match mark {
+            Mark::Box { area, radius_m, paint } => {
+                let at = self.place(Vec2::new(area.min.x, area.max.y));
+                let size = mm(area.size());
+                write!(
+                    self.out,
+                    "<rect x=\"{:.2}\" y=\"{:.2}\" width=\"{:.2}\" height=\"{:.2}\" rx=\"{:.2}\"",
+                    at.x,
+                    at.y,
+                    size.x.max(0.0),
+                    size.y.max(0.0),
+                    radius_m * 1000.0
+                )?;
+                self.paint(paint)
+            }
+            Mark::Ellipse { centre, radii, paint } => {
+                let (at, radii) = (self.place(*centre), mm(*radii));
+                write!(
+                    self.out,
+                    "<ellipse cx=\"{:.2}\" cy=\"{:.2}\" rx=\"{:.2}\" ry=\"{:.2}\"",
+                    at.x,
+                    at.y,
+                    radii.x.max(0.0),
+                    radii.y.max(0.0)
+                )?;
+                self.paint(paint)
+            }
+            Mark::Path { points, closed, paint } => {
+                self.out.write_str("<path d=\"")?;
+                for (step, point) in scene.points(*points).iter().enumerate() {
+                    let at = self.place(*point);
+                    write!(self.out, "{}{:.2} {:.2}", if step == 0 { "M" } else { " " }, at.x, at.y)?;
+                }
+                write!(self.out, "{}\"", if *closed { "Z" } else { "" })?;
+                self.paint(paint)
+            }
+            Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
+        }
+    }
+
+    /// The attributes that say how a mark is drawn, and the end of its element.
+    fn paint(&mut self, paint: &Paint) -> fmt::Result {
+        match paint.fill {
+            Some(ink) => {
+                write!(self.out, " fill=\"{}\"", ink.colour)?;
+                self.opacity("fill-opacity", ink.opacity)?;
+            }
+            None => self.out.write_str(" fill=\"none\"")?,
+        }
+        if let Some(stroke) = paint.stroke {
+            write!(
+                self.out,
+                " stroke=\"{}\" stroke-width=\"{:.2}\" stroke-linecap=\"round\" stroke-linejoin=\"round\"",
+                stroke.ink.colour,
+                stroke.width_m * 1000.0
+            )?;
+            self.opacity("stroke-opacity", stroke.ink.opacity)?;
+            if let Some((on, off)) = stroke.dash {
+                write!(self.out, " stroke-dasharray=\"{:.1} {:.1}\"", on * 1000.0, off * 1000.0)?;
+            }
+        }
+        self.out.write_str("/>\n")
+    }
+
+    fn opacity(&mut self, name: &str, opacity: f32) -> fmt::Result {
+        if opacity < 1.0 { write!(self.out, " {name}=\"{opacity:.3}\"") } else { Ok(()) }
+    }
+
+    fn text(&mut self, letters: &str, lettering: &Lettering) -> fmt::Result {
+        let at = self.place(lettering.at);
+        let size = lettering.size_m * 1000.0;
+        let anchor = match lettering.anchor {
+            Anchor::Start => "start",
+            Anchor::Middle => "middle",
+            Anchor::End => "end",
+        };
+        let colour = lettering.ink.colour;
+        write!(
+            self.out,
+            "<text x=\"{:.2}\" y=\"{:.2}\" font-size=\"{size:.2}\" text-anchor=\"{anchor}\" fill=\"{colour}\"",
+            at.x, at.y
+        )?;
+        self.opacity("fill-opacity", lettering.ink.opacity)?;
+        if lettering.strong {
+            // The font has one weight; an outline makes it heavier.
+            write!(self.out, " stroke=\"{colour}\" stroke-width=\"{:.2}\"", STRONG_EM * size)?;
+            self.opacity("stroke-opacity", lettering.ink.opacity)?;
+        }
+        if lettering.turn_rad != 0.0 {
+            // The page's y axis points down: what is counter-clockwise on the floor is negative here.
+            let degrees = -lettering.turn_rad.to_degrees();
+            write!(self.out, " transform=\"rotate({degrees:.1} {:.2} {:.2})\"", at.x, at.y)?;
+        }
+        self.out.write_str(" xml:space=\"preserve\">")?;
+        for letter in letters.chars() {
+            match letter {
+                '&' => self.out.write_str("&amp;")?,
+                '<' => self.out.write_str("&lt;")?,
+                '>' => self.out.write_str("&gt;")?,
+                other => self.out.write_char(other)?,
+            }
+        }
+        self.out.write_str("</text>\n")
+    }
+}
+
+/// How much wider strong letters' strokes are, in em.
+const STRONG_EM: f32 = 0.028;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::layout::Colour;
+    use crate::scene::{Ink, Stroke};
+
+    fn scene() -> Scene {
+        let mut scene = Scene::new();
+        scene.clear(Rect::new(Vec2::new(-1.0, -1.0), Vec2::new(1.0, 1.0)), Colour::rgb(250, 250, 250));
+        scene
+    }
+
+    #[test]
+    fn north_is_up_and_a_metre_is_a_thousand_units() {
+        let mut scene = scene();
+        let ink = Ink::faint(Colour::rgb(0x10, 0x20, 0x30), 0.5);
+        let north_east = Rect::from_min_size(Vec2::ZERO, Vec2::new(0.5, 0.25));
+        scene.add_box(north_east, 0.01, Paint::fill(ink));
+        scene.add_line(Vec2::ZERO, Vec2::X, Paint::stroke(Stroke::new(0.002, ink).dashed(0.01, 0.02)));
+        let text = svg(&scene);
+        assert!(text.contains("viewBox=\"0 0 2000.0 2000.0\""), "{text}");
+        assert!(
+            text.contains(
+                "<rect x=\"1000.00\" y=\"750.00\" width=\"500.00\" height=\"250.00\" rx=\"10.00\" \
+                 fill=\"#102030\" fill-opacity=\"0.500\"/>"
+            ),
+            "{text}"
+        );
+        assert!(text.contains("d=\"M1000.00 1000.00 2000.00 1000.00\" fill=\"none\""), "{text}");
+        assert!(text.contains("stroke-dasharray=\"10.0 20.0\""), "{text}");
+    }
+
+    #[test]
+    fn letters_that_mean_something_in_xml_are_escaped() {
+        let mut scene = scene();
+        let lettering = Lettering {
+            at: Vec2::ZERO,
+            anchor: Anchor::Start,
+            size_m: 0.05,
+            strong: false,
+            turn_rad: 0.0,
+            ink: Ink::solid(Colour::rgb(0, 0, 0)),
+        };
+        scene.add_text(lettering, format_args!("<Salt & \"Pepper\">"));
+        assert!(svg(&scene).contains(">&lt;Salt &amp; \"Pepper\"&gt;</text>"));
+    }
+}

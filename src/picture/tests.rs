@@ -1,0 +1,95 @@
+use std::path::Path;
+
+use resvg::tiny_skia::Pixmap;
+use resvg::usvg::{self, Tree};
+
+use super::{FAMILY, FONTS, PictureError, png, svg, write};
+use crate::floor::Geometry;
+use crate::scene::sample::{at_rest, map, pressing};
+use crate::scene::{Scene, Show, Theme, View, draw};
+
+fn drawing(theme: &Theme, show: Show) -> Scene {
+    let (layout, geometry) = (map(), Geometry::default());
+    let snapshot = if show == Show::LAYOUT { at_rest(&layout) } else { pressing(&layout) };
+    let mut scene = Scene::new();
+    draw(&mut scene, &View { show, ..View::new(&geometry, &layout, &snapshot, theme) });
+    scene
+}
+
+#[test]
+fn a_picture_is_a_png_of_the_width_asked_for_and_the_same_every_time() {
+    let scene = drawing(&Theme::LIGHT, Show::PICTURE);
+    let bytes = png(&scene, 480).unwrap();
+    let pixels = Pixmap::decode_png(&bytes).unwrap();
+    let size = scene.bounds().size();
+    assert_eq!(pixels.width(), 480);
+    assert_eq!(pixels.height(), (480.0 * size.y / size.x).round() as u32);
+    assert_eq!(bytes, png(&scene, 480).unwrap());
+}
+
+#[test]
+fn a_pressed_button_is_seen_in_the_pixels() {
+    let scene = drawing(&Theme::LIGHT, Show::PICTURE);
+    let pixels = Pixmap::decode_png(&png(&scene, 600).unwrap()).unwrap();
+    let button = &map().widgets[0];
+    let scale = 600.0 / scene.bounds().size().x;
+    // Near the south-west corner of the face: no letters, no contact.
+    let at = button.area.min + 0.03;
+    let (x, y) = ((at.x - scene.bounds().min.x) * scale, (scene.bounds().max.y - at.y) * scale);
+    let pixel = pixels.pixel(x as u32, y as u32).unwrap();
+    let lit = button.look.lit;
+    for (seen, wanted) in [(pixel.red(), lit.red), (pixel.green(), lit.green), (pixel.blue(), lit.blue)] {
+        assert!(seen.abs_diff(wanted) < 12, "{pixel:?} is not {lit}");
+    }
+}
+
+#[test]
+fn letters_are_as_wide_as_the_scene_takes_them_for() {
+    // Text is made to fit by a table; this holds the table against the font itself.
+    let options =
+        usvg::Options { font_family: FAMILY.into(), fontdb: FONTS.clone(), ..usvg::Options::default() };
+    for text in ["Zoom in", "Names of places", "0123456789", "WAVE 12.5 %", "Größe – façade"] {
+        let page = format!(
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"2000\" height=\"200\">\
+             <text y=\"100\" font-size=\"100\" font-family=\"{FAMILY}\">{text}</text></svg>"
+        );
+        let tree = Tree::from_str(&page, &options).unwrap();
+        let seen = tree.root().bounding_box().width();
+        let mut scene = Scene::new();
+        let lettering = crate::scene::Lettering {
+            at: glam::Vec2::ZERO,
+            anchor: crate::scene::Anchor::Start,
+            size_m: 100.0,
+            strong: false,
+            turn_rad: 0.0,
+            ink: crate::scene::Ink::solid(Theme::LIGHT.ink),
+        };
+        let taken = scene.add_text(lettering, format_args!("{text}"));
+        // The box around the ink is a little narrower than the letters with their side bearings.
+        assert!((0.94..=1.01).contains(&(seen / taken)), "{text}: {seen} seen, {taken} taken");
+    }
+}
+
+#[test]
+fn sizes_that_no_machine_can_hold_are_refused() {
+    let scene = drawing(&Theme::DARK, Show::LAYOUT);
+    for width in [0, 15, 16_385, u32::MAX] {
+        assert!(matches!(png(&scene, width), Err(PictureError::Size { .. })), "{width}");
+    }
+    assert!(matches!(png(&Scene::new(), 100), Err(PictureError::Drawing(_))));
+}
+
+#[test]
+fn the_files_name_says_what_is_written() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = drawing(&Theme::DARK, Show::LAYOUT);
+    let path = folder.path().join("floor.SVG");
+    write(&scene, &path, 200).unwrap();
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), svg(&scene));
+    let path = folder.path().join("floor.png");
+    write(&scene, &path, 200).unwrap();
+    assert!(std::fs::read(&path).unwrap().starts_with(b"\x89PNG"));
+    let nowhere = Path::new("/nonexistent/floor.png");
+    let message = write(&scene, nowhere, 200).unwrap_err().to_string();
+    assert!(message.starts_with("cannot write /nonexistent/floor.png"), "{message}");
+}

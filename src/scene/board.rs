@@ -1,0 +1,217 @@
+use std::fmt::{self, Write};
+
+use glam::Vec2;
+
+use super::fit::fit_line;
+use super::mark::{Anchor, Ink, Lettering, Mark, Paint, Span};
+use super::widths;
+use crate::floor::Rect;
+use crate::layout::Colour;
+
+/// A drawing: marks in floor metres, painted one over the other in order.
+///
+/// Meant to be kept and drawn anew: [`Scene::clear`] keeps the memory, so a
+/// window that redraws 60 times a second stops allocating after the first few.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Scene {
+    bounds: Rect,
+    background: Colour,
+    marks: Vec<Mark>,
+    points: Vec<Vec2>,
+    letters: String,
+}
+
+impl Scene {
+    /// An empty drawing without extent.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Takes all marks off and sets what the drawing covers and lies on.
+    pub fn clear(&mut self, bounds: Rect, background: Colour) {
+        self.bounds = bounds;
+        self.background = background;
+        self.marks.clear();
+        self.points.clear();
+        self.letters.clear();
+    }
+
+    /// What the drawing covers, in floor metres: the floor and the margin around it.
+    #[must_use]
+    pub const fn bounds(&self) -> Rect {
+        self.bounds
+    }
+
+    /// The colour beneath all marks.
+    #[must_use]
+    pub const fn background(&self) -> Colour {
+        self.background
+    }
+
+    /// The marks, undermost first.
+    #[must_use]
+    pub fn marks(&self) -> &[Mark] {
+        &self.marks
+    }
+
+    /// The points of a [`Mark::Path`] of this scene; empty for another scene's span that reaches too far.
+    #[must_use]
+    pub fn points(&self, span: Span) -> &[Vec2] {
+        self.points.get(span.start as usize..span.end as usize).unwrap_or_default()
+    }
+
+    /// The letters of a [`Mark::Text`] of this scene; empty for another scene's span that reaches too far.
+    #[must_use]
+    pub fn letters(&self, span: Span) -> &str {
+        self.letters.get(span.start as usize..span.end as usize).unwrap_or_default()
+    }
+
+    /// Every line of text, in drawing order.
+    pub fn texts(&self) -> impl Iterator<Item = (&str, &Lettering)> {
+        self.marks.iter().filter_map(|mark| match mark {
+            Mark::Text { letters, lettering } => Some((self.letters(*letters), lettering)),
+            _ => None,
+        })
+    }
+
+    /// Adds a rectangle with corners rounded by `radius_m`; a larger radius than fits is cut down.
+    pub fn add_box(&mut self, area: Rect, radius_m: f32, paint: Paint) {
+        let radius_m = radius_m.clamp(0.0, 0.5 * area.size().min_element().max(0.0));
+        self.marks.push(Mark::Box { area, radius_m, paint });
+    }
+
+    /// Adds an ellipse.
+    pub fn add_ellipse(&mut self, centre: Vec2, radii: Vec2, paint: Paint) {
+        self.marks.push(Mark::Ellipse { centre, radii, paint });
+    }
+
+    /// Adds a circle.
+    pub fn add_circle(&mut self, centre: Vec2, radius_m: f32, paint: Paint) {
+        self.add_ellipse(centre, Vec2::splat(radius_m), paint);
+    }
+
+    /// Adds straight lines through `points`; nothing for fewer than two.
+    pub fn add_path(&mut self, points: impl IntoIterator<Item = Vec2>, closed: bool, paint: Paint) {
+        let start = self.points.len();
+        self.points.extend(points);
+        if self.points.len() < start + 2 {
+            self.points.truncate(start);
+            return;
+        }
+        let points = Span { start: start as u32, end: self.points.len() as u32 };
+        self.marks.push(Mark::Path { points, closed, paint });
+    }
+
+    /// Adds a straight line.
+    pub fn add_line(&mut self, from: Vec2, to: Vec2, paint: Paint) {
+        self.add_path([from, to], false, paint);
+    }
+
+    /// Adds one line of text and gives back its width in metres; control characters are left out.
+    pub fn add_text(&mut self, lettering: Lettering, text: fmt::Arguments<'_>) -> f32 {
+        let start = self.letters.len();
+        // Writing to a `String` cannot fail.
+        let _ = Printable(&mut self.letters).write_fmt(text);
+        let width = widths::width(&self.letters[start..]) * lettering.size_m;
+        if self.letters.len() > start {
+            let letters = Span { start: start as u32, end: self.letters.len() as u32 };
+            self.marks.push(Mark::Text { letters, lettering });
+        }
+        width
+    }
+
+    /// Adds `text` on one line within `room_m` metres, between the lettering's size and `smallest_m`.
+    pub(super) fn add_line_of(&mut self, lettering: Lettering, text: &str, room_m: f32, smallest_m: f32) {
+        let fitted = fit_line(text, room_m, lettering.size_m, smallest_m);
+        if let Some(line) = fitted.lines.first() {
+            let end = if fitted.shortened { "…" } else { "" };
+            let lettering = Lettering { size_m: fitted.size_m, ..lettering };
+            self.add_text(lettering, format_args!("{}{end}", &text[line.clone()]));
+        }
+    }
+
+    /// Adds `text` on a small rounded plate around `middle` and gives back the plate.
+    pub(super) fn add_badge(
+        &mut self,
+        middle: Vec2,
+        size_m: f32,
+        ink: Ink,
+        plate: Paint,
+        text: fmt::Arguments<'_>,
+    ) -> Rect {
+        // The plate lies under its text but is as wide as it: its place is kept until the width is known.
+        let place = self.marks.len();
+        self.add_box(Rect::default(), 0.0, plate);
+        let at = middle - Vec2::new(0.0, 0.5 * widths::CAP_HEIGHT * size_m);
+        let lettering = Lettering { at, anchor: Anchor::Middle, size_m, strong: true, turn_rad: 0.0, ink };
+        let width = self.add_text(lettering, text);
+        let area = Rect::from_centre_size(middle, Vec2::new(width + 0.9 * size_m, 1.5 * size_m));
+        if let Some(Mark::Box { area: plate, radius_m, .. }) = self.marks.get_mut(place) {
+            *plate = area;
+            *radius_m = 0.5 * area.size().y;
+        }
+        area
+    }
+}
+
+/// Lets everything through but control characters, which no picture format takes.
+struct Printable<'a>(&'a mut String);
+
+impl Write for Printable<'_> {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        self.0.extend(text.chars().filter(|letter| !letter.is_control() && !is_noncharacter(*letter)));
+        Ok(())
+    }
+}
+
+/// Whether XML refuses `letter` although Unicode has it.
+fn is_noncharacter(letter: char) -> bool {
+    matches!(letter, '\u{fffe}' | '\u{ffff}')
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn lettering() -> Lettering {
+        Lettering {
+            at: Vec2::ZERO,
+            anchor: Anchor::Start,
+            size_m: 0.1,
+            strong: false,
+            turn_rad: 0.0,
+            ink: Ink::solid(Colour::rgb(0, 0, 0)),
+        }
+    }
+
+    #[test]
+    fn text_keeps_what_can_be_drawn() {
+        let mut scene = Scene::new();
+        scene.add_text(lettering(), format_args!("Zoom\u{0}\n in \u{ffff}{}", 3));
+        assert_eq!(scene.texts().next().unwrap().0, "Zoom in 3");
+        scene.add_text(lettering(), format_args!("\u{7}"));
+        assert_eq!(scene.texts().count(), 1, "nothing to write, no mark");
+    }
+
+    #[test]
+    fn a_path_needs_two_points() {
+        let mut scene = Scene::new();
+        let paint = Paint::fill(Ink::solid(Colour::rgb(0, 0, 0)));
+        scene.add_path([Vec2::ONE], true, paint);
+        assert!(scene.marks().is_empty());
+        scene.add_line(Vec2::ZERO, Vec2::ONE, paint);
+        let Mark::Path { points, .. } = scene.marks()[0] else { panic!("not a path") };
+        assert_eq!(scene.points(points), [Vec2::ZERO, Vec2::ONE]);
+    }
+
+    #[test]
+    fn clearing_keeps_nothing_of_the_last_drawing() {
+        let mut scene = Scene::new();
+        scene.add_text(lettering(), format_args!("gone"));
+        scene.clear(Rect::from_min_size(Vec2::ZERO, Vec2::ONE), Colour::rgb(1, 2, 3));
+        assert!(scene.marks().is_empty());
+        assert_eq!(scene.bounds().size(), Vec2::ONE);
+        assert_eq!(scene.background(), Colour::rgb(1, 2, 3));
+    }
+}

@@ -1,0 +1,203 @@
+//! What all controls have in common: a face that sinks and lights up, its label, its badges.
+
+use glam::Vec2;
+
+use super::fit::fit;
+use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
+use super::theme::{contrast, readable};
+use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
+use super::{Scene, Theme, outline};
+use crate::engine::WidgetState;
+use crate::floor::Rect;
+use crate::layout::{Colour, Shape, Widget};
+
+/// Largest letters of a label, in metres: read easily from standing height.
+const LABEL_M: f32 = 0.046;
+
+/// Smallest letters of a label, in metres: 8 pixels on a floor shown 600 pixels wide.
+pub(super) const SMALL_M: f32 = 0.024;
+
+/// How far a pressed face shrinks on each side, in metres.
+const SINK_M: f32 = 0.004;
+
+/// One control's face, as it is now.
+pub(super) struct Face<'a> {
+    pub(super) widget: &'a Widget,
+    pub(super) state: WidgetState,
+    pub(super) theme: &'a Theme,
+    /// Its outline.
+    pub(super) shape: Shape,
+    /// The face as drawn: smaller while pressed.
+    pub(super) area: Rect,
+    /// Radius of its corners, in metres.
+    pub(super) radius_m: f32,
+    /// Its colour now.
+    pub(super) colour: Colour,
+    /// Letters on it.
+    pub(super) ink: Colour,
+}
+
+impl<'a> Face<'a> {
+    /// The face of `widget`; `lit` is how far it has turned from its colour at rest to its lit one, 0 to 1.
+    pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
+        let at_rest = widget.look.face.mix(widget.look.lit, lit);
+        let out_of_use = state.disabled || state.needs_lift;
+        let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
+        let ink = readable(widget.look.ink, colour);
+        // Words of what does not work just now step back, but stay legible.
+        let faded = ink.mix(colour, 0.4);
+        let ink = if state.disabled && contrast(faded, colour) >= 3.0 { faded } else { ink };
+        let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
+        let shape = widget.look.shape;
+        let radius_m = match shape {
+            Shape::Box => (0.16 * area.size().min_element()).min(0.028),
+            Shape::Round => 0.5 * area.size().min_element(),
+        };
+        Self { widget, state, theme, shape, area, radius_m, colour, ink }
+    }
+
+    /// Draws shadow, face, edge and the ring that fills as the force builds.
+    pub(super) fn draw(&self, scene: &mut Scene) {
+        let flat = self.state.disabled || self.state.needs_lift;
+        if self.state.pressed {
+            self.glow(scene);
+        } else if !flat {
+            self.shadow(scene);
+        }
+        let edge = self.colour.mix(self.theme.ink, 0.28);
+        let stroke = match (self.state.needs_lift, self.state.disabled) {
+            (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
+            (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
+            _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
+            _ => Stroke::new(0.002, Ink::faint(edge, 0.8)),
+        };
+        self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(stroke));
+        if !flat {
+            self.ring(scene);
+        }
+    }
+
+    /// A soft shadow that lies to the south, as under a lamp at the floor's far end.
+    fn shadow(&self, scene: &mut Scene) {
+        for (grow, opacity) in [(0.010, 0.035), (0.007, 0.045), (0.004, 0.06), (0.001, 0.08)] {
+            let area =
+                Rect::new(self.area.min - Vec2::new(0.0, 0.006), self.area.max - Vec2::new(0.0, 0.006));
+            self.shaped(scene, area.grown(grow), Paint::fill(Ink::faint(self.theme.shadow, opacity)));
+        }
+    }
+
+    /// A halo in the lit colour around a pressed face.
+    fn glow(&self, scene: &mut Scene) {
+        for (grow, opacity) in [(0.026, 0.10), (0.018, 0.16), (0.010, 0.26)] {
+            self.outlined(scene, grow, Paint::fill(Ink::faint(self.widget.look.lit, opacity)));
+        }
+    }
+
+    /// The share of the press threshold that the foot brings up, along the face's edge.
+    fn ring(&self, scene: &mut Scene) {
+        let share = self.state.press_share;
+        // Below this the ring would only flicker under a foot that rests.
+        if share.is_nan() || share < 0.03 {
+            return;
+        }
+        let share = if self.state.pressed { 1.0 } else { share.min(1.0) };
+        let area = self.area.grown(-0.009);
+        let path = |scene: &mut Scene, share: f32, stroke| match self.shape {
+            Shape::Box => {
+                let arc = outline::box_arc(area, self.radius_m - 0.009, share);
+                scene.add_path(arc, false, Paint::stroke(stroke));
+            }
+            Shape::Round => scene.add_path(outline::ellipse_arc(area, share), false, Paint::stroke(stroke)),
+        };
+        path(scene, 1.0, Stroke::new(0.006, Ink::faint(self.ink, 0.14)));
+        path(scene, share, Stroke::new(0.006, Ink::faint(self.ink, 0.85)));
+    }
+
+    /// The face's outline grown by `grow` metres.
+    fn outlined(&self, scene: &mut Scene, grow: f32, paint: Paint) {
+        self.shaped(scene, self.area.grown(grow), paint);
+    }
+
+    fn shaped(&self, scene: &mut Scene, area: Rect, paint: Paint) {
+        match self.shape {
+            Shape::Box => {
+                let grown = 0.5 * (area.size().x - self.area.size().x);
+                scene.add_box(area, (self.radius_m + grown).max(0.0), paint);
+            }
+            Shape::Round => scene.add_ellipse(area.centre(), area.size() * 0.5, paint),
+        }
+    }
+
+    /// The same face with straight sides, however round the control is: a slider's track needs them.
+    pub(super) fn straight(self) -> Self {
+        Self { shape: Shape::Box, ..self }
+    }
+
+    /// The part of the face that letters may fill: inside the ring, and inside the round of a round face.
+    pub(super) fn room(&self) -> Rect {
+        let inside = match self.shape {
+            Shape::Box => self.area.grown(-(0.022_f32).min(0.12 * self.area.size().min_element())),
+            Shape::Round => Rect::from_centre_size(self.area.centre(), self.area.size() * 0.70),
+        };
+        match self.badge() {
+            // A badge takes the southern strip.
+            Some(_) => Rect::new(inside.min + Vec2::new(0.0, BADGE_STRIP_M), inside.max),
+            None => inside,
+        }
+    }
+
+    /// What is written about a control that does not work just now.
+    pub(super) fn badge(&self) -> Option<&'static str> {
+        let room = self.widget.area.size();
+        let text = match self.state {
+            WidgetState { needs_lift: true, .. } => "lift foot",
+            WidgetState { disabled: true, .. } => "disabled",
+            _ => return None,
+        };
+        (room.x >= 0.15 && room.y >= 0.11).then_some(text)
+    }
+
+    /// Draws the badge of a control that does not work just now, over everything else on the face.
+    pub(super) fn draw_badge(&self, scene: &mut Scene) {
+        let Some(text) = self.badge() else { return };
+        let (ink, ground) = match self.state.needs_lift {
+            true => (self.theme.plate, self.theme.warning),
+            false => (self.theme.plate, self.theme.quiet),
+        };
+        let lift = match self.shape {
+            Shape::Box => 0.028,
+            Shape::Round => 0.028 + 0.10 * self.area.size().y,
+        };
+        let middle = Vec2::new(self.area.centre().x, self.area.min.y + lift);
+        let plate = Paint::fill(Ink::solid(ground));
+        scene.add_badge(middle, SMALL_M, Ink::solid(readable(ink, ground)), plate, format_args!("{text}"));
+    }
+
+    /// Writes `text` into `room`, as large as it fits, with its lines' middle in the room's middle.
+    pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
+        let fitted = fit(text, room.size(), LABEL_M, SMALL_M);
+        let x = match anchor {
+            Anchor::Start => room.min.x,
+            Anchor::Middle => room.centre().x,
+            Anchor::End => room.max.x,
+        };
+        let top = room.centre().y + 0.5 * fitted.height_m();
+        for (line, bytes) in fitted.lines.iter().enumerate() {
+            let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
+            let lettering = Lettering {
+                at: Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
+                anchor,
+                size_m: fitted.size_m,
+                strong: true,
+                turn_rad: 0.0,
+                ink: Ink::solid(self.ink),
+            };
+            let last = line + 1 == fitted.lines.len();
+            let end = if fitted.shortened && last { "…" } else { "" };
+            scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));
+        }
+    }
+}
+
+/// Height of the strip that a badge takes from the label, in metres.
+pub(super) const BADGE_STRIP_M: f32 = 0.036;

@@ -1,0 +1,120 @@
+//! Feet: simulated shoes, contacts and cursors.
+
+use glam::Vec2;
+
+use super::mark::{Ink, Paint, Stroke};
+use super::view::Shoe;
+use super::{Scene, View, outline};
+use crate::sense::Contact;
+
+/// Area of a contact's circle per newton, in square metres: 350 N, half a person, make 13 cm across.
+const CIRCLE_M2_PER_N: f32 = 0.065 * 0.065 / 350.0;
+
+/// How far ahead a contact's velocity is drawn, in seconds.
+const AHEAD_S: f32 = 0.20;
+
+/// Translucent soles, darker where they press.
+pub(super) fn shoes(scene: &mut Scene, view: &View<'_>) {
+    for shoe in view.shoes {
+        let finite = shoe.position.is_finite() && shoe.heading_rad.is_finite() && shoe.length_m.is_finite();
+        if finite && shoe.length_m > 0.0 {
+            self::shoe(scene, view, shoe);
+        }
+    }
+}
+
+fn shoe(scene: &mut Scene, view: &View<'_>, shoe: &Shoe) {
+    let colour = view.theme.shoe;
+    let down = shoe.force.0 > 0.0;
+    let stroke = Stroke::new(0.003, Ink::faint(colour, if down { 0.75 } else { 0.4 }));
+    let stroke = if down { stroke } else { stroke.dashed(0.014, 0.010) };
+    let paint = Paint::fill(Ink::faint(colour, if down { 0.20 } else { 0.07 })).with_stroke(stroke);
+    let sole = outline::sole(shoe.position, shoe.heading_rad, shoe.length_m, shoe.left);
+    scene.add_path(sole, true, paint);
+    if !down {
+        return;
+    }
+    let forward = Vec2::from_angle(shoe.heading_rad).rotate(Vec2::Y);
+    let roll = if shoe.roll.is_finite() { shoe.roll.clamp(0.0, 1.0) } else { 0.5 };
+    // 800 N darkens the sole fully.
+    let press = 0.10 + 0.25 * (shoe.force.0 / 800.0).clamp(0.0, 1.0).sqrt();
+    for (along, size, share) in [(-0.33, 0.095, 1.0 - roll), (0.24, 0.125, roll)] {
+        let centre = shoe.position + forward * along * shoe.length_m;
+        let pad = Paint::fill(Ink::faint(colour, press * (0.25 + 0.75 * share)));
+        scene.add_circle(centre, size * shoe.length_m, pad);
+    }
+}
+
+/// The radius of a contact's circle, in metres.
+fn radius_m(force: f32) -> f32 {
+    (force.clamp(0.0, 5000.0) * CIRCLE_M2_PER_N).sqrt().max(0.012)
+}
+
+/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons.
+pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) {
+    for contact in &view.snapshot.contacts {
+        if contact.centroid.is_finite() {
+            self::contact(scene, view, contact);
+        }
+    }
+}
+
+fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
+    let theme = view.theme;
+    let leads = view.snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
+    let colour = if leads { theme.cursor } else { theme.contact };
+    let (at, radius) = (contact.centroid, radius_m(contact.force.0));
+    let edge = Stroke::new(0.003, Ink::faint(colour, 0.9));
+    scene.add_circle(at, radius, Paint::fill(Ink::faint(colour, 0.22)).with_stroke(edge));
+    if leads {
+        cursor_ring(scene, view, at, radius);
+    }
+    let cross = |width: f32, ink| Paint::stroke(Stroke::new(width, ink));
+    for arm in [Vec2::new(0.011, 0.0), Vec2::new(0.0, 0.011)] {
+        scene.add_line(at - arm * 1.2, at + arm * 1.2, cross(0.0065, Ink::faint(theme.plate, 0.85)));
+        scene.add_line(at - arm, at + arm, cross(0.003, Ink::solid(colour)));
+    }
+    velocity(scene, view, contact);
+    let (ground, size_m) = (Paint::fill(Ink::faint(theme.plate, 0.92)), 0.026);
+    // Beside the circle, to the north-east, but never off the drawing.
+    let wish = at + Vec2::new(0.72, 0.72) * radius + Vec2::new(0.085, 0.030);
+    let room = view.geometry.bounds().grown(-0.03);
+    let west = at - Vec2::new(0.72, -0.72) * radius + Vec2::new(-0.085, 0.030);
+    let x = if wish.x + 0.08 > room.max.x { west.x } else { wish.x };
+    let middle = Vec2::new(x, wish.y).clamp(room.min, room.max);
+    let edged = ground.with_stroke(Stroke::new(0.0018, Ink::faint(colour, 0.7)));
+    let number = contact.id.0;
+    scene.add_badge(
+        middle,
+        size_m,
+        Ink::solid(colour),
+        edged,
+        format_args!("{number} · {:.0} N", contact.force.0),
+    );
+}
+
+/// A heavy ring with four ticks: this contact operates the controls.
+pub(super) fn cursor_ring(scene: &mut Scene, view: &View<'_>, at: Vec2, radius: f32) {
+    let theme = view.theme;
+    let ring = radius + 0.011;
+    scene.add_circle(at, ring, Paint::stroke(Stroke::new(0.0095, Ink::faint(theme.plate, 0.85))));
+    scene.add_circle(at, ring, Paint::stroke(Stroke::new(0.0055, Ink::solid(theme.cursor))));
+    for way in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
+        let stroke = Stroke::new(0.0055, Ink::solid(theme.cursor));
+        scene.add_line(at + way * ring, at + way * (ring + 0.014), Paint::stroke(stroke));
+    }
+}
+
+/// An arrow to where the contact will be in a moment; none below the speed that noise alone reaches.
+fn velocity(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
+    let speed = contact.velocity.length();
+    if !speed.is_finite() || speed < 0.05 {
+        return;
+    }
+    let way = contact.velocity / speed;
+    let tip = contact.centroid + way * (speed * AHEAD_S).min(0.30);
+    let stroke = Paint::stroke(Stroke::new(0.004, Ink::solid(view.theme.ink)));
+    scene.add_line(contact.centroid, tip, stroke);
+    let back = tip - way * 0.014;
+    scene.add_path([back + way.perp() * 0.009, tip, back - way.perp() * 0.009], false, stroke);
+}

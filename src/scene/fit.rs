@@ -1,0 +1,172 @@
+use std::ops::Range;
+
+use arrayvec::ArrayVec;
+use glam::Vec2;
+
+use super::widths::{LINE_HEIGHT, width};
+
+/// Most lines a label is broken into.
+pub(super) const MAX_LINES: usize = 3;
+
+/// How a label is set so that it fits.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Fitted {
+    /// Height of an em, in metres.
+    pub(super) size_m: f32,
+    /// The bytes of each line, top first.
+    pub(super) lines: ArrayVec<Range<usize>, MAX_LINES>,
+    /// Whether the end was left out and an ellipsis has to follow the last line.
+    pub(super) shortened: bool,
+}
+
+impl Fitted {
+    /// Height of all lines together, in metres.
+    pub(super) fn height_m(&self) -> f32 {
+        self.lines.len() as f32 * LINE_HEIGHT * self.size_m
+    }
+}
+
+/// The largest setting of `text` within `room` metres, between the two sizes.
+///
+/// Lines break at white space. One line is preferred over more if it is nearly
+/// as large. What does not fit even at `smallest_m` is cut off with an ellipsis.
+pub(super) fn fit(text: &str, room: Vec2, largest_m: f32, smallest_m: f32) -> Fitted {
+    let mut size_m = largest_m;
+    let wrapped = loop {
+        let allowed = ((room.y / (LINE_HEIGHT * size_m)) as usize).min(MAX_LINES);
+        if let Some(lines) = wrap(text, room.x / size_m, allowed) {
+            break Some(Fitted { size_m, lines, shortened: false });
+        }
+        if size_m <= smallest_m {
+            break None;
+        }
+        size_m = (size_m * 0.95).max(smallest_m);
+    };
+    match wrapped {
+        Some(fitted) if fitted.lines.len() > 1 => {
+            one_line(text, room, (0.8 * fitted.size_m).max(smallest_m)).unwrap_or(fitted)
+        }
+        Some(fitted) => fitted,
+        None => shorten(text, room, smallest_m),
+    }
+}
+
+/// The largest setting of `text` on one line of `room_m` metres, between the two sizes; cut off if it must be.
+pub(super) fn fit_line(text: &str, room_m: f32, largest_m: f32, smallest_m: f32) -> Fitted {
+    let room = Vec2::new(room_m, smallest_m);
+    let size_m = (room_m / width(text.trim())).min(largest_m);
+    let whole = trimmed(text);
+    if size_m >= smallest_m && !whole.is_empty() {
+        Fitted { size_m, lines: [whole].into_iter().collect(), shortened: false }
+    } else {
+        shorten(text, room, smallest_m)
+    }
+}
+
+/// `text` on one line, if it then is at least `smallest_m` high.
+fn one_line(text: &str, room: Vec2, smallest_m: f32) -> Option<Fitted> {
+    let size_m = room.x / width(text.trim());
+    let whole = trimmed(text);
+    (size_m >= smallest_m).then(|| Fitted { size_m, lines: [whole].into_iter().collect(), shortened: false })
+}
+
+/// Greedy line breaks at `room` em; `None` if that takes more than `allowed` lines or a word is too long.
+fn wrap(text: &str, room: f32, allowed: usize) -> Option<ArrayVec<Range<usize>, MAX_LINES>> {
+    let mut lines = ArrayVec::<Range<usize>, MAX_LINES>::new();
+    for word in words(text) {
+        let joined = lines.last().map(|line| line.start..word.end);
+        match joined.filter(|joined| width(&text[joined.clone()]) <= room) {
+            Some(joined) => {
+                lines.pop();
+                lines.push(joined);
+            }
+            None if width(&text[word.clone()]) > room || lines.len() >= allowed => return None,
+            None => lines.push(word),
+        }
+    }
+    Some(lines)
+}
+
+/// As much of `text` as fits at `size_m`, an ellipsis counted in; no line at all where not even that fits.
+fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
+    let room_em = room.x / size_m - width("…");
+    let start = trimmed(text).start;
+    let mut end = start;
+    let mut used = 0.0;
+    for (at, letter) in text[start..].char_indices() {
+        used += width(letter.encode_utf8(&mut [0; 4]));
+        if used > room_em {
+            break;
+        }
+        end = start + at + letter.len_utf8();
+    }
+    let line = start..start + text[start..end].trim_end().len();
+    let lines = (!line.is_empty() && room.y >= size_m).then_some(line).into_iter().collect();
+    Fitted { size_m, lines, shortened: true }
+}
+
+fn trimmed(text: &str) -> Range<usize> {
+    let start = text.len() - text.trim_start().len();
+    start..start + text.trim().len()
+}
+
+fn words(text: &str) -> impl Iterator<Item = Range<usize>> {
+    text.split_whitespace().map(|word| {
+        let start = word.as_ptr() as usize - text.as_ptr() as usize;
+        start..start + word.len()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn lines<'a>(text: &'a str, fitted: &Fitted) -> Vec<&'a str> {
+        fitted.lines.iter().map(|line| &text[line.clone()]).collect()
+    }
+
+    #[test]
+    fn short_labels_stay_large_on_one_line() {
+        let fitted = fit("Home", Vec2::new(0.3, 0.2), 0.05, 0.02);
+        assert_eq!(fitted.size_m, 0.05);
+        assert_eq!(lines("Home", &fitted), ["Home"]);
+    }
+
+    #[test]
+    fn long_labels_break_before_they_shrink_much() {
+        let text = "Next patient record";
+        let fitted = fit(text, Vec2::new(0.2, 0.2), 0.05, 0.02);
+        assert!(fitted.lines.len() > 1);
+        assert!(fitted.size_m > 0.03, "{fitted:?}");
+    }
+
+    #[test]
+    fn what_cannot_fit_is_cut_off_visibly() {
+        // 15 cm hold about seven letters of 3 cm.
+        let fitted = fit("Donaudampfschifffahrt", Vec2::new(0.15, 0.05), 0.05, 0.03);
+        assert!(fitted.shortened);
+        assert_eq!(fitted.lines.len(), 1);
+        assert!(fit("Home", Vec2::ZERO, 0.05, 0.02).lines.is_empty());
+    }
+
+    proptest! {
+        #[test]
+        fn every_line_fits_its_room(
+            text in "[ a-zA-ZäöüÄÖß\\-…靴👟]{0,60}",
+            across in 0.0_f32..1.0,
+            down in 0.0_f32..0.5,
+        ) {
+            let room = Vec2::new(across, down);
+            let fitted = fit(&text, room, 0.05, 0.02);
+            let ellipsis = if fitted.shortened { width("…") } else { 0.0 };
+            for line in &fitted.lines {
+                let line_m = (width(&text[line.clone()]) + ellipsis) * fitted.size_m;
+                prop_assert!(line_m <= room.x + 1e-4, "{line_m} m in {} m", room.x);
+            }
+            prop_assert!(fitted.lines.is_empty() || fitted.height_m() <= room.y + 0.004);
+            prop_assert!((0.0199..=0.0501).contains(&fitted.size_m));
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The floor itself: plates, what they carry, sensors and actuators under them, places on it.
+
+use glam::Vec2;
+
+use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
+use super::widths::CAP_HEIGHT;
+use super::{Scene, View, outline};
+use crate::engine::{LinkState, TileState};
+use crate::floor::{Corner, Rect, TileId};
+use crate::sense::Quality;
+
+/// The plates with their load, as one slab.
+pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
+    let theme = view.theme;
+    let slab = view.geometry.bounds();
+    for (grow, opacity) in
+        [(0.034, 0.012), (0.029, 0.014), (0.024, 0.018), (0.019, 0.022), (0.014, 0.03), (0.010, 0.04)]
+    {
+        let area = Rect::new(slab.min - Vec2::new(0.0, 0.008), slab.max - Vec2::new(0.0, 0.008));
+        scene.add_box(area.grown(grow), 0.03, Paint::fill(Ink::faint(theme.shadow, opacity)));
+    }
+    scene.add_box(slab.grown(0.006), 0.014, Paint::fill(Ink::solid(theme.seam)));
+    for (index, tile) in view.geometry.tiles().enumerate() {
+        let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
+        // Full colour at 700 N, one person on one foot; the root shows light steps too.
+        let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
+        let colour = theme.plate.mix(theme.load, share);
+        // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
+        let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
+        let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
+        scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
+    }
+}
+
+/// Numbers of columns and rows along the south and west sides, at the tiles' middles.
+pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
+    let size_m = 0.030;
+    let mut lettering = Lettering {
+        at: Vec2::ZERO,
+        anchor: Anchor::Middle,
+        size_m,
+        strong: false,
+        turn_rad: 0.0,
+        ink: Ink::solid(view.theme.quiet),
+    };
+    for column in 0..view.geometry.columns() {
+        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058);
+        scene.add_text(lettering, format_args!("{column}"));
+    }
+    for row in 0..view.geometry.rows() {
+        let middle = view.geometry.centre(TileId::new(0, row)) * Vec2::Y;
+        lettering.at = middle - Vec2::new(0.048, 0.5 * CAP_HEIGHT * size_m);
+        scene.add_text(lettering, format_args!("{row}"));
+    }
+}
+
+/// Outlines of the active areas, with their names.
+pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
+    let theme = view.theme;
+    for region in &view.layout.regions {
+        let area = region.area.grown(-0.010);
+        let stroke = Stroke::new(0.003, Ink::faint(theme.accent, 0.45));
+        scene.add_box(area, 0.022, Paint::fill(Ink::faint(theme.accent, 0.045)).with_stroke(stroke));
+        let size_m = 0.024;
+        let lettering = Lettering {
+            at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
+            anchor: Anchor::Start,
+            size_m,
+            strong: false,
+            turn_rad: 0.0,
+            ink: Ink::faint(theme.accent, 0.9),
+        };
+        scene.add_line_of(lettering, &region.id, area.size().x - 0.04, size_m);
+    }
+}
+
+/// Places to stand: dashed, with the soles of one or two shoes.
+pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
+    let theme = view.theme;
+    for stance in &view.layout.stances {
+        let area = stance.area.grown(-0.006);
+        let dashes = Stroke::new(0.003, Ink::faint(theme.stance, 0.75)).dashed(0.016, 0.012);
+        scene.add_box(area, 0.04, Paint::fill(Ink::faint(theme.stance, 0.06)).with_stroke(dashes));
+        let size = area.size();
+        let label_m = if stance.label.is_empty() { 0.0 } else { 0.055 };
+        let length_m = (size.y - label_m - 0.04).min(0.28).min(2.4 * size.x);
+        if length_m >= 0.08 {
+            let middle = area.centre() + Vec2::new(0.0, 0.5 * label_m);
+            let paint = Paint::fill(Ink::faint(theme.stance, 0.10))
+                .with_stroke(Stroke::new(0.0025, Ink::faint(theme.stance, 0.6)));
+            // Two soles want a little more than twice a sole's breadth of 0.36 of its length.
+            let apart = 0.24 * length_m;
+            if size.x >= 0.95 * length_m {
+                for (side, left) in [(-apart, true), (apart, false)] {
+                    let turn = if left { 0.09 } else { -0.09 };
+                    let sole = outline::sole(middle + Vec2::new(side, 0.0), turn, length_m, left);
+                    scene.add_path(sole, true, paint);
+                }
+            } else {
+                scene.add_path(outline::sole(middle, 0.0, length_m, true), true, paint);
+            }
+        }
+        let lettering = Lettering {
+            at: Vec2::new(area.centre().x, area.min.y + 0.022),
+            anchor: Anchor::Middle,
+            size_m: 0.032,
+            strong: false,
+            turn_rad: 0.0,
+            ink: Ink::solid(theme.quiet),
+        };
+        scene.add_line_of(lettering, &stance.label, size.x - 0.03, 0.02);
+    }
+}
+
+/// Area of a sensor's dot per newton, in square metres: 300 N make a dot of 3 cm.
+const DOT_M2_PER_N: f32 = 0.015 * 0.015 / 300.0;
+
+/// Dots whose area follows the sensors' forces; broken and silent sensors are shown by their own shapes.
+pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
+    // Before the first packet nothing is known; 144 marks would say no more.
+    if view.snapshot.link == LinkState::Waiting {
+        return;
+    }
+    for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
+        let tile = view.geometry.tile_at_index(index);
+        if state.quality.iter().all(|quality| *quality >= Quality::Stale) {
+            hatch(scene, view, tile, state);
+        }
+        for corner in Corner::ALL {
+            let at = view.geometry.sensor(tile, corner);
+            let force = state.forces[corner.index()];
+            sensor(scene, view, at, force, state.quality[corner.index()]);
+        }
+    }
+}
+
+fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Quality) {
+    let theme = view.theme;
+    let radius = (force.clamp(0.0, 2000.0) * DOT_M2_PER_N).sqrt();
+    if view.show.sensors && quality <= Quality::Degraded {
+        let rim = Stroke::new(0.0012, Ink::faint(theme.contact, 0.35));
+        scene.add_circle(at, 0.0035, Paint::stroke(rim));
+        // Below 1 N a dot would only show noise.
+        if force >= 1.0 {
+            scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, 0.62)));
+        }
+    }
+    mark_quality(scene, view, at, quality);
+}
+
+/// The shape that tells a sensor's quality: none if live, triangle, diamond, cross.
+pub(super) fn mark_quality(scene: &mut Scene, view: &View<'_>, at: Vec2, quality: Quality) {
+    let theme = view.theme;
+    match quality {
+        Quality::Live => {}
+        Quality::Degraded => {
+            let corners = [Vec2::new(0.0, 0.012), Vec2::new(-0.0105, -0.007), Vec2::new(0.0105, -0.007)];
+            let paint = Paint::fill(Ink::faint(theme.plate, 0.6))
+                .with_stroke(Stroke::new(0.0028, Ink::solid(theme.warning)));
+            scene.add_path(corners.map(|corner| at + corner), true, paint);
+        }
+        Quality::Stale => {
+            let corners = [Vec2::Y, Vec2::X, Vec2::NEG_Y, Vec2::NEG_X];
+            let paint = Paint::fill(Ink::solid(theme.plate))
+                .with_stroke(Stroke::new(0.0028, Ink::solid(theme.stale)));
+            scene.add_path(corners.map(|corner| at + corner * 0.0105), true, paint);
+        }
+        Quality::Faulty => {
+            let disc = Paint::fill(Ink::solid(theme.plate))
+                .with_stroke(Stroke::new(0.0022, Ink::solid(theme.fault)));
+            scene.add_circle(at, 0.0125, disc);
+            let stroke = Paint::stroke(Stroke::new(0.004, Ink::solid(theme.fault)));
+            let arm = Vec2::splat(0.006);
+            scene.add_line(at - arm, at + arm, stroke);
+            scene.add_line(at - arm.perp(), at + arm.perp(), stroke);
+        }
+    }
+}
+
+/// Slanted lines over a tile of which nothing is known.
+fn hatch(scene: &mut Scene, view: &View<'_>, tile: TileId, state: &TileState) {
+    let faulty = state.quality.iter().all(|quality| *quality == Quality::Faulty);
+    let colour = if faulty { view.theme.fault } else { view.theme.stale };
+    let plate = view.geometry.plate(tile).grown(-0.006);
+    let side = plate.size().x;
+    let stroke = Stroke::new(0.0025, Ink::faint(colour, 0.35));
+    const LINES: usize = 9;
+    for line in 1..2 * LINES {
+        let along = side * line as f32 / LINES as f32;
+        let from = Vec2::new((along - side).max(0.0), along.min(side));
+        let to = Vec2::new(along.min(side), (along - side).max(0.0));
+        scene.add_line(plate.min + from, plate.min + to, Paint::stroke(stroke));
+    }
+}
+
+/// A bar under the middle of each tile that its actuator moves.
+pub(super) fn actuators(scene: &mut Scene, view: &View<'_>) {
+    let theme = view.theme;
+    for (index, level) in view.levels.iter().enumerate().take(view.geometry.tile_count()) {
+        // A thousandth of full scale is 40 mN: nobody feels it.
+        if level.is_nan() || *level < 1e-3 {
+            continue;
+        }
+        let plate = view.geometry.plate(view.geometry.tile_at_index(index));
+        // 60 dB over the bar's length, as force is felt.
+        let share = (1.0 + level.min(1.0).log10() / 3.0).clamp(0.0, 1.0);
+        let half = 0.28 * plate.size().x;
+        let west = Vec2::new(plate.centre().x - half, plate.min.y + 0.020);
+        let bar = Rect::new(west - Vec2::new(0.0, 0.004), west + Vec2::new(2.0 * half, 0.004));
+        scene.add_box(bar.grown(0.003), 0.007, Paint::fill(Ink::faint(theme.plate, 0.85)));
+        scene.add_box(bar, 0.004, Paint::fill(Ink::faint(theme.haptic, 0.22)));
+        let filled =
+            Rect::new(bar.min, Vec2::new(bar.min.x + 0.008 + share * (2.0 * half - 0.008), bar.max.y));
+        scene.add_box(filled, 0.004, Paint::fill(Ink::solid(theme.haptic)));
+    }
+}
+
+/// The outline of the tile that is looked at more closely.
+pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
+    if let Some(tile) = view.chosen.filter(|tile| view.geometry.index(*tile).is_some()) {
+        let stroke = Stroke::new(0.005, Ink::solid(view.theme.accent));
+        scene.add_box(view.geometry.plate(tile).grown(-0.003), 0.010, Paint::stroke(stroke));
+    }
+}

@@ -1,0 +1,84 @@
+//! What a floor looks like: one drawing description for windows, pictures and projectors.
+//!
+//! [`draw`] turns the floor's state into a [`Scene`], a list of [`Mark`]s in
+//! floor metres. Painters for egui and SVG are small and know nothing of
+//! controls; an app that projects the floor itself can write its own.
+//!
+//! ```
+//! use underfoot::scene::{self, Scene, Theme, View};
+//! # use underfoot::{engine::Snapshot, floor::Geometry, layout::Layout};
+//! # let layout = Layout { title: "Empty".into(), regions: vec![], stances: vec![], widgets: vec![] };
+//! let mut scene = Scene::new();
+//! let (geometry, snapshot) = (Geometry::default(), Snapshot::default());
+//! scene::draw(&mut scene, &View::new(&geometry, &layout, &snapshot, &Theme::LIGHT));
+//! assert!(scene.marks().len() >= 36, "at least the plates");
+//! ```
+
+mod board;
+mod control;
+mod face;
+mod feet;
+mod fit;
+mod ground;
+mod mark;
+mod outline;
+#[cfg(test)]
+pub(crate) mod sample;
+mod strip;
+#[cfg(test)]
+mod tests;
+mod theme;
+mod view;
+mod widths;
+
+pub use board::Scene;
+pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
+pub use theme::Theme;
+pub use view::{Shoe, Show, View};
+
+use glam::Vec2;
+
+use crate::floor::Rect;
+
+/// Width of the empty edge around the floor, in metres.
+const MARGIN_M: f32 = 0.085;
+
+/// Draws `view` into `scene`, in place of what was there.
+///
+/// The order is that of things on a real floor: plates, what is projected on
+/// them, what is under them, feet, and words about all of it.
+pub fn draw(scene: &mut Scene, view: &View<'_>) {
+    let floor = view.geometry.bounds();
+    let margin = if view.show.ruler || view.show.header { MARGIN_M } else { 0.0 };
+    let mut bounds = floor.grown(margin);
+    if view.show.header {
+        bounds.max.y += strip::HEADER_M - margin;
+    }
+    if view.show.legend {
+        bounds.min.y -= strip::LEGEND_M - 0.02;
+    }
+    scene.clear(bounds, view.theme.canvas);
+    ground::plates(scene, view);
+    if view.show.ruler {
+        ground::ruler(scene, view);
+    }
+    ground::regions(scene, view);
+    ground::stances(scene, view);
+    control::draw_all(scene, view);
+    ground::actuators(scene, view);
+    ground::sensors(scene, view);
+    ground::chosen(scene, view);
+    feet::shoes(scene, view);
+    if view.show.contacts {
+        feet::contacts(scene, view);
+    }
+    if view.show.header {
+        let strip = Rect::new(Vec2::new(floor.min.x, floor.max.y), Vec2::new(floor.max.x, bounds.max.y));
+        strip::header(scene, view, strip);
+    }
+    if view.show.legend {
+        let south = Vec2::new(floor.min.x, bounds.min.y);
+        let strip = Rect::new(south, south + Vec2::new(floor.size().x, strip::LEGEND_M));
+        strip::legend(scene, view, strip);
+    }
+}

@@ -1,0 +1,172 @@
+//! A page of controls and a floor at work, for tests.
+
+use std::time::Duration;
+
+use glam::Vec2;
+use smallvec::smallvec;
+
+use crate::engine::{LinkState, Snapshot, TileState, WidgetState};
+use crate::feel::Feel;
+use crate::floor::{Geometry, Rect};
+use crate::layout::{Colour, Layout, Look, Region, Shape, Stance, Widget};
+use crate::sense::{Contact, ContactId, Cursor, Quality, TileLoad};
+use crate::units::{Instant, Newtons};
+use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
+
+pub(crate) const THRESHOLDS: Thresholds = Thresholds {
+    press: Newtons(60.0),
+    release: Newtons(40.0),
+    dwell: Duration::from_millis(20),
+    lockout: Duration::from_millis(20),
+};
+
+pub(crate) fn slider(axis: Axis, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
+    Behaviour::Slider(SliderSpec { thresholds: THRESHOLDS, axis, min, max, step, initial })
+}
+
+pub(crate) fn button() -> Behaviour {
+    Behaviour::Button(ButtonSpec { thresholds: THRESHOLDS })
+}
+
+pub(crate) fn switch(initial: bool) -> Behaviour {
+    Behaviour::Switch(SwitchSpec { thresholds: THRESHOLDS, initial })
+}
+
+/// A control `size` tiles wide and deep with its south-west corner at `at`, in tiles of the paper's floor.
+pub(crate) fn widget(
+    id: &str,
+    label: &str,
+    at: [f32; 2],
+    size: [f32; 2],
+    behaviour: Behaviour,
+    look: Look,
+) -> Widget {
+    let pitch = Geometry::default().pitch_m();
+    Widget {
+        id: WidgetId::new(id),
+        kind: "sample".into(),
+        region: 0,
+        area: Rect::from_min_size(Vec2::from(at) * pitch, Vec2::from(size) * pitch),
+        label: label.into(),
+        behaviour,
+        feel: Feel::default(),
+        look,
+    }
+}
+
+pub(crate) fn look(shape: Shape, face: u32, lit: u32, ink: u32) -> Look {
+    let colour = |hex: u32| Colour::rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8);
+    Look { shape, face: colour(face), lit: colour(lit), ink: colour(ink) }
+}
+
+pub(crate) fn blue(shape: Shape) -> Look {
+    look(shape, 0xdb_e7_f6, 0x2f_6b_d8, 0x1d_2b_44)
+}
+
+pub(crate) fn green() -> Look {
+    look(Shape::Box, 0xe3_ec_df, 0x4d_9a_5b, 0x22_33_24)
+}
+
+pub(crate) fn sand() -> Look {
+    look(Shape::Box, 0xee_e6_d6, 0xe0_8a_2e, 0x3a_2e_1c)
+}
+
+/// Map navigation, much like what the program opens with.
+pub(crate) fn map() -> Layout {
+    let pitch = Geometry::default().pitch_m();
+    let tiles = |x: f32, y: f32, w: f32, h: f32| {
+        Rect::from_min_size(Vec2::new(x, y) * pitch, Vec2::new(w, h) * pitch)
+    };
+    let round = blue(Shape::Round);
+    Layout {
+        title: "Map navigation".into(),
+        regions: vec![Region { id: "map".into(), area: tiles(0.0, 2.0, 6.0, 4.0) }],
+        stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
+        widgets: vec![
+            widget("zoom-in", "Zoom in", [0.25, 4.55], [1.0, 1.0], button(), blue(Shape::Box)),
+            widget("zoom-out", "Zoom out", [0.25, 3.35], [1.0, 1.0], button(), blue(Shape::Box)),
+            widget("north", "North", [2.55, 4.75], [0.9, 0.9], button(), round),
+            widget("west", "West", [1.6, 3.8], [0.9, 0.9], button(), round),
+            widget("home", "Home", [2.6, 3.85], [0.8, 0.8], button(), sand()),
+            widget("east", "East", [3.5, 3.8], [0.9, 0.9], button(), round),
+            widget("south", "South", [2.55, 2.85], [0.9, 0.9], button(), round),
+            widget("satellite", "Satellite", [4.6, 4.9], [1.2, 0.7], switch(false), green()),
+            widget("labels", "Names of places", [4.6, 3.9], [1.2, 0.8], switch(true), green()),
+            widget(
+                "time",
+                "Time of day",
+                [0.25, 2.1],
+                [3.2, 0.6],
+                slider(Axis::East, 0.0, 24.0, 0.0, 12.0),
+                sand(),
+            ),
+            widget(
+                "tilt",
+                "Tilt",
+                [4.95, 2.1],
+                [0.6, 1.65],
+                slider(Axis::North, 0.0, 90.0, 5.0, 30.0),
+                sand(),
+            ),
+        ],
+    }
+}
+
+/// `layout` on the paper's floor with nobody on it.
+pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
+    let value = |widget: &Widget| match widget.behaviour {
+        Behaviour::Button(_) => None,
+        Behaviour::Switch(switch) => Some(Value::Switch(switch.initial)),
+        Behaviour::Slider(slider) => Some(Value::Number(slider.initial)),
+    };
+    let live = TileState { quality: [Quality::Live; 4], ..TileState::default() };
+    Snapshot {
+        at: Instant::from_millis(3214),
+        tiles: vec![live; Geometry::default().tile_count()],
+        cursors: vec![None; layout.regions.len()],
+        widgets: layout
+            .widgets
+            .iter()
+            .map(|widget| WidgetState { value: value(widget), ..WidgetState::default() })
+            .collect(),
+        link: LinkState::Live,
+        ..Snapshot::default()
+    }
+}
+
+/// Puts a foot of `force` newtons at `at` that moves by `velocity`, spread over the sensors of the tile under it.
+pub(crate) fn step_on(snapshot: &mut Snapshot, id: u32, at: Vec2, force: f32, velocity: Vec2) {
+    let geometry = Geometry::default();
+    let tile = geometry.tile_under(at).unwrap();
+    let index = geometry.index(tile).unwrap();
+    let reach = geometry.sensor_reach_m();
+    let from_middle = ((at - geometry.centre(tile)) / reach).clamp(Vec2::NEG_ONE, Vec2::ONE);
+    let (x, y) = (from_middle.x, from_middle.y);
+    let shares = [(1.0 - x) * (1.0 - y), (1.0 + x) * (1.0 - y), (1.0 - x) * (1.0 + y), (1.0 + x) * (1.0 + y)];
+    let state = &mut snapshot.tiles[index];
+    for (sensor, share) in state.forces.iter_mut().zip(shares) {
+        *sensor += 0.25 * share * force;
+    }
+    state.force += Newtons(force);
+    state.centroid = Some(at);
+    let load = TileLoad { tile, index, force: Newtons(force), centroid: at };
+    snapshot.contacts.push(Contact {
+        id: ContactId(id),
+        centroid: at,
+        force: Newtons(force),
+        velocity,
+        tiles: smallvec![load],
+    });
+}
+
+/// A person who stands on one foot and presses "Zoom in" with the other.
+pub(crate) fn pressing(layout: &Layout) -> Snapshot {
+    let mut snapshot = at_rest(layout);
+    let toe = layout.widgets[0].area.centre() + Vec2::new(0.03, -0.02);
+    step_on(&mut snapshot, 6, Vec2::new(0.82, 0.36), 520.0, Vec2::ZERO);
+    step_on(&mut snapshot, 7, toe, 152.0, Vec2::new(0.1, 0.25));
+    snapshot.cursors[0] = Some(Cursor { contact: ContactId(7), position: toe, force: Newtons(152.0) });
+    snapshot.widgets[0].pressed = true;
+    snapshot.widgets[0].press_share = 2.5;
+    snapshot
+}

@@ -1,0 +1,133 @@
+//! The strips above and below the floor: what is shown, when, and what the marks mean.
+
+use glam::Vec2;
+
+use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
+use super::widths::CAP_HEIGHT;
+use super::{Scene, View, feet, ground};
+use crate::engine::LinkState;
+use crate::floor::Rect;
+use crate::sense::Quality;
+
+/// Height of the strip above the floor, in metres.
+pub(super) const HEADER_M: f32 = 0.195;
+
+/// Height of the strip below the floor, in metres.
+pub(super) const LEGEND_M: f32 = 0.085;
+
+/// Title and measures at the left, time and link at the right.
+pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
+    let theme = view.theme;
+    let time_m = if view.show.contacts { 0.42 } else { 0.0 };
+    let top = strip.max.y - 0.095;
+    let mut lettering = Lettering {
+        at: Vec2::new(strip.min.x, top),
+        anchor: Anchor::Start,
+        size_m: 0.066,
+        strong: true,
+        turn_rad: 0.0,
+        ink: Ink::solid(theme.ink),
+    };
+    scene.add_line_of(lettering, &view.layout.title, strip.size().x - time_m, 0.036);
+    let size = view.geometry.bounds().size();
+    let (columns, rows) = (view.geometry.columns(), view.geometry.rows());
+    lettering = Lettering {
+        at: Vec2::new(strip.min.x, top - 0.052),
+        size_m: 0.030,
+        strong: false,
+        ink: Ink::solid(theme.quiet),
+        ..lettering
+    };
+    scene.add_text(lettering, format_args!("{columns} × {rows} tiles · {:.2} × {:.2} m", size.x, size.y));
+    if view.show.contacts {
+        let (state, colour) = match view.snapshot.link {
+            LinkState::Waiting => ("no packets yet", theme.warning),
+            LinkState::Live => ("live", theme.good),
+            LinkState::Partial => ("some boards are silent", theme.warning),
+            LinkState::Lost => ("no sensor packets", theme.fault),
+        };
+        lettering = Lettering {
+            at: Vec2::new(strip.max.x, top - 0.052),
+            anchor: Anchor::End,
+            ink: Ink::solid(colour),
+            ..lettering
+        };
+        scene.add_text(lettering, format_args!("{state}"));
+        lettering = Lettering {
+            at: Vec2::new(strip.max.x, top),
+            size_m: 0.042,
+            ink: Ink::solid(theme.ink),
+            ..lettering
+        };
+        scene.add_text(lettering, format_args!("{:.3} s", view.snapshot.at.secs()));
+    }
+}
+
+/// One line of samples of the marks on this drawing, with their names.
+pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
+    let theme = view.theme;
+    let has = |wanted: Quality| {
+        view.snapshot.link != LinkState::Waiting
+            && view.snapshot.tiles.iter().any(|tile| tile.quality.contains(&wanted))
+    };
+    let middle = strip.centre().y - 0.004;
+    let mut pen = Pen { x: strip.min.x, y: middle, end: strip.max.x, view };
+    if view.show.contacts {
+        pen.entry(scene, "cursor", 0.022, |scene, at| {
+            let paint = Paint::fill(Ink::faint(theme.cursor, 0.22));
+            scene.add_circle(at, 0.007, paint);
+            feet::cursor_ring(scene, view, at, 0.002);
+        });
+        pen.entry(scene, "contact, area = force", 0.016, |scene, at| {
+            let edge = Stroke::new(0.003, Ink::faint(theme.contact, 0.9));
+            scene.add_circle(at, 0.014, Paint::fill(Ink::faint(theme.contact, 0.22)).with_stroke(edge));
+        });
+    }
+    if view.show.sensors {
+        pen.entry(scene, "sensor force", 0.010, |scene, at| {
+            scene.add_circle(at, 0.009, Paint::fill(Ink::faint(theme.contact, 0.62)));
+        });
+    }
+    if view.levels.iter().any(|level| *level >= 1e-3) {
+        pen.entry(scene, "actuator", 0.024, |scene, at| {
+            let bar = Rect::from_centre_size(at, Vec2::new(0.044, 0.009));
+            scene.add_box(bar, 0.004, Paint::fill(Ink::solid(theme.haptic)));
+        });
+    }
+    for (quality, name) in
+        [(Quality::Degraded, "degraded"), (Quality::Stale, "silent"), (Quality::Faulty, "faulty")]
+    {
+        if has(quality) {
+            pen.entry(scene, name, 0.013, |scene, at| ground::mark_quality(scene, view, at, quality));
+        }
+    }
+}
+
+/// Sets the legend's entries one after the other, as long as there is room.
+struct Pen<'a> {
+    x: f32,
+    y: f32,
+    end: f32,
+    view: &'a View<'a>,
+}
+
+impl Pen<'_> {
+    fn entry(&mut self, scene: &mut Scene, name: &str, radius: f32, sample: impl FnOnce(&mut Scene, Vec2)) {
+        let size_m = 0.026;
+        let width = super::widths::width(name) * size_m;
+        let text_x = self.x + 2.0 * radius + 0.014;
+        if text_x + width > self.end {
+            return;
+        }
+        sample(scene, Vec2::new(self.x + radius, self.y));
+        let lettering = Lettering {
+            at: Vec2::new(text_x, self.y - 0.5 * CAP_HEIGHT * size_m),
+            anchor: Anchor::Start,
+            size_m,
+            strong: false,
+            turn_rad: 0.0,
+            ink: Ink::solid(self.view.theme.quiet),
+        };
+        self.x = text_x + scene.add_text(lettering, format_args!("{name}")) + 0.045;
+    }
+}

@@ -1,0 +1,336 @@
+use std::collections::HashSet;
+
+use glam::Vec2;
+
+use super::sample::{self, at_rest, button, map, pressing, widget};
+use super::widths::{CAP_HEIGHT, width};
+use super::{Anchor, Lettering, Mark, Scene, Shoe, Show, Theme, View, draw};
+use crate::engine::{LinkState, Snapshot};
+use crate::floor::{Corner, Geometry, Rect, TileId};
+use crate::layout::{Layout, Shape, Widget};
+use crate::sense::Quality;
+use crate::units::Newtons;
+use crate::widget::{Axis, Value};
+
+fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
+    shown(layout, snapshot, Show::WINDOW)
+}
+
+fn shown(layout: &Layout, snapshot: &Snapshot, show: Show) -> Scene {
+    let mut scene = Scene::new();
+    let geometry = Geometry::default();
+    draw(&mut scene, &View { show, ..View::new(&geometry, layout, snapshot, &Theme::LIGHT) });
+    scene
+}
+
+/// A layout of this one control.
+fn only(widget: Widget) -> Layout {
+    Layout { widgets: vec![widget], stances: vec![], ..map() }
+}
+
+/// Where the letters of a line stand, upright lines only.
+fn extent(text: &str, lettering: &Lettering) -> Rect {
+    let size = Vec2::new(width(text), CAP_HEIGHT) * lettering.size_m;
+    let west = match lettering.anchor {
+        Anchor::Start => 0.0,
+        Anchor::Middle => -0.5 * size.x,
+        Anchor::End => -size.x,
+    };
+    let from = lettering.at + Vec2::new(west, 0.0);
+    let turned = |at: Vec2| lettering.at + Vec2::from_angle(lettering.turn_rad).rotate(at - lettering.at);
+    let (one, other) = (turned(from), turned(from + size));
+    Rect::new(one.min(other), one.max(other))
+}
+
+#[test]
+fn words_stay_on_their_controls_and_off_each_other() {
+    let labels = [
+        "",
+        "Go",
+        "Zoom in",
+        "Next patient record",
+        "Donaudampfschifffahrtsgesellschaft",
+        "一二三四五六七八九十",
+    ];
+    // From the smallest target that a foot can hit (10 cm) to a whole row of tiles, both ways.
+    let sizes = [[0.34, 0.34], [1.0, 0.4], [0.45, 1.6], [1.0, 1.0], [3.0, 0.6], [0.6, 3.0]];
+    let behaviours = [
+        button(),
+        sample::switch(true),
+        sample::slider(Axis::East, 0.0, 24.0, 0.0, 23.9),
+        sample::slider(Axis::North, -100.0, 100.0, 0.25, -99.75),
+    ];
+    for label in labels {
+        for size in sizes {
+            for behaviour in behaviours {
+                for shape in [Shape::Box, Shape::Round] {
+                    let layout = only(widget("it", label, [1.0, 1.0], size, behaviour, sample::blue(shape)));
+                    for (disabled, needs_lift) in [(false, false), (true, false), (false, true)] {
+                        let mut snapshot = at_rest(&layout);
+                        snapshot.widgets[0].disabled = disabled;
+                        snapshot.widgets[0].needs_lift = needs_lift;
+                        let scene = shown(&layout, &snapshot, Show::PROJECTOR);
+                        let words: Vec<_> = scene
+                            .texts()
+                            .filter(|(text, _)| *text != "map")
+                            .map(|(text, lettering)| (text.to_owned(), extent(text, lettering)))
+                            .collect();
+                        let area = layout.widgets[0].area.grown(0.002);
+                        for (text, place) in &words {
+                            assert!(
+                                area.contains(place.min) && area.contains(place.max),
+                                "“{text}” at {place:?} leaves {area:?} ({size:?}, {behaviour:?}, {shape:?})"
+                            );
+                        }
+                        for (at, (text, place)) in words.iter().enumerate() {
+                            for (other, elsewhere) in &words[..at] {
+                                assert!(
+                                    !place.overlaps(*elsewhere),
+                                    "“{text}” covers “{other}” ({size:?}, {behaviour:?}, {shape:?}, {needs_lift})"
+                                );
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// The marks that differ from one scene to the other.
+fn differs(one: &Scene, other: &Scene) -> bool {
+    one.marks() != other.marks()
+}
+
+#[test]
+fn each_state_of_a_control_looks_its_own_way() {
+    let layout = map();
+    let rest = at_rest(&layout);
+    let states = [
+        rest.clone(),
+        with(&rest, |it| it.widgets[0].press_share = 0.5),
+        with(&rest, |it| it.widgets[0].press_share = 0.8),
+        with(&rest, |it| (it.widgets[0].pressed, it.widgets[0].press_share) = (true, 1.5)),
+        with(&rest, |it| it.widgets[0].disabled = true),
+        with(&rest, |it| it.widgets[0].needs_lift = true),
+        with(&rest, |it| it.widgets[7].value = Some(Value::Switch(true))),
+        with(&rest, |it| it.widgets[9].value = Some(Value::Number(3.0))),
+        with(&rest, |it| it.widgets[10].value = Some(Value::Number(90.0))),
+    ];
+    let scenes: Vec<_> = states.iter().map(|state| shown(&layout, state, Show::PROJECTOR)).collect();
+    for (at, scene) in scenes.iter().enumerate() {
+        for (earlier, other) in scenes[..at].iter().enumerate() {
+            assert!(differs(scene, other), "states {earlier} and {at} look alike");
+        }
+    }
+}
+
+fn with(snapshot: &Snapshot, change: impl FnOnce(&mut Snapshot)) -> Snapshot {
+    let mut changed = snapshot.clone();
+    change(&mut changed);
+    changed
+}
+
+#[test]
+fn a_pressed_button_sinks_and_turns_to_its_lit_colour() {
+    let layout = map();
+    let lit = layout.widgets[0].look.lit;
+    let face = |snapshot: &Snapshot| {
+        shown(&layout, snapshot, Show::PROJECTOR)
+            .marks()
+            .iter()
+            .filter_map(|mark| match mark {
+                Mark::Box { area, paint, .. } if area.contains(layout.widgets[0].area.centre()) => {
+                    paint.fill.filter(|ink| ink.opacity == 1.0).map(|ink| (*area, ink.colour))
+                }
+                _ => None,
+            })
+            .next_back()
+            .unwrap()
+    };
+    let (up, at_rest_colour) = face(&at_rest(&layout));
+    let (down, pressed_colour) = face(&pressing(&layout));
+    assert_eq!(pressed_colour, lit);
+    assert_ne!(at_rest_colour, lit);
+    assert!(down.size().x < up.size().x);
+}
+
+#[test]
+fn the_handle_of_a_slider_is_where_the_value_is() {
+    let layout = map();
+    for (value, share) in [(0.0, 0.0), (6.0, 0.25), (24.0, 1.0), (99.0, 1.0), (f32::NAN, 0.0)] {
+        let mut snapshot = at_rest(&layout);
+        snapshot.widgets[9].value = Some(Value::Number(value));
+        let scene = shown(&layout, &snapshot, Show::PROJECTOR);
+        let area = layout.widgets[9].area;
+        let lit = layout.widgets[9].look.lit;
+        let filled = scene.marks().iter().find_map(|mark| match mark {
+            Mark::Box { area: part, paint, .. } if paint.fill.is_some_and(|ink| ink.colour == lit) => {
+                Some(*part)
+            }
+            _ => None,
+        });
+        let east = filled.unwrap().max.x;
+        let wanted = area.min.x + share * area.size().x;
+        // The track ends a centimetre inside the control.
+        assert!((east - wanted).abs() <= 0.0101, "{value}: filled to {east}, not {wanted}");
+    }
+}
+
+/// How many marks of a kind lie within a centimetre of a point.
+fn marks_near(scene: &Scene, at: Vec2, wanted: impl Fn(&Mark) -> bool) -> usize {
+    let near = |mark: &Mark| match mark {
+        Mark::Box { area, .. } => area.centre().distance(at) < 0.01,
+        Mark::Ellipse { centre, .. } => centre.distance(at) < 0.01,
+        Mark::Path { points, .. } => {
+            let points = scene.points(*points);
+            let mean = points.iter().copied().sum::<Vec2>() / points.len() as f32;
+            mean.distance(at) < 0.01
+        }
+        Mark::Text { .. } => false,
+    };
+    scene.marks().iter().filter(|mark| near(mark) && wanted(mark)).count()
+}
+
+#[test]
+fn sensors_that_cannot_be_trusted_have_shapes_of_their_own() {
+    let layout = Layout { widgets: vec![], stances: vec![], ..map() };
+    let geometry = Geometry::default();
+    let at = geometry.sensor(TileId::new(2, 1), Corner::NorthWest);
+    let index = geometry.index(TileId::new(2, 1)).unwrap();
+    let lines = |quality| {
+        let mut snapshot = at_rest(&layout);
+        snapshot.tiles[index].quality[Corner::NorthWest.index()] = quality;
+        // Seen even where sensor forces are not shown.
+        let scene = shown(&layout, &snapshot, Show::LAYOUT);
+        let paths: Vec<usize> = scene
+            .marks()
+            .iter()
+            .filter_map(|mark| match mark {
+                Mark::Path { points, .. } => Some(scene.points(*points).len()),
+                _ => None,
+            })
+            .collect();
+        (paths, marks_near(&scene, at, |_| true))
+    };
+    assert_eq!(lines(Quality::Live), (vec![], 0));
+    assert_eq!(lines(Quality::Degraded).0, [3], "a triangle");
+    assert_eq!(lines(Quality::Stale).0, [4], "a diamond");
+    assert_eq!(lines(Quality::Faulty).0, [2, 2], "a cross");
+}
+
+#[test]
+fn a_tile_of_which_nothing_is_known_is_hatched() {
+    let layout = Layout { widgets: vec![], stances: vec![], ..map() };
+    let mut snapshot = at_rest(&layout);
+    let before = drawn(&layout, &snapshot).marks().len();
+    snapshot.tiles[8].quality = [Quality::Stale; 4];
+    assert!(drawn(&layout, &snapshot).marks().len() > before + 10);
+    // Before the first packet every tile is like that, and the window says so in words.
+    snapshot.link = LinkState::Waiting;
+    assert!(drawn(&layout, &snapshot).marks().len() < before);
+}
+
+#[test]
+fn dots_and_circles_grow_in_area_with_the_force() {
+    let layout = Layout { widgets: vec![], stances: vec![], ..map() };
+    let at = Vec2::new(0.6, 0.7);
+    let radius = |force: f32| {
+        let mut snapshot = at_rest(&layout);
+        sample::step_on(&mut snapshot, 1, at, force, Vec2::ZERO);
+        let scene = drawn(&layout, &snapshot);
+        let circle = scene.marks().iter().find_map(|mark| match mark {
+            Mark::Ellipse { centre, radii, .. } if *centre == at => Some(radii.x),
+            _ => None,
+        });
+        circle.unwrap()
+    };
+    assert!((radius(400.0) / radius(100.0) - 2.0).abs() < 1e-3);
+}
+
+#[test]
+fn the_cursor_stands_out_from_other_contacts() {
+    let layout = map();
+    let cursor = Theme::LIGHT.cursor;
+    let rings = |snapshot: &Snapshot| {
+        drawn(&layout, snapshot)
+            .marks()
+            .iter()
+            .filter(|mark| match mark {
+                Mark::Ellipse { paint, .. } => paint.stroke.is_some_and(|stroke| stroke.ink.colour == cursor),
+                _ => false,
+            })
+            .count()
+    };
+    let pressed = pressing(&layout);
+    assert_eq!(rings(&pressed), 2, "its circle and its ring");
+    assert_eq!(rings(&with(&pressed, |it| it.cursors[0] = None)), 0);
+}
+
+#[test]
+fn nonsense_in_a_snapshot_draws_nothing_that_is_not_finite() {
+    let layout = map();
+    let mut snapshot = pressing(&layout);
+    snapshot.contacts[0].centroid = Vec2::new(f32::NAN, 0.0);
+    snapshot.contacts[1].velocity = Vec2::splat(f32::INFINITY);
+    snapshot.widgets[0].press_share = f32::NAN;
+    snapshot.widgets[9].value = Some(Value::Number(f32::INFINITY));
+    snapshot.tiles[0].forces = [f32::NAN, f32::INFINITY, -1e30, 1e30];
+    // Fewer controls and tiles than the layout and the floor have, as just after a reload.
+    snapshot.tiles.truncate(20);
+    snapshot.widgets.truncate(10);
+    snapshot.widgets[3].value = Some(Value::Switch(true));
+    let geometry = Geometry::default();
+    let shoes = [Shoe {
+        position: Vec2::NAN,
+        heading_rad: 0.0,
+        length_m: 0.28,
+        force: Newtons(f32::NAN),
+        roll: f32::NAN,
+        left: false,
+    }];
+    let levels = [f32::NAN, f32::INFINITY, 0.5, -1.0];
+    let mut scene = Scene::new();
+    let view = View {
+        shoes: &shoes,
+        levels: &levels,
+        chosen: Some(TileId::new(99, 99)),
+        show: Show::PICTURE,
+        ..View::new(&geometry, &layout, &snapshot, &Theme::DARK)
+    };
+    draw(&mut scene, &view);
+    for mark in scene.marks() {
+        let finite = match mark {
+            Mark::Box { area, radius_m, .. } => {
+                area.min.is_finite() && area.max.is_finite() && radius_m.is_finite()
+            }
+            Mark::Ellipse { centre, radii, .. } => centre.is_finite() && radii.is_finite(),
+            Mark::Path { points, .. } => scene.points(*points).iter().all(|point| point.is_finite()),
+            Mark::Text { lettering, .. } => lettering.at.is_finite() && lettering.size_m.is_finite(),
+        };
+        assert!(finite, "{mark:?}");
+    }
+}
+
+#[test]
+fn drawing_again_into_the_same_scene_gives_the_same_drawing() {
+    let layout = map();
+    let geometry = Geometry::default();
+    let snapshot = pressing(&layout);
+    let view = View::new(&geometry, &layout, &snapshot, &Theme::LIGHT);
+    let mut scene = Scene::new();
+    draw(&mut scene, &view);
+    let first = scene.clone();
+    draw(&mut scene, &view);
+    assert_eq!(first, scene);
+}
+
+#[test]
+fn a_projector_sees_the_floor_and_nothing_around_it() {
+    let layout = map();
+    let scene = shown(&layout, &pressing(&layout), Show::PROJECTOR);
+    assert_eq!(scene.bounds(), Geometry::default().bounds());
+    let words: HashSet<_> = scene.texts().map(|(text, _)| text).collect();
+    assert!(words.contains("Zoom in"));
+    assert!(!words.iter().any(|text| text.contains(" N")), "forces are for windows: {words:?}");
+}

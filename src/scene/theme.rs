@@ -1,0 +1,178 @@
+use crate::layout::Colour;
+
+/// The colours of everything but the controls' own faces.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Theme {
+    /// Around the floor.
+    pub canvas: Colour,
+    /// Between the plates.
+    pub seam: Colour,
+    /// A plate without load.
+    pub plate: Colour,
+    /// What a plate turns to under load.
+    pub load: Colour,
+    /// Text on the canvas and on plates.
+    pub ink: Colour,
+    /// Text that need not be read at once: rulers, units, names of regions.
+    pub quiet: Colour,
+    /// Hairlines and the edges of panels.
+    pub line: Colour,
+    /// Outlines of regions, and what is chosen.
+    pub accent: Colour,
+    /// Places to stand.
+    pub stance: Colour,
+    /// Contacts and sensor forces.
+    pub contact: Colour,
+    /// The contact that is a region's cursor.
+    pub cursor: Colour,
+    /// Simulated shoes.
+    pub shoe: Colour,
+    /// What the actuators do.
+    pub haptic: Colour,
+    /// What a person should see to.
+    pub warning: Colour,
+    /// What is broken.
+    pub fault: Colour,
+    /// What is too old to be trusted.
+    pub stale: Colour,
+    /// What goes well.
+    pub good: Colour,
+    /// Shadows.
+    pub shadow: Colour,
+}
+
+impl Theme {
+    /// Warm light grey, for daylight and for paper.
+    pub const LIGHT: Self = Self {
+        canvas: Colour::rgb(0xf1, 0xee, 0xe8),
+        seam: Colour::rgb(0xdc, 0xd6, 0xcb),
+        plate: Colour::rgb(0xfa, 0xf8, 0xf4),
+        load: Colour::rgb(0xf2, 0xb8, 0x5c),
+        ink: Colour::rgb(0x2a, 0x28, 0x25),
+        quiet: Colour::rgb(0x6e, 0x68, 0x5e),
+        line: Colour::rgb(0xd9, 0xd3, 0xc8),
+        accent: Colour::rgb(0x2f, 0x6b, 0xd8),
+        stance: Colour::rgb(0x7b, 0x71, 0x62),
+        contact: Colour::rgb(0x0f, 0x76, 0x82),
+        cursor: Colour::rgb(0xc2, 0x1c, 0x60),
+        shoe: Colour::rgb(0x45, 0x40, 0x39),
+        haptic: Colour::rgb(0x76, 0x45, 0xc9),
+        warning: Colour::rgb(0xa1, 0x55, 0x00),
+        fault: Colour::rgb(0xc6, 0x28, 0x28),
+        stale: Colour::rgb(0x7d, 0x83, 0x8a),
+        good: Colour::rgb(0x24, 0x76, 0x3f),
+        shadow: Colour::rgb(0x4a, 0x40, 0x30),
+    };
+
+    /// Dark grey, for a darkened room.
+    pub const DARK: Self = Self {
+        canvas: Colour::rgb(0x1d, 0x1e, 0x20),
+        seam: Colour::rgb(0x15, 0x16, 0x17),
+        plate: Colour::rgb(0x2b, 0x2c, 0x2f),
+        load: Colour::rgb(0xa8, 0x71, 0x24),
+        ink: Colour::rgb(0xee, 0xeb, 0xe5),
+        quiet: Colour::rgb(0xa6, 0xa1, 0x98),
+        line: Colour::rgb(0x3d, 0x3e, 0x42),
+        accent: Colour::rgb(0x7a, 0xa8, 0xf5),
+        stance: Colour::rgb(0xa3, 0x9a, 0x8b),
+        contact: Colour::rgb(0x4f, 0xc3, 0xd0),
+        cursor: Colour::rgb(0xff, 0x6b, 0xa5),
+        shoe: Colour::rgb(0xc9, 0xc3, 0xb8),
+        haptic: Colour::rgb(0xb3, 0x8c, 0xf7),
+        warning: Colour::rgb(0xf0, 0xa3, 0x3c),
+        fault: Colour::rgb(0xff, 0x7b, 0x72),
+        stale: Colour::rgb(0x9a, 0xa0, 0xa8),
+        good: Colour::rgb(0x6c, 0xc2, 0x85),
+        shadow: Colour::rgb(0x00, 0x00, 0x00),
+    };
+
+    /// Whether text is lighter than what it stands on.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        luminance(self.canvas) < luminance(self.ink)
+    }
+}
+
+impl Default for Theme {
+    fn default() -> Self {
+        Self::LIGHT
+    }
+}
+
+/// Contrast from which on letters of any size are called readable.
+///
+/// # Source
+/// Web Content Accessibility Guidelines 2.2, 1.4.3, level AA.
+pub(super) const READABLE: f32 = 4.5;
+
+const DARK_INK: Colour = Colour::rgb(0x1c, 0x1b, 0x19);
+const LIGHT_INK: Colour = Colour::rgb(0xff, 0xff, 0xff);
+
+/// `wish` where it can be read on `ground`, otherwise near-black or white, whichever reads better.
+pub(super) fn readable(wish: Colour, ground: Colour) -> Colour {
+    if contrast(wish, ground) >= READABLE {
+        wish
+    } else if contrast(DARK_INK, ground) >= contrast(LIGHT_INK, ground) {
+        DARK_INK
+    } else {
+        LIGHT_INK
+    }
+}
+
+/// How well two colours stand off from each other, 1 (not at all) to 21.
+///
+/// # Source
+/// Web Content Accessibility Guidelines 2.2, "contrast ratio".
+pub(super) fn contrast(one: Colour, other: Colour) -> f32 {
+    let (one, other) = (luminance(one), luminance(other));
+    (one.max(other) + 0.05) / (one.min(other) + 0.05)
+}
+
+/// Relative luminance, 0 to 1.
+fn luminance(colour: Colour) -> f32 {
+    let linear = |byte: u8| {
+        let share = f32::from(byte) / 255.0;
+        if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+    };
+    0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn contrast_runs_from_1_to_21() {
+        let (black, white) = (Colour::rgb(0, 0, 0), Colour::rgb(255, 255, 255));
+        assert!((contrast(black, white) - 21.0).abs() < 1e-3);
+        assert_eq!(contrast(white, white), 1.0);
+    }
+
+    #[test]
+    fn words_of_both_themes_can_be_read() {
+        for theme in [Theme::LIGHT, Theme::DARK] {
+            for ground in [theme.canvas, theme.plate] {
+                assert!(contrast(theme.ink, ground) > 7.0);
+                for colour in
+                    [theme.quiet, theme.contact, theme.cursor, theme.fault, theme.warning, theme.good]
+                {
+                    assert!(
+                        contrast(colour, ground) >= 4.4,
+                        "{colour} on {ground}: {}",
+                        contrast(colour, ground)
+                    );
+                }
+            }
+        }
+        assert!(Theme::DARK.is_dark() && !Theme::LIGHT.is_dark());
+    }
+
+    #[test]
+    fn an_ink_that_cannot_be_read_is_replaced() {
+        let yellow = Colour::rgb(0xff, 0xe0, 0x40);
+        assert_eq!(readable(LIGHT_INK, yellow), DARK_INK);
+        assert_eq!(readable(DARK_INK, yellow), DARK_INK);
+        let navy = Colour::rgb(0x10, 0x20, 0x60);
+        assert_eq!(readable(DARK_INK, navy), LIGHT_INK);
+    }
+}

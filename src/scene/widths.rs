@@ -1,0 +1,67 @@
+//! How wide texts are, so that they can be made to fit without a font at hand.
+
+/// Height of a capital letter, in em: what looks like a line's middle is half of it above the base line.
+///
+/// # Source
+/// Ubuntu Light, the letters of both painters.
+pub(super) const CAP_HEIGHT: f32 = 0.693;
+
+/// From one base line to the next, in em.
+pub(super) const LINE_HEIGHT: f32 = 1.15;
+
+/// What wider letters than Ubuntu Light's own are taken for: a full square.
+const UNKNOWN: u16 = 1000;
+
+/// Cyrillic and Greek are not measured one by one: most letters are narrower than this.
+const FOREIGN: u16 = 760;
+
+/// Widths of `' '` to `'~'` in Ubuntu Light, in thousandths of an em.
+const ASCII: [u16; 95] = [
+    228, 274, 392, 653, 564, 831, 648, 240, 310, 310, 472, 564, 246, 282, 246, 359, 564, 564, 564, 564, 564,
+    564, 564, 564, 564, 564, 246, 246, 564, 564, 564, 380, 940, 641, 630, 609, 702, 555, 520, 658, 692, 248,
+    487, 599, 502, 865, 709, 774, 592, 774, 618, 517, 548, 680, 624, 921, 608, 569, 560, 310, 359, 310, 564,
+    490, 376, 509, 583, 460, 583, 548, 376, 573, 569, 237, 237, 495, 255, 863, 569, 582, 583, 583, 374, 428,
+    387, 569, 480, 775, 499, 474, 455, 319, 262, 319, 564,
+];
+
+/// Widths of U+00A0 to U+00FF in Ubuntu Light, in thousandths of an em.
+const LATIN_1: [u16; 96] = [
+    228, 274, 564, 564, 564, 564, 262, 482, 376, 826, 386, 452, 564, 282, 826, 376, 318, 564, 359, 359, 376,
+    575, 616, 246, 376, 359, 437, 452, 874, 874, 874, 380, 641, 641, 641, 641, 641, 641, 915, 609, 555, 555,
+    555, 555, 248, 248, 248, 248, 716, 709, 774, 774, 774, 774, 774, 564, 774, 680, 680, 680, 680, 569, 593,
+    596, 509, 509, 509, 509, 509, 509, 854, 460, 548, 548, 548, 548, 237, 237, 237, 237, 578, 569, 582, 582,
+    582, 582, 582, 564, 582, 569, 569, 569, 569, 474, 583, 474,
+];
+
+/// Width of `text` on one line, in em; a little too wide rather than too narrow for letters beyond Latin.
+pub(super) fn width(text: &str) -> f32 {
+    text.chars().map(letter).sum()
+}
+
+fn letter(letter: char) -> f32 {
+    let code = letter as usize;
+    let thousandths = match code {
+        0x20..=0x7e => ASCII[code - 0x20],
+        0xa0..=0xff => LATIN_1[code - 0xa0],
+        0x100..=0x24f => 700,
+        0x300..=0x36f => 0,
+        0x370..=0x52f => FOREIGN,
+        0x2010..=0x2015 | 0x2018..=0x201f | 0x2022 | 0x2212 => 570,
+        _ => UNKNOWN,
+    };
+    f32::from(thousandths) * 1e-3
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn widths_follow_the_letters() {
+        assert!((width("Zoom") - (0.560 + 0.582 + 0.582 + 0.863)).abs() < 1e-6);
+        assert!(width("W") > 3.0 * width("i"));
+        assert!("0123456789".chars().all(|digit| letter(digit) == letter('0')), "digits are of one width");
+        assert_eq!(width("é"), width("e"));
+        assert_eq!(width("靴"), 1.0);
+    }
+}
