@@ -32,6 +32,9 @@ const AROUND_M: f64 = 0.17;
 /// After which time a foot has come down flat, in seconds.
 const FLAT_S: f64 = 0.3;
 
+/// Time constant of a foot's habits, in seconds.
+const HABIT_S: f64 = 0.08;
+
 /// One foot on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Foot {
@@ -245,7 +248,7 @@ impl Foot {
     }
 
     /// Notes how the foot, alone on its tiles, differs from its model patch.
-    pub(super) fn learn_habits(&mut self, list: &[LoadedTile], pitch: f64) {
+    pub(super) fn learn_habits(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
         let (centre, half) = (self.centre(), self.half());
         let mut lines = Lines::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
         for axis in Axis::BOTH {
@@ -254,18 +257,29 @@ impl Foot {
                 lines.line(axis, number);
             }
         }
-        self.habits.clear();
+        // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
+        let weight =
+            if self.alone_at.is_none() || self.age < HABIT_S { 1.0 } else { 1.0 - (-dt / HABIT_S).exp() };
+        for habit in &mut self.habits {
+            habit.seen = false;
+        }
         for line in &lines.lines {
             let slice = line.slice(pitch, line.axis.along(centre), line.axis.along(half));
-            self.habits.push(Habit {
-                axis: line.axis,
-                number: line.number,
-                share: line.force / lines.force - slice.share,
-                moment: line.moment / lines.force - slice.moment,
-                cross: line.cross / lines.force,
+            let now = [
+                line.force / lines.force - slice.share,
+                line.moment / lines.force - slice.moment,
+                line.cross / lines.force,
+            ];
+            let same = |habit: &Habit| habit.axis == line.axis && habit.number == line.number;
+            let position = self.habits.iter().position(same).unwrap_or_else(|| {
+                self.habits.push(Habit::none(line.axis, line.number));
+                self.habits.len() - 1
             });
+            self.habits[position].learn(now, weight);
         }
-        self.alone_at = Some(centre);
+        self.habits.retain(|habit| habit.seen);
+        let before = self.alone_at.unwrap_or(centre);
+        self.alone_at = Some(before + (centre - before) * weight);
     }
 
     /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
@@ -288,7 +302,7 @@ impl Foot {
                 cross: habit.cross * strength,
                 ..*habit
             })
-            .unwrap_or(Habit { axis, number, share: 0.0, moment: 0.0, cross: 0.0 })
+            .unwrap_or(Habit::none(axis, number))
     }
 
     /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.

@@ -131,4 +131,20 @@ pub(super) struct Habit {
     pub share: f64,
     pub moment: f64,
     pub cross: f64,
+    pub seen: bool,
+}
+
+impl Habit {
+    /// No difference from the model.
+    pub(super) fn none(axis: Axis, number: i32) -> Self {
+        Self { axis, number, share: 0.0, moment: 0.0, cross: 0.0, seen: false }
+    }
+
+    /// Moves by `weight` towards the difference `now` in share, moment and cross moment.
+    pub(super) fn learn(&mut self, now: [f64; 3], weight: f64) {
+        self.share += weight * (now[0] - self.share);
+        self.moment += weight * (now[1] - self.moment);
+        self.cross += weight * (now[2] - self.cross);
+        self.seen = true;
+    }
 }

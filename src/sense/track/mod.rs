@@ -349,7 +349,7 @@ impl Tracker {
             foot.learn_past(dt);
             foot.roll();
             if !foot.shared {
-                foot.learn_habits(list, self.cells.pitch);
+                foot.learn_habits(list, self.cells.pitch, dt);
             }
             for at in 0..foot.tiles.len() {
                 let tile = &list[foot.tiles[at] as usize];
