@@ -3,6 +3,7 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::lines::{Axis, Habit, Lines};
 use super::patch::PatchOnTile;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
@@ -21,6 +22,18 @@ pub(super) const HALF_LEAST: f64 = 0.03;
 pub(super) const HALF_MOST: f64 = 0.17;
 /// What one expects before anything is seen: half a forefoot or heel-and-arch (our choice).
 pub(super) const HALF_REST: f64 = 0.075;
+
+/// Longest distance between two points under one shoe that carry noticeable load.
+const SHOE_M: f64 = 0.29;
+/// How far to the side of its line of roll a foot presses.
+const ASIDE_M: f64 = 0.11;
+/// How far from its centre of pressure a foot that has come down flat presses.
+const AROUND_M: f64 = 0.17;
+/// After which time a foot has come down flat, in seconds.
+const FLAT_S: f64 = 0.3;
+
+/// Time constant of a foot's habits, in seconds.
+const HABIT_S: f64 = 0.08;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
@@ -42,6 +55,13 @@ pub(super) struct Foot {
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
+    /// How its shape differs from the model patch, as last seen alone.
+    pub habits: SmallVec<[Habit; 6]>,
+    /// Where it was when last seen alone; `None` if it never was.
+    pub alone_at: Option<DVec2>,
+    /// Its centre of pressure when it landed, and the one farthest from there since.
+    pub landed: DVec2,
+    pub farthest: DVec2,
 }
 
 /// A foot as its last few hundredths of a second foretell it: what a newcomer is measured against.
@@ -79,6 +99,10 @@ impl Foot {
             group: 0,
             ambiguous: false,
             shared: false,
+            habits: SmallVec::new(),
+            alone_at: None,
+            landed: centre,
+            farthest: centre,
         };
         foot.be_sure(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
@@ -131,16 +155,41 @@ impl Foot {
         PatchOnTile::new(low, high, self.centre(), self.half())
     }
 
-    /// How far from its centre of pressure a load may appear and still be its own.
+    /// How far `point` is beyond what can belong to this foot, in metres; negative within.
     ///
-    /// A foot that has just landed on its heel still has its whole length to roll
-    /// over; one that stands reaches from its middle to toe and heel.
-    pub(super) fn extension(&self) -> f64 {
-        if self.age < 0.15 { 0.24 } else { 0.17 }
+    /// All its centres of pressure since it landed, and everything else it
+    /// presses, lie under one shoe. Until it has come down flat, nothing is known
+    /// of where the shoe's other end lies; from then on what it presses is around
+    /// its centre of pressure.
+    pub(super) fn beyond(&self, point: DVec2) -> f64 {
+        let whole = point.distance(self.landed).max(point.distance(self.farthest)) - SHOE_M;
+        let path = self.farthest - self.landed;
+        let length = path.length();
+        let mut beyond = whole;
+        if length > 0.06 {
+            let across = path.perp_dot(point - self.landed).abs() / length;
+            beyond = beyond.max(across - ASIDE_M);
+        }
+        if self.age > FLAT_S {
+            beyond = beyond.max(point.distance(self.centre()) - AROUND_M);
+        }
+        beyond
+    }
+
+    /// Remembers where the foot has been.
+    pub(super) fn roll(&mut self) {
+        let centre = self.centre();
+        if self.age < 0.01 {
+            self.landed = centre;
+            self.farthest = centre;
+        } else if centre.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
+            self.farthest = centre;
+        }
     }
 
     /// Lists the loaded tiles that its patch may press.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
+        let near_home = self.habit_strength() > 0.3;
         self.tiles.clear();
         let reach = self.half() * 1.1 + 0.01;
         let low = ((self.centre() - reach) / pitch).floor();
@@ -149,6 +198,17 @@ impl Foot {
             for column in low.x as i32..=high.x as i32 {
                 if let Some(position) = tiles.find(column, row) {
                     self.tiles.push(position as u32);
+                }
+            }
+        }
+        if near_home {
+            // Where it was alone, it also presses what it pressed then.
+            for load in &self.past.loads {
+                if let Some(position) = tiles.place(load.index)
+                    && load.force > 0.01 * self.past.force
+                    && !self.tiles.contains(&position)
+                {
+                    self.tiles.push(position);
                 }
             }
         }
@@ -185,6 +245,64 @@ impl Foot {
         if self.tiles.len() > 1 {
             self.learn_halves(list, dt, cell);
         }
+    }
+
+    /// Notes how the foot, alone on its tiles, differs from its model patch.
+    pub(super) fn learn_habits(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
+        let (centre, half) = (self.centre(), self.half());
+        let mut lines = Lines::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
+        for axis in Axis::BOTH {
+            let (c, h) = (axis.along(centre), axis.along(half));
+            for number in ((c - h) / pitch).floor() as i32..=((c + h) / pitch).floor() as i32 {
+                lines.line(axis, number);
+            }
+        }
+        // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
+        let weight =
+            if self.alone_at.is_none() || self.age < HABIT_S { 1.0 } else { 1.0 - (-dt / HABIT_S).exp() };
+        for habit in &mut self.habits {
+            habit.seen = false;
+        }
+        for line in &lines.lines {
+            let slice = line.slice(pitch, line.axis.along(centre), line.axis.along(half));
+            let now = [
+                line.force / lines.force - slice.share,
+                line.moment / lines.force - slice.moment,
+                line.cross / lines.force,
+            ];
+            let same = |habit: &Habit| habit.axis == line.axis && habit.number == line.number;
+            let position = self.habits.iter().position(same).unwrap_or_else(|| {
+                self.habits.push(Habit::none(line.axis, line.number));
+                self.habits.len() - 1
+            });
+            self.habits[position].learn(now, weight);
+        }
+        self.habits.retain(|habit| habit.seen);
+        let before = self.alone_at.unwrap_or(centre);
+        self.alone_at = Some(before + (centre - before) * weight);
+    }
+
+    /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
+    pub(super) fn habit_strength(&self) -> f64 {
+        self.alone_at.map_or(0.0, |place| {
+            let moved = place.distance(self.centre()) / 0.05;
+            (-moved * moved).exp()
+        })
+    }
+
+    /// Its habit on one line, as far as it still holds; nothing where it has none.
+    pub(super) fn habit(&self, axis: Axis, number: i32) -> Habit {
+        let strength = self.habit_strength();
+        self.habits
+            .iter()
+            .find(|habit| habit.axis == axis && habit.number == number)
+            .map(|habit| Habit {
+                share: habit.share * strength,
+                moment: habit.moment * strength,
+                cross: habit.cross * strength,
+                ..*habit
+            })
+            .unwrap_or(Habit::none(axis, number))
     }
 
     /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.

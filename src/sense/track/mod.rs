@@ -11,12 +11,14 @@
 
 mod foot;
 mod joint;
+mod lines;
 mod patch;
 
 use glam::DVec2;
 
 use self::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
 use self::joint::{Joint, MOST_FEET, Slope};
+use self::lines::{Axis, Lines};
 use super::contact::{ContactId, Covariance, TileLoad};
 use super::doubt::SensorDoubt;
 use super::loaded::LoadedTiles;
@@ -55,9 +57,18 @@ struct Link {
 #[derive(Clone, Copy, Debug)]
 struct Cells {
     pitch: f64,
+    columns: u16,
+    rows: u16,
 }
 
 impl Cells {
+    fn count(&self, axis: Axis) -> i32 {
+        match axis {
+            Axis::East => self.columns.into(),
+            Axis::North => self.rows.into(),
+        }
+    }
+
     fn of(&self, tile: &LoadedTile) -> (DVec2, DVec2) {
         let low = DVec2::new(tile.tile.column.into(), tile.tile.row.into()) * self.pitch;
         (low, low + self.pitch)
@@ -69,7 +80,11 @@ impl Tracker {
         let room = geometry.tile_count().min(1024);
         Self {
             doubt,
-            cells: Cells { pitch: geometry.pitch_m().into() },
+            cells: Cells {
+                pitch: geometry.pitch_m().into(),
+                columns: geometry.columns(),
+                rows: geometry.rows(),
+            },
             next: 1,
             feet: Vec::with_capacity(room),
             links: Vec::with_capacity(room),
@@ -130,7 +145,7 @@ impl Tracker {
                 .feet
                 .iter()
                 .enumerate()
-                .map(|(which, foot)| (which, foot.centre().distance(centroid) - foot.extension()))
+                .map(|(which, foot)| (which, foot.beyond(centroid)))
                 .min_by(|a, b| a.1.total_cmp(&b.1))
                 .filter(|&(_, beyond)| beyond < 0.0);
             match nearest {
@@ -183,7 +198,6 @@ impl Tracker {
     fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<(f64, DVec2, f64)> {
         let mut whole = 0.0;
         let mut sum = DVec2::ZERO;
-        let near = if foot.age < 0.15 { 0.24 } else { 0.15 };
         let mut best: Option<(f64, DVec2, f64)> = None;
         for &position in &foot.tiles {
             let tile = &list[position as usize];
@@ -203,8 +217,11 @@ impl Tracker {
             let place = centre + moment / added;
             let (low, high) = self.cells.of(tile);
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
+            // What the foot's own sway may look like, at its own centre of pressure.
+            let sway = slow.force * 0.012;
             if inside
-                && about.length() > added * near + slow.force * 0.012
+                && about.length() > added * 0.08 + sway
+                && foot.beyond(place) > sway / added
                 && best.is_none_or(|best| best.0 < added)
             {
                 let deviation = 0.02 + (slow.force * 0.006 / added).min(0.1);
@@ -330,6 +347,10 @@ impl Tracker {
         let list = tiles.list();
         for foot in &mut self.feet {
             foot.learn_past(dt);
+            foot.roll();
+            if !foot.shared {
+                foot.learn_habits(list, self.cells.pitch, dt);
+            }
             for at in 0..foot.tiles.len() {
                 let tile = &list[foot.tiles[at] as usize];
                 let (force, moment) = if foot.shared {
@@ -427,7 +448,6 @@ fn predict(joint: &mut Joint, feet: usize, dt: f64) {
 fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile], cells: &Cells, dt: f64) {
     // Errors of the patch model last for tens of milliseconds: many frames see the same one.
     let frames = (0.02 / dt.max(1e-4)).max(1.0);
-    let shape = 0.06_f64.powi(2) * frames;
     let mut seen: arrayvec::ArrayVec<u32, 64> = arrayvec::ArrayVec::new();
     for &member in members {
         for &position in &feet[member as usize].tiles {
@@ -436,13 +456,20 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
             }
         }
     }
-    let (mut force, mut sum) = (0.0, DVec2::ZERO);
-    for &position in &seen {
-        let tile = &list[position as usize];
-        force += f64::from(tile.wrench.force);
-        sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+    let mut lines = Lines::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
+    let (force, middle) = (lines.force, lines.middle);
+    for &member in members {
+        // Lines that a patch would reach but that carry nothing speak too.
+        let foot = &feet[member as usize];
+        for axis in Axis::BOTH {
+            let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()));
+            for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
+                if (0..cells.count(axis)).contains(&number) {
+                    lines.line(axis, number);
+                }
+            }
+        }
     }
-    let middle = sum / force;
     // The whole of it, free of any patch model.
     let mut slopes = [[(0, 0.0); 2 * MOST_FEET]; 3];
     for which in 0..members.len() {
@@ -469,72 +496,51 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
         let missing = -moment - now(joint, &slopes[..2 * n]);
         joint.observe(missing, &slopes[..2 * n], 0.09);
     }
-    for &position in &seen {
-        let tile = &list[position as usize];
-        let cell = cells.of(tile);
+    for line in &lines.lines {
+        let axis = line.axis;
+        let (place, half) = match axis {
+            Axis::East => (EAST, HALF_EAST),
+            Axis::North => (NORTH, HALF_NORTH),
+        };
+        let aside = EAST + NORTH - place;
         let mut expected = [0.0; 3];
-        let mut rows: [arrayvec::ArrayVec<Slope, { 5 * MOST_FEET }>; 3] = Default::default();
+        let mut rows: [arrayvec::ArrayVec<Slope, { 4 * MOST_FEET }>; 3] = Default::default();
         let mut doubt = 0.0;
         for (which, &member) in members.iter().enumerate() {
             let foot = &feet[member as usize];
-            let on = foot.on(cell);
-            let (share, moment) = (on.share(), on.moment());
-            if share <= 0.0 {
+            let habit = foot.habit(axis, line.number);
+            let slice = line.slice(cells.pitch, axis.along(foot.centre()), axis.along(foot.half()));
+            let share = (slice.share + habit.share).clamp(0.0, 1.0);
+            if share <= 0.0 && slice.share <= 0.0 {
                 continue;
             }
             let (f, at) = (foot.force(), which * STATES);
+            let offset = axis.across(foot.centre() - lines.middle);
+            let moment = slice.moment + habit.moment;
+            let cross = share * offset + habit.cross;
             expected[0] += f * share;
-            expected[1] += f * moment.x;
-            expected[2] += f * moment.y;
-            doubt += f * f * 4.0 * share * (1.0 - share).max(0.0);
-            let (e, n) = (on.east, on.north);
-            for (row, value, by) in [
-                (
-                    0,
-                    share,
-                    [
-                        e.share_by[0] * n.share,
-                        e.share * n.share_by[0],
-                        e.share_by[1] * n.share,
-                        e.share * n.share_by[1],
-                    ],
-                ),
-                (
-                    1,
-                    moment.x,
-                    [
-                        e.moment_by[0] * n.share,
-                        e.moment * n.share_by[0],
-                        e.moment_by[1] * n.share,
-                        e.moment * n.share_by[1],
-                    ],
-                ),
-                (
-                    2,
-                    moment.y,
-                    [
-                        e.share_by[0] * n.moment,
-                        e.share * n.moment_by[0],
-                        e.share_by[1] * n.moment,
-                        e.share * n.moment_by[1],
-                    ],
-                ),
-            ] {
-                rows[row].push((at + FORCE, value));
-                for (state, slope) in [EAST, NORTH, HALF_EAST, HALF_NORTH].into_iter().zip(by) {
-                    rows[row].push((at + state, f * slope));
-                }
-            }
+            expected[1] += f * moment;
+            expected[2] += f * cross;
+            let straddle =
+                4.0 * share.max(slice.share).min(0.5) * (1.0 - share.min(slice.share).max(0.5)).max(0.0);
+            let strange = 0.01 + 0.06 * (1.0 - foot.habit_strength());
+            doubt += (f * strange).powi(2) * straddle;
+            rows[0].push((at + FORCE, share));
+            rows[0].push((at + place, f * slice.share_by[0]));
+            rows[0].push((at + half, f * slice.share_by[1]));
+            rows[1].push((at + FORCE, moment));
+            rows[1].push((at + place, f * slice.moment_by[0]));
+            rows[1].push((at + half, f * slice.moment_by[1]));
+            rows[2].push((at + FORCE, cross));
+            rows[2].push((at + aside, f * share));
+            rows[2].push((at + place, f * slice.share_by[0] * offset));
+            rows[2].push((at + half, f * slice.share_by[1] * offset));
         }
-        let measured = {
-            let force = f64::from(tile.wrench.force);
-            let arm = (tile.centroid - tile.centre).as_dvec2();
-            [force, force * arm.x, force * arm.y]
-        };
-        for (row, slopes) in rows.iter().enumerate() {
-            let (noise, lever) = if row == 0 { (2.0, 1.0) } else { (0.3, 0.06) };
-            let missing = measured[row] - expected[row] - now(joint, slopes);
-            joint.observe(missing, slopes, noise * noise + shape * doubt * lever * lever);
+        for (row, measured) in [line.force, line.moment, line.cross].into_iter().enumerate() {
+            let (noise, lever) = [(2.0, 1.0), (0.3, 0.06), (0.3, 0.06)][row];
+            let slopes = &rows[row];
+            let missing = measured - expected[row] - now(joint, slopes);
+            joint.observe(missing, slopes, noise * noise + frames * doubt * lever * lever);
         }
     }
 }

@@ -1,0 +1,150 @@
+//! Columns and rows of tiles: what a group of feet is measured by.
+//!
+//! How a foot divides between two neighbouring columns depends on its width
+//! eastwards alone, and on nothing about north and south; and the moment of a
+//! whole column about an eastward axis tells how far north its load lies
+//! without any patch model. So the tiles of a group are summed by column and by
+//! row, and each sum suffers from one unknown half width only.
+
+use arrayvec::ArrayVec;
+use glam::DVec2;
+
+use super::patch::Slice;
+use crate::sense::tile::LoadedTile;
+
+/// Most columns and rows of one group that are looked at.
+pub(super) const MOST_LINES: usize = 24;
+
+/// Which way a line's place is counted: columns eastwards, rows northwards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Axis {
+    East,
+    North,
+}
+
+impl Axis {
+    pub(super) const BOTH: [Self; 2] = [Self::East, Self::North];
+
+    /// The component along the axis.
+    pub(super) fn along(self, point: DVec2) -> f64 {
+        match self {
+            Self::East => point.x,
+            Self::North => point.y,
+        }
+    }
+
+    /// The component across the axis.
+    pub(super) fn across(self, point: DVec2) -> f64 {
+        match self {
+            Self::East => point.y,
+            Self::North => point.x,
+        }
+    }
+}
+
+/// The load of one column or row of tiles.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line {
+    pub axis: Axis,
+    pub number: i32,
+    pub force: f64,
+    /// First moment along the axis about the line's middle.
+    pub moment: f64,
+    /// First moment across the axis about the group's own middle.
+    pub cross: f64,
+}
+
+impl Line {
+    /// A line without load.
+    pub(super) fn empty(axis: Axis, number: i32) -> Self {
+        Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0 }
+    }
+
+    /// The part of a patch on the line, with its middle at `c` and half width `h` along the axis.
+    pub(super) fn slice(&self, pitch: f64, c: f64, h: f64) -> Slice {
+        let low = f64::from(self.number) * pitch;
+        Slice::new(low, low + pitch, c, h)
+    }
+}
+
+/// The columns and rows of some tiles.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Lines {
+    pub lines: ArrayVec<Line, MOST_LINES>,
+    /// Force of all the tiles.
+    pub force: f64,
+    /// Their centroid.
+    pub middle: DVec2,
+}
+
+impl Lines {
+    /// Sums up `tiles`; what is beyond [`MOST_LINES`] is in `force` and `middle` only.
+    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
+        let mut sums = Self::default();
+        let mut sum = DVec2::ZERO;
+        for tile in tiles.clone() {
+            sums.force += f64::from(tile.wrench.force);
+            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+        }
+        sums.middle = sum / sums.force;
+        for tile in tiles {
+            let force = f64::from(tile.wrench.force);
+            let at = tile.centroid.as_dvec2();
+            for axis in Axis::BOTH {
+                let number = match axis {
+                    Axis::East => i32::from(tile.tile.column),
+                    Axis::North => i32::from(tile.tile.row),
+                };
+                let middle = (f64::from(number) + 0.5) * pitch;
+                let cross = axis.across(sums.middle);
+                if let Some(line) = sums.line(axis, number) {
+                    line.force += force;
+                    line.moment += force * (axis.along(at) - middle);
+                    line.cross += force * (axis.across(at) - cross);
+                }
+            }
+        }
+        sums
+    }
+
+    /// The line `number`, made if there is room; `None` if there is none.
+    pub(super) fn line(&mut self, axis: Axis, number: i32) -> Option<&mut Line> {
+        let known = self.lines.iter().position(|line| line.axis == axis && line.number == number);
+        let position = match known {
+            Some(position) => position,
+            None => {
+                self.lines.try_push(Line::empty(axis, number)).ok()?;
+                self.lines.len() - 1
+            }
+        };
+        self.lines.get_mut(position)
+    }
+}
+
+/// How a foot's true division over a line differs from that of its model patch.
+///
+/// Learnt while the foot stands alone, where the truth is measured; shares of the foot's force.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Habit {
+    pub axis: Axis,
+    pub number: i32,
+    pub share: f64,
+    pub moment: f64,
+    pub cross: f64,
+    pub seen: bool,
+}
+
+impl Habit {
+    /// No difference from the model.
+    pub(super) fn none(axis: Axis, number: i32) -> Self {
+        Self { axis, number, share: 0.0, moment: 0.0, cross: 0.0, seen: false }
+    }
+
+    /// Moves by `weight` towards the difference `now` in share, moment and cross moment.
+    pub(super) fn learn(&mut self, now: [f64; 3], weight: f64) {
+        self.share += weight * (now[0] - self.share);
+        self.moment += weight * (now[1] - self.moment);
+        self.cross += weight * (now[2] - self.cross);
+        self.seen = true;
+    }
+}
