@@ -10,7 +10,9 @@ pub struct ForceFrame {
     /// When the packet that completed the frame arrived; equals `at` where no network is involved.
     pub received: Instant,
     /// Newtons per tile (tile-index order), each in [`crate::floor::Corner::ALL`] order.
-    /// Always finite: a reading that is not is replaced by 0 and marked.
+    /// Always finite: a reading that is not leaves the sensor's last good one in its place (0 if it
+    /// never had one) and marks it [`Quality::Faulty`]; so does a sample that never came, which
+    /// marks nothing until the board counts as silent.
     pub forces: Vec<[f32; 4]>,
     /// How far each of `forces` can be trusted.
     pub quality: Vec<[Quality; 4]>,

@@ -9,6 +9,7 @@
 //! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
 //! among them, one picker per region.
 
+mod assembler;
 mod calibration;
 mod cluster;
 mod contact;
@@ -24,6 +25,7 @@ mod sensing;
 mod tile;
 mod track;
 
+pub use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};
 pub use calibration::{Fit, FitError, LoadPoint};
 pub use contact::{Contact, ContactId, Covariance, TileLoad};
 pub use cursor::{Cursor, CursorPicker, Stickiness};

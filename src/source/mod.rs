@@ -1,5 +1,9 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+mod udp;
+
+pub use udp::UdpSource;
+
 use std::time::Duration;
 
 use thiserror::Error;

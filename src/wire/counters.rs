@@ -1,6 +1,11 @@
+use std::ops::{Add, AddAssign};
+
 use serde::Serialize;
 
 /// What came in and what was not used, since the start; nothing is dropped without being counted here.
+///
+/// A source counts datagrams and what it refused, the assembler what became
+/// of the packets; their sum is the whole story.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct LinkCounters {
     /// Datagrams received, good or bad.
@@ -9,23 +14,32 @@ pub struct LinkCounters {
     pub packets: u64,
     /// Frames completed.
     pub frames: u64,
+    /// Frames completed while the tare was still being measured; they are not passed on.
+    pub held_back: u64,
     /// Packets that never came, by gaps in the boards' sequence numbers.
     pub lost: u64,
-    /// Packets that came after their frame was done and were dropped.
+    /// Packets that came after their frame was done, or too old to act on, and were dropped.
     pub late: u64,
     /// Packets that came again and were dropped.
     pub duplicate: u64,
+    /// Packets whose sequence number fits nothing seen so far; dropped unless the next two confirm it.
+    pub doubtful: u64,
     /// Times a board's sequence number started anew (reboot or reconnection).
     pub restarts: u64,
+    /// Samples left out or repeated because a board's crystal runs faster or slower than the others'.
+    pub slips: u64,
     /// Datagrams refused because they are not well-formed OSC, or nest or grow past the limits.
     pub malformed: u64,
     /// Messages for an address that no board of this floor and no control has.
     pub unknown_address: u64,
     /// Messages for a board that don't carry what the floor says: missing sequence, wrong types, wrong count.
     pub wrong_shape: u64,
+    /// Datagrams from senders that are not on the list of allowed ones.
+    pub foreign: u64,
     /// Single readings that were NaN, infinite or outside 0 to 65535.
     pub bad_readings: u64,
-    /// Datagrams that the kernel dropped because the receive buffer was full, where it tells.
+    /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
+    /// and messages from apps that nobody took in time.
     pub overflowed: u64,
 }
 
@@ -33,6 +47,36 @@ impl LinkCounters {
     /// Datagrams and messages that were refused, for whatever reason.
     #[must_use]
     pub const fn refused(&self) -> u64 {
-        self.malformed + self.unknown_address + self.wrong_shape
+        self.malformed + self.unknown_address + self.wrong_shape + self.foreign
+    }
+}
+
+impl Add for LinkCounters {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        Self {
+            datagrams: self.datagrams + other.datagrams,
+            packets: self.packets + other.packets,
+            frames: self.frames + other.frames,
+            held_back: self.held_back + other.held_back,
+            lost: self.lost + other.lost,
+            late: self.late + other.late,
+            duplicate: self.duplicate + other.duplicate,
+            doubtful: self.doubtful + other.doubtful,
+            restarts: self.restarts + other.restarts,
+            slips: self.slips + other.slips,
+            malformed: self.malformed + other.malformed,
+            unknown_address: self.unknown_address + other.unknown_address,
+            wrong_shape: self.wrong_shape + other.wrong_shape,
+            foreign: self.foreign + other.foreign,
+            bad_readings: self.bad_readings + other.bad_readings,
+            overflowed: self.overflowed + other.overflowed,
+        }
+    }
+}
+
+impl AddAssign for LinkCounters {
+    fn add_assign(&mut self, other: Self) {
+        *self = *self + other;
     }
 }

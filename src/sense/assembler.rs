@@ -1,0 +1,449 @@
+mod board;
+mod clock;
+mod presence;
+mod sequence;
+mod stream;
+mod tare;
+
+use std::time::Duration;
+
+use arrayvec::ArrayVec;
+
+pub use tare::{Tare, TareOutcome, TareRules};
+
+use self::board::{BUFFERS, BoardTrack};
+use self::clock::{SLOT_NS, SampleClock, nanos};
+use super::{ForceFrame, Quality};
+use crate::engine::LinkState;
+use crate::floor::Floor;
+use crate::units::{Instant, Newtons};
+use crate::wire::{LinkCounters, SensorPacket};
+
+/// A slot is given up for complete when a board has delivered one this much later.
+const AHEAD: i64 = 2;
+
+/// A slot still incomplete this long after its last packet is given up when time passes without packets.
+const PATIENCE_NS: i64 = 3 * SLOT_NS;
+
+/// How often the boards' slots and the clock are compared with the receive clock.
+const ALIGN_NS: i64 = 64 * SLOT_NS;
+
+/// Puts the packets of all boards together into one calibrated, tared [`ForceFrame`] per millisecond.
+///
+/// ```text
+/// loop {
+///     match source.next(patience)? {
+///         Some(packet) => assembler.take(&packet),
+///         None => assembler.poll(source.now()),
+///     }
+///     while let Some(frame) = assembler.ready() { ... }
+/// }
+/// ```
+///
+/// **Slots.** Each board counts its own samples, and boards start at different
+/// times. A board's first packet is given the common millisecond (slot) nearest
+/// to its arrival; from there its sequence number counts slots. Crystals drift:
+/// a board more than 0.75 ms off the others is moved by a slot, which leaves
+/// out or repeats one sample. Delay is judged by the quickest packet of some
+/// 64 ms, so that jitter moves nothing.
+///
+/// **Time.** A frame's `at` is its slot's time on a sample clock that follows
+/// the receive clock by at most 500 ppm, or is set forward when it is more than
+/// 100 ms behind. It grows from frame to frame, by 1 ms unless slots were lost
+/// altogether. Where packets are stamped with exact milliseconds, as by a
+/// simulated floor, `at` is exact to the microsecond.
+///
+/// **Completeness.** A frame is ready when every board heard within the last
+/// 100 ms has delivered its slot or a later one, or when any board is two slots
+/// ahead. Boards without a sample in the slot keep their last values. What
+/// comes later than that, comes twice, or is more than 100 ms old is dropped
+/// and counted.
+///
+/// **Trust.** A board without a usable sample for 100 ms becomes
+/// [`Quality::Stale`], and so does one that rebooted, for at least one frame.
+/// It returns with its next sample, but only after a clean second if outages
+/// follow each other within two seconds. More than 10 % of lost packets within
+/// a second, or a sensor at 98 % of its range, means [`Quality::Degraded`]; a
+/// reading that is not a number [`Quality::Faulty`].
+///
+/// It has no clock of its own: `received` and `now` are on the source's clock;
+/// one that is earlier than the last counts as the last.
+#[derive(Clone, Debug)]
+pub struct Assembler {
+    floor_tiles: usize,
+    boards: Vec<BoardTrack>,
+    /// `None` before the first packet.
+    clock: Option<SampleClock>,
+    now_ns: i64,
+    swept_ns: i64,
+    aligned_ns: i64,
+    /// Slots that wait for boards, earliest first.
+    waiting: ArrayVec<Waiting, BUFFERS>,
+    /// How many boards frames wait for.
+    awaited: usize,
+    /// The last slot made into a frame.
+    done: i64,
+    /// Whether the waiting slots are given up for complete.
+    flush: bool,
+    /// Whether frames are passed on: not before the tare is known.
+    started: bool,
+    frame: ForceFrame,
+    counters: LinkCounters,
+    /// Space for sorting the boards' delays.
+    delays: Vec<(i64, usize)>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Waiting {
+    slot: i64,
+    buffer: usize,
+    /// Awaited boards that have delivered this slot or a later one.
+    passed: usize,
+    /// When its last packet came.
+    received: Instant,
+}
+
+/// How one board is doing.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct BoardStatus {
+    /// How far its sensors can be trusted, each by itself perhaps less.
+    pub quality: Quality,
+    /// Time since its last usable packet; `None` if none has come.
+    pub age: Option<Duration>,
+    /// Share of its packets lost or too late over the last second, 0 to 1.
+    pub loss: f32,
+    /// Samples by which its crystal has run slower (positive) or faster than the common clock.
+    pub slips: i64,
+}
+
+impl Assembler {
+    /// An assembler for the boards of `floor`, with the floor's own tare.
+    #[must_use]
+    pub fn new(floor: &Floor) -> Self {
+        Self::with_tare(floor, Tare::FromFloor)
+    }
+
+    /// An assembler for the boards of `floor`. With [`Tare::AtStart`] no frame
+    /// is passed on until the boards heard at first have been tared; one that
+    /// appears later is stale until it is.
+    #[must_use]
+    pub fn with_tare(floor: &Floor, tare: Tare) -> Self {
+        let boards: Vec<_> =
+            (0..floor.boards.len()).map(|number| BoardTrack::new(floor, number, tare)).collect();
+        let mut frame = ForceFrame::empty(&floor.geometry);
+        frame.quality.fill([Quality::Stale; 4]);
+        Self {
+            floor_tiles: floor.geometry.tile_count(),
+            delays: Vec::with_capacity(boards.len()),
+            boards,
+            clock: None,
+            now_ns: 0,
+            swept_ns: 0,
+            aligned_ns: 0,
+            waiting: ArrayVec::new(),
+            awaited: 0,
+            done: i64::MIN,
+            flush: false,
+            started: false,
+            frame,
+            counters: LinkCounters::default(),
+        }
+    }
+
+    /// Takes one packet; afterwards [`Assembler::ready`] should be called until it gives `None`.
+    ///
+    /// Packets of boards this floor does not have, or with another number of
+    /// readings than the board has channels, are counted and dropped.
+    pub fn take(&mut self, packet: &SensorPacket) {
+        let number = usize::from(packet.board);
+        match self.boards.get(number) {
+            None => self.counters.unknown_address += 1,
+            Some(board) if board.channel_count() != packet.readings.len() => self.counters.wrong_shape += 1,
+            Some(_) => {
+                self.pass_time(nanos(packet.received));
+                self.sort_in(number, packet);
+            }
+        }
+    }
+
+    /// Lets time pass without a packet, so that silence is noticed; `now` is on the source's clock.
+    ///
+    /// Call it at least every 10 ms for a lost floor to be noticed within 120 ms.
+    pub fn poll(&mut self, now: Instant) {
+        self.pass_time(nanos(now));
+        let waited = self.waiting.last().map_or(0, |waiting| self.now_ns - nanos(waiting.received));
+        self.flush |= waited >= PATIENCE_NS;
+    }
+
+    /// The next frame, if one is complete; call until `None`. A frame of which
+    /// four later ones wait is dropped and its packets counted as late.
+    pub fn ready(&mut self) -> Option<&ForceFrame> {
+        loop {
+            let due = self.waiting.first().is_some_and(|first| {
+                let newest = self.waiting.last().map_or(first.slot, |last| last.slot);
+                self.flush || first.passed >= self.awaited || newest - first.slot >= AHEAD
+            });
+            let (slot, buffer, received) = if due {
+                let first = self.waiting.remove(0);
+                (first.slot, Some(first.buffer), first.received)
+            } else if self.waiting.is_empty() && self.has_news() {
+                // Nobody delivers: only the news that boards fell silent.
+                let clock = self.clock.as_ref()?;
+                let slot = clock.slot_before(self.now_ns).max(self.done.saturating_add(1));
+                (slot, None, instant(self.now_ns))
+            } else {
+                self.flush = false;
+                return None;
+            };
+            if self.complete(slot, buffer, received) {
+                self.counters.frames += 1;
+                return Some(&self.frame);
+            }
+            self.counters.held_back += 1;
+        }
+    }
+
+    /// Whether packets arrive, as of the last packet or poll.
+    #[must_use]
+    pub fn link_state(&self) -> LinkState {
+        let presences = || self.boards.iter().map(|board| &board.stream.presence);
+        if presences().all(|presence| !presence.was_heard()) {
+            LinkState::Waiting
+        } else if presences().all(presence::Presence::is_live) {
+            LinkState::Live
+        } else if presences().any(presence::Presence::is_live) {
+            LinkState::Partial
+        } else {
+            LinkState::Lost
+        }
+    }
+
+    /// How board `number` is doing, as of the last packet or poll; `None` if the floor has no such board.
+    #[must_use]
+    pub fn board(&self, number: u16) -> Option<BoardStatus> {
+        let board = self.boards.get(usize::from(number))?;
+        let age = |used: i64| Duration::from_nanos((self.now_ns - used).max(0).cast_unsigned());
+        Some(BoardStatus {
+            quality: board.quality(),
+            age: board.stream.presence.used_ns().map(age),
+            loss: board.stream.loss.share(),
+            slips: board.stream.slips(),
+        })
+    }
+
+    /// What became of the tare; while boards differ, the one that needs attention most.
+    #[must_use]
+    pub fn tare_outcome(&self) -> TareOutcome {
+        let urgency = |outcome: &TareOutcome| match outcome {
+            TareOutcome::Measuring => 3,
+            TareOutcome::Refused { .. } => 2,
+            TareOutcome::Taken => 1,
+            TareOutcome::FromFloor => 0,
+        };
+        let heard = self.boards.iter().filter(|board| board.stream.presence.was_heard());
+        let outcomes = heard.map(BoardTrack::tare_outcome);
+        let unheard = self.boards.first().map_or(TareOutcome::FromFloor, BoardTrack::tare_outcome);
+        outcomes.max_by_key(urgency).unwrap_or(unheard)
+    }
+
+    /// The tare in use, per tile and corner as in [`Floor::tare`]; zero for sensors that no board reads.
+    #[must_use]
+    pub fn tare(&self) -> Vec<[Newtons; 4]> {
+        let mut tare = vec![[Newtons::ZERO; 4]; self.floor_tiles];
+        for (tile, corner, force) in self.boards.iter().flat_map(BoardTrack::tares) {
+            tare[tile][corner] = force;
+        }
+        tare
+    }
+
+    /// What came in and what was dropped; datagrams and refusals are counted by the source.
+    #[must_use]
+    pub const fn counters(&self) -> LinkCounters {
+        self.counters
+    }
+
+    /// Moves time on and notices silence, at most once a millisecond.
+    fn pass_time(&mut self, now_ns: i64) {
+        self.now_ns = self.now_ns.max(now_ns);
+        if self.clock.is_none() || self.now_ns - self.swept_ns < SLOT_NS {
+            return;
+        }
+        self.swept_ns = self.now_ns;
+        let mut given_up = false;
+        for board in &mut self.boards {
+            if board.stream.presence.pass(self.now_ns) {
+                board.interrupt_tare();
+            }
+            if board.stream.is_overdue(self.now_ns) {
+                board.stream.awaited = false;
+                given_up = true;
+            }
+        }
+        if given_up {
+            self.count_awaited();
+        }
+    }
+
+    /// Counts anew which boards frames wait for and which have passed the waiting slots.
+    fn count_awaited(&mut self) {
+        let awaited = || self.boards.iter().filter(|board| board.stream.awaited);
+        self.awaited = awaited().count();
+        for waiting in &mut self.waiting {
+            waiting.passed = awaited().filter(|board| board.stream.head_slot() >= Some(waiting.slot)).count();
+        }
+    }
+
+    /// Finds the packet's slot and stores it there, if it came in time.
+    fn sort_in(&mut self, number: usize, packet: &SensorPacket) {
+        let clock = self.clock.unwrap_or_else(|| self.start());
+        let board = &mut self.boards[number];
+        let head = board.stream.head_slot();
+        let Some(place) =
+            board.stream.place(packet.sequence, self.now_ns, &clock, self.done, &mut self.counters)
+        else {
+            return;
+        };
+        if place.restarted {
+            board.interrupt_tare();
+        }
+        if place.restarted || !board.stream.awaited {
+            board.stream.awaited = true;
+            if self.awaited == 0 {
+                // After silence on all boards the others are likely to return as well.
+                self.expect_all();
+            }
+            self.count_awaited();
+        } else {
+            self.pass_slots(head, place.slot);
+        }
+        if place.usable {
+            self.store(number, place.slot, packet);
+        } else {
+            self.counters.late += 1;
+        }
+        self.align();
+    }
+
+    /// Waits for every board a while, as if all had just been heard.
+    fn expect_all(&mut self) {
+        self.boards.iter_mut().for_each(|board| board.stream.expect(self.now_ns));
+        self.awaited = self.boards.len();
+    }
+
+    /// Starts the sample clock with the first packet of all.
+    fn start(&mut self) -> SampleClock {
+        self.expect_all();
+        self.done = -1;
+        (self.swept_ns, self.aligned_ns) = (self.now_ns, self.now_ns);
+        *self.clock.insert(SampleClock::new(self.now_ns))
+    }
+
+    /// Notes that a board that was at slot `head` has now reached `slot`.
+    fn pass_slots(&mut self, head: Option<i64>, slot: i64) {
+        for waiting in &mut self.waiting {
+            waiting.passed += usize::from(head < Some(waiting.slot) && waiting.slot <= slot);
+        }
+    }
+
+    fn store(&mut self, number: usize, slot: i64, packet: &SensorPacket) {
+        let place = self.waiting.partition_point(|waiting| waiting.slot < slot);
+        if self.waiting.get(place).is_none_or(|waiting| waiting.slot != slot) {
+            self.open(place, slot);
+        }
+        let Some(waiting) = self.waiting.iter_mut().find(|waiting| waiting.slot == slot) else { return };
+        waiting.received = waiting.received.max(packet.received);
+        let board = &mut self.boards[number];
+        if board.has(waiting.buffer) {
+            // The board has just slipped back a slot: one of its samples is left out.
+            return;
+        }
+        board.store(waiting.buffer, &packet.readings, &mut self.counters);
+        board.stream.deliver(self.now_ns);
+        self.counters.packets += 1;
+    }
+
+    /// Makes room for `slot` at `place` among the waiting ones.
+    fn open(&mut self, mut place: usize, slot: i64) {
+        if self.waiting.is_full() {
+            // Only if the caller left frames unread.
+            let oldest = self.waiting.remove(0);
+            self.done = oldest.slot;
+            self.release(oldest.buffer);
+            place = place.saturating_sub(1);
+        }
+        let taken = |buffer: &usize| self.waiting.iter().any(|waiting| waiting.buffer == *buffer);
+        let Some(buffer) = (0..BUFFERS).find(|buffer| !taken(buffer)) else { return };
+        let passed = self
+            .boards
+            .iter()
+            .filter(|board| board.stream.awaited && board.stream.head_slot() >= Some(slot))
+            .count();
+        self.waiting.insert(place, Waiting { slot, buffer, passed, received: Instant::START });
+    }
+
+    fn release(&mut self, buffer: usize) {
+        for board in &mut self.boards {
+            self.counters.late += u64::from(board.has(buffer));
+            board.clear(buffer);
+        }
+    }
+
+    fn has_news(&self) -> bool {
+        self.boards.iter().any(|board| board.stream.presence.has_news())
+    }
+
+    /// Makes the frame of `slot`; false if the tare is still being measured.
+    fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
+        let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
+        self.done = slot;
+        for board in &mut self.boards {
+            board.apply(buffer, at_ns, &mut self.frame);
+            if let Some(buffer) = buffer {
+                board.clear(buffer);
+            }
+        }
+        self.started |= !self.boards.iter().any(|board| board.stream.awaited && board.is_taring());
+        if self.started {
+            let next = self.frame.at + Duration::from_micros(u64::from(self.counters.frames > 0));
+            self.frame.at = instant(at_ns).max(next);
+            self.frame.received = received;
+            self.boards.iter_mut().for_each(|board| board.stream.presence.show());
+        }
+        self.started
+    }
+
+    /// Compares each board's slots with its packets' arrival, and the clock with all of them.
+    fn align(&mut self) {
+        let Some(clock) = &mut self.clock else { return };
+        if self.now_ns - self.aligned_ns < ALIGN_NS {
+            return;
+        }
+        self.aligned_ns = self.now_ns;
+        self.delays.clear();
+        for (number, board) in self.boards.iter_mut().enumerate() {
+            self.delays.extend(board.stream.least_delay(self.now_ns).map(|delay| (delay, number)));
+        }
+        if self.delays.is_empty() {
+            return;
+        }
+        let middle = (self.delays.len() - 1) / 2;
+        let common = self.delays.select_nth_unstable(middle).1.0;
+        let mut slipped = 0;
+        for &(delay, number) in &self.delays {
+            slipped += self.boards[number].stream.slip(delay - common).unsigned_abs();
+        }
+        let jump = clock.correct(self.done, common);
+        if jump != 0 {
+            self.boards.iter_mut().for_each(|board| board.stream.slots_moved(jump));
+        }
+        if slipped != 0 {
+            self.counters.slips += slipped;
+            self.count_awaited();
+        }
+    }
+}
+
+/// The moment `ns` nanoseconds after the clock's start; the start itself if that is negative.
+fn instant(ns: i64) -> Instant {
+    Instant::from_micros(ns.max(0).cast_unsigned() / 1000)
+}

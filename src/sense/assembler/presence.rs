@@ -1,0 +1,257 @@
+use super::clock::SLOT_NS;
+
+/// Silence after which a board's values are stale.
+pub(super) const SILENT_NS: i64 = 100 * SLOT_NS;
+
+/// An outage this soon after the last return is flapping.
+const FLAPPING_NS: i64 = 2000 * SLOT_NS;
+
+/// How long a flapping board must deliver before it is believed again.
+const PROBATION_NS: i64 = 1000 * SLOT_NS;
+
+/// Silence that starts the probation anew.
+const PROBATION_GAP_NS: i64 = 20 * SLOT_NS;
+
+/// Whether one board delivers.
+///
+/// ```text
+/// Unheard  --data--> Live
+/// Live     --100 ms without--> Silent
+/// Silent   --data, once a frame has shown it stale--> Live, or Probation if it was flapping
+/// Probation--1 s of data without a gap of 20 ms--> Live
+/// Probation--100 ms without--> Silent
+/// ```
+#[derive(Clone, Debug, Default)]
+pub(super) struct Presence {
+    state: State,
+    used_ns: Option<i64>,
+    returned_ns: Option<i64>,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+enum State {
+    /// Nothing has come yet.
+    #[default]
+    Unheard,
+    Live,
+    Silent {
+        flapping: bool,
+        /// Whether a frame has carried the news; until then the board may not return,
+        /// or whoever reads the frames would never learn of the outage.
+        shown: bool,
+    },
+    Probation {
+        since_ns: i64,
+    },
+}
+
+impl Presence {
+    /// Whether its values may be acted on.
+    pub(super) const fn is_live(&self) -> bool {
+        matches!(self.state, State::Live)
+    }
+
+    /// Whether anything usable has ever come.
+    pub(super) const fn was_heard(&self) -> bool {
+        !matches!(self.state, State::Unheard)
+    }
+
+    /// Whether it went silent and no frame has said so yet.
+    pub(super) const fn has_news(&self) -> bool {
+        matches!(self.state, State::Silent { shown: false, .. })
+    }
+
+    /// When its last usable packet came.
+    pub(super) const fn used_ns(&self) -> Option<i64> {
+        self.used_ns
+    }
+
+    /// Notes a usable packet.
+    pub(super) fn deliver(&mut self, now_ns: i64) {
+        let gap = self.used_ns.map_or(0, |used| now_ns - used);
+        self.used_ns = Some(now_ns);
+        self.state = match self.state {
+            State::Unheard | State::Live => State::Live,
+            State::Silent { shown: false, .. } => self.state,
+            State::Silent { flapping: true, .. } => State::Probation { since_ns: now_ns },
+            State::Silent { flapping: false, .. } => self.return_at(now_ns),
+            State::Probation { .. } if gap > PROBATION_GAP_NS => State::Probation { since_ns: now_ns },
+            State::Probation { since_ns } if now_ns - since_ns >= PROBATION_NS => self.return_at(now_ns),
+            State::Probation { .. } => self.state,
+        };
+    }
+
+    fn return_at(&mut self, now_ns: i64) -> State {
+        self.returned_ns = Some(now_ns);
+        State::Live
+    }
+
+    /// Notes that time has passed; true if the board has just gone silent.
+    pub(super) fn pass(&mut self, now_ns: i64) -> bool {
+        let silent = self.used_ns.is_some_and(|used| now_ns - used >= SILENT_NS);
+        silent && self.interrupt(now_ns)
+    }
+
+    /// Makes the board silent now, because its stream broke off; true if it was not before.
+    pub(super) fn interrupt(&mut self, now_ns: i64) -> bool {
+        let flapping = match self.state {
+            State::Live => self.returned_ns.is_some_and(|returned| now_ns - returned < FLAPPING_NS),
+            State::Probation { .. } => true,
+            State::Unheard | State::Silent { .. } => return false,
+        };
+        self.state = State::Silent { flapping, shown: false };
+        true
+    }
+
+    /// Notes that a frame has carried its state.
+    pub(super) const fn show(&mut self) {
+        if let State::Silent { shown, .. } = &mut self.state {
+            *shown = true;
+        }
+    }
+}
+
+/// Slots per bucket of the loss meter.
+const BUCKET: u32 = 100;
+
+/// Slots that the loss meter looks back on: one second.
+const SECOND: u32 = 1000;
+
+/// Buckets for that second, and the one being filled.
+const BUCKETS: usize = 11;
+
+/// Share of lost packets above which a board is degraded.
+const DEGRADED: f32 = 0.10;
+
+/// Share of lost packets below which it is good again.
+const GOOD: f32 = 0.08;
+
+/// The share of one board's packets that were lost or came too late, over the last second.
+#[derive(Clone, Debug, Default)]
+pub(super) struct LossMeter {
+    /// Expected and missed packets per bucket, the current one first.
+    buckets: [(u32, u32); BUCKETS],
+    degraded: bool,
+}
+
+impl LossMeter {
+    /// Share of a second's packets that were missed, 0 to 1; a second not yet over counts in full.
+    pub(super) fn share(&self) -> f32 {
+        let (expected, missed) =
+            self.buckets.iter().fold((0, 0), |sum, bucket| (sum.0 + bucket.0, sum.1 + bucket.1));
+        missed as f32 / expected.max(SECOND) as f32
+    }
+
+    /// Whether too much was missed.
+    pub(super) const fn is_degraded(&self) -> bool {
+        self.degraded
+    }
+
+    /// Notes one packet more, used or not, after `skipped` that did not come.
+    pub(super) fn pass(&mut self, skipped: u32, used: bool) {
+        // An outage longer than what the meter covers fills it once, not for ever.
+        let skipped = skipped.min(SECOND);
+        self.buckets[0].0 += skipped + 1;
+        self.buckets[0].1 += skipped + u32::from(!used);
+        if self.buckets[0].0 >= BUCKET {
+            let share = self.share();
+            self.degraded = share > DEGRADED || (self.degraded && share >= GOOD);
+            self.buckets.rotate_right(1);
+            self.buckets[0] = (0, 0);
+        }
+    }
+
+    /// Notes that a packet given up came in time after all.
+    pub(super) fn found(&mut self) {
+        self.buckets[0].1 = self.buckets[0].1.saturating_sub(1);
+    }
+
+    /// Forgets the past: after an outage only what follows counts.
+    pub(super) fn forget(&mut self) {
+        *self = Self::default();
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MS: i64 = SLOT_NS;
+
+    /// Runs a board that delivers in each millisecond for which `up` says so, a frame each time;
+    /// gives the milliseconds in which it is live.
+    fn live_during(span: i64, up: impl Fn(i64) -> bool) -> Vec<i64> {
+        let mut presence = Presence::default();
+        let mut live = Vec::new();
+        for ms in 0..span {
+            presence.pass(ms * MS);
+            if up(ms) {
+                presence.deliver(ms * MS);
+            }
+            if presence.is_live() {
+                live.push(ms);
+            }
+            presence.show();
+        }
+        live
+    }
+
+    #[test]
+    fn a_single_outage_ends_with_the_second_packet() {
+        let live = live_during(1000, |ms| !(300..450).contains(&ms));
+        assert!(live.contains(&398) && !live.contains(&399), "silent from 100 ms after 299");
+        assert!(!live.contains(&449) && live.contains(&450));
+    }
+
+    #[test]
+    fn gaps_below_100_ms_go_unnoticed() {
+        assert_eq!(live_during(1000, |ms| !(300..398).contains(&ms)).len(), 1000);
+    }
+
+    #[test]
+    fn a_flapping_board_stays_silent_until_it_is_clean_for_a_second() {
+        // N12: 5 Hz, up to 2 s, then steady.
+        let live = live_during(4000, |ms| ms >= 2000 || ms % 200 < 99);
+        assert!(live.iter().all(|ms| !(400..3000).contains(ms)), "{live:?}");
+        assert!(live.contains(&3000));
+    }
+
+    #[test]
+    fn an_outage_is_shown_before_the_board_returns() {
+        let mut presence = Presence::default();
+        presence.deliver(0);
+        assert!(presence.pass(200 * MS));
+        presence.deliver(200 * MS);
+        assert!(!presence.is_live() && presence.has_news());
+        presence.show();
+        presence.deliver(201 * MS);
+        assert!(presence.is_live());
+    }
+
+    fn after(seconds: u32, lost: impl Fn(u32) -> bool) -> LossMeter {
+        let mut meter = LossMeter::default();
+        let mut skipped = 0;
+        for number in 0..seconds * 1000 {
+            if lost(number) {
+                skipped += 1;
+            } else {
+                meter.pass(skipped, true);
+                skipped = 0;
+            }
+        }
+        meter
+    }
+
+    #[test]
+    fn every_fifth_packet_lost_degrades_and_every_twentieth_does_not() {
+        assert!(after(2, |number| number % 5 == 0).is_degraded());
+        assert!(!after(2, |number| number % 20 == 0).is_degraded());
+        let share = after(2, |number| number % 5 == 0).share();
+        assert!((share - 0.2).abs() < 0.01, "{share}");
+    }
+
+    #[test]
+    fn a_second_later_all_is_good_again() {
+        assert!(!after(4, |number| number < 2000 && number % 5 == 0).is_degraded());
+    }
+}

@@ -1,0 +1,211 @@
+/// How far back a packet may lie and still be a straggler rather than a sign of a reboot.
+const WINDOW: u32 = 100;
+
+/// How many packets in a row must agree before a jump in the numbers is believed.
+const CONFIRMED: u8 = 3;
+
+/// What one packet's sequence number says.
+///
+/// Positions count on where the 32-bit numbers wrap, so they can be compared and subtracted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verdict {
+    /// Further on than any packet before; `skipped` numbers in between have not come so far.
+    Next {
+        /// Its place in the stream.
+        position: i64,
+        /// Numbers left out.
+        skipped: u32,
+    },
+    /// Overtaken by others on the way; comes for the first time.
+    Straggler {
+        /// Its place in the stream.
+        position: i64,
+        /// Whether it had been counted as skipped.
+        missed: bool,
+    },
+    /// Came before.
+    Duplicate,
+    /// Fits nothing: a damaged number, or the first sign of a reboot.
+    Doubtful,
+    /// Third in a row that agree on a new beginning; the stream starts anew at `position`.
+    Restart {
+        /// Its place in the new stream.
+        position: i64,
+    },
+}
+
+/// Follows the sequence numbers of one board.
+///
+/// ```text
+/// number - latest   looks early   verdict
+/// 1                 any           Next
+/// 2 or more         no            Next (some skipped)
+/// 2 or more         yes           Doubtful, at the third in a row Next or Restart
+/// 0                               Duplicate
+/// -1 to -100                      Straggler or Duplicate
+/// below -100                      Doubtful, at the third in a row Restart
+/// ```
+///
+/// A packet cannot arrive before it was sampled, so a number too large for the
+/// time that has passed is a damaged one: that is what "looks early" means.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Sequence {
+    latest: Option<Latest>,
+    doubt: Option<Doubt>,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Latest {
+    number: u32,
+    position: i64,
+    /// Bit k: the packet k before the latest has come.
+    came: u128,
+    /// How many positions before the latest belong to this stream, at most [`WINDOW`].
+    known: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Doubt {
+    number: u32,
+    agreeing: u8,
+}
+
+impl Sequence {
+    /// The place in the stream of the furthest packet so far.
+    pub(super) fn position(&self) -> Option<i64> {
+        self.latest.map(|latest| latest.position)
+    }
+
+    /// Judges the packet with this `number`; `early` says whether a position
+    /// lies further ahead than the time passed allows.
+    pub(super) fn judge(&mut self, number: u32, early: impl FnOnce(i64) -> bool) -> Verdict {
+        let Some(latest) = &mut self.latest else { return self.begin(number) };
+        let step = number.wrapping_sub(latest.number).cast_signed();
+        let position = latest.position + i64::from(step);
+        match step {
+            0 => Verdict::Duplicate,
+            1 => self.advance(number, 1),
+            2.. if early(position) => self.doubt(number, step),
+            2.. => self.advance(number, step.unsigned_abs()),
+            ..0 if step.unsigned_abs() <= WINDOW => {
+                self.doubt = None;
+                let bit = 1 << step.unsigned_abs();
+                if latest.came & bit != 0 {
+                    return Verdict::Duplicate;
+                }
+                latest.came |= bit;
+                Verdict::Straggler { position, missed: step.unsigned_abs() <= latest.known }
+            }
+            ..0 => self.doubt(number, step),
+        }
+    }
+
+    fn begin(&mut self, number: u32) -> Verdict {
+        let position = 0;
+        self.latest = Some(Latest { number, position, came: 1, known: 0 });
+        self.doubt = None;
+        Verdict::Next { position, skipped: 0 }
+    }
+
+    fn advance(&mut self, number: u32, step: u32) -> Verdict {
+        self.doubt = None;
+        let Some(latest) = &mut self.latest else { return self.begin(number) };
+        latest.number = number;
+        latest.position += i64::from(step);
+        latest.came = latest.came.checked_shl(step).unwrap_or(0) | 1;
+        latest.known = latest.known.saturating_add(step).min(WINDOW);
+        Verdict::Next { position: latest.position, skipped: step - 1 }
+    }
+
+    fn doubt(&mut self, number: u32, step: i32) -> Verdict {
+        let agreeing = match self.doubt {
+            Some(doubt) if number == doubt.number => return Verdict::Duplicate,
+            Some(doubt) if number == doubt.number.wrapping_add(1) => doubt.agreeing + 1,
+            _ => 1,
+        };
+        self.doubt = Some(Doubt { number, agreeing });
+        if agreeing < CONFIRMED {
+            Verdict::Doubtful
+        } else if (0..=WINDOW).contains(&step.cast_unsigned()) {
+            // A little ahead of time: the way has become shorter just when packets were lost.
+            self.advance(number, step.unsigned_abs())
+        } else {
+            self.begin(number);
+            Verdict::Restart { position: 0 }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn next(position: i64) -> Verdict {
+        Verdict::Next { position, skipped: 0 }
+    }
+
+    /// Judges numbers that all come in good time.
+    fn judge(sequence: &mut Sequence, numbers: impl IntoIterator<Item = u32>) -> Vec<Verdict> {
+        numbers.into_iter().map(|number| sequence.judge(number, |_| false)).collect()
+    }
+
+    #[test]
+    fn numbers_wrap_without_a_seam() {
+        let verdicts = judge(&mut Sequence::default(), [u32::MAX - 1, u32::MAX, 0, 1]);
+        assert_eq!(verdicts, [next(0), next(1), next(2), next(3)]);
+        let gap = judge(&mut Sequence::default(), [u32::MAX - 1, 1, u32::MAX]);
+        assert_eq!(gap[1], Verdict::Next { position: 3, skipped: 2 });
+        assert_eq!(gap[2], Verdict::Straggler { position: 1, missed: true });
+    }
+
+    #[test]
+    fn stragglers_count_once_and_only_inside_the_stream() {
+        let verdicts = judge(&mut Sequence::default(), [10, 13, 11, 11, 9, 13]);
+        assert_eq!(verdicts[2], Verdict::Straggler { position: 1, missed: true });
+        assert_eq!(verdicts[3], Verdict::Duplicate);
+        assert_eq!(verdicts[4], Verdict::Straggler { position: -1, missed: false });
+        assert_eq!(verdicts[5], Verdict::Duplicate);
+    }
+
+    #[test]
+    fn a_reboot_is_believed_at_its_third_packet_even_if_each_comes_twice() {
+        let mut sequence = Sequence::default();
+        judge(&mut sequence, 5000..5010);
+        let verdicts = judge(&mut sequence, [0, 0, 1, 1, 2, 2, 3]);
+        let [doubtful, duplicate] = [Verdict::Doubtful, Verdict::Duplicate];
+        let restart = Verdict::Restart { position: 0 };
+        assert_eq!(verdicts, [doubtful, duplicate, doubtful, duplicate, restart, duplicate, next(1)]);
+    }
+
+    #[test]
+    fn single_damaged_numbers_derail_nothing() {
+        let mut sequence = Sequence::default();
+        judge(&mut sequence, [1000]);
+        for bit in 2..32 {
+            let good = 999 + bit;
+            let damaged = good ^ (1 << bit);
+            // The time passed allows one packet more, not four.
+            let verdict = sequence.judge(damaged, |position| position > sequence_position(good) + 1);
+            assert!(
+                !matches!(verdict, Verdict::Next { .. } | Verdict::Restart { .. }),
+                "bit {bit}: {verdict:?}"
+            );
+            assert_eq!(sequence.judge(good, |_| false), next(sequence_position(good)), "after bit {bit}");
+        }
+    }
+
+    fn sequence_position(number: u32) -> i64 {
+        i64::from(number) - 1000
+    }
+
+    #[test]
+    fn early_numbers_are_believed_when_three_agree() {
+        let mut sequence = Sequence::default();
+        judge(&mut sequence, [100]);
+        let verdicts: Vec<_> = [110, 111, 112].map(|number| sequence.judge(number, |_| true)).into();
+        let ahead = Verdict::Next { position: 12, skipped: 11 };
+        assert_eq!(verdicts, [Verdict::Doubtful, Verdict::Doubtful, ahead]);
+        let far: Vec<_> = [9110, 9111, 9112].map(|number| sequence.judge(number, |_| true)).into();
+        assert_eq!(far[2], Verdict::Restart { position: 0 });
+    }
+}

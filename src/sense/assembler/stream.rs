@@ -1,0 +1,176 @@
+use super::clock::{Arrivals, SLOT_NS, SampleClock};
+use super::presence::{LossMeter, Presence, SILENT_NS};
+use super::sequence::{Sequence, Verdict};
+use crate::wire::LinkCounters;
+
+/// A sample older than this, beyond its board's usual delay, tells nothing about the foot now.
+const TOO_OLD_NS: i64 = 100 * SLOT_NS;
+
+/// The same for a board that is to be believed again after an outage.
+const TOO_OLD_TO_RETURN_NS: i64 = 20 * SLOT_NS;
+
+/// A packet this much earlier than any other of its board lately, and not next in line, is doubtful.
+const EARLY_NS: i64 = 3 * SLOT_NS / 2;
+
+/// How far a board's samples may lie from their slots before it slips: more than half a slot, so
+/// that a board on the border does not slip to and fro.
+const SLIP_NS: i64 = 3 * SLOT_NS / 4;
+
+/// The packets of one board, and the slots they belong to.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Stream {
+    pub(super) presence: Presence,
+    pub(super) loss: LossMeter,
+    /// Whether frames wait for it.
+    pub(super) awaited: bool,
+    sequence: Sequence,
+    arrivals: Arrivals,
+    /// Slot of stream position 0.
+    offset: i64,
+    /// Slots by which `offset` has been moved since the stream began.
+    slips: i64,
+    /// When any packet last came from it, usable or not; frames wait for boards heard lately.
+    heard_ns: i64,
+}
+
+/// Where a packet belongs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place {
+    /// Its slot.
+    pub(super) slot: i64,
+    /// Whether it came in time for it.
+    pub(super) usable: bool,
+    /// Whether its board has just rebooted.
+    pub(super) restarted: bool,
+}
+
+impl Stream {
+    /// Waits for the board as if it had been heard at `now_ns`.
+    pub(super) const fn expect(&mut self, now_ns: i64) {
+        self.heard_ns = now_ns;
+        self.awaited = true;
+    }
+
+    /// Whether the board has been silent for too long to wait for it.
+    pub(super) const fn is_overdue(&self, now_ns: i64) -> bool {
+        self.awaited && now_ns - self.heard_ns >= SILENT_NS
+    }
+
+    /// The furthest slot its packets have reached.
+    pub(super) fn head_slot(&self) -> Option<i64> {
+        self.sequence.position().map(|position| position + self.offset)
+    }
+
+    /// Slots by which the board has been moved since its stream began.
+    pub(super) const fn slips(&self) -> i64 {
+        self.slips
+    }
+
+    /// Finds the slot of the packet numbered `sequence` that arrived at
+    /// `now_ns`, `done` being the last slot made into a frame; `None` if the
+    /// packet is dropped, which is counted.
+    pub(super) fn place(
+        &mut self,
+        sequence: u32,
+        now_ns: i64,
+        clock: &SampleClock,
+        done: i64,
+        counters: &mut LinkCounters,
+    ) -> Option<Place> {
+        let first = self.sequence.position().is_none();
+        let offset = self.offset;
+        let earliest = self.arrivals.least_ns();
+        let early = |position| {
+            let delay = now_ns - clock.at_ns(position + offset);
+            earliest.is_some_and(|earliest| delay < earliest - EARLY_NS)
+        };
+
+        let mut restarted = false;
+        let (position, skipped) = match self.sequence.judge(sequence, early) {
+            Verdict::Next { position, skipped } => {
+                if first {
+                    self.offset = clock.slot_near(now_ns) - position;
+                }
+                counters.lost += u64::from(skipped);
+                (position, Some(skipped))
+            }
+            Verdict::Straggler { position, missed } => {
+                counters.lost = counters.lost.saturating_sub(u64::from(missed));
+                (position, None)
+            }
+            Verdict::Restart { position } => {
+                counters.restarts += 1;
+                restarted = true;
+                self.begin_anew(now_ns);
+                self.offset = clock.slot_near(now_ns) - position;
+                (position, Some(0))
+            }
+            Verdict::Duplicate => {
+                counters.duplicate += 1;
+                return None;
+            }
+            Verdict::Doubtful => {
+                counters.doubtful += 1;
+                return None;
+            }
+        };
+
+        let slot = position + self.offset;
+        let usable = self.is_usable(slot, now_ns, clock, done);
+        match skipped {
+            _ if !self.presence.is_live() => {}
+            Some(skipped) => self.loss.pass(skipped, usable),
+            None if usable => self.loss.found(),
+            None => {}
+        }
+        Some(Place { slot, usable, restarted })
+    }
+
+    fn begin_anew(&mut self, now_ns: i64) {
+        self.slips = 0;
+        self.arrivals.forget();
+        self.presence.interrupt(now_ns);
+    }
+
+    fn is_usable(&mut self, slot: i64, now_ns: i64, clock: &SampleClock, done: i64) -> bool {
+        self.heard_ns = now_ns;
+        let delay = now_ns - clock.at_ns(slot);
+        self.arrivals.note(now_ns, delay);
+        let usual = self.arrivals.least_ns().unwrap_or(0).max(0);
+        let back_soon = self.presence.is_live() || !self.presence.was_heard();
+        let too_old = if back_soon { TOO_OLD_NS } else { TOO_OLD_TO_RETURN_NS };
+        slot > done && delay - usual <= too_old
+    }
+
+    /// Notes a packet that was used.
+    pub(super) fn deliver(&mut self, now_ns: i64) {
+        let was_live = self.presence.is_live();
+        self.presence.deliver(now_ns);
+        if !was_live {
+            // What was lost in an outage says nothing about what follows.
+            self.loss.forget();
+        }
+    }
+
+    /// The least delay of its packets lately, once enough have come to tell; asked for now and then.
+    pub(super) fn least_delay(&mut self, now_ns: i64) -> Option<i64> {
+        self.arrivals.close(now_ns)
+    }
+
+    /// Moves the board to other slots if its packets lie `off_ns` from theirs; gives how many.
+    pub(super) fn slip(&mut self, off_ns: i64) -> i64 {
+        if off_ns.abs() <= SLIP_NS {
+            return 0;
+        }
+        let slots = (off_ns + off_ns.signum() * SLOT_NS / 2) / SLOT_NS;
+        self.offset += slots;
+        self.slips += slots;
+        self.slots_moved(slots * SLOT_NS);
+        slots
+    }
+
+    /// Adapts to slots' times that have moved by `by_ns`.
+    pub(super) fn slots_moved(&mut self, by_ns: i64) {
+        self.arrivals.slots_moved(by_ns);
+    }
+}

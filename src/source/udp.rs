@@ -1,0 +1,252 @@
+mod log;
+mod proc_net;
+
+use std::collections::VecDeque;
+use std::io::ErrorKind;
+use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::time::{Duration, Instant as HostInstant};
+
+use socket2::{Domain, Protocol, Socket, Type};
+
+use self::log::RefusalLog;
+use super::{SensorSource, SourceError};
+use crate::floor::Floor;
+use crate::units::Instant;
+use crate::wire::{Batch, ControlMessage, Decoder, LinkCounters, SensorPacket};
+
+/// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
+const BUFFER_BYTES: usize = 8 << 20;
+
+/// Most control messages kept for [`UdpSource::take_controls`].
+const MAX_CONTROLS: usize = 1024;
+
+/// Most datagrams looked at in one call without patience, so that a flood of rubbish cannot hold it.
+const MAX_UNWAITED: usize = 64;
+
+/// How often the kernel is asked how many datagrams it dropped.
+const DROPS_EVERY: Duration = Duration::from_secs(1);
+
+/// Sensor packets and control messages from a UDP socket.
+///
+/// Its clock starts at zero when the socket is bound. Packets are stamped when
+/// the program takes them from the kernel, so the stamp includes the time the
+/// thread needed to wake up.
+#[derive(Debug)]
+pub struct UdpSource {
+    socket: UdpSocket,
+    granted: usize,
+    started: HostInstant,
+    patience: Option<Duration>,
+    buffer: Vec<u8>,
+    decoder: Decoder,
+    batch: Batch,
+    packets: VecDeque<SensorPacket>,
+    controls: Vec<ControlMessage>,
+    allowed: Vec<IpAddr>,
+    counters: LinkCounters,
+    drops_read: Instant,
+    kernel_drops: u64,
+    log: RefusalLog,
+}
+
+impl UdpSource {
+    /// Listens on `address` for the boards of `floor`; port 0 takes any free one.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] if the port is taken or the address is not this
+    /// machine's; its message says what to do.
+    pub fn bind(address: SocketAddr, floor: &Floor) -> Result<Self, SourceError> {
+        let socket = open(address)
+            .map_err(|source| SourceError::Socket { message: advice(address, &source), source })?;
+        let granted = socket.recv_buffer_size().unwrap_or(0);
+        if granted < BUFFER_BYTES {
+            tracing::info!(
+                granted,
+                "the system grants less than the 8 MiB of receive buffer asked for; on Linux, \
+                 `sysctl -w net.core.rmem_max=8388608` lets it be larger"
+            );
+        }
+        let decoder = Decoder::new(floor);
+        Ok(Self {
+            socket: socket.into(),
+            granted,
+            started: HostInstant::now(),
+            patience: None,
+            // One byte more than may come tells what was cut off from what just fits.
+            buffer: vec![0; decoder.limits().bytes + 1],
+            decoder,
+            batch: Batch::default(),
+            packets: VecDeque::new(),
+            controls: Vec::new(),
+            allowed: Vec::new(),
+            counters: LinkCounters::default(),
+            drops_read: Instant::START,
+            kernel_drops: 0,
+            log: RefusalLog::default(),
+        })
+    }
+
+    /// Takes datagrams from these senders only; from everybody if there are none.
+    #[must_use]
+    pub fn allowing(mut self, senders: impl IntoIterator<Item = IpAddr>) -> Self {
+        self.allowed = senders.into_iter().collect();
+        self
+    }
+
+    /// Where it listens, with the port the system chose if 0 was asked for.
+    ///
+    /// # Errors
+    /// What the system says; it should not happen on a bound socket.
+    pub fn local_addr(&self) -> std::io::Result<SocketAddr> {
+        self.socket.local_addr()
+    }
+
+    /// The receive buffer granted, in bytes as the system counts them (Linux
+    /// reports twice the size asked for, its bookkeeping included); 0 if it does not say.
+    #[must_use]
+    pub const fn granted_buffer(&self) -> usize {
+        self.granted
+    }
+
+    /// What apps have asked for since the last call, oldest first. More than
+    /// 1024 that nobody takes are dropped and counted as overflowed.
+    pub fn take_controls(&mut self) -> Vec<ControlMessage> {
+        std::mem::take(&mut self.controls)
+    }
+
+    /// Receives one datagram and sorts what it holds; false if none came.
+    fn receive(&mut self, patience: Duration) -> Result<bool, SourceError> {
+        self.set_patience(patience).map_err(failed)?;
+        let (length, sender) = match self.socket.recv_from(&mut self.buffer) {
+            Ok(received) => received,
+            Err(error) if is_passing(error.kind()) => return Ok(false),
+            Err(error) => return Err(failed(error)),
+        };
+        self.counters.datagrams += 1;
+        let now = self.now();
+        if !self.allowed.is_empty() && !self.allowed.contains(&sender.ip().to_canonical()) {
+            self.counters.foreign += 1;
+            self.log.foreign(now, sender);
+            return Ok(true);
+        }
+        match self.decoder.decode(&self.buffer[..length], now, &mut self.batch) {
+            Ok(()) => {
+                self.packets.extend(self.batch.packets.drain(..));
+                let room = MAX_CONTROLS.saturating_sub(self.controls.len());
+                self.counters.overflowed += self.batch.controls.len().saturating_sub(room) as u64;
+                self.controls.extend(self.batch.controls.drain(..).take(room));
+            }
+            Err(error) => {
+                error.count(&mut self.counters);
+                self.log.refused(now, sender, &error);
+            }
+        }
+        Ok(true)
+    }
+
+    /// Sets how long the socket waits; zero means not at all. A system call only if it changes.
+    fn set_patience(&mut self, patience: Duration) -> std::io::Result<()> {
+        if self.patience == Some(patience) {
+            return Ok(());
+        }
+        self.socket.set_nonblocking(patience.is_zero())?;
+        if !patience.is_zero() {
+            self.socket.set_read_timeout(Some(patience))?;
+        }
+        self.patience = Some(patience);
+        Ok(())
+    }
+
+    /// Asks the kernel now and then how many datagrams it dropped on this socket.
+    fn read_drops(&mut self, now: Instant) {
+        if now.since(self.drops_read) < DROPS_EVERY {
+            return;
+        }
+        self.drops_read = now;
+        if let Some(dropped) = proc_net::drops(&self.socket) {
+            let before = self.kernel_drops;
+            self.kernel_drops = self.kernel_drops.max(dropped);
+            self.counters.overflowed += self.kernel_drops - before;
+        }
+    }
+}
+
+impl SensorSource for UdpSource {
+    /// A datagram with several packets gives them one by one. Returns after
+    /// twice `patience` at most, even while datagrams arrive that hold no sensor packet.
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        let begun = self.now();
+        self.read_drops(begun);
+        for looked_at in 1.. {
+            if let Some(packet) = self.packets.pop_front() {
+                return Ok(Some(packet));
+            }
+            let came = self.receive(patience)?;
+            let enough = if patience.is_zero() {
+                looked_at >= MAX_UNWAITED
+            } else {
+                self.now().since(begun) >= patience
+            };
+            if self.packets.is_empty() && (!came || enough) {
+                break;
+            }
+        }
+        Ok(None)
+    }
+
+    fn now(&self) -> Instant {
+        Instant::START + self.started.elapsed()
+    }
+
+    fn counters(&self) -> LinkCounters {
+        self.counters
+    }
+}
+
+fn open(address: SocketAddr) -> std::io::Result<Socket> {
+    let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
+    // A smaller buffer than asked for works too; the granted size is reported.
+    let _ = socket.set_recv_buffer_size(BUFFER_BYTES);
+    socket.bind(&address.into())?;
+    Ok(socket)
+}
+
+/// One sentence for somebody whose floor program does not start.
+fn advice(address: SocketAddr, error: &std::io::Error) -> String {
+    let port = address.port();
+    match error.kind() {
+        ErrorKind::AddrInUse => {
+            let owner = proc_net::owner(address).unwrap_or_else(|| "another program".into());
+            let other = SocketAddr::new(address.ip(), if port == u16::MAX { port - 1 } else { port + 1 });
+            format!(
+                "UDP port {port} is in use by {owner}: stop it, or listen elsewhere with `--listen {other}` \
+                 and send there"
+            )
+        }
+        ErrorKind::AddrNotAvailable => format!(
+            "{ip} is no address of this machine: `--listen 0.0.0.0:{port}` takes packets on all of them",
+            ip = address.ip()
+        ),
+        ErrorKind::PermissionDenied => {
+            format!("UDP port {port} needs special rights: choose one above 1023 with `--listen`")
+        }
+        _ => format!("cannot listen on {address}: {error}"),
+    }
+}
+
+/// Errors after which the next datagram may well come: nothing there, a signal,
+/// or the echo of something sent to a port that is closed.
+fn is_passing(kind: ErrorKind) -> bool {
+    matches!(
+        kind,
+        ErrorKind::WouldBlock
+            | ErrorKind::TimedOut
+            | ErrorKind::Interrupted
+            | ErrorKind::ConnectionReset
+            | ErrorKind::ConnectionRefused
+    )
+}
+
+fn failed(source: std::io::Error) -> SourceError {
+    SourceError::Socket { message: format!("the sensor socket failed: {source}"), source }
+}

@@ -1,0 +1,218 @@
+use rosc::{OscMessage, OscPacket, OscType, encoder};
+use thiserror::Error;
+
+use super::{Readings, SensorPacket};
+use crate::floor::{Calibration, Floor};
+
+/// How a board writes what its channels read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SensorFormat {
+    /// One OSC `i` of raw counts per channel.
+    #[default]
+    Counts,
+    /// One OSC `f` of newtons per channel.
+    Newtons,
+    /// One OSC `b` of big-endian u16 counts.
+    Blob,
+}
+
+/// Why a packet cannot be written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum EncodeError {
+    /// The floor has no board of the packet's number.
+    #[error("the floor has no board {0}")]
+    NoBoard(u16),
+    /// The packet does not read as many channels as its board has.
+    #[error("board {board} has {channels} channels, the packet {readings}")]
+    Channels {
+        /// The board.
+        board: u16,
+        /// Channels it has.
+        channels: usize,
+        /// Readings in the packet.
+        readings: usize,
+    },
+    /// The packet holds newtons and the format takes counts, or a count is missing and the format cannot say so.
+    #[error("the packet has no raw counts to write")]
+    NoCounts,
+}
+
+/// Writes the sensor packets of one floor the way its boards would.
+#[derive(Clone, Debug)]
+pub struct SensorEncoder {
+    boards: Vec<BoardText>,
+    format: SensorFormat,
+    bytes: Vec<u8>,
+}
+
+#[derive(Clone, Debug)]
+struct BoardText {
+    address: String,
+    /// Of each channel, for writing newtons; nominal where no sensor is.
+    calibration: Vec<Calibration>,
+}
+
+impl SensorEncoder {
+    /// An encoder for the boards of `floor`, writing all packets in `format`.
+    #[must_use]
+    pub fn new(floor: &Floor, format: SensorFormat) -> Self {
+        let calibration = |sensor: &Option<crate::floor::SensorId>| {
+            sensor
+                .and_then(|sensor| {
+                    let tile = floor.calibration.get(floor.geometry.index(sensor.tile)?)?;
+                    Some(tile[sensor.corner.index()])
+                })
+                .unwrap_or(Calibration::NOMINAL)
+        };
+        let boards = floor
+            .boards
+            .iter()
+            .map(|board| BoardText {
+                address: board.address.clone(),
+                calibration: board.channels.iter().map(calibration).collect(),
+            })
+            .collect();
+        Self { boards, format, bytes: Vec::new() }
+    }
+
+    /// The datagram that carries `packet`; valid until the next call.
+    ///
+    /// Counts become newtons by the floor's calibration (tare not taken off)
+    /// where the format asks for it. A missing count is written as -1 by
+    /// [`SensorFormat::Counts`] and as NaN by [`SensorFormat::Newtons`].
+    ///
+    /// # Errors
+    /// [`EncodeError`] if the packet does not belong to this floor, or the
+    /// format cannot express what it holds.
+    pub fn encode(&mut self, packet: &SensorPacket) -> Result<&[u8], EncodeError> {
+        let board = self.boards.get(usize::from(packet.board)).ok_or(EncodeError::NoBoard(packet.board))?;
+        let (channels, readings) = (board.calibration.len(), packet.readings.len());
+        if channels != readings {
+            return Err(EncodeError::Channels { board: packet.board, channels, readings });
+        }
+        let mut args = Vec::with_capacity(1 + channels);
+        args.push(OscType::Int(packet.sequence.cast_signed()));
+        match (self.format, &packet.readings) {
+            (SensorFormat::Counts, Readings::Counts(counts)) => {
+                args.extend(counts.iter().map(|count| OscType::Int(count.map_or(-1, i32::from))));
+            }
+            (SensorFormat::Blob, Readings::Counts(counts)) => {
+                let mut blob = Vec::with_capacity(2 * channels);
+                for count in counts {
+                    blob.extend(count.ok_or(EncodeError::NoCounts)?.to_be_bytes());
+                }
+                args.push(OscType::Blob(blob));
+            }
+            (SensorFormat::Newtons, Readings::Counts(counts)) => {
+                let force = |(count, part): (&Option<u16>, &Calibration)| {
+                    OscType::Float(count.map_or(f32::NAN, |count| part.force(count).0))
+                };
+                args.extend(counts.iter().zip(&board.calibration).map(force));
+            }
+            (SensorFormat::Newtons, Readings::Newtons(forces)) => {
+                args.extend(forces.iter().map(|&force| OscType::Float(force)));
+            }
+            (SensorFormat::Counts | SensorFormat::Blob, Readings::Newtons(_)) => {
+                return Err(EncodeError::NoCounts);
+            }
+        }
+        let message = OscMessage { addr: board.address.clone(), args };
+        self.bytes.clear();
+        write(&OscPacket::Message(message), &mut self.bytes);
+        Ok(&self.bytes)
+    }
+}
+
+/// Appends `packet` to `bytes`.
+pub(crate) fn write(packet: &OscPacket, bytes: &mut Vec<u8>) {
+    let Ok(_) = encoder::encode_into(packet, bytes);
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::floor::Geometry;
+    use crate::units::Instant;
+    use crate::wire::{Batch, Decoder};
+
+    fn floor() -> Floor {
+        Floor::of(Geometry::of_paper_tiles(6, 3).unwrap())
+    }
+
+    fn round_trip(format: SensorFormat, packet: &SensorPacket) -> SensorPacket {
+        let mut encoder = SensorEncoder::new(&floor(), format);
+        let mut batch = Batch::default();
+        let bytes = encoder.encode(packet).unwrap();
+        Decoder::new(&floor()).decode(bytes, packet.received, &mut batch).unwrap();
+        batch.packets.remove(0)
+    }
+
+    fn packet(board: u16, sequence: u32, readings: Readings) -> SensorPacket {
+        SensorPacket { board, sequence, received: Instant::from_millis(3), readings }
+    }
+
+    proptest! {
+        #[test]
+        fn counts_come_back_as_sent(
+            board in 0u16..3,
+            sequence: u32,
+            counts in prop::collection::vec(prop::option::weighted(0.9, any::<u16>()), 24),
+        ) {
+            let sent = packet(board, sequence, Readings::Counts(counts.into_iter().collect()));
+            prop_assert_eq!(round_trip(SensorFormat::Counts, &sent), sent);
+        }
+
+        #[test]
+        fn blobs_come_back_as_sent(
+            board in 0u16..3,
+            sequence: u32,
+            counts in prop::collection::vec(any::<u16>().prop_map(Some), 24),
+        ) {
+            let sent = packet(board, sequence, Readings::Counts(counts.into_iter().collect()));
+            prop_assert_eq!(round_trip(SensorFormat::Blob, &sent), sent);
+        }
+
+        #[test]
+        fn newtons_come_back_bit_by_bit(
+            board in 0u16..3,
+            sequence: u32,
+            bits in prop::collection::vec(any::<u32>(), 24),
+        ) {
+            let sent = packet(board, sequence, Readings::Newtons(bits.iter().map(|&bits| f32::from_bits(bits)).collect()));
+            let came = round_trip(SensorFormat::Newtons, &sent);
+            prop_assert_eq!((came.board, came.sequence), (board, sequence));
+            let Readings::Newtons(forces) = came.readings else { panic!("not newtons") };
+            let came: Vec<_> = forces.iter().map(|force| force.to_bits()).collect();
+            prop_assert_eq!(came, bits);
+        }
+    }
+
+    #[test]
+    fn counts_become_newtons_by_the_floors_own_calibration() {
+        let mut floor = floor();
+        floor.calibration[1][2] = Calibration { a_n: 2.0, b_per_volt: 1.0 };
+        let mut encoder = SensorEncoder::new(&floor, SensorFormat::Newtons);
+        let mut batch = Batch::default();
+        let sent = packet(0, 1, Readings::Counts([Some(13107); 24].into_iter().collect()));
+        Decoder::new(&floor).decode(encoder.encode(&sent).unwrap(), sent.received, &mut batch).unwrap();
+        let Readings::Newtons(forces) = &batch.packets[0].readings else { panic!("not newtons") };
+        // 13107 counts are 1 V.
+        assert!((forces[6] - 2.0 * 1f32.exp()).abs() < 1e-4, "{}", forces[6]);
+        assert!((forces[5] - 0.5 * 1.34f32.exp()).abs() < 1e-4, "{}", forces[5]);
+    }
+
+    #[test]
+    fn what_cannot_be_written_is_refused() {
+        let encode = |format, packet| SensorEncoder::new(&floor(), format).encode(&packet).map(|_| ());
+        let newtons = Readings::Newtons([1.0; 24].into_iter().collect());
+        let gap = Readings::Counts([None; 24].into_iter().collect());
+        let few = Readings::Counts([Some(1); 4].into_iter().collect());
+        assert_eq!(encode(SensorFormat::Counts, packet(0, 0, newtons.clone())), Err(EncodeError::NoCounts));
+        assert_eq!(encode(SensorFormat::Blob, packet(0, 0, gap)), Err(EncodeError::NoCounts));
+        assert_eq!(encode(SensorFormat::Newtons, packet(9, 0, newtons)), Err(EncodeError::NoBoard(9)));
+        let verdict = encode(SensorFormat::Counts, packet(0, 0, few));
+        assert_eq!(verdict, Err(EncodeError::Channels { board: 0, channels: 24, readings: 4 }));
+    }
+}

@@ -1,0 +1,401 @@
+use arrayvec::ArrayVec;
+use thiserror::Error;
+
+/// What one datagram may hold before it is refused unread.
+///
+/// Every limit is far above what a board or an app sends, and far below what
+/// makes a recursive decoder run out of stack.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Limits {
+    /// Most bytes.
+    pub bytes: usize,
+    /// Most bundles inside one another; at most [`Limits::MAX_DEPTH`], 0 allows messages only.
+    pub depth: usize,
+    /// Most bundle elements, counted over all bundles.
+    pub elements: usize,
+    /// Most type tags of one message.
+    pub tags: usize,
+    /// Most bytes of one address.
+    pub address: usize,
+}
+
+impl Limits {
+    /// No datagram nests bundles deeper than this, whatever [`Limits::depth`] says.
+    pub const MAX_DEPTH: usize = 8;
+
+    /// Most arrays inside one another within a message.
+    pub const MAX_ARRAY_DEPTH: usize = 4;
+
+    /// What sensor boards and apps may send: 8 KiB, bundles four deep, 256 messages of 256 arguments.
+    pub const SENSORS: Self = Self { bytes: 8192, depth: 4, elements: 256, tags: 256, address: 128 };
+}
+
+impl Default for Limits {
+    fn default() -> Self {
+        Self::SENSORS
+    }
+}
+
+/// Why a datagram is not well-formed OSC, or more than this program reads; `at` is a byte offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum Malformed {
+    /// There is nothing in it.
+    #[error("the datagram is empty")]
+    Empty,
+    /// It is longer than [`Limits::bytes`].
+    #[error("{bytes} bytes are more than the {limit} a datagram may have")]
+    TooLarge {
+        /// Bytes received; a socket may have cut the rest off.
+        bytes: usize,
+        /// Bytes allowed.
+        limit: usize,
+    },
+    /// Its length, or that of a bundle element, is not a multiple of four.
+    #[error("a length of {length} bytes is not a multiple of 4 (at byte {at})")]
+    Length {
+        /// The odd length.
+        length: usize,
+        /// Where it is.
+        at: usize,
+    },
+    /// An element, string, blob or argument reaches past the end of what holds it.
+    #[error("cut short: what starts at byte {at} reaches past the end")]
+    CutShort {
+        /// Where the part starts that is too long.
+        at: usize,
+    },
+    /// Bundles lie in bundles, or arrays in arrays, deeper than allowed; or an array never ends.
+    #[error("bundles or arrays nest too deep (at byte {at})")]
+    TooDeep {
+        /// Where it goes too far.
+        at: usize,
+    },
+    /// More bundle elements, type tags or address bytes than allowed.
+    #[error("more elements, arguments or address bytes than allowed (at byte {at})")]
+    TooMany {
+        /// Where it goes too far.
+        at: usize,
+    },
+    /// An element is neither a bundle nor a message with an address starting in `/`.
+    #[error("neither a message nor a bundle at byte {at}")]
+    Neither {
+        /// Where it starts.
+        at: usize,
+    },
+    /// A text holds bytes that OSC text may not have, or a type tag nobody knows.
+    #[error("bytes that are not OSC text, or an unknown type tag (at byte {at})")]
+    Text {
+        /// Where it is.
+        at: usize,
+    },
+    /// Bytes remain after the last argument.
+    #[error("bytes are left over at byte {at}")]
+    LeftOver {
+        /// Where they start.
+        at: usize,
+    },
+}
+
+/// Whether an OSC decoder may safely be given `datagram`.
+///
+/// Reads it once, front to back, without recursion or allocation: time and
+/// memory are bounded by `limits`, whatever the bytes. What passes is
+/// well-formed throughout: every element, string, blob and argument lies
+/// within what holds it, no byte is left over, texts are UTF-8 (addresses
+/// ASCII), arrays are closed.
+///
+/// # Errors
+/// [`Malformed`] names the first fault and where it is. Nothing of such a
+/// datagram should be used.
+///
+/// # Source
+/// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc knows them.
+pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
+    if datagram.is_empty() {
+        return Err(Malformed::Empty);
+    }
+    if datagram.len() > limits.bytes {
+        return Err(Malformed::TooLarge { bytes: datagram.len(), limit: limits.bytes });
+    }
+    if !datagram.len().is_multiple_of(4) {
+        return Err(Malformed::Length { length: datagram.len(), at: 0 });
+    }
+
+    // Where each open bundle ends, outermost first; the outermost element is the datagram itself.
+    let mut ends: ArrayVec<usize, { Limits::MAX_DEPTH }> = ArrayVec::new();
+    let mut elements = 0;
+    let mut element = 0..datagram.len();
+    loop {
+        let bytes = datagram.get(element.clone()).ok_or(Malformed::CutShort { at: element.start })?;
+        let mut next = element.end;
+        if bytes.starts_with(BUNDLE_TAG) {
+            if bytes.len() < BUNDLE_HEADER {
+                return Err(Malformed::CutShort { at: element.start });
+            }
+            if ends.len() >= limits.depth || ends.try_push(element.end).is_err() {
+                return Err(Malformed::TooDeep { at: element.start });
+            }
+            next = element.start + BUNDLE_HEADER;
+        } else {
+            Scan { bytes, offset: element.start, at: 0 }.message(limits)?;
+        }
+
+        while ends.last() == Some(&next) {
+            ends.pop();
+        }
+        let Some(&end) = ends.last() else { return Ok(()) };
+
+        elements += 1;
+        if elements > limits.elements {
+            return Err(Malformed::TooMany { at: next });
+        }
+        let length = datagram.get(next..end).and_then(be_u32).ok_or(Malformed::CutShort { at: next })?;
+        let start = next + 4;
+        if length % 4 != 0 {
+            return Err(Malformed::Length { length, at: next });
+        }
+        if length == 0 {
+            return Err(Malformed::Neither { at: start });
+        }
+        if length > end - start {
+            return Err(Malformed::CutShort { at: next });
+        }
+        element = start..start + length;
+    }
+}
+
+const BUNDLE_TAG: &[u8] = b"#bundle\0";
+
+/// The tag and the time tag.
+const BUNDLE_HEADER: usize = 16;
+
+fn be_u32(bytes: &[u8]) -> Option<usize> {
+    let word: [u8; 4] = bytes.get(..4)?.try_into().ok()?;
+    usize::try_from(u32::from_be_bytes(word)).ok()
+}
+
+/// A walk through one message; `bytes` is a multiple of four long.
+struct Scan<'a> {
+    bytes: &'a [u8],
+    /// Where `bytes` starts in the datagram, for messages.
+    offset: usize,
+    at: usize,
+}
+
+impl<'a> Scan<'a> {
+    fn message(mut self, limits: &Limits) -> Result<(), Malformed> {
+        if self.bytes.first() != Some(&b'/') {
+            return Err(Malformed::Neither { at: self.offset });
+        }
+        let address = self.text()?;
+        if address.len() > limits.address {
+            return Err(Malformed::TooMany { at: self.offset });
+        }
+        if !address.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ') {
+            return Err(Malformed::Text { at: self.offset });
+        }
+        let tags_at = self.offset + self.at;
+        let tags = self.text()?.strip_prefix(',').ok_or(Malformed::Text { at: tags_at })?;
+        if tags.len() > limits.tags {
+            return Err(Malformed::TooMany { at: tags_at });
+        }
+        self.arguments(tags, tags_at)?;
+        if self.at < self.bytes.len() {
+            return Err(Malformed::LeftOver { at: self.offset + self.at });
+        }
+        Ok(())
+    }
+
+    fn arguments(&mut self, tags: &str, tags_at: usize) -> Result<(), Malformed> {
+        let mut depth = 0;
+        for tag in tags.bytes() {
+            match tag {
+                b'i' | b'f' | b'r' | b'm' => self.skip(4)?,
+                b'h' | b'd' | b't' => self.skip(8)?,
+                b'T' | b'F' | b'N' | b'I' => {}
+                b's' => {
+                    self.text()?;
+                }
+                b'c' => self.character()?,
+                b'b' => self.blob()?,
+                b'[' if depth < Limits::MAX_ARRAY_DEPTH => depth += 1,
+                b'[' => return Err(Malformed::TooDeep { at: tags_at }),
+                b']' if depth > 0 => depth -= 1,
+                _ => return Err(Malformed::Text { at: tags_at }),
+            }
+        }
+        if depth == 0 { Ok(()) } else { Err(Malformed::TooDeep { at: tags_at }) }
+    }
+
+    fn cut_short(&self) -> Malformed {
+        Malformed::CutShort { at: self.offset + self.at }
+    }
+
+    fn rest(&self) -> &'a [u8] {
+        self.bytes.get(self.at..).unwrap_or_default()
+    }
+
+    fn skip(&mut self, length: usize) -> Result<(), Malformed> {
+        if length > self.rest().len() {
+            return Err(self.cut_short());
+        }
+        self.at += length;
+        Ok(())
+    }
+
+    /// A string with its terminator, padded to four bytes.
+    fn text(&mut self) -> Result<&'a str, Malformed> {
+        let rest = self.rest();
+        let length = rest.iter().position(|&byte| byte == 0).ok_or_else(|| self.cut_short())?;
+        let bytes = rest.get(..length).unwrap_or_default();
+        let text = std::str::from_utf8(bytes).map_err(|_| Malformed::Text { at: self.offset + self.at })?;
+        self.skip((length + 1).next_multiple_of(4))?;
+        Ok(text)
+    }
+
+    fn character(&mut self) -> Result<(), Malformed> {
+        let code = be_u32(self.rest()).ok_or_else(|| self.cut_short())?;
+        if u32::try_from(code).ok().and_then(char::from_u32).is_none() {
+            return Err(Malformed::Text { at: self.offset + self.at });
+        }
+        self.skip(4)
+    }
+
+    fn blob(&mut self) -> Result<(), Malformed> {
+        let length = be_u32(self.rest()).ok_or_else(|| self.cut_short())?;
+        // Checked before rounding up, which could overflow on a 32-bit machine.
+        if length > self.rest().len() {
+            return Err(self.cut_short());
+        }
+        self.skip(4 + length.next_multiple_of(4))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rosc::{OscArray, OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+
+    use super::*;
+
+    fn message(address: &str, args: Vec<OscType>) -> OscPacket {
+        OscPacket::Message(OscMessage { addr: address.into(), args })
+    }
+
+    fn bundle(content: Vec<OscPacket>) -> OscPacket {
+        OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content })
+    }
+
+    fn verdict(packet: &OscPacket) -> Result<(), Malformed> {
+        check(&encoder::encode(packet).unwrap(), &Limits::default())
+    }
+
+    #[test]
+    fn every_argument_type_of_osc_passes() {
+        let every = vec![
+            OscType::Int(1),
+            OscType::Float(2.0),
+            OscType::Double(3.0),
+            OscType::Long(4),
+            OscType::Time(OscTime { seconds: 5, fractional: 6 }),
+            OscType::String("seven".into()),
+            OscType::Blob(vec![1, 2, 3, 4, 5]),
+            OscType::Char('x'),
+            OscType::Bool(true),
+            OscType::Nil,
+            OscType::Inf,
+            OscType::Array(OscArray { content: vec![OscType::Int(1), OscType::Bool(false)] }),
+        ];
+        assert_eq!(verdict(&message("/a", every.clone())), Ok(()));
+        assert_eq!(verdict(&bundle(vec![message("/a", every), bundle(vec![message("/b", vec![])])])), Ok(()));
+        assert_eq!(verdict(&bundle(vec![])), Ok(()));
+    }
+
+    #[test]
+    fn bundles_nest_four_deep_and_no_deeper() {
+        let mut packet = message("/a", vec![]);
+        for depth in 1..=5 {
+            packet = bundle(vec![packet]);
+            assert_eq!(verdict(&packet).is_ok(), depth <= 4, "{depth}");
+        }
+    }
+
+    #[test]
+    fn arrays_must_close_and_nest_four_deep_at_most() {
+        let tags = |tags: &[u8]| {
+            let mut bytes = b"/a\0\0".to_vec();
+            bytes.extend(tags);
+            bytes.push(0);
+            bytes.resize(bytes.len().next_multiple_of(4), 0);
+            check(&bytes, &Limits::default())
+        };
+        assert_eq!(tags(b",[[[[]]]]"), Ok(()));
+        assert_eq!(tags(b",[[[[[]]]]]"), Err(Malformed::TooDeep { at: 4 }));
+        assert_eq!(tags(b",[[T]"), Err(Malformed::TooDeep { at: 4 }));
+        assert_eq!(tags(b",]["), Err(Malformed::Text { at: 4 }));
+        assert_eq!(tags(b",Q"), Err(Malformed::Text { at: 4 }));
+        assert_eq!(tags(b"T"), Err(Malformed::Text { at: 4 }));
+    }
+
+    #[test]
+    fn every_prefix_of_a_good_datagram_is_refused() {
+        let whole =
+            encoder::encode(&bundle(vec![message("/underfoot/board/0", vec![OscType::Int(1); 25])])).unwrap();
+        assert_eq!(check(&whole, &Limits::default()), Ok(()));
+        for length in 0..whole.len() {
+            // A bundle header alone, and a header with whole elements, are bundles in their own right.
+            let verdict = check(&whole[..length], &Limits::default());
+            assert_eq!(verdict.is_ok(), length == 16, "{length}: {verdict:?}");
+        }
+    }
+
+    #[test]
+    fn left_over_bytes_are_refused_wherever_they_are() {
+        let mut bytes = encoder::encode(&message("/a", vec![OscType::Int(1)])).unwrap();
+        let end = bytes.len();
+        bytes.extend([0; 4]);
+        assert_eq!(check(&bytes, &Limits::default()), Err(Malformed::LeftOver { at: end }));
+
+        // The same inside a bundle, where rosc alone would not notice.
+        let mut inside = b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec();
+        inside.extend((bytes.len() as u32).to_be_bytes());
+        inside.extend(&bytes);
+        assert_eq!(check(&inside, &Limits::default()), Err(Malformed::LeftOver { at: 20 + end }));
+    }
+
+    #[test]
+    fn lengths_that_lie_are_refused() {
+        let with_length = |length: u32| {
+            let mut bytes = b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec();
+            bytes.extend(length.to_be_bytes());
+            bytes.extend(b"/a\0\0,\0\0\0");
+            check(&bytes, &Limits::default())
+        };
+        assert_eq!(with_length(8), Ok(()));
+        assert_eq!(with_length(7), Err(Malformed::Length { length: 7, at: 16 }));
+        assert_eq!(with_length(12), Err(Malformed::CutShort { at: 16 }));
+        assert_eq!(with_length(0xFFFF_FFFC), Err(Malformed::CutShort { at: 16 }));
+        assert!(with_length(4).is_err());
+        assert!(with_length(0).is_err());
+        let blob = |length: u32| {
+            let mut bytes = b"/a\0\0,b\0\0".to_vec();
+            bytes.extend(length.to_be_bytes());
+            bytes.extend([0; 4]);
+            check(&bytes, &Limits::default())
+        };
+        assert_eq!(blob(4), Ok(()));
+        assert_eq!(blob(5), Err(Malformed::CutShort { at: 8 }));
+        assert_eq!(blob(u32::MAX), Err(Malformed::CutShort { at: 8 }));
+    }
+
+    #[test]
+    fn too_much_of_anything_is_refused() {
+        let limits = Limits::default();
+        assert_eq!(check(&[], &limits), Err(Malformed::Empty));
+        assert!(matches!(check(&[0; 65_507], &limits), Err(Malformed::TooLarge { bytes: 65_507, .. })));
+        assert!(matches!(verdict(&message("/a", vec![OscType::Nil; 257])), Err(Malformed::TooMany { .. })));
+        let long = format!("/{}", "a".repeat(200));
+        assert!(matches!(verdict(&message(&long, vec![])), Err(Malformed::TooMany { .. })));
+        let many = vec![message("/a", vec![]); 257];
+        assert!(matches!(verdict(&bundle(many)), Err(Malformed::TooMany { .. })));
+    }
+}
