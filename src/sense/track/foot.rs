@@ -24,7 +24,7 @@ pub(super) const HALF_MOST: f64 = 0.17;
 pub(super) const HALF_REST: f64 = 0.075;
 
 /// Longest distance between two points under one shoe that carry noticeable load.
-const SHOE_M: f64 = 0.29;
+const SHOE_M: f64 = 0.33;
 /// How far to the side of its line of roll a foot presses.
 const ASIDE_M: f64 = 0.11;
 /// How far from its centre of pressure a foot that has come down flat presses.
@@ -93,7 +93,7 @@ impl Foot {
             age: 0.0,
             state: [force, 0.0, centre.x, 0.0, centre.y, 0.0, HALF_REST, HALF_REST],
             covariance: [[0.0; STATES]; STATES],
-            past: Past { centre, ..Past::default() },
+            past: Past { force, centre, ..Past::default() },
             tiles: SmallVec::new(),
             faint: 0.0,
             group: 0,
@@ -292,7 +292,11 @@ impl Foot {
 
     /// Its habit on one line, as far as it still holds; nothing where it has none.
     pub(super) fn habit(&self, axis: Axis, number: i32) -> Habit {
-        let strength = self.habit_strength();
+        self.habit_at(axis, number, self.habit_strength())
+    }
+
+    /// Its habit on one line, times `strength`.
+    pub(super) fn habit_at(&self, axis: Axis, number: i32, strength: f64) -> Habit {
         self.habits
             .iter()
             .find(|habit| habit.axis == axis && habit.number == number)

@@ -15,6 +15,7 @@ mod lines;
 mod patch;
 
 use glam::DVec2;
+use smallvec::SmallVec;
 
 use self::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
 use self::joint::{Joint, MOST_FEET, Slope};
@@ -52,6 +53,19 @@ struct Link {
     second: ContactId,
     cross: [[f64; STATES]; STATES],
 }
+
+/// A foot that has just landed among another's tiles.
+#[derive(Clone, Debug, Default)]
+struct Newcomer {
+    force: f64,
+    place: DVec2,
+    deviation: f64,
+    /// Positions of the tiles on which it was noticed, in the list of loaded tiles.
+    tiles: SmallVec<[u32; 4]>,
+}
+
+/// Least distance between the centres of pressure of two feet: side by side, touching.
+const APART_M: f64 = 0.08;
 
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
@@ -180,25 +194,48 @@ impl Tracker {
             if foot.age == 0.0 || foot.shared {
                 continue;
             }
-            if let Some((force, centre, deviation)) = self.newcomer(foot, list) {
-                let mut newborn = Foot::new(self.name(), force, centre, deviation);
-                newborn.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
-                newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
-                newborn.reach(tiles, self.cells.pitch);
-                if newborn.tiles.is_empty() {
-                    continue;
+            let Some(newcomer) = self.newcomer(foot, list) else { continue };
+            let others = self.feet.iter().enumerate().filter(|&(other, _)| other != which);
+            let nearest = others
+                .map(|(other, foot)| {
+                    (other, foot.beyond(newcomer.place), foot.centre().distance(newcomer.place))
+                })
+                .filter(|&(_, beyond, distance)| beyond < 0.0 || distance < APART_M)
+                .min_by(|a, b| a.2.total_cmp(&b.2));
+            if let Some((other, ..)) = nearest {
+                // Not a newcomer, but more of a foot that is already there.
+                let known = &mut self.feet[other];
+                for &position in &newcomer.tiles {
+                    if !known.tiles.contains(&position) {
+                        known.tiles.push(position);
+                    }
                 }
+                continue;
+            }
+            if foot.centre().distance(newcomer.place) < APART_M {
+                continue;
+            }
+            let mut newborn = Foot::new(self.name(), newcomer.force, newcomer.place, newcomer.deviation);
+            newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
+            newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
+            newborn.reach(tiles, self.cells.pitch);
+            for &position in &newcomer.tiles {
+                if !newborn.tiles.contains(&position) {
+                    newborn.tiles.push(position);
+                }
+            }
+            if !newborn.tiles.is_empty() {
                 self.feet[which].step_back();
                 self.feet.push(newborn);
             }
         }
     }
 
-    /// Force, place and doubt of a foot that has landed among the tiles of `foot`, if one has.
-    fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<(f64, DVec2, f64)> {
+    /// The foot that has landed among the tiles of `foot`, if one has.
+    fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
         let mut whole = 0.0;
         let mut sum = DVec2::ZERO;
-        let mut best: Option<(f64, DVec2, f64)> = None;
+        let mut found = Newcomer::default();
         for &position in &foot.tiles {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
@@ -219,17 +256,16 @@ impl Tracker {
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
             // What the foot's own sway may look like, at its own centre of pressure.
             let sway = slow.force * 0.012;
-            if inside
-                && about.length() > added * 0.08 + sway
-                && foot.beyond(place) > sway / added
-                && best.is_none_or(|best| best.0 < added)
-            {
-                let deviation = 0.02 + (slow.force * 0.006 / added).min(0.1);
-                best = Some((added, place.clamp(low, high), deviation));
+            if inside && about.length() > added * 0.08 + sway && foot.beyond(place) > sway / added {
+                found.place =
+                    (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);
+                found.force += added;
+                found.deviation = found.deviation.max(0.02 + (slow.force * 0.006 / added).min(0.1));
+                found.tiles.push(position);
             }
         }
-        if best.is_some() {
-            return best;
+        if found.force > 0.0 {
+            return Some(found);
         }
         let leap = sum / whole - foot.past.centre;
         if foot.age > 0.12 && whole > 120.0 && leap.length() > 0.02 {
@@ -237,7 +273,7 @@ impl Tracker {
             let added = (whole - foot.past.force).max(moment.length() / 0.45);
             if added < whole {
                 let place = foot.past.centre + moment / added;
-                return Some((added, place, 0.08));
+                return Some(Newcomer { force: added, place, deviation: 0.08, ..Newcomer::default() });
             }
         }
         None
@@ -334,12 +370,47 @@ impl Tracker {
         }
     }
 
-    /// Takes away feet that have been too light for too long.
-    fn bury(&mut self, _tiles: &LoadedTiles, dt: f64) {
-        for foot in &mut self.feet {
-            foot.faint = if foot.shared && foot.force() < 8.0 { foot.faint + dt } else { 0.0 };
+    /// Takes away feet that are not there: too light for too long, or no longer needed to
+    /// explain what the tiles carry.
+    fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for which in 0..self.feet.len() {
+            let foot = &self.feet[which];
+            let gone = foot.shared && (foot.force() < 8.0 || self.superfluous(which, tiles.list()));
+            let foot = &mut self.feet[which];
+            foot.faint = if gone { foot.faint + dt } else { 0.0 };
         }
-        self.feet.retain(|foot| foot.faint < 0.005);
+        self.feet.retain(|foot| foot.faint < 0.01);
+    }
+
+    /// Whether the tiles carry what the foot that shares them with foot `which` presses
+    /// on them when alone, as if `which` were not there.
+    fn superfluous(&self, which: usize, list: &[LoadedTile]) -> bool {
+        let foot = &self.feet[which];
+        let mut others =
+            self.feet.iter().enumerate().filter(|&(other, o)| other != which && o.group == foot.group);
+        let (Some((_, host)), None) = (others.next(), others.next()) else { return false };
+        if host.centre().distance(foot.centre()) < 0.6 * APART_M {
+            return host.age >= foot.age;
+        }
+        let Some(home) = host.alone_at else { return false };
+        if foot.force() > 0.4 * host.force() && foot.age > host.age {
+            return false;
+        }
+        let mut seen = host.tiles.clone();
+        for &position in &foot.tiles {
+            if !seen.contains(&position) {
+                seen.push(position);
+            }
+        }
+        let pitch = self.cells.pitch;
+        let lines = Lines::of(seen.iter().map(|&position| &list[position as usize]), pitch);
+        lines.middle.distance(home) < 0.012
+            && lines.lines.iter().all(|line| {
+                let axis = line.axis;
+                let slice = line.slice(pitch, axis.along(lines.middle), axis.along(host.half()));
+                let habit = host.habit_at(axis, line.number, 1.0);
+                (line.force / lines.force - slice.share - habit.share).abs() < 0.012
+            })
     }
 
     /// Lets each foot's slow past learn from this frame.
