@@ -20,6 +20,7 @@ pub mod picture;
 pub mod scene;
 pub mod schema;
 pub mod sense;
+pub mod serve;
 pub mod sim;
 pub mod sink;
 pub mod source;

@@ -1,5 +1,6 @@
 use glam::Vec2;
 
+use crate::feel::FeelCounters;
 use crate::sense::{Contact, Cursor, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::Value;
@@ -25,6 +26,8 @@ pub struct Snapshot {
     pub link: LinkState,
     /// What came in and what was refused.
     pub counters: LinkCounters,
+    /// What could not be felt as it should.
+    pub feel: FeelCounters,
     /// Grows by one each time the engine takes another layout.
     pub layout_revision: u64,
 }

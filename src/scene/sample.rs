@@ -9,7 +9,7 @@ use crate::engine::{LinkState, Snapshot, TileState, WidgetState};
 use crate::feel::Feel;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, Layout, Look, Region, Shape, Stance, Widget};
-use crate::sense::{Contact, ContactId, Cursor, Quality, TileLoad};
+use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
 
@@ -156,6 +156,10 @@ pub(crate) fn step_on(snapshot: &mut Snapshot, id: u32, at: Vec2, force: f32, ve
         force: Newtons(force),
         velocity,
         tiles: smallvec![load],
+        covariance: Covariance::isotropic(0.003),
+        ambiguous: false,
+        quality: Quality::Live,
+        difference: None,
     });
 }
 

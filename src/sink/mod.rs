@@ -3,16 +3,19 @@
 mod latency;
 mod lockstep;
 mod manual;
+mod silent;
 mod wav;
 
 use thiserror::Error;
 
+use crate::engine::LinkState;
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
 pub use latency::{HostClock, LatencyMeter, LatencyProbe, LatencySummary};
 pub use manual::ManualSink;
+pub use silent::SilentSink;
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 
 /// Something that plays the renderer's samples.
@@ -31,6 +34,9 @@ pub trait EventSink: Send {
 
     /// Takes the contacts of one frame; called for every frame, so a sink thins them out itself.
     fn contacts(&mut self, at: Instant, contacts: &[Contact]);
+
+    /// Takes the news that sensor packets arrive, or don't.
+    fn link(&mut self, link: LinkState);
 }
 
 /// Why a sink cannot take samples.

@@ -9,7 +9,7 @@ use std::time::Duration;
 use thiserror::Error;
 
 use crate::units::Instant;
-use crate::wire::{LinkCounters, SensorPacket};
+use crate::wire::{ControlMessage, LinkCounters, SensorPacket};
 
 /// A floor's stream of sensor packets, with the clock they are stamped by.
 pub trait SensorSource: Send {
@@ -24,6 +24,11 @@ pub trait SensorSource: Send {
 
     /// The present moment on the clock that stamps [`SensorPacket::received`].
     fn now(&self) -> Instant;
+
+    /// What an app asked of a control over the same wire, oldest first; `None` once all is taken.
+    fn take_control(&mut self) -> Option<ControlMessage> {
+        None
+    }
 
     /// What the source itself received and refused so far; zero where it can refuse nothing.
     fn counters(&self) -> LinkCounters {

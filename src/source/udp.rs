@@ -4,6 +4,7 @@ mod proc_net;
 use std::collections::VecDeque;
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::sync::Arc;
 use std::time::{Duration, Instant as HostInstant};
 
 use socket2::{Domain, Protocol, Socket, Type};
@@ -11,13 +12,14 @@ use socket2::{Domain, Protocol, Socket, Type};
 use self::log::RefusalLog;
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
+use crate::sink::HostClock;
 use crate::units::Instant;
 use crate::wire::{Batch, ControlMessage, Decoder, LinkCounters, SensorPacket};
 
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
 const BUFFER_BYTES: usize = 8 << 20;
 
-/// Most control messages kept for [`UdpSource::take_controls`].
+/// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
 
 /// Most datagrams looked at in one call without patience, so that a flood of rubbish cannot hold it.
@@ -41,7 +43,7 @@ pub struct UdpSource {
     decoder: Decoder,
     batch: Batch,
     packets: VecDeque<SensorPacket>,
-    controls: Vec<ControlMessage>,
+    controls: VecDeque<ControlMessage>,
     allowed: Vec<IpAddr>,
     counters: LinkCounters,
     drops_read: Instant,
@@ -77,7 +79,7 @@ impl UdpSource {
             decoder,
             batch: Batch::default(),
             packets: VecDeque::new(),
-            controls: Vec::new(),
+            controls: VecDeque::new(),
             allowed: Vec::new(),
             counters: LinkCounters::default(),
             drops_read: Instant::START,
@@ -108,10 +110,11 @@ impl UdpSource {
         self.granted
     }
 
-    /// What apps have asked for since the last call, oldest first. More than
-    /// 1024 that nobody takes are dropped and counted as overflowed.
-    pub fn take_controls(&mut self) -> Vec<ControlMessage> {
-        std::mem::take(&mut self.controls)
+    /// The clock that stamps packets, for measuring how long what follows takes.
+    #[must_use]
+    pub fn clock(&self) -> HostClock {
+        let started = self.started;
+        Arc::new(move || Instant::START + started.elapsed())
     }
 
     /// Receives one datagram and sorts what it holds; false if none came.
@@ -196,6 +199,10 @@ impl SensorSource for UdpSource {
 
     fn now(&self) -> Instant {
         Instant::START + self.started.elapsed()
+    }
+
+    fn take_control(&mut self) -> Option<ControlMessage> {
+        self.controls.pop_front()
     }
 
     fn counters(&self) -> LinkCounters {

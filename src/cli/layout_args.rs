@@ -1,0 +1,66 @@
+use std::path::{Path, PathBuf};
+
+use clap::Args;
+use underfoot::floor::Geometry;
+use underfoot::layout::Layout;
+use underfoot::schema::{self, Diagnostics, Kinds};
+
+use super::failure::Failure;
+
+/// Which layout it is about.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct LayoutArgs {
+    /// Layout file, or the name of a built-in one (map, surgical, first_steps).
+    #[arg(value_name = "LAYOUT")]
+    pub(crate) layout: Option<PathBuf>,
+    /// Folder of control kinds to add; without it, a `widgets` folder beside the layout or beside its folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) widgets: Option<PathBuf>,
+}
+
+/// The layout that stands for none: the main job's.
+pub(crate) const DEFAULT_LAYOUT: &str = "map";
+
+impl LayoutArgs {
+    /// The layout named or described, checked for this floor; its warnings go to standard error.
+    pub(crate) fn load(&self, geometry: &Geometry) -> Result<Layout, Failure> {
+        let kinds = self.kinds()?;
+        let loaded = match self.path() {
+            Some(path) => schema::load_layout(path, &kinds, geometry)?,
+            None => {
+                let name = self.layout.as_deref().and_then(Path::to_str).unwrap_or(DEFAULT_LAYOUT);
+                let text = schema::builtin_layout(name).unwrap_or_default();
+                schema::parse_layout(text, &format!("{name} (built in)"), &kinds, geometry)?
+            }
+        };
+        if !loaded.warnings.is_empty() {
+            anstream::eprint!("{}", loaded.warnings);
+        }
+        Ok(loaded.layout)
+    }
+
+    /// The file to read and to watch; `None` for a built-in layout.
+    pub(crate) fn path(&self) -> Option<&Path> {
+        let path = self.layout.as_deref()?;
+        let builtin = path.to_str().is_some_and(|name| schema::builtin_layout(name).is_some());
+        (!builtin || path.exists()).then_some(path)
+    }
+
+    /// The shipped kinds and the user's.
+    pub(crate) fn kinds(&self) -> Result<Kinds, Diagnostics> {
+        let mut kinds = Kinds::builtin();
+        if let Some(folder) = self.kinds_folder() {
+            kinds.read_folder(&folder)?;
+        }
+        Ok(kinds)
+    }
+
+    /// The folder with the user's kinds, if there is one.
+    pub(crate) fn kinds_folder(&self) -> Option<PathBuf> {
+        if let Some(folder) = &self.widgets {
+            return Some(folder.clone());
+        }
+        let home = std::path::absolute(self.path()?).ok()?;
+        home.ancestors().skip(1).take(2).map(|folder| folder.join("widgets")).find(|folder| folder.is_dir())
+    }
+}

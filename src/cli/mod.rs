@@ -1,0 +1,113 @@
+//! The command line: one file per subcommand.
+//!
+//! Exit status 0: done; 1: the work failed (standard error says what to do next); 2: wrong usage.
+
+mod check;
+mod failure;
+mod floor_args;
+mod layout_args;
+#[cfg(feature = "preview")]
+mod preview;
+mod render;
+mod run;
+mod session;
+mod simulate;
+mod watch;
+
+use std::process::ExitCode;
+
+use clap::{CommandFactory, Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+use failure::Failure;
+
+/// User interfaces on the floor: force-sensing tiles in, foot controls and tactile feedback out.
+///
+/// Without a command: opens a window with a simulated floor on the built-in map layout, where the mouse
+/// is a foot. Without a display: plays a built-in session and leaves a picture, a sound file and an event log.
+#[derive(Debug, Parser)]
+#[command(name = "underfoot", version, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Option<Command>,
+    /// Say more on standard error (-v: what happens, -vv: everything).
+    #[arg(short, long, action = clap::ArgAction::Count, global = true)]
+    verbose: u8,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Open the window on a layout: a simulated floor with the mouse as a foot, a scenario, or a real floor.
+    #[cfg(feature = "preview")]
+    Preview(preview::Args),
+    /// Serve a floor: sensor packets in, events and actuator samples out.
+    Run(run::Args),
+    /// Play a scenario on a simulated floor in a process of its own, sending real packets.
+    Simulate(simulate::Args),
+    /// Play the built-in session without a window and leave a picture, a sound file and an event log.
+    Session(session::Args),
+    /// Read layouts and say everything that is wrong with them.
+    Check(check::Args),
+    /// Draw a layout to a PNG or SVG file; needs no display.
+    Render(render::Args),
+    /// Print completions for a shell.
+    Completions {
+        /// Which shell.
+        shell: clap_complete::Shell,
+    },
+}
+
+/// Runs the program and gives its exit status.
+pub(crate) fn main() -> ExitCode {
+    let cli = Cli::parse();
+    start_logging(cli.verbose);
+    match dispatch(cli.command) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            anstream::eprintln!("{failure}");
+            ExitCode::from(1)
+        }
+    }
+}
+
+fn dispatch(command: Option<Command>) -> Result<(), Failure> {
+    match command {
+        None => by_default(),
+        #[cfg(feature = "preview")]
+        Some(Command::Preview(args)) => preview::run(args),
+        Some(Command::Run(args)) => run::run(args),
+        Some(Command::Simulate(args)) => simulate::run(args),
+        Some(Command::Session(args)) => session::run(&args),
+        Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Completions { shell }) => {
+            clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
+            Ok(())
+        }
+    }
+}
+
+/// The main job with nothing asked: the window if there can be one, the played session otherwise.
+fn by_default() -> Result<(), Failure> {
+    #[cfg(feature = "preview")]
+    if preview::has_display() {
+        match preview::run(preview::Args::default()) {
+            Err(Failure::NoWindow(reason)) => {
+                anstream::eprintln!("No window: {reason}. Playing the built-in session instead.");
+            }
+            done => return done,
+        }
+    }
+    session::run(&session::Args::default())
+}
+
+/// Warnings and errors by default; `RUST_LOG` overrules.
+fn start_logging(verbose: u8) {
+    let level = match verbose {
+        0 => "warn",
+        1 => "info,underfoot=debug",
+        _ => "trace",
+    };
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).with_target(false).init();
+}

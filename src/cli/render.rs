@@ -1,0 +1,44 @@
+use std::path::PathBuf;
+
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::picture;
+use underfoot::scene::{self, Scene, Show, Theme, View};
+use underfoot::sense::Method;
+
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
+use super::layout_args::LayoutArgs;
+
+/// What `underfoot render` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// The picture: PNG, or SVG if the name ends in .svg.
+    #[arg(short, long, value_name = "FILE", default_value = "layout.png")]
+    out: PathBuf,
+    /// Width of a PNG, in pixels.
+    #[arg(long, value_name = "PX", default_value_t = 1200)]
+    width: u32,
+    /// Only what a projector would throw onto the floor: no title, no ruler.
+    #[arg(long)]
+    bare: bool,
+}
+
+/// Draws the layout at rest.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let geometry = args.floor.load()?.geometry;
+    let layout = args.layout.load(&geometry)?;
+    let mut snapshot = Snapshot::default();
+    let engine = Engine::new(geometry, layout, Method::default());
+    engine.snapshot(&mut snapshot);
+    let show = if args.bare { Show::PROJECTOR } else { Show::LAYOUT };
+    let mut scene = Scene::new();
+    let view = View { show, ..View::new(&geometry, engine.layout(), &snapshot, &Theme::LIGHT) };
+    scene::draw(&mut scene, &view);
+    picture::write(&scene, &args.out, args.width)?;
+    anstream::println!("{}", args.out.display());
+    Ok(())
+}

@@ -1,0 +1,284 @@
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Receiver;
+use std::time::Duration;
+
+use tracing::{info, warn};
+use triple_buffer::Input;
+
+use crate::engine::{Engine, LinkState, Snapshot};
+use crate::feel::CueSender;
+use crate::floor::Floor;
+use crate::layout::Layout;
+use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::sink::{ActuatorSink, EventSink};
+use crate::source::{SensorSource, SourceError};
+use crate::units::Instant;
+use crate::widget::Value;
+use crate::wire::{ControlMessage, LinkCounters};
+
+/// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
+const PATIENCE: Duration = Duration::from_millis(5);
+
+/// Time from one frame to the next: what a frame causes is played within it.
+const FRAME: Duration = Duration::from_millis(1);
+
+/// How often the snapshot is renewed: more often than any screen.
+const SNAPSHOT_EVERY: Duration = Duration::from_millis(5);
+
+/// How far lockstep samples stay behind the clock while no frames come.
+const IDLE_LAG: Duration = Duration::from_millis(20);
+
+/// What is played after the last frame, so that the last click can ring out.
+const TAIL: Duration = Duration::from_millis(300);
+
+/// Something an app or a window asks of a floor at work.
+#[derive(Clone, Debug)]
+pub enum Command {
+    /// Take another layout (kept back while a foot is on a control that both have).
+    SetLayout(Box<Layout>),
+    /// What an app may also ask over OSC.
+    Control(ControlMessage),
+}
+
+/// Whether there is more to come after a turn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ended {
+    /// Call again.
+    No,
+    /// The source has ended; everything is released and handed out.
+    Yes,
+}
+
+/// One floor at work.
+pub struct Server {
+    source: Box<dyn SensorSource>,
+    assembler: Assembler,
+    engine: Engine,
+    feel: Option<CueSender>,
+    actuators: Option<Box<dyn ActuatorSink>>,
+    events: Option<Box<dyn EventSink>>,
+    snapshots: Option<Input<Snapshot>>,
+    commands: Option<Receiver<Command>>,
+    link: LinkState,
+    tare: TareOutcome,
+    shown: Instant,
+}
+
+impl Server {
+    /// A server for the controls of `layout` on `floor`, fed by `source`, which so far tells nobody.
+    ///
+    /// The tare is the floor's own, or measured at the start if it has none.
+    #[must_use]
+    pub fn new(floor: &Floor, layout: Layout, method: Method, source: Box<dyn SensorSource>) -> Self {
+        Self {
+            source,
+            assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
+            engine: Engine::new(floor.geometry, layout, method),
+            feel: None,
+            actuators: None,
+            events: None,
+            snapshots: None,
+            commands: None,
+            link: LinkState::Waiting,
+            tare: TareOutcome::FromFloor,
+            shown: Instant::START,
+        }
+    }
+
+    /// Sends cues through `feel` to the renderer that `actuators` plays.
+    #[must_use]
+    pub fn with_feel(mut self, feel: CueSender, actuators: Box<dyn ActuatorSink>) -> Self {
+        self.feel = Some(feel);
+        self.actuators = Some(actuators);
+        self
+    }
+
+    /// Tells `events` what happens.
+    #[must_use]
+    pub fn with_events(mut self, events: Box<dyn EventSink>) -> Self {
+        self.events = Some(events);
+        self
+    }
+
+    /// Keeps `snapshots` up to date.
+    #[must_use]
+    pub fn with_snapshots(mut self, snapshots: Input<Snapshot>) -> Self {
+        self.snapshots = Some(snapshots);
+        self
+    }
+
+    /// Obeys `commands`.
+    #[must_use]
+    pub fn with_commands(mut self, commands: Receiver<Command>) -> Self {
+        self.commands = Some(commands);
+        self
+    }
+
+    /// The engine, to look at.
+    #[must_use]
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    /// What came in and what was refused, from the socket to the frames.
+    #[must_use]
+    pub fn counters(&self) -> LinkCounters {
+        self.source.counters() + self.assembler.counters()
+    }
+
+    /// Works until the source ends or `stop` is set, which is noticed within some milliseconds.
+    ///
+    /// # Errors
+    /// What [`Server::turn`] gives.
+    pub fn run(&mut self, stop: &AtomicBool) -> Result<(), SourceError> {
+        while !stop.load(Ordering::Relaxed) {
+            if self.turn()? == Ended::Yes {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Takes one packet, or notices that none came, and does everything that follows from it.
+    ///
+    /// # Errors
+    /// [`SourceError`] if the source fails. A sink that fails is given up with a
+    /// warning, for the controls go on working without it.
+    pub fn turn(&mut self) -> Result<Ended, SourceError> {
+        self.obey();
+        match self.source.next(PATIENCE) {
+            Ok(Some(packet)) => self.assembler.take(&packet),
+            Ok(None) => {
+                let now = self.source.now();
+                self.assembler.poll(now);
+                self.play_until(now.before(IDLE_LAG));
+            }
+            Err(SourceError::Ended) => {
+                self.play_until(self.source.now() + TAIL);
+                return Ok(Ended::Yes);
+            }
+            Err(error) => return Err(error),
+        }
+        self.note_link();
+        while self.step() {}
+        Ok(Ended::No)
+    }
+
+    /// Works off one frame; false if none is complete.
+    fn step(&mut self) -> bool {
+        let Some(frame) = self.assembler.ready() else { return false };
+        let at = frame.at;
+        let step = self.engine.step(frame);
+        if let Some(feel) = &mut self.feel {
+            for cue in step.cues {
+                // What could not be sent is counted by the sender.
+                feel.send(cue);
+            }
+            feel.rubs(step.rubs);
+        }
+        if let Some(events) = &mut self.events {
+            events.events(step.events);
+            events.contacts(at, step.contacts);
+        }
+        self.play_until(at + FRAME);
+        self.show(at);
+        true
+    }
+
+    fn play_until(&mut self, now: Instant) {
+        if let Some(actuators) = &mut self.actuators
+            && let Err(error) = actuators.advance(now)
+        {
+            warn!("the actuators are given up: {error}");
+            self.actuators = None;
+        }
+    }
+
+    fn show(&mut self, at: Instant) {
+        let Some(snapshots) = &mut self.snapshots else { return };
+        if at.since(self.shown) < SNAPSHOT_EVERY {
+            return;
+        }
+        self.shown = at;
+        self.engine.snapshot(snapshots.input_buffer_mut());
+        let counters = self.source.counters() + self.assembler.counters();
+        let snapshot = snapshots.input_buffer_mut();
+        snapshot.link = self.link;
+        snapshot.counters = counters;
+        snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
+        snapshots.publish();
+    }
+
+    /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
+    fn note_link(&mut self) {
+        let link = self.assembler.link_state();
+        if link != self.link {
+            let lost = link == LinkState::Lost;
+            match &mut self.feel {
+                Some(feel) if lost => feel.silence(),
+                Some(feel) => feel.resume(),
+                None => {}
+            }
+            match link {
+                LinkState::Lost => warn!("no sensor packets for 100 ms: every control is released"),
+                LinkState::Partial => warn!("some boards send nothing"),
+                LinkState::Live => info!("packets arrive from every board"),
+                LinkState::Waiting => {}
+            }
+            self.link = link;
+            if let Some(events) = &mut self.events {
+                events.link(link);
+            }
+            // A lost floor has no frames that would show it.
+            self.shown = Instant::START;
+            self.show(self.source.now());
+        }
+        let tare = self.assembler.tare_outcome();
+        if tare != self.tare {
+            match tare {
+                TareOutcome::Measuring => info!("measuring the tare: keep off the floor"),
+                TareOutcome::Taken => info!("tare measured"),
+                TareOutcome::Refused { sensor, mean, deviation } => warn!(
+                    "the floor was never empty and quiet enough to tare: {sensor} read {:.1} N, scattered by {:.1} N; \
+                     going on with the floor file's tare",
+                    mean.0, deviation.0
+                ),
+                TareOutcome::FromFloor => {}
+            }
+            self.tare = tare;
+        }
+    }
+
+    fn obey(&mut self) {
+        while let Some(control) = self.source.take_control() {
+            self.control(&control);
+        }
+        while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
+            match command {
+                Command::SetLayout(layout) => self.engine.set_layout(*layout),
+                Command::Control(control) => self.control(&control),
+            }
+        }
+    }
+
+    fn control(&mut self, control: &ControlMessage) {
+        let (id, done) = match control {
+            ControlMessage::Set { id, value } => {
+                (id, self.engine.set_value(id.as_str(), self.as_held(id.as_str(), *value)))
+            }
+            ControlMessage::Enable { id } => (id, self.engine.set_enabled(id.as_str(), true)),
+            ControlMessage::Disable { id } => (id, self.engine.set_enabled(id.as_str(), false)),
+        };
+        if let Err(error) = done {
+            warn!("request for control {:?} refused: {error}", id.as_str());
+        }
+    }
+
+    /// A number stands for on or off where the control is a switch: some apps can't send OSC truths.
+    fn as_held(&self, id: &str, value: Value) -> Value {
+        match (self.engine.value(id), value) {
+            (Some(Value::Switch(_)), Value::Number(number)) => Value::Switch(number != 0.0),
+            _ => value,
+        }
+    }
+}
