@@ -1,0 +1,204 @@
+//! Feet for tests: a `Walker` on a simulated floor, through packets, assembler and engine.
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use std::time::Duration;
+
+use glam::Vec2;
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::feel::Cue;
+use underfoot::floor::Floor;
+use underfoot::glam;
+use underfoot::layout::Layout;
+use underfoot::schema::{self, Kinds};
+use underfoot::sense::{Assembler, Cursor, ForceFrame, Method};
+use underfoot::sim::{self, Foot, SimConfig, SimFloor};
+use underfoot::units::{Instant, Newtons};
+use underfoot::widget::{EventKind, WidgetEvent};
+use underfoot::wire::SensorPacket;
+
+/// How long a foot takes to put its force on or off: quick, but a foot.
+const RAMP_MS: u64 = 40;
+
+/// Where in a shoe the working foot presses: the ball.
+const ROLL: f32 = 0.65;
+
+/// A shipped layout, on the paper's floor.
+pub fn layout(name: &str) -> Layout {
+    let text = schema::builtin_layout(name).expect("a shipped layout");
+    page(text)
+}
+
+/// A layout as written, on the paper's floor.
+pub fn page(text: &str) -> Layout {
+    match schema::parse_layout(text, "test page", &Kinds::builtin(), &Floor::default().geometry) {
+        Ok(loaded) => loaded.layout,
+        Err(diagnostics) => panic!("{diagnostics}"),
+    }
+}
+
+/// A person's feet on a simulated floor with controls.
+pub struct Walker {
+    pub engine: Engine,
+    assembler: Assembler,
+    sim: SimFloor,
+    sequence: u32,
+    now: Instant,
+    stance: Option<Foot>,
+    foot: Option<Foot>,
+    /// Whether boards are heard.
+    pub connected: bool,
+    events: Vec<WidgetEvent>,
+    cues: Vec<Cue>,
+    cursors: Vec<Option<Cursor>>,
+}
+
+impl Walker {
+    /// Nobody on a floor of the paper's parts (25 % spread, 2 mV of noise), calibrated as a lab does it.
+    pub fn on(layout: Layout) -> Self {
+        Self::on_floor(layout, SimConfig::default(), Method::default())
+    }
+
+    pub fn on_floor(layout: Layout, config: SimConfig, method: Method) -> Self {
+        let wired = Floor::default();
+        let sim = SimFloor::new(&wired, config, 7);
+        let floor = sim::calibrated(&wired, &sim, 7).unwrap();
+        let mut walker = Self {
+            engine: Engine::new(floor.geometry, layout, method),
+            assembler: Assembler::new(&floor),
+            sim,
+            sequence: 0,
+            now: Instant::START,
+            stance: None,
+            foot: None,
+            connected: true,
+            events: Vec::new(),
+            cues: Vec::new(),
+            cursors: Vec::new(),
+        };
+        walker.wait(100);
+        walker
+    }
+
+    /// Stands with one foot in the middle of the layout's first stance, with all the weight on it.
+    pub fn stand(&mut self, weight: Newtons) {
+        let area = self.engine.layout().stances[0].area;
+        self.stance = Some(Foot {
+            position: area.centre(),
+            heading: 0.0,
+            length_m: 0.27,
+            force: Newtons::ZERO,
+            roll: 0.5,
+        });
+        self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = weight * share);
+    }
+
+    /// Puts the working foot on a control and presses.
+    pub fn step_onto(&mut self, id: &str, force: Newtons) {
+        let widget = self.engine.layout().widget_index(id).unwrap_or_else(|| panic!("no control {id}"));
+        let middle = self.engine.layout().widgets[widget].area.centre();
+        self.step_at(middle, force);
+    }
+
+    /// Puts the working foot down with its centre of pressure at `point`.
+    pub fn step_at(&mut self, point: Vec2, force: Newtons) {
+        self.foot = Some(foot_at(point));
+        self.press(force);
+    }
+
+    /// Brings the working foot's force to `force`.
+    pub fn press(&mut self, force: Newtons) {
+        let before = self.foot.unwrap().force;
+        self.ramp(|walker, share| {
+            walker.foot.as_mut().unwrap().force = before + (force - before) * share;
+        });
+    }
+
+    /// Slides the working foot to `point` in a straight line at `speed` metres per second.
+    pub fn slide_to(&mut self, point: Vec2, speed: f32) {
+        let from = self.foot.unwrap().centre_of_pressure();
+        let force = self.foot.unwrap().force;
+        let millis = (from.distance(point) / speed * 1000.0).max(1.0) as u64;
+        for step in 1..=millis {
+            let at = from.lerp(point, step as f32 / millis as f32);
+            self.foot = Some(Foot { force, ..foot_at(at) });
+            self.tick();
+        }
+    }
+
+    /// Takes the working foot off the floor.
+    pub fn lift(&mut self) {
+        self.press(Newtons::ZERO);
+        self.foot = None;
+    }
+
+    pub fn wait(&mut self, millis: u64) {
+        for _ in 0..millis {
+            self.tick();
+        }
+    }
+
+    /// What happened since the last call: control and kind.
+    pub fn take_events(&mut self) -> Vec<(String, EventKind)> {
+        self.events.drain(..).map(|event| (event.id.to_string(), event.kind)).collect()
+    }
+
+    pub fn take_cues(&mut self) -> Vec<Cue> {
+        std::mem::take(&mut self.cues)
+    }
+
+    /// The first region's cursor, frame by frame since the last call.
+    pub fn take_cursors(&mut self) -> Vec<Option<Cursor>> {
+        std::mem::take(&mut self.cursors)
+    }
+
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
+    fn ramp(&mut self, set: impl Fn(&mut Self, f32)) {
+        for step in 1..=RAMP_MS {
+            set(self, step as f32 / RAMP_MS as f32);
+            self.tick();
+        }
+    }
+
+    /// One millisecond.
+    fn tick(&mut self) {
+        self.now = self.now + Duration::from_millis(1);
+        self.sequence = self.sequence.wrapping_add(1);
+        let feet: Vec<Foot> = self.stance.into_iter().chain(self.foot).collect();
+        let readings = self.sim.step(&feet);
+        if self.connected {
+            for (board, readings) in (0..).zip(readings) {
+                self.assembler.take(&SensorPacket {
+                    board,
+                    sequence: self.sequence,
+                    received: self.now,
+                    readings: readings.clone(),
+                });
+            }
+        } else {
+            self.assembler.poll(self.now);
+        }
+        while let Some(frame) = self.assembler.ready() {
+            take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+        }
+        let mut snapshot = Snapshot::default();
+        self.engine.snapshot(&mut snapshot);
+        self.cursors.push(snapshot.cursors.first().copied().flatten());
+    }
+}
+
+fn take(engine: &mut Engine, frame: &ForceFrame, events: &mut Vec<WidgetEvent>, cues: &mut Vec<Cue>) {
+    let step = engine.step(frame);
+    events.extend_from_slice(step.events);
+    cues.extend_from_slice(step.cues);
+}
+
+/// A foot in the air whose centre of pressure is at `point`, toes pointing north.
+fn foot_at(point: Vec2) -> Foot {
+    let mut foot =
+        Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: ROLL };
+    foot.position = point - foot.centre_of_pressure();
+    foot
+}
