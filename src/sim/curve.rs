@@ -50,8 +50,9 @@ fn between(from: &Knot, to: &Knot, at_s: f64) -> f32 {
     let span = (to.at_s - from.at_s) as f32;
     let share = ((at_s - from.at_s) / (to.at_s - from.at_s)) as f32;
     let left = 1.0 - share;
-    from.value * left * left * (1.0 + 2.0 * share)
-        + to.value * share * share * (3.0 - 2.0 * share)
+    // Written so that equal values stay exactly equal between them.
+    from.value
+        + (to.value - from.value) * share * share * (3.0 - 2.0 * share)
         + span * share * left * (from.per_s * left - to.per_s * share)
 }
 

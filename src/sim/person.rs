@@ -42,7 +42,7 @@ impl Default for Person {
             step_width_m: 0.12,
             stand_width_m: 0.16,
             toe_out: 0.1,
-            reach_m: 0.75,
+            reach_m: 0.85,
         }
     }
 }
