@@ -1,5 +1,9 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+mod simulated;
+
+pub use simulated::{Pace, SimulatedSource};
+
 use std::time::Duration;
 
 use thiserror::Error;
