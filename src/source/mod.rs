@@ -1,7 +1,9 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+mod simulated;
 mod udp;
 
+pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;
 
 use std::time::Duration;
