@@ -74,9 +74,7 @@ impl Area {
             .into_iter()
             .filter(|&(distance, axis, sign, _)| self.moved(axis, sign * distance).within(floor))
             .min_by(|a, b| a.0.total_cmp(&b.0))
-            .map(|(distance, _, _, direction)| {
-                format!("moved {} tiles {direction} it lies beside", plain(distance))
-            })
+            .map(|(distance, _, _, direction)| format!("move it {direction} by {}", plain(distance)))
     }
 
     fn moved(mut self, axis: usize, distance: f64) -> Self {
@@ -134,10 +132,10 @@ mod tests {
         let below = Area::new([1.0, 1.0], [1.0, 1.0]);
         let over = Area::new([1.75, 1.25], [1.0, 1.0]);
         assert_eq!(over.shared(&below).unwrap(), [0.25, 0.75]);
-        assert!(over.way_off(&below, &floor).unwrap().starts_with("moved 0.25 tiles east"));
+        assert_eq!(over.way_off(&below, &floor).as_deref(), Some("move it east by 0.25"));
         let edge = Area::new([4.5, 1.0], [1.0, 1.0]);
         let outer = Area::new([5.0, 1.0], [1.0, 1.0]);
-        assert!(outer.way_off(&edge, &floor).unwrap().contains("1 tiles north"));
+        assert_eq!(outer.way_off(&edge, &floor).as_deref(), Some("move it north by 1"));
     }
 
     #[test]

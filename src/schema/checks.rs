@@ -24,8 +24,9 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
     for (index, control) in page.controls.iter().enumerate() {
         let Some(place) = &control.place else { continue };
         let name = control.name();
-        check_on_floor(reader, &name, place, &floor);
-        check_region(reader, page, &name, place);
+        if check_on_floor(reader, &name, place, &floor) {
+            check_region(reader, page, &name, place);
+        }
         check_size(reader, &name, place, geometry);
         check_overlap(reader, &page.controls[..index], &name, place, &floor);
     }
@@ -100,18 +101,20 @@ fn check_unique<'a>(
     }
 }
 
-fn check_on_floor(reader: &Reader<'_>, name: &str, place: &Placed, floor: &Area) {
-    if !place.area.within(floor) {
+/// Whether all of it is.
+fn check_on_floor(reader: &Reader<'_>, name: &str, place: &Placed, floor: &Area) -> bool {
+    let inside = place.area.within(floor);
+    if !inside {
         let problem = Problem::error(place.at.clone(), format!("{name} reaches beyond the floor"));
         let expected = format!("it spans {}, the floor {floor}", place.area);
         reader.report(
             problem.expected(expected).help("places count in tiles from the floor's south-west corner"),
         );
     }
+    inside
 }
 
 fn check_region(reader: &Reader<'_>, page: &Page<'_>, name: &str, place: &Placed) {
-    let regions = || page.regions.iter().filter_map(|zone| Some((zone, zone.place.as_ref()?)));
     match page.region_of(&place.area).and_then(|index| page.regions.get(index)) {
         Some(region) => {
             if region.place.as_ref().is_some_and(|outer| !place.area.within(&outer.area)) {
@@ -121,10 +124,10 @@ fn check_region(reader: &Reader<'_>, page: &Page<'_>, name: &str, place: &Placed
             }
         }
         // A region that could not be read might be the one.
-        None if regions().count() < page.regions.len() => {}
+        None if !page.regions_known => {}
         None => {
             let [east, north] = place.area.middle().map(plain);
-            let help = match regions().next() {
+            let help = match page.regions.first().and_then(|zone| Some((zone, zone.place.as_ref()?))) {
                 None => "add regions: [(id: \"map\", at: (0, 2), size: (6, 4))]".to_owned(),
                 Some((zone, region)) => format!("{} spans {}", zone.named("region"), region.area),
             };
@@ -152,13 +155,14 @@ fn check_overlap(reader: &Reader<'_>, earlier: &[Control<'_>], name: &str, place
         Some((other, there, place.area.shared(&there.area)?))
     });
     if let Some((other, there, [width, depth])) = overlapped.next() {
-        let message = format!("{name} overlaps {}", other.name());
         let more = match overlapped.count() {
             0 => String::new(),
             more => format!(" and {more} more"),
         };
+        let message = format!("{name} overlaps {}{more}", other.name());
         let line = reader.line(&there.at);
-        let expected = format!("by {} x {} tiles, line {line}{more}", plain(width), plain(depth));
+        let expected =
+            format!("{} x {} tiles of {} on line {line}", plain(width), plain(depth), other.name());
         let help = place.area.way_off(&there.area, floor);
         reader.report(Problem::error(place.at.clone(), message).expected(expected).help_if(help));
     }

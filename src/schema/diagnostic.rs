@@ -181,7 +181,7 @@ impl fmt::Display for Diagnostics {
             writeln!(f, "{problem}")?;
         }
         if self.omitted > 0 {
-            writeln!(f, "... and {} more", counted(self.omitted, "problem"))?;
+            writeln!(f, "... and {}", counted(self.omitted, "more problem"))?;
         }
         let mut paths: Vec<&str> = self.list.iter().map(|problem| problem.path.as_str()).collect();
         paths.dedup();

@@ -14,8 +14,10 @@ use super::words::example;
 #[must_use = "unknown and missing fields are only reported by finish()"]
 pub(super) struct Fields<'r> {
     reader: &'r Reader<'r>,
-    /// What the fields belong to, such as `Widget`.
-    owner: &'static str,
+    /// What messages call that which has the fields.
+    noun: String,
+    /// All of it.
+    extent: Range<usize>,
     /// Where to point for what is missing.
     open: Range<usize>,
     written: Vec<Written<'r>>,
@@ -29,14 +31,23 @@ struct Written<'r> {
 }
 
 impl<'r> Fields<'r> {
-    pub(super) fn new(
-        reader: &'r Reader<'r>,
-        owner: &'static str,
-        open: Range<usize>,
-        fields: &'r [StructField<'r>],
-    ) -> Self {
+    /// The `fields` of `node`, which is a `Name(...)` beginning at `open`.
+    pub(super) fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
         let written = fields.iter().map(|field| Written { field, taken: false }).collect();
-        Self { reader, owner, open, written, known: Vec::new(), missing: Vec::new() }
+        Self {
+            reader: node.reader,
+            noun: name.to_lowercase(),
+            extent: node.span(),
+            open,
+            written,
+            known: Vec::new(),
+            missing: Vec::new(),
+        }
+    }
+
+    /// Calls what has the fields `noun` in messages from now on.
+    pub(super) fn call(&mut self, noun: String) {
+        self.noun = noun;
     }
 
     /// What `read` makes of the field `name`; `otherwise` if it is not written.
@@ -94,6 +105,11 @@ impl<'r> Fields<'r> {
         Some(bytes(written.field.value.span()))
     }
 
+    /// Whether the text is broken somewhere among the fields.
+    pub(super) fn are_broken(&self) -> bool {
+        self.reader.is_broken(&self.extent)
+    }
+
     /// Notes a problem.
     pub(super) fn report(&self, problem: Problem) {
         self.reader.report(problem);
@@ -101,33 +117,50 @@ impl<'r> Fields<'r> {
 
     /// Reports fields nobody asked for, and those that were asked for and are missing.
     pub(super) fn finish(mut self) {
-        let noun = self.owner.to_lowercase();
-        for written in self.written.iter().filter(|written| !written.taken) {
+        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        for written in unknown {
             let name = &*written.field.name.name;
             // A misspelt field is not missing as well.
             if let Some(meant) = nearest(name, self.known.iter().copied()) {
                 self.missing.retain(|missing| *missing != meant);
             }
-            let message = format!("unknown field `{name}`");
-            let problem = Problem::error(bytes(&written.field.name.span), message);
-            let help = did_you_mean(name, &self.known, '`');
-            self.reader.report(problem.expected(format!("a {noun} has no such field")).help_if(help));
+            self.report_unknown(written, did_you_mean(name, &self.known, '`'));
         }
         self.report_missing();
     }
 
-    /// Like [`Fields::finish`] where it cannot be known which other fields are valid.
+    /// Like [`Fields::finish`] where it cannot be known which other fields are valid:
+    /// reports only fields that look like one that is missing.
     pub(super) fn finish_leniently(mut self) {
+        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        for written in unknown {
+            if let Some(meant) = nearest(&written.field.name.name, self.missing.iter().copied()) {
+                self.missing.retain(|missing| *missing != meant);
+                self.report_unknown(written, Some(format!("did you mean `{meant}`?")));
+            }
+        }
         self.report_missing();
+    }
+
+    fn report_unknown(&self, written: &Written<'_>, help: Option<String>) {
+        let name = &written.field.name;
+        let problem = Problem::error(bytes(&name.span), format!("unknown field `{}`", name.name));
+        let article = if self.noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        self.reader
+            .report(problem.expected(format!("{article} {} has no such field", self.noun)).help_if(help));
     }
 
     fn report_missing(&mut self) {
         let Some(&first) = self.missing.first() else { return };
-        let noun = self.owner.to_lowercase();
-        let message = format!("this {noun} has no {}", listed(&self.missing, '`'));
-        let expected = if self.missing.len() == 1 { "a field is missing" } else { "some fields are missing" };
-        let help = match (example(first), self.missing.len()) {
-            (Some(example), 1) => Some(format!("add {example}")),
+        // What is missing from a broken text may be what broke it.
+        if self.are_broken() {
+            return;
+        }
+        let names: Vec<String> = self.missing.iter().map(|name| format!("`{name}`")).collect();
+        let message = format!("this {} lacks {}", self.noun, listed(&names, "and"));
+        let expected = if names.len() == 1 { "a field is missing" } else { "some fields are missing" };
+        let help = match self.missing.as_slice() {
+            [only] => example(only).map(|example| format!("add {example}")),
             _ => None,
         };
         let problem = Problem::error(self.open.clone(), message).expected(expected).help_if(help);

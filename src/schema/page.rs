@@ -8,9 +8,9 @@ use super::feel;
 use super::fields::Fields;
 use super::kind::{Kind, Kinds};
 use super::look;
+use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::{Node, Reader};
-use super::scan::Limits;
 use super::source::{Source, read_text};
 use super::version;
 use crate::floor::Geometry;
@@ -70,6 +70,8 @@ pub(super) struct Page<'r> {
     pub(super) regions: Vec<Zone<'r>>,
     pub(super) stances: Vec<Zone<'r>>,
     pub(super) controls: Vec<Control<'r>>,
+    /// Whether all regions could be read.
+    pub(super) regions_known: bool,
     /// Where the list of controls is written.
     pub(super) widgets_at: std::ops::Range<usize>,
 }
@@ -96,12 +98,14 @@ impl<'r> Page<'r> {
         let mut fields = node.fields("Layout")?;
         fields.read("version", None, version::read);
         let title = fields.read("title", Some(""), |node| node.text(200));
-        let regions = list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
-        let stances = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
-        let controls = list(&mut fields, "widgets", "widget", |node| Control::read(node, kinds));
+        let (regions, regions_known) =
+            list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
+        let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
+        let (controls, _) = list(&mut fields, "widgets", "widget", |node| Control::read(node, kinds));
         let widgets_at = fields.span("widgets");
         fields.finish();
-        Some(Self { title, regions, stances, controls, widgets_at })
+        let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
+        Some(Self { title, regions, stances, controls, regions_known, widgets_at })
     }
 
     /// The region whose area holds the middle of `area`.
@@ -166,6 +170,7 @@ impl<'r> Control<'r> {
         let id_at = fields.span("id");
         let kind = match base {
             Some(base) => {
+                fields.call(format!("widget of the kind \"{}\"", base.name));
                 let kind = overridden(&mut fields, base);
                 fields.finish();
                 kind
@@ -197,13 +202,17 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
     Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
 }
 
-/// What `read` makes of the entries of the list `name`, which may be left out; entries that fail are left out too.
+/// What `read` makes of the entries of the list `name`, which may be left out, and whether that is all of them.
 fn list<'r, T>(
     fields: &mut Fields<'r>,
     name: &'static str,
     entry: &'static str,
     read: impl Fn(Node<'r>) -> Option<T>,
-) -> Vec<T> {
-    let nodes = fields.take(name).and_then(|node| node.list(entry, MAX_WIDGETS)).unwrap_or_default();
-    nodes.into_iter().filter_map(read).collect()
+) -> (Vec<T>, bool) {
+    let Some(node) = fields.take(name) else { return (Vec::new(), !fields.are_broken()) };
+    let Some(nodes) = node.list(entry, MAX_WIDGETS) else { return (Vec::new(), false) };
+    let count = nodes.len();
+    let read: Vec<T> = nodes.into_iter().filter_map(read).collect();
+    let all = read.len() == count && !node.reader.is_broken(&node.span());
+    (read, all)
 }

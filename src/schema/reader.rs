@@ -11,10 +11,10 @@ use ron2::ast::{Expr, StructBody};
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
 use super::fields::Fields;
 use super::number::{NotANumber, Number, parse_number, plain};
+use super::pairs::Limits;
 use super::problem::Problem;
-use super::scan::Limits;
 use super::source::Source;
-use super::suggest::did_you_mean;
+use super::suggest::{listed, nearest};
 use super::syntax::{self, Syntax};
 use super::words::unit;
 
@@ -38,12 +38,16 @@ impl<'t> Reader<'t> {
         self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, what })
     }
 
-    /// Notes a problem. In a broken text only what stands before the breach can be judged.
+    /// Notes a problem, unless it lies where the text is broken anyway.
     pub(super) fn report(&self, problem: Problem) {
-        let broken = self.syntax.sound < self.source.text().len();
-        if !broken || (problem.span.end <= self.syntax.sound && problem.missing.is_none()) {
+        if !self.is_broken(&problem.span) {
             self.problems.borrow_mut().push(problem);
         }
+    }
+
+    /// Whether the text is broken somewhere in `span`, so that nothing can be said of what is missing there.
+    pub(super) fn is_broken(&self, span: &Range<usize>) -> bool {
+        self.syntax.holes.iter().any(|hole| hole.start < span.end && span.start < hole.end)
     }
 
     /// Whether everything so far can be used.
@@ -199,16 +203,21 @@ impl<'r> Node<'r> {
     /// A finite number within `range`.
     pub(super) fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let Expr::Number(number) = self.expr else { return self.mismatch("a number") };
-        let complaint = match parse_number(&number.raw) {
+        let (what, raw) = (self.what, &number.raw);
+        let (message, found) = match parse_number(raw) {
             Ok(number) if range.contains(&number.value) => return Some(number),
-            Ok(number) => format!("found {}{}", plain(number.value), unit(self.what)),
-            Err(NotANumber::NotFinite) => format!("`{}` is no quantity", number.raw),
-            Err(NotANumber::TooLarge) => "this is beyond all bounds".into(),
-            Err(NotANumber::Malformed) => "this doesn't read as a number".into(),
+            Ok(number) => {
+                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), unit(what)))
+            }
+            Err(NotANumber::TooLarge) => (format!("`{what}` is out of range"), raw.to_string()),
+            Err(NotANumber::NotFinite) => (format!("`{what}` must be an ordinary number"), raw.to_string()),
+            Err(NotANumber::Malformed) => (format!("`{what}` must be a number"), raw.to_string()),
         };
-        let bounds = format!("{} to {}{}", plain(*range.start()), plain(*range.end()), unit(self.what));
-        let message = format!("`{}` is out of range", self.what);
-        self.report(Problem::error(self.span(), message).expected(format!("expected {bounds}, {complaint}")));
+        let (least, most) = (plain(*range.start()), plain(*range.end()));
+        let bounds = if least == most { least } else { format!("{least} to {most}{}", unit(what)) };
+        self.report(
+            Problem::error(self.span(), message).expected(format!("expected {bounds}, found {found}")),
+        );
         None
     }
 
@@ -259,22 +268,17 @@ impl<'r> Node<'r> {
 
     /// One of the names in `choices`, and what it stands for.
     pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
-        let Expr::Struct(variant) = self.expr else {
-            return self.mismatch(&choices.iter().map(|(name, _)| *name).collect::<Vec<_>>().join(" or "));
-        };
-        if let (Some((_, choice)), None) =
-            (choices.iter().find(|(name, _)| *name == variant.name.name), &variant.body)
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let expected = listed(&names, "or");
+        let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
+        let written = &*variant.name.name;
+        if let (Some((_, choice)), None) = (choices.iter().find(|(name, _)| *name == written), &variant.body)
         {
             return Some(*choice);
         }
-        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let message = format!("there is no `{}` called {}", self.what, variant.name.name);
-        let expected = format!("expected {}", names.join(" or "));
-        self.report(Problem::error(self.span(), message).expected(expected).help_if(did_you_mean(
-            &variant.name.name,
-            &names,
-            '`',
-        )));
+        let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.what));
+        let help = nearest(written, names).map(|name| format!("did you mean {name}?"));
+        self.report(problem.expected(format!("expected {expected}")).help_if(help));
         None
     }
 
@@ -303,14 +307,14 @@ impl<'r> Node<'r> {
 
     /// Two numbers within `range`: east and north.
     pub(super) fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
-        let [east, north] = self.tuple("(east, north)")?;
+        let [east, north] =
+            self.tuple(if self.what == "size" { "(width, depth)" } else { "(east, north)" })?;
         let (east, north) = (east.number(range.clone()), north.number(range));
         Some([east?.value, north?.value])
     }
 
     /// The named fields of a `Name(...)`, the name being optional.
     pub(super) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
-        let pattern = || format!("{name}(field: value, ...)");
         let (written, open, fields) = match self.expr {
             Expr::AnonStruct(node) => (None, bytes(&node.open_paren), node.fields.as_slice()),
             Expr::Unit(node) => (None, bytes(&node.span), [].as_slice()),
@@ -321,18 +325,21 @@ impl<'r> Node<'r> {
                 Some(StructBody::Tuple(body)) if body.elements.is_empty() => {
                     (Some(&node.name), bytes(&node.name.span), [].as_slice())
                 }
-                _ => return self.mismatch(&pattern()),
+                _ => return self.mismatch(NAMED_FIELDS),
             },
-            _ => return self.mismatch(&pattern()),
+            _ => return self.mismatch(NAMED_FIELDS),
         };
         if let Some(written) = written.filter(|written| written.name != name) {
             let message = format!("this is a {}, not a {name}", written.name);
             self.report(Problem::error(open, message).expected(format!("expected {name}(...)")));
             return None;
         }
-        Some(Fields::new(self.reader, name, open, fields))
+        Some(Fields::new(*self, name, open, fields))
     }
 }
+
+/// What is expected where a `Name(field: value, ...)` should stand.
+const NAMED_FIELDS: &str = "named fields in round brackets";
 
 fn describe(expr: &Expr<'_>) -> String {
     match expr {
@@ -359,7 +366,10 @@ fn remedy(found: &Expr<'_>, expected: &str) -> Option<String> {
         Expr::String(text) if expected == "a number" && parse_number(&text.value).is_ok() => {
             Some(format!("numbers stand without quotes: {}", text.value))
         }
-        Expr::String(text) if expected == "true or false" || expected.contains(" or ") => {
+        Expr::String(text) if expected == "true or false" => truth(&text.value),
+        Expr::Struct(node) if expected == "true or false" => truth(&node.name.name),
+        Expr::Number(number) if expected == "true or false" => truth(&number.raw),
+        Expr::String(text) if expected.contains(" or ") => {
             Some(format!("names stand without quotes: {}", text.value))
         }
         Expr::Struct(node) if expected == "text" && node.body.is_none() => {
@@ -374,9 +384,22 @@ fn remedy(found: &Expr<'_>, expected: &str) -> Option<String> {
         Expr::Seq(list) if expected.starts_with('(') && list.items.len() == 2 => {
             Some("places and sizes stand in round brackets: (2, 3)".into())
         }
-        Expr::Tuple(_) if expected.contains("field: value") => {
+        Expr::AnonStruct(_) if expected.starts_with('(') => Some("leave out the names: (2, 3)".into()),
+        Expr::Number(number) if expected.starts_with('(') => {
+            Some(format!("write both: ({0}, {0})", number.raw))
+        }
+        Expr::Tuple(_) if expected == NAMED_FIELDS => {
             Some("each value needs its name: (id: \"home\", at: (1, 2))".into())
         }
+        _ => None,
+    }
+}
+
+/// Which of the two a word for it means.
+fn truth(word: &str) -> Option<String> {
+    match word.to_lowercase().as_str() {
+        "true" | "on" | "yes" | "1" => Some("write true".into()),
+        "false" | "off" | "no" | "0" => Some("write false".into()),
         _ => None,
     }
 }

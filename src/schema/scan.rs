@@ -1,68 +1,59 @@
-//! A look at brackets, quotes and comments before the text is parsed.
+//! A look at quotes, comments and characters before the text is parsed.
 //!
-//! Parsers report what they stumbled over; for a bracket or quote left open
-//! that is often the end of the file. This pass knows where it was opened. It
-//! also bounds nesting and the number of values, so that what is parsed
-//! afterwards can exhaust neither the stack nor the memory, and it refuses
-//! every text that the parser might cut into tokens differently.
+//! A parser reports what it stumbled over; for a quote left open that is often
+//! the end of the file. This pass knows the line on which it was opened. It
+//! also refuses every text that the parser might cut into tokens differently,
+//! so that what [`super::pairs`] finds out about brackets holds for the parser too.
 
 use super::diagnostic::Diagnostics;
+use super::pairs::Mark;
 use super::problem::Problem;
 
-/// How much one file may hold.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Limits {
-    /// Brackets within brackets.
-    pub(super) depth: usize,
-    /// Entries of one list.
-    pub(super) entries: usize,
-    /// Brackets and commas in the whole file.
-    pub(super) values: usize,
+/// What a text looks like from outside.
+#[derive(Default)]
+pub(super) struct Scan {
+    /// What is wrong with its quotes, comments and characters; usually nothing.
+    pub(super) problems: Vec<Problem>,
+    /// Its brackets and commas, those in texts and comments left out.
+    pub(super) marks: Vec<Mark>,
+    /// Whether `marks` can be relied upon in spite of `problems`.
+    pub(super) certain: bool,
 }
 
-impl Limits {
-    /// For layouts and kinds.
-    pub(super) const LAYOUT: Self = Self { depth: 64, entries: 4096, values: 400_000 };
-
-    /// For floors, which list every sensor.
-    pub(super) const FLOOR: Self = Self { entries: 400_000, ..Self::LAYOUT };
+/// Looks through `text`; gives up when it holds more than `most` brackets and commas.
+pub(super) fn scan(text: &str, most: usize) -> Scan {
+    let mut scanner = Scanner { text, at: 0, misled: false, braces: false, scan: Scan::default() };
+    while scanner.step() {
+        if scanner.scan.marks.len() > most {
+            let message = format!("the file holds more than {most} brackets and commas");
+            scanner.report_at(0, message, "gave up here");
+            scanner.misled = true;
+            break;
+        }
+        if scanner.scan.problems.len() > Diagnostics::LIMIT {
+            scanner.misled = true;
+            break;
+        }
+    }
+    scanner.scan.certain = !scanner.misled;
+    scanner.scan
 }
 
-/// What is wrong with the brackets, quotes, comments and characters of `text`, in order; usually nothing.
-pub(super) fn scan(text: &str, limits: Limits) -> Vec<Problem> {
-    let mut scan =
-        Scan { text, at: 0, limits, open: Vec::new(), values: 0, misled: false, problems: Vec::new() };
-    while scan.step() {}
-    scan.close_all();
-    scan.problems
-}
-
-/// A bracket not yet closed.
-struct Open {
-    bracket: u8,
-    at: usize,
-    commas: usize,
-}
-
-struct Scan<'t> {
+struct Scanner<'t> {
     text: &'t str,
     at: usize,
-    limits: Limits,
-    open: Vec<Open>,
-    values: usize,
-    /// A quote was left open: brackets after it may have been swallowed and prove nothing.
+    /// Brackets may have been swallowed and prove nothing any more.
     misled: bool,
-    problems: Vec<Problem>,
+    /// Curly brackets have been complained of; once is enough.
+    braces: bool,
+    scan: Scan,
 }
 
-impl Scan<'_> {
-    /// Passes one token; false at the end, or where going on is pointless.
+impl Scanner<'_> {
+    /// Passes one token; false at the end.
     fn step(&mut self) -> bool {
         let rest = &self.text[self.at..];
         let Some(first) = rest.chars().next() else { return false };
-        if self.problems.len() > Diagnostics::LIMIT {
-            return false;
-        }
         match first {
             '"' => self.string(0),
             'r' | 'b' if self.at_boundary() => match string_prefix(rest) {
@@ -71,22 +62,25 @@ impl Scan<'_> {
             },
             '/' if rest.starts_with("//") => self.at += rest.find('\n').unwrap_or(rest.len()),
             '/' if rest.starts_with("/*") => self.block_comment(),
-            '(' | '[' => return self.opens(first as u8),
-            ')' | ']' => self.closes(first as u8),
-            ',' => return self.comma(),
-            '{' | '}' => {
-                self.report_at(1, "curly brackets have no use here", "expected `(` or `)`");
-                self.help("fields stand in round brackets: (id: \"home\", at: (1, 2))");
+            '(' | '[' | ')' | ']' | ',' => {
+                self.scan.marks.push(Mark { at: self.at, character: first as u8 });
                 self.at += 1;
             }
+            '{' | '}' => self.curly_bracket(),
             '\'' | '`' | '‘' | '’' | '“' | '”' | '„' | '«' | '»' => self.wrong_quote(first),
-            c if c.is_ascii_alphabetic() || c == '_' => self.word(),
-            c if c.is_ascii() || c.is_whitespace() && c != '\u{a0}' => self.at += c.len_utf8(),
+            c if c.is_alphanumeric() || c == '_' => self.word(),
+            c if c.is_ascii() => self.at += 1,
             c => {
-                let shown = if c.is_alphanumeric() { format!(" `{c}`") } else { String::new() };
-                let name =
-                    format!("the character U+{:04X}{shown} may only stand in text and comments", c as u32);
-                self.report_at(c.len_utf8(), name, "");
+                self.report_at(
+                    c.len_utf8(),
+                    format!("the character U+{:04X} can't stand here", c as u32),
+                    "",
+                );
+                self.help(if c.is_whitespace() {
+                    "an ordinary space will do"
+                } else {
+                    "only text in quotes may hold it"
+                });
                 self.at += c.len_utf8();
             }
         }
@@ -94,11 +88,11 @@ impl Scan<'_> {
     }
 
     fn report_at(&mut self, length: usize, message: impl Into<String>, expected: &str) {
-        self.problems.push(Problem::error(self.at..self.at + length, message).expected(expected));
+        self.scan.problems.push(Problem::error(self.at..self.at + length, message).expected(expected));
     }
 
     fn help(&mut self, help: &str) {
-        if let Some(problem) = self.problems.last_mut() {
+        if let Some(problem) = self.scan.problems.last_mut() {
             problem.help = Some(help.into());
         }
     }
@@ -106,57 +100,69 @@ impl Scan<'_> {
     /// Whether a new token certainly begins here.
     fn at_boundary(&self) -> bool {
         let before = self.text[..self.at].chars().next_back();
-        before.is_none_or(|c| c.is_whitespace() || matches!(c, '(' | '[' | ',' | ':' | '=' | '/'))
+        before.is_none_or(|c| c.is_ascii_whitespace() || matches!(c, '(' | '[' | ',' | ':' | '=' | '/'))
     }
 
     fn word(&mut self) {
-        let rest = &self.text.as_bytes()[self.at..];
-        self.at += rest.iter().take_while(|byte| byte.is_ascii_alphanumeric() || **byte == b'_').count();
+        let rest = &self.text[self.at..];
+        let word = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default();
+        if !word.is_ascii() {
+            self.report_at(
+                word.len(),
+                format!("`{word}` can't be a name"),
+                "names are made of a-z, A-Z, 0-9 and _",
+            );
+        }
+        // A number may end where `r` or `b` begins a text; the parser would see two tokens.
+        self.at += word.len();
     }
 
     /// Passes text whose quote stands `prefix` bytes on; it must end on its line.
     fn string(&mut self, prefix: usize) {
-        if prefix == 0 && !self.at_boundary() {
-            self.report_at(1, "a comma is missing before this text", "expected `,` or a space");
-        }
         let start = self.at;
-        let raw = self.text[start..start + prefix].contains('r');
-        let hashes = prefix.saturating_sub(usize::from(self.text[start..].starts_with("br")) + 1);
-        let closing = format!("\"{}", "#".repeat(if raw { hashes } else { 0 }));
+        let line = self.text[start..].lines().next().unwrap_or_default();
+        if prefix == 0 && !self.at_boundary() {
+            self.report_at(
+                1,
+                "the quotes on this line don't pair up",
+                "text would begin in the middle of something",
+            );
+            self.misled = true;
+            self.at += line.len();
+            return;
+        }
+        let raw = line[..prefix].contains('r');
+        let hashes = line[..prefix].matches('#').count();
         if hashes > 8 {
-            self.report_at(prefix, "a raw text may begin with 8 `#` at most", "");
+            self.report_at(prefix, "a raw text begins with 8 `#` at most", "");
+            self.misled = true;
         }
-        let mut at = start + prefix + 1;
-        let bytes = self.text.as_bytes();
-        loop {
-            match bytes.get(at) {
-                None | Some(b'\n') => break,
-                Some(b'"') if self.text[at..].starts_with(&closing) => {
-                    self.at = at + closing.len();
-                    return;
-                }
-                // An escaped line break doesn't hide the end of the line.
-                Some(b'\\') if !raw && !matches!(bytes.get(at + 1), None | Some(b'\r' | b'\n')) => at += 2,
-                Some(_) => at += 1,
+        let closing = format!("\"{}", "#".repeat(hashes));
+        let mut at = prefix + 1;
+        while let Some(byte) = line.as_bytes().get(at) {
+            if *byte == b'"' && line[at..].starts_with(&closing) {
+                self.at = start + at + closing.len();
+                return;
             }
+            at += if *byte == b'\\' && !raw { 2 } else { 1 };
         }
-        self.at = at;
-        let shown = self.text[start..at].trim_end().len();
-        self.problems.push(
-            Problem::error(start..start + shown, "this text is never closed")
-                .expected(format!("expected a closing `{closing}` on this line"))
-                .help("a line break within text is written \\n"),
+        let shown = line.trim_end().len();
+        self.report_at(
+            shown,
+            "this text is never closed",
+            &format!("expected a closing `{closing}` on this line"),
         );
+        self.help("a line break within text is written \\n");
         self.misled = true;
+        self.at += line.len();
     }
 
     /// Comments nest.
     fn block_comment(&mut self) {
         let start = self.at;
-        let mut depth = 0;
         let bytes = self.text.as_bytes();
-        while self.at < bytes.len() {
-            let pair = &bytes[self.at..(self.at + 2).min(bytes.len())];
+        let mut depth = 0;
+        while let Some(pair) = bytes.get(self.at..self.at + 2) {
             match pair {
                 b"/*" => depth += 1,
                 b"*/" => depth -= 1,
@@ -170,111 +176,47 @@ impl Scan<'_> {
                 return;
             }
         }
-        self.problems.push(
-            Problem::error(start..start + 2, "this comment is never closed")
-                .expected("expected `*/` further down")
-                .help("comments nest: each `/*` needs its own `*/`"),
-        );
+        self.at = start;
+        self.report_at(2, "this comment is never closed", "expected `*/` further down");
+        self.help("comments nest: each `/*` needs its own `*/`");
         self.misled = true;
+        self.at = self.text.len();
+    }
+
+    fn curly_bracket(&mut self) {
+        if !self.braces {
+            self.report_at(1, "curly brackets mean nothing here", "expected a round bracket");
+            self.help("these files are RON, not JSON: Layout(version: 1, widgets: [(id: \"home\", kind: \"button\")])");
+        }
+        self.braces = true;
+        self.misled = true;
+        self.at += 1;
     }
 
     fn wrong_quote(&mut self, quote: char) {
         let line = self.text[self.at..].lines().next().unwrap_or_default();
-        let closing = |c: char| c == quote || matches!(c, '‘' | '’' | '“' | '”' | '«' | '»') && quote != '\'';
-        let length = line.char_indices().skip(1).find(|&(_, c)| closing(c)).map(|(at, c)| at + c.len_utf8());
-        let length = length.unwrap_or(quote.len_utf8());
-        self.report_at(length, "text stands in straight double quotes", "expected `\"`");
-        let inner = self.text[self.at..self.at + length].trim_matches(|c| closing(c) || c == quote);
-        if !inner.is_empty() {
-            self.help(&format!("write \"{inner}\""));
-        }
-        self.at += length;
-    }
-
-    fn opens(&mut self, bracket: u8) -> bool {
-        if self.open.len() == self.limits.depth {
-            self.report_at(
-                1,
-                format!("brackets nest deeper than {}", self.limits.depth),
-                "one bracket too many",
-            );
-            self.open.clear();
-            return false;
-        }
-        self.open.push(Open { bracket, at: self.at, commas: 0 });
-        self.at += 1;
-        self.counts_value()
-    }
-
-    fn comma(&mut self) -> bool {
-        self.at += 1;
-        if let Some(open) = self.open.last_mut() {
-            open.commas += 1;
-            if open.bracket == b'[' && open.commas > self.limits.entries {
-                let (from, most) = (open.at, self.limits.entries);
-                self.open.clear();
-                let message = format!("this list has more than {most} entries");
-                self.problems.push(Problem::error(from..from + 1, message).expected("begins here"));
-                return false;
+        let closes = |c: char| match quote {
+            '\'' | '`' => c == quote,
+            _ => matches!(c, '‘' | '’' | '“' | '”' | '«' | '»'),
+        };
+        let end = line.char_indices().skip(1).find(|&(_, c)| closes(c)).map(|(at, c)| at + c.len_utf8());
+        self.report_at(
+            end.unwrap_or(quote.len_utf8()),
+            "text stands in straight double quotes",
+            "expected `\"`",
+        );
+        match end {
+            Some(end) => {
+                let inner = line[..end].trim_matches(|c| c == quote || closes(c));
+                self.help(&format!("write \"{inner}\""));
+                self.at += end;
             }
-        }
-        self.counts_value()
-    }
-
-    fn counts_value(&mut self) -> bool {
-        self.values += 1;
-        if self.values > self.limits.values {
-            let message = format!("the file holds more than {} values", self.limits.values);
-            self.open.clear();
-            self.report_at(0, message, "gave up here");
-            return false;
-        }
-        true
-    }
-
-    fn closes(&mut self, bracket: u8) {
-        let opening = if bracket == b')' { b'(' } else { b'[' };
-        let at = self.at;
-        self.at += 1;
-        match self.open.iter().rposition(|open| open.bracket == opening) {
-            Some(matching) => {
-                let left_open = self.open.drain(matching..).nth(1);
-                if let (Some(inner), false) = (left_open, self.misled) {
-                    let line = self.text[..at].matches('\n').count() + 1;
-                    self.problems.push(never_closed(&inner).help(format!(
-                        "line {line} closes a `{}` around it with `{}`",
-                        char::from(opening),
-                        char::from(bracket),
-                    )));
-                }
-            }
-            None if self.misled => {}
             None => {
-                let message = format!("this `{}` closes nothing", char::from(bracket));
-                self.problems.push(Problem::error(at..at + 1, message).expected("one bracket too many"));
+                self.misled = true;
+                self.at += line.len();
             }
         }
     }
-
-    /// The end of the file: whatever is still open was never closed.
-    fn close_all(&mut self) {
-        if self.misled {
-            return;
-        }
-        if let Some(inner) = self.open.last() {
-            let help = match self.open.len() {
-                1 => "the file ends before it is closed: was it saved half-way?".to_owned(),
-                open => format!("the file ends with {open} brackets open: was it saved half-way?"),
-            };
-            self.problems.push(never_closed(inner).help(help));
-        }
-    }
-}
-
-fn never_closed(open: &Open) -> Problem {
-    let closing = if open.bracket == b'(' { ')' } else { ']' };
-    let message = format!("this `{}` is never closed", char::from(open.bracket));
-    Problem::error(open.at..open.at + 1, message).expected(format!("expected a `{closing}` further down"))
 }
 
 /// Bytes before the quote of a raw or byte text that begins here; `None` if a plain word does.

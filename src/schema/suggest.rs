@@ -21,20 +21,24 @@ pub(super) fn nearest<'v>(written: &str, valid: impl IntoIterator<Item = &'v str
 
 /// What to say about a name that is not among `valid`: the nearest one, or all of them.
 pub(super) fn did_you_mean(written: &str, valid: &[&str], quote: char) -> Option<String> {
+    let quoted = |name: &str| format!("{quote}{name}{quote}");
     match nearest(written, valid.iter().copied()) {
-        Some(name) => Some(format!("did you mean {quote}{name}{quote}?")),
+        Some(name) => Some(format!("did you mean {}?", quoted(name))),
         None if valid.is_empty() => None,
-        None => Some(format!("there is {}", listed(valid, quote))),
+        None => {
+            let all: Vec<String> = valid.iter().map(|name| quoted(name)).collect();
+            Some(format!("there is {}", listed(&all, "and")))
+        }
     }
 }
 
-/// Names in a sentence: `a`, `b` and `c`.
-pub(super) fn listed(names: &[&str], quote: char) -> String {
-    let quoted: Vec<String> = names.iter().map(|name| format!("{quote}{name}{quote}")).collect();
-    match quoted.as_slice() {
+/// Names in a sentence: a, b and c.
+pub(super) fn listed<S: AsRef<str>>(names: &[S], joint: &str) -> String {
+    let names: Vec<&str> = names.iter().map(AsRef::as_ref).collect();
+    match names.as_slice() {
         [] => String::new(),
-        [only] => only.clone(),
-        [rest @ .., last] => format!("{} and {last}", rest.join(", ")),
+        [only] => (*only).to_owned(),
+        [rest @ .., last] => format!("{} {joint} {last}", rest.join(", ")),
     }
 }
 

@@ -1,134 +1,123 @@
-//! Text to syntax tree, with the parser's complaints in the words of layout authors.
+//! Text to syntax tree, with all that is wrong with the text.
+//!
+//! The parser is asked for its first complaint only. If one character mends it,
+//! that is put in; otherwise the entry that caused it is blanked out, brackets
+//! telling how far it reaches. Then the text is parsed again: so everything
+//! beside a broken entry is still read and judged.
 
 use std::ops::Range;
 
 use ron2::ast::{AttributeContent, Document, Expr, parse_document_lossy};
 use ron2::error::ErrorKind;
 
+use super::complaint::{Complaint, rephrase};
+use super::pairs::{self, Limits, Mark, entry_around};
 use super::problem::Problem;
-use super::scan::{Limits, scan};
+use super::scan::{Scan, scan};
 use super::suggest::did_you_mean;
+
+/// Bytes that may be parsed in all while one broken place after another is found.
+const EFFORT: usize = 32 << 20;
 
 /// What could be made of a text.
 pub(super) struct Syntax<'t> {
-    /// The value the file holds; where the text is broken, only what stands before `sound` counts.
+    /// The value the file holds, as far as it can be made out.
     pub(super) root: Option<Expr<'t>>,
     /// What is wrong with the text as such.
     pub(super) problems: Vec<Problem>,
-    /// Up to here the tree is what was meant.
-    pub(super) sound: usize,
+    /// Where `root` is not what was meant, and must not be judged.
+    pub(super) holes: Vec<Range<usize>>,
 }
 
 /// Parses `text`, which is expected to hold one `kind` of thing, such as a `Layout`.
 pub(super) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t> {
-    let problems = scan(text, limits);
-    if !problems.is_empty() {
-        return Syntax { root: None, problems, sound: 0 };
-    }
-    let (document, errors) = parse_document_lossy(text);
-    let mut problems = rephrased(text, &errors);
-    if problems.is_empty() && document.value.is_none() {
-        let message = format!("there is no {kind} in this file");
-        problems.push(Problem::error(0..0, message).expected(format!("expected {kind}(...)")));
-    }
-    let sound = problems.iter().map(|problem| problem.span.start).min().unwrap_or(text.len());
-    problems.extend(unknown_attributes(&document));
-    Syntax { root: document.value, problems, sound }
-}
-
-/// The parser's errors that are real: after losing its way among brackets it only sees consequences.
-fn rephrased(text: &str, errors: &[ron2::Error]) -> Vec<Problem> {
-    let mut problems: Vec<Problem> = Vec::new();
-    let mut last_line = None;
-    for error in errors {
-        let span = error.span().start_offset..error.span().end_offset;
-        let line = text.get(..span.start).map(|before| before.matches('\n').count());
-        let lost = matches!(error.kind(), ErrorKind::TrailingCharacters) && !problems.is_empty();
-        if line != last_line && !lost {
-            problems.push(rephrase(text, span, error.kind()));
-        }
-        last_line = line;
-        if problems.len() > 100 || is_bracket_trouble(error.kind()) {
-            break;
-        }
-    }
-    problems
-}
-
-fn is_bracket_trouble(kind: &ErrorKind) -> bool {
-    matches!(kind, ErrorKind::Expected { expected, .. } if expected.starts_with("closing"))
-}
-
-fn rephrase(text: &str, span: Range<usize>, kind: &ErrorKind) -> Problem {
-    let rest = text.get(span.start..).unwrap_or_default();
-    match rest.chars().next() {
-        Some('.') => {
-            return Problem::error(
-                span.start..span.start + 1,
-                "a number needs digits on both sides of its point",
-            )
-            .expected("no digit on one side")
-            .help("write 0.5 rather than .5, and 2.0 or 2 rather than 2.");
-        }
-        Some('=') => {
-            return Problem::error(span.start..span.start + 1, "a field and its value are joined by a colon")
-                .expected("expected `:`");
-        }
-        Some(';') => {
-            return Problem::error(span.start..span.start + 1, "fields and entries are separated by commas")
-                .expected("expected `,`");
-        }
-        _ => {}
-    }
-    let word: String = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
-    match kind {
-        ErrorKind::Expected { expected, context } => match (&**expected, *context) {
-            ("comma", _) => {
-                Problem::error(first(rest, &span), "a comma is missing").expected("expected `,` before this")
+    let Scan { mut problems, marks, certain } = scan(text, limits.marks);
+    if certain {
+        let mispaired = pairs::check(text, &marks, limits);
+        if mispaired.is_empty() {
+            let holes: Option<Vec<_>> =
+                problems.iter().map(|problem| entry_around(&marks, problem.span.start)).collect();
+            if let Some(holes) = holes {
+                let mut mended = Mended { text, marks, holes, repairs: Vec::new() };
+                let root = mended.parse(kind, &mut problems);
+                return Syntax { root, problems, holes: mended.holes };
             }
-            ("`:` after map key", _) => Problem::error(span, format!("`{word}` has no value"))
-                .expected(format!("expected `{word}: ...`")),
-            ("value", _) => Problem::error(before(text, &span), "this field has no value")
-                .expected("expected a value after the colon"),
-            ("identifier", None) => Problem::error(first(rest, &span), "the name of a field is missing")
-                .expected("expected `name: value`"),
-            (closing, _) if closing.starts_with("closing") => {
-                let bracket = if closing.contains(']') { ']' } else { ')' };
-                Problem::error(first(rest, &span), "this doesn't belong here")
-                    .expected(format!("expected `,` or `{bracket}`"))
-            }
-            _ => Problem::error(span, kind.to_string().to_lowercase()),
-        },
-        ErrorKind::TrailingCharacters => Problem::error(first(rest, &span), "the file goes on after its end")
-            .expected("expected nothing more")
-            .help("a file holds one thing, such as one Layout(...)"),
-        ErrorKind::UnexpectedChar(c) => {
-            Problem::error(first(rest, &span), format!("`{c}` has no meaning here"))
-                .expected("expected a value")
         }
-        ErrorKind::InvalidEscape(_) => Problem::error(span, "text has no such escape")
-            .expected("what does this `\\` do?")
-            .help("a backslash itself is written \\\\, a quote \\\", a line break \\n"),
-        ErrorKind::Eof => {
-            Problem::error(span, "the file ends where a value should stand").expected("expected a value")
-        }
-        other => Problem::error(span, other.to_string().to_lowercase()),
+        problems.extend(mispaired);
     }
+    Syntax { root: None, problems, holes: Vec::new() }
 }
 
-/// The first word of `rest`, or its first character.
-fn first(rest: &str, span: &Range<usize>) -> Range<usize> {
-    let word = rest.chars().take_while(|c| c.is_alphanumeric() || *c == '_').map(char::len_utf8).sum();
-    let one = rest.chars().next().map_or(0, char::len_utf8);
-    span.start..span.start + Ord::max(one, word)
+/// A text whose broken places are mended or blanked out as they are found.
+struct Mended<'t> {
+    text: &'t str,
+    marks: Vec<Mark>,
+    holes: Vec<Range<usize>>,
+    repairs: Vec<(usize, u8)>,
 }
 
-/// The word before `span` and what stands between: the field whose value is missing.
-fn before(text: &str, span: &Range<usize>) -> Range<usize> {
-    let head = text.get(..span.start).unwrap_or_default().trim_end();
-    let name = head.trim_end_matches(':').trim_end();
-    let start = name.rfind(|c: char| !c.is_alphanumeric() && c != '_').map_or(0, |at| at + 1);
-    start..head.len()
+impl<'t> Mended<'t> {
+    fn parse(&mut self, kind: &str, problems: &mut Vec<Problem>) -> Option<Expr<'t>> {
+        let mut rounds = (EFFORT / self.text.len().max(1)).clamp(1, 100);
+        loop {
+            let masked;
+            let (seen, (document, errors)) = if self.holes.is_empty() && self.repairs.is_empty() {
+                (self.text, parse_document_lossy(self.text))
+            } else {
+                masked = self.masked();
+                let (document, errors) = parse_document_lossy(&masked);
+                (masked.as_str(), (document.into_owned(), errors))
+            };
+            let Some(error) = errors.first() else {
+                problems.extend(unknown_attributes(&document));
+                if document.value.is_none() && problems.is_empty() {
+                    let nothing = Problem::error(0..0, format!("there is no {kind} in this file"));
+                    problems.push(nothing.expected(format!("expected {kind}(...)")));
+                }
+                return document.value;
+            };
+            let span = error.span().start_offset..error.span().end_offset;
+            let Complaint { problem, repair } = rephrase(seen, &span, error.kind());
+            problems.push(problem);
+            rounds -= 1;
+            let behind = matches!(error.kind(), ErrorKind::TrailingCharacters);
+            let entry = entry_around(&self.marks, span.start).filter(|_| rounds > 0 && !behind);
+            match (entry, repair) {
+                (Some(_), Some(repair)) => self.repair(repair),
+                (Some(entry), None) if !seen[entry.clone()].trim().is_empty() => self.holes.push(entry),
+                // Out of all brackets, or a mess: only what stands before it can be judged.
+                _ => {
+                    self.holes.push(span.start..self.text.len());
+                    return document.value;
+                }
+            }
+        }
+    }
+
+    fn repair(&mut self, (at, character): (usize, u8)) {
+        self.repairs.push((at, character));
+        let index = self.marks.partition_point(|mark| mark.at < at);
+        match character {
+            b',' => self.marks.insert(index, Mark { at, character }),
+            b' ' => self.marks.retain(|mark| mark.at != at),
+            _ => {}
+        }
+    }
+
+    /// The text with spaces in place of the holes, and repaired.
+    fn masked(&self) -> String {
+        let mut bytes = self.text.as_bytes().to_vec();
+        for hole in &self.holes {
+            bytes.get_mut(hole.clone()).unwrap_or_default().fill(b' ');
+        }
+        for &(at, character) in &self.repairs {
+            if let Some(byte) = bytes.get_mut(at) {
+                *byte = character;
+            }
+        }
+        // Holes end at brackets and commas, repairs replace one of ASCII by another: this stays UTF-8.
+        String::from_utf8(bytes).unwrap_or_default()
+    }
 }
 
 /// `#![enable(...)]` is understood by other RON readers; whatever it asks for is on here anyway.
@@ -141,17 +130,13 @@ fn unknown_attributes(document: &Document<'_>) -> Vec<Problem> {
         match (&*attribute.name, &attribute.content) {
             ("enable", AttributeContent::Args(names)) => {
                 for name in names.iter().filter(|name| !EXTENSIONS.contains(&&***name)) {
-                    let message = format!("unknown extension `{name}`");
-                    problems.push(Problem::warning(span.clone(), message).help_if(did_you_mean(
-                        name,
-                        &EXTENSIONS,
-                        '`',
-                    )));
+                    let problem = Problem::warning(span.clone(), format!("unknown extension `{name}`"));
+                    problems.push(problem.help_if(did_you_mean(name, &EXTENSIONS, '`')));
                 }
             }
             _ => {
-                problems
-                    .push(Problem::warning(span, "this attribute means nothing here").expected("ignored"));
+                let problem = Problem::warning(span, "this attribute means nothing here");
+                problems.push(problem.expected("ignored"));
             }
         }
     }

@@ -7,7 +7,7 @@ pub const FORMAT_VERSION: u32 = 1;
 
 /// The version that a file says it is of.
 pub(super) fn read(node: Node<'_>) -> Option<u32> {
-    node.whole(1..=u32::MAX)
+    node.whole(1..=FORMAT_VERSION)
 }
 
 /// What to say of a file of a newer version than this program knows: that, and nothing else.

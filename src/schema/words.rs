@@ -21,7 +21,7 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
     Some(match field {
         "version" => "version: 1",
         "title" => "title: \"Map navigation\"",
-        "id" => "id: \"zoom_in\"",
+        "id" => "id: \"home\"",
         "kind" => "kind: \"button\"",
         "at" => "at: (2.5, 3.0), the south-west corner in tiles",
         "size" => "size: (0.6, 0.6), width and depth in tiles",
