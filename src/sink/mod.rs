@@ -1,7 +1,17 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+mod fanout;
+mod json;
+mod osc;
+mod worker;
+
+pub use fanout::Fanout;
+pub use json::JsonSink;
+pub use osc::OscSink;
+
 use thiserror::Error;
 
+use crate::engine::LinkState;
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -22,6 +32,14 @@ pub trait EventSink: Send {
 
     /// Takes the contacts of one frame; called for every frame, so a sink thins them out itself.
     fn contacts(&mut self, at: Instant, contacts: &[Contact]);
+
+    /// Takes news of the floor's link; called when its state changes.
+    fn link(&mut self, _at: Instant, _state: LinkState) {}
+
+    /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
+    fn dropped(&self) -> u64 {
+        0
+    }
 }
 
 /// Why a sink cannot take samples.
@@ -32,6 +50,15 @@ pub enum SinkError {
     Device {
         /// One sentence for the person who started the program.
         message: String,
+    },
+    /// Events cannot be sent or written; `message` says what to do.
+    #[error("{message}")]
+    Output {
+        /// One sentence for the person who started the program.
+        message: String,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
     },
     /// The file cannot be written.
     #[error("cannot write {path}: {source}")]
