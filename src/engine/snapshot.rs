@@ -28,6 +28,8 @@ pub struct Snapshot {
     pub counters: LinkCounters,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
+    /// Events that other programs could not be told.
+    pub unsent_events: u64,
     /// Grows by one each time the engine takes another layout.
     pub layout_revision: u64,
 }

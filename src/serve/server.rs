@@ -205,6 +205,7 @@ impl Server {
         let snapshot = snapshots.input_buffer_mut();
         snapshot.link = self.link;
         snapshot.counters = counters;
+        snapshot.unsent_events = self.events.as_ref().map_or(0, |events| events.dropped());
         snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
         snapshots.publish();
     }
@@ -227,7 +228,7 @@ impl Server {
             }
             self.link = link;
             if let Some(events) = &mut self.events {
-                events.link(link);
+                events.link(self.source.now(), link);
             }
             // A lost floor has no frames that would show it.
             self.shown = Instant::START;

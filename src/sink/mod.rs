@@ -1,10 +1,14 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+mod fanout;
+mod json;
 mod latency;
 mod lockstep;
 mod manual;
+mod osc;
 mod silent;
 mod wav;
+mod worker;
 
 use thiserror::Error;
 
@@ -13,8 +17,11 @@ use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+pub use fanout::Fanout;
+pub use json::JsonSink;
 pub use latency::{HostClock, LatencyMeter, LatencyProbe, LatencySummary};
 pub use manual::ManualSink;
+pub use osc::OscSink;
 pub use silent::SilentSink;
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 
@@ -35,8 +42,13 @@ pub trait EventSink: Send {
     /// Takes the contacts of one frame; called for every frame, so a sink thins them out itself.
     fn contacts(&mut self, at: Instant, contacts: &[Contact]);
 
-    /// Takes the news that sensor packets arrive, or don't.
-    fn link(&mut self, link: LinkState);
+    /// Takes news of the floor's link; called when its state changes.
+    fn link(&mut self, _at: Instant, _state: LinkState) {}
+
+    /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
+    fn dropped(&self) -> u64 {
+        0
+    }
 }
 
 /// Why a sink cannot take samples.
@@ -47,6 +59,15 @@ pub enum SinkError {
     Device {
         /// One sentence for the person who started the program.
         message: String,
+    },
+    /// Events cannot be sent or written; `message` says what to do.
+    #[error("{message}")]
+    Output {
+        /// One sentence for the person who started the program.
+        message: String,
+        /// What the system said.
+        #[source]
+        source: std::io::Error,
     },
     /// The file cannot be written.
     #[error("cannot write {path}: {source}")]

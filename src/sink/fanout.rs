@@ -1,0 +1,95 @@
+use super::EventSink;
+use crate::engine::LinkState;
+use crate::sense::Contact;
+use crate::units::Instant;
+use crate::widget::WidgetEvent;
+
+/// Several event sinks as one; each gets everything, in the order they were added.
+#[derive(Default)]
+pub struct Fanout {
+    sinks: Vec<Box<dyn EventSink>>,
+}
+
+impl Fanout {
+    /// A fanout that reaches nobody yet.
+    #[must_use]
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Adds a sink.
+    pub fn push(&mut self, sink: impl EventSink + 'static) {
+        self.sinks.push(Box::new(sink));
+    }
+
+    /// The same fanout with one sink more.
+    #[must_use]
+    pub fn with(mut self, sink: impl EventSink + 'static) -> Self {
+        self.push(sink);
+        self
+    }
+}
+
+impl std::fmt::Debug for Fanout {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Fanout({} sinks)", self.sinks.len())
+    }
+}
+
+impl EventSink for Fanout {
+    fn events(&mut self, events: &[WidgetEvent]) {
+        self.sinks.iter_mut().for_each(|sink| sink.events(events));
+    }
+
+    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
+        self.sinks.iter_mut().for_each(|sink| sink.contacts(at, contacts));
+    }
+
+    fn link(&mut self, at: Instant, state: LinkState) {
+        self.sinks.iter_mut().for_each(|sink| sink.link(at, state));
+    }
+
+    fn dropped(&self) -> u64 {
+        self.sinks.iter().map(|sink| sink.dropped()).sum()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Sender, channel};
+
+    use super::*;
+
+    struct Tell(&'static str, Sender<String>);
+
+    impl EventSink for Tell {
+        fn events(&mut self, events: &[WidgetEvent]) {
+            self.1.send(format!("{} {} events", self.0, events.len())).unwrap();
+        }
+
+        fn contacts(&mut self, at: Instant, _: &[Contact]) {
+            self.1.send(format!("{} contacts at {}", self.0, at.micros())).unwrap();
+        }
+
+        fn link(&mut self, _: Instant, state: LinkState) {
+            self.1.send(format!("{} {state:?}", self.0)).unwrap();
+        }
+
+        fn dropped(&self) -> u64 {
+            3
+        }
+    }
+
+    #[test]
+    fn everybody_hears_everything() {
+        let (tell, heard) = channel();
+        let mut fanout = Fanout::new().with(Tell("a", tell.clone())).with(Tell("b", tell));
+        fanout.events(&[]);
+        fanout.contacts(Instant::from_micros(5), &[]);
+        fanout.link(Instant::START, LinkState::Live);
+        assert_eq!(fanout.dropped(), 6);
+        drop(fanout);
+        let expected = ["a 0 events", "b 0 events", "a contacts at 5", "b contacts at 5", "a Live", "b Live"];
+        assert_eq!(heard.iter().collect::<Vec<_>>(), expected);
+    }
+}

@@ -1,0 +1,228 @@
+use std::io::{self, Write};
+use std::sync::mpsc::Receiver;
+
+use serde::Serialize;
+
+use super::worker::Worker;
+use super::{EventSink, SinkError};
+use crate::engine::LinkState;
+use crate::sense::{Contact, ContactId};
+use crate::units::Instant;
+use crate::widget::{EventKind, Value, WidgetEvent};
+use crate::wire::link_name;
+
+/// Writes one JSON object per event and line.
+///
+/// ```json
+/// {"t_s":1.234,"event":"changed","id":"zoom","value":0.5,"force_n":120.5,"x_m":0.61,"y_m":1.2,"contact":3}
+/// {"t_s":9.876,"event":"link","state":"lost"}
+/// ```
+///
+/// `value` is a number, true or false, or null for what is no change of value;
+/// `contact` is null if no foot did it. A number that JSON cannot express
+/// (which the engine never gives) is null. Contacts are not written.
+#[derive(Debug)]
+pub struct JsonSink {
+    worker: Worker<Job>,
+}
+
+#[derive(Debug)]
+enum Job {
+    Event(WidgetEvent),
+    Link(Instant, LinkState),
+}
+
+impl JsonSink {
+    /// A sink that writes to `out`, which lives on a thread of its own from
+    /// now on. Lines are flushed as soon as no other waits. Once `out` fails,
+    /// what follows is dropped and counted.
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no thread.
+    pub fn new(out: impl Write + Send + 'static) -> Result<Self, SinkError> {
+        let failed = |source| SinkError::Output { message: format!("cannot write events: {source}"), source };
+        let worker = Worker::spawn("json out", move |jobs| {
+            if let Err(error) = write_all(&jobs, out) {
+                tracing::warn!("events are no longer written: {error}");
+            }
+        })
+        .map_err(failed)?;
+        Ok(Self { worker })
+    }
+}
+
+impl EventSink for JsonSink {
+    fn events(&mut self, events: &[WidgetEvent]) {
+        for event in events {
+            self.worker.offer(Job::Event(event.clone()));
+        }
+    }
+
+    fn contacts(&mut self, _at: Instant, _contacts: &[Contact]) {}
+
+    fn link(&mut self, at: Instant, state: LinkState) {
+        self.worker.offer(Job::Link(at, state));
+    }
+
+    fn dropped(&self) -> u64 {
+        self.worker.dropped()
+    }
+}
+
+fn write_all(jobs: &Receiver<Job>, mut out: impl Write) -> io::Result<()> {
+    while let Ok(mut job) = jobs.recv() {
+        loop {
+            write_line(&job, &mut out)?;
+            match jobs.try_recv() {
+                Ok(next) => job = next,
+                Err(_) => break,
+            }
+        }
+        out.flush()?;
+    }
+    Ok(())
+}
+
+fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
+    let mut line = match job {
+        Job::Event(event) => serde_json::to_vec(&EventLine::of(event))?,
+        Job::Link(at, state) => {
+            let (t_s, state) = (seconds(*at), link_name(*state));
+            serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
+        }
+    };
+    line.push(b'\n');
+    out.write_all(&line)
+}
+
+#[derive(Serialize)]
+struct EventLine<'a> {
+    t_s: f64,
+    event: &'static str,
+    id: &'a str,
+    value: Option<JsonValue>,
+    force_n: f32,
+    x_m: f32,
+    y_m: f32,
+    contact: Option<ContactId>,
+}
+
+#[derive(Serialize)]
+struct LinkLine {
+    t_s: f64,
+    event: &'static str,
+    state: &'static str,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum JsonValue {
+    Switch(bool),
+    Number(f32),
+}
+
+impl<'a> EventLine<'a> {
+    fn of(event: &'a WidgetEvent) -> Self {
+        let value = match event.kind {
+            EventKind::Changed(Value::Switch(on)) => Some(JsonValue::Switch(on)),
+            EventKind::Changed(Value::Number(number)) => Some(JsonValue::Number(number)),
+            EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => None,
+        };
+        Self {
+            t_s: seconds(event.at),
+            event: event.kind.name(),
+            id: event.id.as_str(),
+            value,
+            force_n: event.force.0,
+            x_m: event.position.x,
+            y_m: event.position.y,
+            contact: event.contact,
+        }
+    }
+}
+
+/// Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
+fn seconds(at: Instant) -> f64 {
+    at.micros() as f64 / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::{Sender, channel};
+
+    use glam::Vec2;
+
+    use super::*;
+    use crate::units::Newtons;
+    use crate::widget::WidgetId;
+
+    /// A writer whose other end tells what was flushed.
+    struct Pipe {
+        pending: Vec<u8>,
+        flushed: Sender<String>,
+    }
+
+    impl Write for Pipe {
+        fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+            self.pending.extend(bytes);
+            Ok(bytes.len())
+        }
+
+        fn flush(&mut self) -> io::Result<()> {
+            let text = String::from_utf8(std::mem::take(&mut self.pending)).unwrap();
+            self.flushed.send(text).map_err(|_| io::ErrorKind::BrokenPipe.into())
+        }
+    }
+
+    fn event(kind: EventKind, contact: Option<ContactId>) -> WidgetEvent {
+        WidgetEvent {
+            at: Instant::from_micros(1_234_001),
+            id: WidgetId::new("say \"hi\""),
+            kind,
+            contact,
+            force: Newtons(120.5),
+            position: Vec2::new(0.61, 1.2),
+        }
+    }
+
+    #[test]
+    fn each_event_is_a_line_of_its_own_written_before_the_end() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        let changed = |value| event(EventKind::Changed(value), Some(ContactId(3)));
+        sink.events(&[changed(Value::Number(0.5)), changed(Value::Switch(true))]);
+        sink.events(&[event(EventKind::Cancelled, None)]);
+        sink.link(Instant::from_millis(9876), LinkState::Lost);
+        drop(sink);
+        let text: String = lines.iter().collect();
+        let rest = r#""force_n":120.5,"x_m":0.61,"y_m":1.2,"contact""#;
+        let expected = [
+            format!(r#"{{"t_s":1.234001,"event":"changed","id":"say \"hi\"","value":0.5,{rest}:3}}"#),
+            format!(r#"{{"t_s":1.234001,"event":"changed","id":"say \"hi\"","value":true,{rest}:3}}"#),
+            format!(r#"{{"t_s":1.234001,"event":"cancelled","id":"say \"hi\"","value":null,{rest}:null}}"#),
+            r#"{"t_s":9.876,"event":"link","state":"lost"}"#.into(),
+        ];
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn lines_are_flushed_without_waiting_for_more() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        sink.events(&[event(EventKind::Pressed, None)]);
+        let line = lines.recv_timeout(std::time::Duration::from_secs(5)).unwrap();
+        assert!(line.contains("pressed") && line.ends_with('\n'));
+        drop(sink);
+    }
+
+    #[test]
+    fn a_reader_that_went_away_is_counted_and_harms_nobody() {
+        let (flushed, lines) = channel();
+        drop(lines);
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        while sink.dropped() == 0 {
+            sink.events(&[event(EventKind::Pressed, None)]);
+            std::thread::yield_now();
+        }
+    }
+}

@@ -1,0 +1,98 @@
+use std::io;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
+use std::thread::{Builder, JoinHandle};
+use std::time::Duration;
+
+/// Jobs that may wait: a second of every foot of a crowd doing something at once.
+const QUEUE: usize = 1024;
+
+/// How long the end of the program waits for the last jobs; a reader that has stopped must not hold it.
+const FAREWELL: Duration = Duration::from_secs(2);
+
+/// A thread that does what may block, so that its owner never does.
+#[derive(Debug)]
+pub(super) struct Worker<T> {
+    /// `None` only while being dropped.
+    jobs: Option<SyncSender<T>>,
+    finished: Receiver<()>,
+    thread: Option<JoinHandle<()>>,
+    dropped: AtomicU64,
+}
+
+impl<T: Send + 'static> Worker<T> {
+    /// Starts a thread that runs `work` until the jobs end.
+    pub(super) fn spawn(name: &str, work: impl FnOnce(Receiver<T>) + Send + 'static) -> io::Result<Self> {
+        let (jobs, queue) = sync_channel(QUEUE);
+        let (finish, finished) = channel();
+        let thread = Builder::new().name(name.into()).spawn(move || {
+            work(queue);
+            // Whoever waits for the end no longer needs to.
+            let _ = finish.send(());
+        })?;
+        Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped: AtomicU64::new(0) })
+    }
+
+    /// Gives the thread a job; false, and counted, if too many wait or the thread has ended.
+    pub(super) fn offer(&self, job: T) -> bool {
+        let taken = self.try_offer(job);
+        if !taken {
+            self.dropped.fetch_add(1, Ordering::Relaxed);
+        }
+        taken
+    }
+
+    /// Gives the thread a job that does not matter if it does not fit.
+    pub(super) fn try_offer(&self, job: T) -> bool {
+        self.jobs.as_ref().is_some_and(|jobs| jobs.try_send(job).is_ok())
+    }
+
+    /// Jobs that were offered in vain.
+    pub(super) fn dropped(&self) -> u64 {
+        self.dropped.load(Ordering::Relaxed)
+    }
+}
+
+impl<T> Drop for Worker<T> {
+    /// Lets the thread finish what was offered, but not for ever.
+    fn drop(&mut self) {
+        self.jobs = None;
+        if self.finished.recv_timeout(FAREWELL).is_ok()
+            && let Some(thread) = self.thread.take()
+            && thread.join().is_err()
+        {
+            tracing::warn!("a thread that passes events on has panicked");
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn everything_offered_is_done_before_the_end() {
+        let (done, results) = channel();
+        let worker = Worker::spawn("test", move |jobs: Receiver<u32>| {
+            jobs.iter().for_each(|job| done.send(job).unwrap());
+        })
+        .unwrap();
+        assert!((0..1000).all(|job| worker.offer(job)));
+        drop(worker);
+        assert_eq!(results.iter().collect::<Vec<_>>(), (0..1000).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn too_many_jobs_are_counted_and_never_wait() {
+        let (go, gate) = channel::<()>();
+        let worker = Worker::spawn("test", move |jobs: Receiver<u32>| {
+            let _ = gate.recv();
+            jobs.iter().for_each(drop);
+        })
+        .unwrap();
+        let taken = (0..5000).filter(|&job| worker.offer(job)).count();
+        assert_eq!(taken, QUEUE);
+        assert_eq!(worker.dropped(), 5000 - QUEUE as u64);
+        drop(go);
+    }
+}

@@ -1,0 +1,193 @@
+use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
+
+use super::encode::write;
+use crate::engine::LinkState;
+use crate::sense::Contact;
+use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+
+/// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
+const CONTACTS_PER_DATAGRAM: usize = 20;
+
+/// Writes one event as an OSC message into `bytes`, replacing what was there.
+///
+/// The address is `/underfoot/widget/<id>/<kind>`. For `changed` the value
+/// comes first: a float for a slider, 0 or 1 (int) for a switch, since some
+/// receivers stumble over OSC's true and false. Then always force (newtons),
+/// x and y (floor metres), as floats. Characters of the id that OSC addresses
+/// may not have are written as `_`.
+pub fn write_event(event: &WidgetEvent, bytes: &mut Vec<u8>) {
+    let mut args = Vec::with_capacity(4);
+    args.extend(match event.kind {
+        EventKind::Changed(Value::Number(number)) => Some(OscType::Float(number)),
+        EventKind::Changed(Value::Switch(on)) => Some(OscType::Int(on.into())),
+        EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => None,
+    });
+    args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
+    let address = format!("/underfoot/widget/{}/{}", address_part(&event.id), event.kind.name());
+    bytes.clear();
+    write(&message(address, args), bytes);
+}
+
+/// Writes the contacts of one instant as OSC bundles, giving each datagram to `send`.
+///
+/// Each datagram starts with `/underfoot/contacts <count>`, the number of all
+/// contacts, followed by one `/underfoot/contact` per contact: id (int), then
+/// x, y (floor metres), force (newtons), and velocity x, y (metres per second)
+/// as floats. A receiver drops the contacts it no longer hears of, at the
+/// latest when the count is 0. More than 20 contacts take several datagrams.
+pub fn write_contacts(contacts: &[Contact], bytes: &mut Vec<u8>, mut send: impl FnMut(&[u8])) {
+    let count = i32::try_from(contacts.len()).unwrap_or(i32::MAX);
+    let mut rest = contacts;
+    loop {
+        let (now, later) = rest.split_at(rest.len().min(CONTACTS_PER_DATAGRAM));
+        let mut content = vec![message("/underfoot/contacts".into(), vec![OscType::Int(count)])];
+        content.extend(now.iter().map(contact));
+        // The time tag that means "at once".
+        let timetag = OscTime { seconds: 0, fractional: 1 };
+        bytes.clear();
+        write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);
+        send(bytes);
+        rest = later;
+        if rest.is_empty() {
+            return;
+        }
+    }
+}
+
+/// Writes the state of the floor's link as the OSC message `/underfoot/health` with one
+/// string: `waiting`, `live`, `partial` or `lost`.
+pub fn write_health(state: LinkState, bytes: &mut Vec<u8>) {
+    bytes.clear();
+    let args = vec![OscType::String(link_name(state).into())];
+    write(&message("/underfoot/health".into(), args), bytes);
+}
+
+/// The word for a link's state in OSC and JSON.
+pub(crate) const fn link_name(state: LinkState) -> &'static str {
+    match state {
+        LinkState::Waiting => "waiting",
+        LinkState::Live => "live",
+        LinkState::Partial => "partial",
+        LinkState::Lost => "lost",
+    }
+}
+
+fn message(addr: String, args: Vec<OscType>) -> OscPacket {
+    OscPacket::Message(OscMessage { addr, args })
+}
+
+fn contact(contact: &Contact) -> OscPacket {
+    let floats =
+        [contact.centroid.x, contact.centroid.y, contact.force.0, contact.velocity.x, contact.velocity.y];
+    let id = OscType::Int(contact.id.0.cast_signed());
+    let args = std::iter::once(id).chain(floats.map(OscType::Float)).collect();
+    message("/underfoot/contact".into(), args)
+}
+
+fn address_part(id: &WidgetId) -> String {
+    let fits = |c: char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-' | '.' | '+' | ':');
+    id.as_str().chars().map(|c| if fits(c) { c } else { '_' }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::floor::TileId;
+    use crate::sense::{ContactId, Covariance, Quality, TileLoad};
+    use crate::units::{Instant, Newtons};
+    use crate::wire::{Limits, check};
+
+    fn event(kind: EventKind) -> WidgetEvent {
+        WidgetEvent {
+            at: Instant::from_millis(12),
+            id: WidgetId::new("zoom"),
+            kind,
+            contact: Some(ContactId(3)),
+            force: Newtons(120.0),
+            position: Vec2::new(0.5, 1.25),
+        }
+    }
+
+    fn decoded(bytes: &[u8]) -> OscPacket {
+        assert_eq!(check(bytes, &Limits::default()), Ok(()));
+        rosc::decoder::decode_udp(bytes).unwrap().1
+    }
+
+    fn event_message(event: &WidgetEvent) -> (String, Vec<OscType>) {
+        let mut bytes = vec![1, 2, 3];
+        write_event(event, &mut bytes);
+        let OscPacket::Message(message) = decoded(&bytes) else { panic!("not a message") };
+        (message.addr, message.args)
+    }
+
+    #[test]
+    fn events_carry_value_force_and_place() {
+        let place = [120.0, 0.5, 1.25].map(OscType::Float);
+        let (address, args) = event_message(&event(EventKind::Pressed));
+        assert_eq!((address.as_str(), args), ("/underfoot/widget/zoom/pressed", place.to_vec()));
+        let (address, args) = event_message(&event(EventKind::Changed(Value::Number(0.25))));
+        assert_eq!(address, "/underfoot/widget/zoom/changed");
+        assert_eq!(args, [&[OscType::Float(0.25)], &place[..]].concat());
+        let (_, args) = event_message(&event(EventKind::Changed(Value::Switch(true))));
+        assert_eq!(args[0], OscType::Int(1));
+    }
+
+    #[test]
+    fn ids_cannot_break_an_address() {
+        let id = WidgetId::new("a/b c#ä\0d");
+        let (address, _) = event_message(&WidgetEvent { id, ..event(EventKind::Clicked) });
+        assert_eq!(address, "/underfoot/widget/a_b_c___d/clicked");
+    }
+
+    fn feet(count: u32) -> Vec<Contact> {
+        let load = TileLoad { tile: TileId::new(0, 0), index: 0, force: Newtons(1.0), centroid: Vec2::ZERO };
+        let foot = |id| Contact {
+            id: ContactId(id),
+            centroid: Vec2::new(0.1, 0.2),
+            force: Newtons(350.0),
+            velocity: Vec2::new(0.0, -1.0),
+            tiles: [load].into_iter().collect(),
+            covariance: Covariance::isotropic(0.003),
+            ambiguous: false,
+            quality: Quality::Live,
+            difference: None,
+        };
+        (0..count).map(foot).collect()
+    }
+
+    #[test]
+    fn contacts_travel_with_their_number_in_datagrams_below_1500_bytes() {
+        for count in [0, 1, 20, 21, 100] {
+            let mut ids = Vec::new();
+            let mut datagrams = 0;
+            write_contacts(&feet(count), &mut Vec::new(), |bytes| {
+                datagrams += 1;
+                assert!(bytes.len() < 1400, "{}", bytes.len());
+                let OscPacket::Bundle(bundle) = decoded(bytes) else { panic!("not a bundle") };
+                for (place, element) in bundle.content.into_iter().enumerate() {
+                    let OscPacket::Message(message) = element else { panic!("not a message") };
+                    if place == 0 {
+                        assert_eq!(message.addr, "/underfoot/contacts");
+                        assert_eq!(message.args, [OscType::Int(count as i32)]);
+                    } else {
+                        assert_eq!(message.addr, "/underfoot/contact");
+                        assert_eq!(message.args[1..], [0.1, 0.2, 350.0, 0.0, -1.0].map(OscType::Float));
+                        ids.push(message.args[0].clone());
+                    }
+                }
+            });
+            assert_eq!(ids, (0..count as i32).map(OscType::Int).collect::<Vec<_>>());
+            assert_eq!(datagrams, count.div_ceil(20).max(1));
+        }
+    }
+
+    #[test]
+    fn health_is_one_word() {
+        let mut bytes = Vec::new();
+        write_health(LinkState::Lost, &mut bytes);
+        let args = vec![OscType::String("lost".into())];
+        assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
+    }
+}
