@@ -17,9 +17,9 @@ pub(super) const NORTH: usize = 4;
 pub(super) const HALF_EAST: usize = 6;
 pub(super) const HALF_NORTH: usize = 7;
 
-/// Half widths of the pressed patch, in metres: a heel alone, and a whole long shoe.
-pub(super) const HALF_LEAST: f64 = 0.03;
-pub(super) const HALF_MOST: f64 = 0.17;
+/// Half widths of the pressed patch, in metres: a toe's tip, and a whole long shoe.
+pub(super) const HALF_LEAST: f64 = 0.015;
+pub(super) const HALF_MOST: f64 = 0.2;
 /// What one expects before anything is seen: half a forefoot or heel-and-arch (our choice).
 pub(super) const HALF_REST: f64 = 0.075;
 
@@ -57,6 +57,8 @@ pub(super) struct Foot {
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
     pub habits: SmallVec<[Habit; 6]>,
+    /// Mean speed of its centre of pressure over the last quarter of a second.
+    pub restless: f64,
     /// Where it was when last seen alone; `None` if it never was.
     pub alone_at: Option<DVec2>,
     /// Its centre of pressure when it landed, and the one farthest from there since.
@@ -100,13 +102,14 @@ impl Foot {
             ambiguous: false,
             shared: false,
             habits: SmallVec::new(),
+            restless: 0.4,
             alone_at: None,
             landed: centre,
             farthest: centre,
         };
         foot.be_sure(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
-            foot.covariance[half][half] = 0.025_f64.powi(2);
+            foot.covariance[half][half] = 0.04_f64.powi(2);
         }
         foot
     }
@@ -177,8 +180,9 @@ impl Foot {
     }
 
     /// Remembers where the foot has been.
-    pub(super) fn roll(&mut self) {
+    pub(super) fn roll(&mut self, dt: f64) {
         let centre = self.centre();
+        self.restless += (1.0 - (-dt / 0.25).exp()) * (self.velocity().length().min(1.0) - self.restless);
         if self.age < 0.01 {
             self.landed = centre;
             self.farthest = centre;
@@ -282,6 +286,18 @@ impl Foot {
         self.alone_at = Some(before + (centre - before) * weight);
     }
 
+    /// Makes a foot that was alone until now be sure of its shape: its habits say how it
+    /// differs from the model, whatever the half widths are.
+    pub(super) fn keep_shape(&mut self) {
+        if self.alone_at.is_some() {
+            let deviation = 0.0005 + 0.03 * (-self.age / 0.05).exp();
+            for half in [HALF_EAST, HALF_NORTH] {
+                let variance = &mut self.covariance[half][half];
+                *variance = variance.min(deviation * deviation);
+            }
+        }
+    }
+
     /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
     pub(super) fn habit_strength(&self) -> f64 {
         self.alone_at.map_or(0.0, |place| {
@@ -312,7 +328,7 @@ impl Foot {
     /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.
     fn learn_halves(&mut self, list: &[LoadedTile], dt: f64, cell: impl Fn(&LoadedTile) -> (DVec2, DVec2)) {
         let fade = (-dt / 0.3).exp();
-        let doubt = 0.03_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
         for half in [HALF_EAST, HALF_NORTH] {
             self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
             let variance = &mut self.covariance[half][half];

@@ -64,6 +64,9 @@ struct Newcomer {
     tiles: SmallVec<[u32; 4]>,
 }
 
+/// How far force that strays over a seam is spread along it, as a standard deviation.
+const SPREAD_M: f64 = 0.05;
+
 /// Least distance between the centres of pressure of two feet: side by side, touching.
 const APART_M: f64 = 0.08;
 
@@ -319,7 +322,11 @@ impl Tracker {
             }
             let shared = self.members.len() > 1;
             for &member in &self.members {
-                self.feet[member as usize].shared = shared;
+                let foot = &mut self.feet[member as usize];
+                if shared && !foot.shared {
+                    foot.keep_shape();
+                }
+                foot.shared = shared;
             }
             if shared {
                 self.estimate_together(tiles, dt);
@@ -349,7 +356,7 @@ impl Tracker {
                 }
             }
         }
-        predict(joint, members.len(), dt);
+        predict(joint, members, &self.feet, dt);
         joint.confine();
         for (which, &member) in members.iter().enumerate() {
             joint.take(which, &mut self.feet[member as usize]);
@@ -418,7 +425,7 @@ impl Tracker {
         let list = tiles.list();
         for foot in &mut self.feet {
             foot.learn_past(dt);
-            foot.roll();
+            foot.roll(dt);
             if !foot.shared {
                 foot.learn_habits(list, self.cells.pitch, dt);
             }
@@ -493,22 +500,27 @@ fn part_of(foot: &Foot, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
     (share, TileLoad { force: Newtons(force.min(tile.wrench.force)), centroid: tile.centre + arm, ..whole })
 }
 
-/// Lets `dt` seconds pass for `feet` feet.
-fn predict(joint: &mut Joint, feet: usize, dt: f64) {
+/// Lets `dt` seconds pass for the feet in `members`.
+fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64) {
     const FORCE_FADE_S: f64 = 0.03;
     const FORCE_RATE: f64 = 5000.0;
     const PLACE_FADE_S: f64 = 0.08;
     const SPEED: f64 = 0.4;
     const HALF_FADE_S: f64 = 0.3;
-    const HALF_SPREAD: f64 = 0.025;
-    for at in (0..feet * STATES).step_by(STATES) {
+    const HALF_SPREAD: f64 = 0.04;
+    for (which, &member) in members.iter().enumerate() {
+        let at = which * STATES;
+        // A foot that has stood still is expected to go on standing still.
+        let speed = (2.0 * feet[member as usize].restless).clamp(0.05, SPEED);
         for (value, fade_s, rate) in
-            [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, SPEED), (NORTH, PLACE_FADE_S, SPEED)]
+            [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
         {
             let fade = (-dt / fade_s).exp();
             joint.drift(at + value, fade_s * (1.0 - fade), fade, rate * rate * (1.0 - fade * fade));
         }
-        let fade = (-dt / HALF_FADE_S).exp();
+        // What a foot is known to be shaped like, it keeps while it stays where it is.
+        let loose = 1.0 - feet[member as usize].habit_strength();
+        let fade = (-dt * loose / HALF_FADE_S).exp();
         for half in [HALF_EAST, HALF_NORTH] {
             joint.relax(at + half, HALF_REST, fade, HALF_SPREAD * HALF_SPREAD * (1.0 - fade * fade));
         }
@@ -518,7 +530,7 @@ fn predict(joint: &mut Joint, feet: usize, dt: f64) {
 /// Shows the joint filter what the tiles of its feet carry.
 fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile], cells: &Cells, dt: f64) {
     // Errors of the patch model last for tens of milliseconds: many frames see the same one.
-    let frames = (0.02 / dt.max(1e-4)).max(1.0);
+    let frames = (0.03 / dt.max(1e-4)).max(1.0);
     let mut seen: arrayvec::ArrayVec<u32, 64> = arrayvec::ArrayVec::new();
     for &member in members {
         for &position in &feet[member as usize].tiles {
@@ -574,13 +586,15 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
             Axis::North => (NORTH, HALF_NORTH),
         };
         let aside = EAST + NORTH - place;
-        let mut expected = [0.0; 3];
-        let mut rows: [arrayvec::ArrayVec<Slope, { 4 * MOST_FEET }>; 3] = Default::default();
-        let mut doubt = 0.0;
+        let middle = (f64::from(line.number) + 0.5) * cells.pitch;
+        let mut missing = [line.force, line.moment, line.cross];
+        let mut rows: Rows = Default::default();
+        let mut doubt = [[4.0, 0.0, 0.0], [0.0, 0.09, 0.0], [0.0, 0.0, 0.09]];
         for (which, &member) in members.iter().enumerate() {
             let foot = &feet[member as usize];
             let habit = foot.habit(axis, line.number);
-            let slice = line.slice(cells.pitch, axis.along(foot.centre()), axis.along(foot.half()));
+            let place_along = axis.along(foot.centre());
+            let slice = line.slice(cells.pitch, place_along, axis.along(foot.half()));
             let share = (slice.share + habit.share).clamp(0.0, 1.0);
             if share <= 0.0 && slice.share <= 0.0 {
                 continue;
@@ -589,29 +603,63 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
             let offset = axis.across(foot.centre() - lines.middle);
             let moment = slice.moment + habit.moment;
             let cross = share * offset + habit.cross;
-            expected[0] += f * share;
-            expected[1] += f * moment;
-            expected[2] += f * cross;
+            missing[0] -= f * share;
+            missing[1] -= f * moment;
+            missing[2] -= f * cross;
+            // What the patch model leaves open: force that lies on the other side of the seam
+            // through the foot, and how that force is spread along the seam.
+            let strength = foot.habit_strength();
             let straddle =
-                4.0 * share.max(slice.share).min(0.5) * (1.0 - share.min(slice.share).max(0.5)).max(0.0);
-            let strange = 0.01 + 0.06 * (1.0 - foot.habit_strength());
-            doubt += (f * strange).powi(2) * straddle;
-            rows[0].push((at + FORCE, share));
-            rows[0].push((at + place, f * slice.share_by[0]));
-            rows[0].push((at + half, f * slice.share_by[1]));
-            rows[1].push((at + FORCE, moment));
-            rows[1].push((at + place, f * slice.moment_by[0]));
-            rows[1].push((at + half, f * slice.moment_by[1]));
-            rows[2].push((at + FORCE, cross));
-            rows[2].push((at + aside, f * share));
-            rows[2].push((at + place, f * slice.share_by[0] * offset));
-            rows[2].push((at + half, f * slice.share_by[1] * offset));
+                4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
+            let strange = 0.01 + 0.06 * (1.0 - strength);
+            let strayed = frames * (f * strange).powi(2) * straddle;
+            let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
+            for (row, values) in doubt.iter_mut().enumerate() {
+                for (column, value) in values.iter_mut().enumerate() {
+                    *value += strayed * lever[row] * lever[column];
+                }
+            }
+            doubt[1][1] += strayed * SPREAD_M * SPREAD_M;
+            doubt[2][2] += strayed * SPREAD_M * SPREAD_M;
+            for (row, value, along, wider, across) in [
+                (0, share, slice.share_by[0], slice.share_by[1], 0.0),
+                (1, moment, slice.moment_by[0], slice.moment_by[1], 0.0),
+                (2, cross, slice.share_by[0] * offset, slice.share_by[1] * offset, share),
+            ] {
+                rows[row].push((at + FORCE, value));
+                rows[row].push((at + place, f * along));
+                rows[row].push((at + half, f * wider));
+                rows[row].push((at + aside, f * across));
+            }
         }
-        for (row, measured) in [line.force, line.moment, line.cross].into_iter().enumerate() {
-            let (noise, lever) = [(2.0, 1.0), (0.3, 0.06), (0.3, 0.06)][row];
-            let slopes = &rows[row];
-            let missing = measured - expected[row] - now(joint, slopes);
-            joint.observe(missing, slopes, noise * noise + frames * doubt * lever * lever);
+        let variances = decorrelate(&mut missing, &mut rows, doubt);
+        for row in 0..3 {
+            let missing = missing[row] - now(joint, &rows[row]);
+            joint.observe(missing, &rows[row], variances[row]);
         }
     }
+}
+
+/// The slopes of a line's force, moment and cross moment.
+type Rows = [arrayvec::ArrayVec<Slope, { 4 * MOST_FEET }>; 3];
+
+/// Turns three observations with correlated errors into three independent ones; gives their variances.
+///
+/// # Source
+/// R = L D Lᵀ: multiplied by the inverse of L, errors of covariance R have the diagonal covariance D.
+fn decorrelate(missing: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]) -> [f64; 3] {
+    for pivot in 0..2 {
+        for row in pivot + 1..3 {
+            let factor = doubt[row][pivot] / doubt[pivot][pivot];
+            for column in 0..3 {
+                doubt[row][column] -= factor * doubt[pivot][column];
+            }
+            missing[row] -= factor * missing[pivot];
+            let (above, below) = rows.split_at_mut(row);
+            for (slope, taken) in below[0].iter_mut().zip(&above[pivot]) {
+                slope.1 -= factor * taken.1;
+            }
+        }
+    }
+    [doubt[0][0], doubt[1][1], doubt[2][2]]
 }
