@@ -4,6 +4,7 @@
 
 use std::iter::Sum;
 use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+use std::sync::Arc;
 use std::time::Duration;
 
 use serde::Serialize;
@@ -148,6 +149,9 @@ impl Add<Duration> for Instant {
         Self(self.0.saturating_add(micros(span)))
     }
 }
+
+/// A clock that several threads read.
+pub type HostClock = Arc<dyn Fn() -> Instant + Send + Sync>;
 
 fn micros(span: Duration) -> u64 {
     u64::try_from(span.as_micros()).unwrap_or(u64::MAX)

@@ -9,7 +9,7 @@ use rosc::{OscPacket, OscType};
 use underfoot::engine::LinkState;
 use underfoot::floor::TileId;
 use underfoot::glam::Vec2;
-use underfoot::sense::{Contact, ContactId, TileLoad};
+use underfoot::sense::{Contact, ContactId, Covariance, Quality, TileLoad};
 use underfoot::sink::{EventSink, OscSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
@@ -45,6 +45,10 @@ fn foot(x: f32) -> Contact {
         force: Newtons(350.0),
         velocity: Vec2::ZERO,
         tiles: [load].into_iter().collect(),
+        covariance: Covariance::isotropic(0.003),
+        ambiguous: false,
+        quality: Quality::Live,
+        difference: None,
     }
 }
 

@@ -1,6 +1,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
+use underfoot::picture::PictureError;
 use underfoot::schema::Diagnostics;
 use underfoot::sim::ScenarioError;
 use underfoot::sink::SinkError;
@@ -22,6 +23,8 @@ pub(crate) enum Failure {
     /// There can be no window.
     #[cfg(feature = "preview")]
     NoWindow(String),
+    /// A picture can't be made.
+    Picture(PictureError),
     /// Anything else, said in full.
     Other(String),
 }
@@ -33,6 +36,7 @@ impl fmt::Display for Failure {
             Self::Scenario(error) => write!(f, "error: {error}"),
             Self::Source(error) => write!(f, "error: {error}"),
             Self::Sink(error) => write!(f, "error: {error}"),
+            Self::Picture(error) => write!(f, "error: {error}"),
             Self::File(path, error) => write!(f, "error: {}: {error}", path.display()),
             #[cfg(feature = "preview")]
             Self::NoWindow(reason) => write!(
@@ -65,5 +69,11 @@ impl From<SourceError> for Failure {
 impl From<SinkError> for Failure {
     fn from(error: SinkError) -> Self {
         Self::Sink(error)
+    }
+}
+
+impl From<PictureError> for Failure {
+    fn from(error: PictureError) -> Self {
+        Self::Picture(error)
     }
 }

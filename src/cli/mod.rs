@@ -2,16 +2,18 @@
 //!
 //! Exit status 0: done; 1: the work failed (standard error says what to do next); 2: wrong usage.
 
+mod actuate;
 mod check;
 mod failure;
 mod floor_args;
 mod layout_args;
-#[cfg(feature = "preview")]
-mod preview;
+mod play;
 mod render;
 mod run;
+mod sense;
 mod session;
 mod simulate;
+mod stop;
 mod watch;
 
 use std::process::ExitCode;
@@ -37,9 +39,6 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Open the window on a layout: a simulated floor with the mouse as a foot, a scenario, or a real floor.
-    #[cfg(feature = "preview")]
-    Preview(preview::Args),
     /// Serve a floor: sensor packets in, events and actuator samples out.
     Run(run::Args),
     /// Play a scenario on a simulated floor in a process of its own, sending real packets.
@@ -50,6 +49,8 @@ enum Command {
     Check(check::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
+    /// Contacts and cursor from a force table, one JSON line per instant.
+    Sense(sense::SenseArgs),
     /// Print completions for a shell.
     Completions {
         /// Which shell.
@@ -73,13 +74,12 @@ pub(crate) fn main() -> ExitCode {
 fn dispatch(command: Option<Command>) -> Result<(), Failure> {
     match command {
         None => by_default(),
-        #[cfg(feature = "preview")]
-        Some(Command::Preview(args)) => preview::run(args),
-        Some(Command::Run(args)) => run::run(args),
-        Some(Command::Simulate(args)) => simulate::run(args),
+        Some(Command::Run(args)) => run::run(&args),
+        Some(Command::Simulate(args)) => simulate::run(&args),
         Some(Command::Session(args)) => session::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
             Ok(())
@@ -89,15 +89,6 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
 
 /// The main job with nothing asked: the window if there can be one, the played session otherwise.
 fn by_default() -> Result<(), Failure> {
-    #[cfg(feature = "preview")]
-    if preview::has_display() {
-        match preview::run(preview::Args::default()) {
-            Err(Failure::NoWindow(reason)) => {
-                anstream::eprintln!("No window: {reason}. Playing the built-in session instead.");
-            }
-            done => return done,
-        }
-    }
     session::run(&session::Args::default())
 }
 

@@ -1,18 +1,22 @@
+use std::io;
 use std::net::SocketAddr;
-use std::path::PathBuf;
-use std::sync::mpsc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, mpsc};
+use std::thread;
+use std::time::Duration;
 
+use tracing::{info, warn};
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
-use underfoot::sink::{EventSink, Fanout, JsonSink, OscSink};
-use underfoot::source::UdpSource;
+use underfoot::sink::{Fanout, JsonSink, LatencyMeter, OscSink};
+use underfoot::source::{SensorSource, UdpSource};
+use underfoot::wire::LinkCounters;
 
-use super::actuate::{self, ActuateArgs};
+use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
 use super::stop::stop_flag;
-use super::summary;
 use super::watch::Watch;
 
 /// What `underfoot run` is asked to do.
@@ -22,14 +26,108 @@ pub(crate) struct Args {
     layout: LayoutArgs,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where the boards' packets arrive.
+    /// Where the boards' packets and apps' requests arrive.
     #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
     listen: SocketAddr,
-    #[command(flatten)]
-    outputs: OutputArgs,
+    /// Where events and contacts are sent as OSC.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9001")]
+    osc: SocketAddr,
+    /// Send no OSC.
+    #[arg(long, conflicts_with = "osc")]
+    no_osc: bool,
+    /// Print every event as a line of JSON on standard output.
+    #[arg(long)]
+    json: bool,
     #[command(flatten)]
     actuate: ActuateArgs,
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
+}
+
+/// Serves a floor until it is told to stop.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let layout = args.layout.load(&floor.geometry)?;
+    let source = UdpSource::bind(args.listen, &floor)?;
+    if let Ok(address) = source.local_addr() {
+        anstream::eprintln!(
+            "Listening on {address} with a receive buffer of {} KiB; Ctrl-C ends it.",
+            source.granted_buffer() / 1024
+        );
+    }
+    let Actuation { feel, sink, latency, notice, .. } =
+        args.actuate.start(&floor, source.now(), source.clock())?;
+    if let Some(notice) = notice {
+        warn!("{notice}");
+    }
+    let stop = stop_flag()?;
+    let (commands, inbox) = mpsc::channel();
+    let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
+        Ok(layout) => {
+            info!("the changed layout is on the floor");
+            // A server that has ended needs no layout.
+            let _ = commands.send(Command::SetLayout(Box::new(layout)));
+        }
+        Err(diagnostics) => {
+            anstream::eprintln!("{diagnostics}The last good layout stays on the floor.");
+        }
+    })?;
+    if let Some(seconds) = args.seconds {
+        stop_after(seconds, Arc::clone(&stop));
+    }
+    let method = if args.eq4 { Method::Eq4 } else { Method::default() };
+    let mut server = Server::new(&floor, layout, method, Box::new(source))
+        .with_feel(feel, sink)
+        .with_events(Box::new(args.events()?))
+        .with_commands(inbox);
+    let served = server.run(&stop);
+    let counters = server.counters();
+    let dropped = server.unsent_events();
+    // Ends the recording and sends what is still under way.
+    drop(server);
+    report(&counters, dropped, &latency);
+    Ok(served?)
+}
+
+impl Args {
+    fn events(&self) -> Result<Fanout, Failure> {
+        let mut events = Fanout::new();
+        if !self.no_osc {
+            events.push(OscSink::new(self.osc)?);
+        }
+        if self.json {
+            events.push(JsonSink::new(io::stdout())?);
+        }
+        Ok(events)
+    }
+}
+
+fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
+    let span = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+    thread::spawn(move || {
+        thread::sleep(span);
+        stop.store(true, Ordering::Relaxed);
+    });
+}
+
+/// What came in, what was not used, and how quickly the floor answered.
+fn report(counters: &LinkCounters, dropped: u64, latency: &LatencyMeter) {
+    anstream::eprintln!(
+        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; events not sent {dropped}.",
+        counters.packets,
+        counters.frames,
+        counters.lost,
+        counters.late,
+        counters.duplicate,
+        counters.refused(),
+        counters.bad_readings,
+    );
+    match latency.summary() {
+        Some(summary) => anstream::eprintln!("From packet to first sample handed on: {summary}."),
+        None => anstream::eprintln!("No cue was played."),
+    }
 }

@@ -68,7 +68,8 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Box<dyn Error>> {
 
 fn parse_grid(text: &str) -> Result<Geometry, String> {
     let (columns, rows) = text.split_once(['x', 'X']).ok_or("expected columns x rows, such as 8x4")?;
-    let side = |text: &str| text.trim().parse::<u16>().map_err(|_| format!("{text:?} is not a number of tiles"));
+    let side =
+        |text: &str| text.trim().parse::<u16>().map_err(|_| format!("{text:?} is not a number of tiles"));
     Geometry::of_paper_tiles(side(columns)?, side(rows)?).map_err(|error| error.to_string())
 }
 

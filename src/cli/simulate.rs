@@ -1,18 +1,19 @@
 use std::net::{SocketAddr, UdpSocket};
 use std::path::PathBuf;
 use std::sync::atomic::Ordering;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
-use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
-use underfoot::wire::{SensorEncoder, SensorFormat};
-use underfoot::floor::{Floor, Geometry};
+use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema;
+use underfoot::sim::{Sensing, SimConfig, SimFloor};
+use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::play::{self, SimArgs};
 use super::stop::stop_flag;
 
 /// What `underfoot simulate` is asked to do.
@@ -21,38 +22,111 @@ pub(crate) struct Args {
     /// Scenario file; without it, the built-in session on the built-in map layout.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// The layout whose controls the scenario names (a file or a built-in name).
-    #[arg(long, value_name = "LAYOUT")]
-    layout: Option<PathBuf>,
+    #[command(flatten)]
+    layout: LayoutArgs,
     #[command(flatten)]
     floor: FloorArgs,
+    #[command(flatten)]
+    sim: SimArgs,
     /// Where the boards send their packets.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
     send: SocketAddr,
-    /// What the boards send.
-    #[arg(long, value_enum, default_value_t)]
-    format: Format,
-    /// Which floor of its kind: sensors and noise follow from this number.
-    #[arg(long, default_value_t = 1)]
-    seed: u64,
-    /// Perfect sensors: alike, exact, without noise.
-    #[arg(long)]
-    ideal: bool,
-    /// Calibrate the simulated floor as a lab would, write its floor file, and go on.
+    /// What the boards send; newtons with --ideal, counts otherwise.
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// Also write the floor file that a lab would: this floor, calibrated sensor by sensor and tared.
     #[arg(long, value_name = "FILE")]
     write_floor: Option<PathBuf>,
+    /// Stop after so many seconds, although the scenario goes on.
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
     /// Play the scenario again and again.
     #[arg(long = "loop")]
     again: bool,
 }
 
-#[derive(Clone, Copy, Debug, Default, clap::ValueEnum)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
 enum Format {
     /// Raw 16-bit counts, one OSC integer per channel.
-    #[default]
     Counts,
     /// Newtons, one OSC float per channel.
     Newtons,
     /// Raw counts in one OSC blob, big-endian.
     Blob,
+}
+
+/// Plays the scenario in real time and sends every board's packets.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let layout = args.layout.load(&floor.geometry)?;
+    let (sim, encoder) = args.simulated(&floor)?;
+    if let Some(path) = &args.write_floor {
+        let (_, calibrated) = args.sim.calibrated(&floor)?;
+        std::fs::write(path, schema::write_floor(&calibrated))
+            .map_err(|error| Failure::File(path.clone(), error))?;
+        anstream::eprintln!("The calibrated floor is described in {}.", path.display());
+    }
+    let sent = args.send_all(&floor, &layout, &sim, encoder)?;
+    anstream::eprintln!("{sent} packets sent to {}.", args.send);
+    Ok(())
+}
+
+impl Args {
+    fn simulated(&self, floor: &Floor) -> Result<(SimFloor, SensorEncoder), Failure> {
+        let mut config: SimConfig = self.sim.config();
+        let format = match (self.format, config.sensing) {
+            (None | Some(Format::Newtons), Sensing::Exact) => SensorFormat::Newtons,
+            (Some(_), Sensing::Exact) => {
+                return Err(Failure::Other("perfect sensors send newtons; leave out --format".into()));
+            }
+            (Some(Format::Newtons), Sensing::Counts(parts) | Sensing::Newtons(parts)) => {
+                config.sensing = Sensing::Newtons(parts);
+                SensorFormat::Newtons
+            }
+            (Some(Format::Blob), _) => SensorFormat::Blob,
+            (None | Some(Format::Counts), _) => SensorFormat::Counts,
+        };
+        Ok((SimFloor::new(floor, config, self.sim.seed), SensorEncoder::new(floor, format)))
+    }
+
+    /// Gives the number of packets sent.
+    fn send_all(
+        &self,
+        floor: &Floor,
+        layout: &Layout,
+        sim: &SimFloor,
+        mut encoder: SensorEncoder,
+    ) -> Result<u64, Failure> {
+        let no_socket = |error| Failure::Other(format!("packets can't be sent to {}: {error}", self.send));
+        let here: SocketAddr = if self.send.is_ipv4() { ([0; 4], 0).into() } else { ([0; 16], 0).into() };
+        let socket = UdpSocket::bind(here).map_err(no_socket)?;
+        let stop = stop_flag()?;
+        let until = self.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)));
+        let mut sent = 0;
+        loop {
+            let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+            let mut source = SimulatedSource::new(sim.clone(), Box::new(script), Pace::RealTime);
+            loop {
+                if stop.load(Ordering::Relaxed) || until.is_some_and(|until| Instant::now() >= until) {
+                    return Ok(sent);
+                }
+                let packet = match source.next(Duration::from_millis(10)) {
+                    Ok(Some(packet)) => packet,
+                    Ok(None) => continue,
+                    Err(SourceError::Ended) => break,
+                    Err(error) => return Err(error.into()),
+                };
+                let datagram = encoder.encode(&packet).map_err(|error| Failure::Other(error.to_string()))?;
+                match socket.send_to(datagram, self.send) {
+                    Ok(_) => sent += 1,
+                    // Nobody listens yet: a board doesn't mind either.
+                    Err(error) if error.kind() == std::io::ErrorKind::ConnectionRefused => {}
+                    Err(error) => return Err(no_socket(error)),
+                }
+            }
+            if !self.again {
+                return Ok(sent);
+            }
+        }
+    }
 }

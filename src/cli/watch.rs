@@ -45,7 +45,8 @@ impl Watch {
                     changed.file_name() == name.as_deref()
                         || kinds_folder.as_ref().is_some_and(|folder| {
                             changed.extension().is_some_and(|ending| ending == "ron")
-                                && changed.parent().map(std::path::Path::file_name) == Some(folder.file_name())
+                                && changed.parent().map(std::path::Path::file_name)
+                                    == Some(folder.file_name())
                         })
                 })
             });

@@ -2,6 +2,7 @@ use crate::feel::{Cue, Rubs};
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
+use crate::units::Instant;
 use crate::widget::{Behaviour, SetError, Value, WidgetEvent};
 
 use super::interact::Interaction;
@@ -16,7 +17,10 @@ use super::{Snapshot, TileState, WidgetState};
 pub struct Engine {
     geometry: Geometry,
     layout: Layout,
-    waiting_layout: Option<Layout>,
+    /// A layout that waits for feet to let go, with its revision.
+    waiting_layout: Option<(Layout, u64)>,
+    /// Layouts given so far, the first one not counted.
+    layouts_given: u64,
     layout_revision: u64,
     sensing: Sensing,
     interaction: Interaction,
@@ -55,6 +59,7 @@ impl Engine {
             geometry,
             layout,
             waiting_layout: None,
+            layouts_given: 0,
             layout_revision: 0,
             last_spots: LastSpots::default(),
             pending: Vec::new(),
@@ -99,9 +104,17 @@ impl Engine {
     ///
     /// With a foot engaged, the change waits until the foot has let go; if the
     /// engaged control is gone from the new layout it is cancelled at the next step.
+    /// The n-th layout given this way has [`Snapshot::layout_revision`] n.
     pub fn set_layout(&mut self, layout: Layout) {
-        self.waiting_layout = Some(layout);
+        self.layouts_given += 1;
+        self.waiting_layout = Some((layout, self.layouts_given));
         self.take_waiting_layout();
+    }
+
+    /// The time of the last frame, on the floor's sample clock.
+    #[must_use]
+    pub fn now(&self) -> Instant {
+        self.last_frame.at
     }
 
     /// What the control named `id` holds; `None` for a button or an unknown name.
@@ -160,7 +173,7 @@ impl Engine {
 
     fn take_waiting_layout(&mut self) {
         let now = self.last_frame.at;
-        let Some(waiting) = &self.waiting_layout else { return };
+        let Some((waiting, _)) = &self.waiting_layout else { return };
         let vanished: Vec<usize> = self
             .interaction
             .engaged()
@@ -177,7 +190,7 @@ impl Engine {
         if self.interaction.is_engaged() {
             return;
         }
-        let Some(layout) = self.waiting_layout.take() else { return };
+        let Some((layout, revision)) = self.waiting_layout.take() else { return };
         let mut interaction = Interaction::new(&layout, &self.geometry);
         for (index, widget) in layout.widgets.iter().enumerate() {
             let old = self.layout.widget_index(widget.id.as_str());
@@ -190,7 +203,7 @@ impl Engine {
         }
         self.interaction = interaction;
         self.layout = layout;
-        self.layout_revision += 1;
+        self.layout_revision = revision;
     }
 }
 

@@ -30,7 +30,7 @@ pub struct Snapshot {
     pub feel: FeelCounters,
     /// Events that other programs could not be told.
     pub unsent_events: u64,
-    /// Grows by one each time the engine takes another layout.
+    /// Which layout the controls belong to: the first is 0, the n-th given to [`super::Engine::set_layout`] is n.
     pub layout_revision: u64,
 }
 

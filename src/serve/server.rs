@@ -126,6 +126,12 @@ impl Server {
         self.source.counters() + self.assembler.counters()
     }
 
+    /// Events that other programs could not be told so far.
+    #[must_use]
+    pub fn unsent_events(&self) -> u64 {
+        self.events.as_ref().map_or(0, |events| events.dropped())
+    }
+
     /// Works until the source ends or `stop` is set, which is noticed within some milliseconds.
     ///
     /// # Errors
@@ -201,11 +207,12 @@ impl Server {
         }
         self.shown = at;
         self.engine.snapshot(snapshots.input_buffer_mut());
-        let counters = self.source.counters() + self.assembler.counters();
+        let (counters, unsent) = (self.counters(), self.unsent_events());
+        let Some(snapshots) = &mut self.snapshots else { return };
         let snapshot = snapshots.input_buffer_mut();
         snapshot.link = self.link;
         snapshot.counters = counters;
-        snapshot.unsent_events = self.events.as_ref().map_or(0, |events| events.dropped());
+        snapshot.unsent_events = unsent;
         snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
         snapshots.publish();
     }

@@ -102,6 +102,9 @@ impl Scenario {
     /// The built-in scenario of somebody who crosses the floor and touches no control; fits floors of 4 x 3 tiles and more.
     pub const CROSSING: &str = include_str!("scenarios/crossing.ron");
 
+    /// The built-in session on the shipped layout `map`: walk on, press a button, drag a slider, flip a switch, walk off.
+    pub const SESSION: &str = include_str!("scenarios/session.ron");
+
     /// The scenario written in `text`; `file` is what messages call it.
     ///
     /// # Errors

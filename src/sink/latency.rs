@@ -4,10 +4,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use crate::feel::Onset;
-use crate::units::Instant;
-
-/// A clock that the sinks read: the one that stamps arriving packets.
-pub type HostClock = Arc<dyn Fn() -> Instant + Send + Sync>;
+use crate::units::{HostClock, Instant};
 
 /// Buckets per doubling of the latency: a quantile is at most 0.8 % off.
 const FINENESS: u64 = 128;

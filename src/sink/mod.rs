@@ -19,7 +19,7 @@ use crate::widget::WidgetEvent;
 
 pub use fanout::Fanout;
 pub use json::JsonSink;
-pub use latency::{HostClock, LatencyMeter, LatencyProbe, LatencySummary};
+pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
 pub use manual::ManualSink;
 pub use osc::OscSink;
 pub use silent::SilentSink;

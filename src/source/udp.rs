@@ -12,8 +12,7 @@ use socket2::{Domain, Protocol, Socket, Type};
 use self::log::RefusalLog;
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
-use crate::sink::HostClock;
-use crate::units::Instant;
+use crate::units::{HostClock, Instant};
 use crate::wire::{Batch, ControlMessage, Decoder, LinkCounters, SensorPacket};
 
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.

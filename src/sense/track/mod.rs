@@ -651,8 +651,9 @@ fn decorrelate(missing: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]
     for pivot in 0..2 {
         for row in pivot + 1..3 {
             let factor = doubt[row][pivot] / doubt[pivot][pivot];
-            for column in 0..3 {
-                doubt[row][column] -= factor * doubt[pivot][column];
+            let over = doubt[pivot];
+            for (cell, over) in doubt[row].iter_mut().zip(over) {
+                *cell -= factor * over;
             }
             missing[row] -= factor * missing[pivot];
             let (above, below) = rows.split_at_mut(row);

@@ -1,0 +1,52 @@
+use std::path::{Path, PathBuf};
+
+use underfoot::floor::{Floor, Geometry};
+use underfoot::layout::Layout;
+use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
+
+use super::failure::Failure;
+
+/// What a scenario is played on: which simulated floor of its kind.
+#[derive(clap::Args, Clone, Debug)]
+pub(crate) struct SimArgs {
+    /// Which floor of its kind: sensors and noise follow from this number.
+    #[arg(long, default_value_t = 1)]
+    pub(crate) seed: u64,
+    /// Perfect sensors: alike, exact, without noise, sending newtons.
+    #[arg(long)]
+    pub(crate) ideal: bool,
+}
+
+impl Default for SimArgs {
+    fn default() -> Self {
+        Self { seed: 1, ideal: false }
+    }
+}
+
+impl SimArgs {
+    /// What the simulated floor is made of.
+    pub(crate) fn config(&self) -> SimConfig {
+        if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
+    }
+
+    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated and tared.
+    pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
+        let sim = SimFloor::new(floor, self.config(), self.seed);
+        let floor = sim::calibrated(floor, &sim, self.seed)
+            .map_err(|error| Failure::Other(format!("the simulated floor can't be calibrated: {error}")))?;
+        Ok((sim, floor))
+    }
+}
+
+/// The scenario in `file`, or the built-in session, on the controls of `layout`.
+pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) -> Result<Script, Failure> {
+    let scenario = match file {
+        Some(path) => {
+            let text =
+                std::fs::read_to_string(path).map_err(|error| Failure::File(PathBuf::from(path), error))?;
+            Scenario::parse(&path.display().to_string(), &text)?
+        }
+        None => Scenario::parse("the built-in session", Scenario::SESSION)?,
+    };
+    Ok(scenario.resolve(layout, geometry)?)
+}

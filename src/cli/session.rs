@@ -1,0 +1,174 @@
+use std::fs::File;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
+
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::feel::{RendererConfig, renderer};
+use underfoot::layout::Layout;
+use underfoot::picture;
+use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
+use underfoot::sense::Method;
+use underfoot::serve::{Ended, Server};
+use underfoot::sim::{Foot, Script};
+use underfoot::sink::{JsonSink, WavOptions, WavSink, WhenFull};
+use underfoot::source::{Pace, SimulatedSource};
+use underfoot::units::Instant;
+use underfoot::widget::Value;
+
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
+use super::layout_args::LayoutArgs;
+use super::play::{self, SimArgs};
+
+/// What `underfoot session` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    #[command(flatten)]
+    sim: SimArgs,
+    /// Scenario file; without it, the built-in session.
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+    /// Folder for the picture, the sound file and the event log.
+    #[arg(short, long, value_name = "DIR", default_value = DEFAULT_OUT)]
+    out: PathBuf,
+    /// Samples per second and actuator channel.
+    #[arg(long, value_name = "HZ", default_value_t = SAMPLE_RATE)]
+    rate: u32,
+}
+
+const DEFAULT_OUT: &str = "underfoot-session";
+const SAMPLE_RATE: u32 = 48_000;
+
+/// Width of the picture, in pixels.
+const PICTURE_WIDTH: u32 = 1400;
+
+impl Default for Args {
+    fn default() -> Self {
+        Self {
+            layout: LayoutArgs::default(),
+            floor: FloorArgs::default(),
+            sim: SimArgs::default(),
+            scenario: None,
+            out: DEFAULT_OUT.into(),
+            rate: SAMPLE_RATE,
+        }
+    }
+}
+
+/// Plays a scenario on a simulated floor, faster than in real time, and leaves what a visitor would have seen, felt and caused.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let geometry = floor.geometry;
+    let layout = args.layout.load(&geometry)?;
+    let script = play::script(args.scenario.as_deref(), &layout, &geometry)?;
+    let (sim, floor) = args.sim.calibrated(&floor)?;
+    std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
+    let file = |name: &str| args.out.join(name);
+    let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
+
+    let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
+    let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
+    let options = WavOptions { when_full: WhenFull::Wait, ..WavOptions::default() };
+    let wav = WavSink::create(&sound, renderer, options)?;
+    let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
+    let mut server = Server::new(&floor, layout, Method::default(), Box::new(source))
+        .with_feel(feel, Box::new(wav))
+        .with_events(Box::new(JsonSink::new(events)?));
+    let mut camera = Camera::default();
+    while server.turn()? == Ended::No {
+        camera.look(server.engine());
+    }
+    let layout = server.engine().layout().clone();
+    drop(server);
+    camera.develop(&geometry, &layout, &script, &picture)?;
+    anstream::println!(
+        "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
+         What its controls did: {}",
+        script.duration().as_secs_f64(),
+        picture.display(),
+        sound.display(),
+        log.display()
+    );
+    Ok(())
+}
+
+/// Keeps the most telling moment of a session.
+#[derive(Default)]
+struct Camera {
+    now: Snapshot,
+    seen: Option<Instant>,
+    best: Option<(u32, Snapshot)>,
+    pressed_since: Option<Instant>,
+}
+
+/// How often the camera looks.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+/// How long a control has been pressed when it is telling: the foot has settled or slides.
+const SETTLED: Duration = Duration::from_millis(500);
+
+impl Camera {
+    fn look(&mut self, engine: &Engine) {
+        let at = engine.now();
+        if self.seen.is_some_and(|seen| at.since(seen) < LOOK_EVERY) {
+            return;
+        }
+        self.seen = Some(at);
+        engine.snapshot(&mut self.now);
+        let pressed = self.now.widgets.iter().filter(|widget| widget.pressed);
+        // A slider on its way tells more than a button that is held.
+        let worth =
+            pressed.map(|widget| if matches!(widget.value, Some(Value::Number(_))) { 3 } else { 2 }).max();
+        let Some(mut worth) = worth else {
+            self.pressed_since = None;
+            if self.best.is_none() && !self.now.contacts.is_empty() {
+                self.best = Some((0, self.now.clone()));
+            }
+            return;
+        };
+        let since = *self.pressed_since.get_or_insert(at);
+        if at.since(since) < SETTLED {
+            worth -= 1;
+        }
+        if self.best.as_ref().is_none_or(|(best, _)| worth > *best) {
+            self.best = Some((worth, self.now.clone()));
+        }
+    }
+
+    fn develop(
+        self,
+        geometry: &underfoot::floor::Geometry,
+        layout: &Layout,
+        script: &Script,
+        path: &Path,
+    ) -> Result<(), Failure> {
+        let snapshot = self.best.map_or(self.now, |(_, snapshot)| snapshot);
+        let mut feet = Vec::new();
+        script.feet_at(snapshot.at, &mut feet);
+        let shoes: Vec<Shoe> = feet.iter().map(shoe).collect();
+        let mut scene = Scene::new();
+        let view = View {
+            show: Show::PICTURE,
+            shoes: &shoes,
+            ..View::new(geometry, layout, &snapshot, &Theme::LIGHT)
+        };
+        scene::draw(&mut scene, &view);
+        Ok(picture::write(&scene, path, PICTURE_WIDTH)?)
+    }
+}
+
+/// How a simulated foot is drawn.
+pub(super) fn shoe(foot: &Foot) -> Shoe {
+    Shoe {
+        position: foot.position,
+        heading_rad: foot.heading,
+        length_m: foot.length_m,
+        force: foot.force,
+        roll: foot.roll,
+        left: false,
+    }
+}
