@@ -46,7 +46,7 @@ pub struct Diagnostic {
     pub expected: String,
     /// What to do about it.
     pub help: Option<String>,
-    /// The line as written; a very long one is cut around the place.
+    /// The line as shown: tabs are four spaces, a very long line is cut around the place.
     pub source_line: String,
     #[serde(skip)]
     pub(super) excerpt: Excerpt,
@@ -72,20 +72,29 @@ impl Diagnostic {
 }
 
 impl fmt::Display for Diagnostic {
+    /// Several lines: what is wrong, where, the line with carets, and what to do; `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {}", self.severity, self.message)?;
+        let paint = |colour: &'static str| if f.alternate() { (colour, "\x1b[0m") } else { ("", "") };
+        let (bold, end) = paint("\x1b[1m");
+        let (frame, _) = paint("\x1b[1;34m");
+        let (loud, _) = paint(match self.severity {
+            Severity::Error => "\x1b[1;31m",
+            Severity::Warning => "\x1b[1;33m",
+        });
         let margin = self.line.max(1).ilog10() as usize + 1;
+        writeln!(f, "{loud}{}{end}{bold}: {}{end}", self.severity, self.message)?;
         if self.line == 0 {
-            writeln!(f, "{:margin$}--> {}", "", self.path)?;
+            writeln!(f, "{:margin$}{frame}-->{end} {}", "", self.path)?;
         } else {
-            writeln!(f, "{:margin$}--> {}:{}:{}", "", self.path, self.line, self.column)?;
-            writeln!(f, "{:margin$} |", "")?;
-            writeln!(f, "{} | {}", self.line, self.excerpt.text)?;
-            let carets = self.excerpt.carets(&self.expected);
-            writeln!(f, "{:margin$} | {carets}", "")?;
+            let (indent, carets) = self.excerpt.carets();
+            let beside = if self.expected.is_empty() { String::new() } else { format!(" {}", self.expected) };
+            writeln!(f, "{:margin$}{frame}-->{end} {}:{}:{}", "", self.path, self.line, self.column)?;
+            writeln!(f, "{:margin$} {frame}|{end}", "")?;
+            writeln!(f, "{frame}{} |{end} {}", self.line, self.excerpt.text)?;
+            writeln!(f, "{:margin$} {frame}|{end} {indent}{loud}{carets}{beside}{end}", "")?;
         }
         if let Some(help) = &self.help {
-            writeln!(f, "{:margin$} = help: {help}", "")?;
+            writeln!(f, "{:margin$} {frame}={end} {bold}help{end}: {help}", "")?;
         }
         Ok(())
     }
@@ -176,9 +185,12 @@ impl<'a> IntoIterator for &'a Diagnostics {
 
 impl fmt::Display for Diagnostics {
     /// Every problem with its line and carets, then one line that counts them; nothing at all if there are none.
+    ///
+    /// `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for problem in &self.list {
-            writeln!(f, "{problem}")?;
+            fmt::Display::fmt(problem, f)?;
+            writeln!(f)?;
         }
         if self.omitted > 0 {
             writeln!(f, "... and {}", counted(self.omitted, "more problem"))?;
@@ -204,4 +216,37 @@ impl Error for Diagnostics {}
 
 fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::source::Source;
+    use super::*;
+
+    #[test]
+    fn a_terminal_gets_the_same_words_in_colour() {
+        let source = Source::new("map.ron", "(id: 5)").unwrap();
+        let problem = source.diagnostic(Severity::Error, &(5..6), "`id` must be text".into());
+        let problems = Diagnostics::from(Diagnostic { expected: "expected text".into(), ..problem });
+        let plain = problems.to_string();
+        assert_eq!(
+            plain,
+            "error: `id` must be text\n --> map.ron:1:6\n  |\n1 | (id: 5)\n  |      ^ expected text\n\nmap.ron: 1 error"
+        );
+        let coloured = format!("{problems:#}");
+        assert!(coloured.contains("\x1b[1;31m^ expected text\x1b[0m"));
+        let stripped = coloured.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
+        // The first part has no escape before it: it is empty here.
+        assert_eq!(stripped.collect::<String>(), plain);
+    }
+
+    #[test]
+    fn several_files_are_counted_together() {
+        let of = |path| Diagnostics::from(Diagnostic::of_file(path, "there is no such file".into(), None));
+        let mut problems = of("a.ron");
+        assert_eq!(problems.to_string(), "error: there is no such file\n --> a.ron\n\na.ron: 1 error");
+        problems.append(of("b.ron"));
+        assert!(problems.to_string().ends_with("2 files: 2 errors"));
+        assert_eq!(Diagnostics::default().to_string(), "");
+    }
 }
