@@ -105,17 +105,20 @@ impl fmt::Display for Diagnostic {
 #[serde(transparent)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
-    /// Problems beyond [`Diagnostics::LIMIT`] of one file, counted and not kept.
+    /// Errors and warnings beyond [`Diagnostics::LIMIT`] of one file, counted and not kept.
     #[serde(skip)]
-    omitted: usize,
+    omitted: [usize; 2],
 }
 
 impl Diagnostics {
     /// Most problems of one file that are kept; what is beyond is counted in the closing line.
     pub const LIMIT: usize = 500;
 
-    pub(super) fn new(mut list: Vec<Diagnostic>, omitted: usize) -> Self {
+    /// `list` in the order of the text, and how bad those are that had no room in it.
+    pub(super) fn new(mut list: Vec<Diagnostic>, without: impl Iterator<Item = Severity>) -> Self {
         list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
+        let mut omitted = [0; 2];
+        without.for_each(|severity| omitted[severity as usize] += 1);
         Self { list, omitted }
     }
 
@@ -134,10 +137,10 @@ impl Diagnostics {
     /// Number of errors, those beyond [`Diagnostics::LIMIT`] included.
     #[must_use]
     pub fn errors(&self) -> usize {
-        self.count(Severity::Error) + self.omitted
+        self.count(Severity::Error)
     }
 
-    /// Number of warnings kept.
+    /// Number of warnings, those beyond [`Diagnostics::LIMIT`] included.
     #[must_use]
     pub fn warnings(&self) -> usize {
         self.count(Severity::Warning)
@@ -151,17 +154,18 @@ impl Diagnostics {
     /// Adds the problems of another reading after these.
     pub fn append(&mut self, other: Self) {
         self.list.extend(other.list);
-        self.omitted += other.omitted;
+        self.omitted.iter_mut().zip(other.omitted).for_each(|(sum, more)| *sum += more);
     }
 
     fn count(&self, severity: Severity) -> usize {
-        self.list.iter().filter(|problem| problem.severity == severity).count()
+        let kept = self.list.iter().filter(|problem| problem.severity == severity).count();
+        kept + self.omitted[severity as usize]
     }
 }
 
 impl From<Diagnostic> for Diagnostics {
     fn from(problem: Diagnostic) -> Self {
-        Self { list: vec![problem], omitted: 0 }
+        Self { list: vec![problem], omitted: [0; 2] }
     }
 }
 
@@ -192,8 +196,9 @@ impl fmt::Display for Diagnostics {
             fmt::Display::fmt(problem, f)?;
             writeln!(f)?;
         }
-        if self.omitted > 0 {
-            writeln!(f, "... and {}", counted(self.omitted, "more problem"))?;
+        let omitted: usize = self.omitted.iter().sum();
+        if omitted > 0 {
+            writeln!(f, "... and {}", counted(omitted, "more problem"))?;
         }
         let mut paths: Vec<&str> = self.list.iter().map(|problem| problem.path.as_str()).collect();
         paths.dedup();
