@@ -4,13 +4,16 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use underfoot::floor::{Geometry, Rect};
 use underfoot::glam::Vec2;
-use underfoot::layout::{Colour, Layout};
+use underfoot::layout::{Colour, Layout, Shape};
 use underfoot::schema::{
     Diagnostics, Kinds, Loaded, builtin_layout, builtin_layouts, load_layout, parse_floor, parse_layout,
 };
+use underfoot::units::Newtons;
+use underfoot::widget::{Axis, Behaviour};
 
 fn parse(text: &str, name: &str) -> Result<Loaded, Diagnostics> {
     parse_layout(text, name, &Kinds::builtin(), &Geometry::default())
@@ -224,7 +227,10 @@ fn limits_hold_before_memory_and_stack_are_used_up() {
         let problems = parse(text, "big.ron").unwrap_err();
         problems.iter().next().unwrap().message.clone()
     };
-    assert_eq!(first(&page(&"(),".repeat(1_000_000))), "the file holds more than 400000 brackets and commas");
+    assert_eq!(
+        first(&page(&"(),".repeat(1_000_000))),
+        "the file holds more than 500000 words, numbers and marks"
+    );
     assert_eq!(first(&page(&"(),".repeat(4097))), "this list has more than 4096 entries");
     assert_eq!(first(&page(&format!("{}()", "(),".repeat(4096)))), "`widgets` has too many entries");
     assert_eq!(first(&page(&"(".repeat(100_000))), "brackets nest deeper than 64");
@@ -276,4 +282,79 @@ fn a_layout_lies_where_the_floor_s_pitch_puts_it() {
     let small = Geometry::of_paper_tiles(4, 4).unwrap();
     let problems = parse_layout(text, "map", &Kinds::builtin(), &small).unwrap_err();
     assert!(problems.to_string().contains("\"zoom\" reaches beyond the floor"), "{problems}");
+}
+
+#[test]
+fn a_widget_overrides_any_field_of_its_kind() {
+    let text = r##"(
+        version: 1,
+        regions: [(id: "r", at: (0, 0), size: (6, 6))],
+        widgets: [
+            (id: "a", kind: "slider", at: (0, 0), size: (2, 1), min: 10, max: 20,
+                press_n: 50, lockout_ms: 0, axis: North, look: (shape: Round, face: "#000000"),
+                feel: (press: None, release: (level_n: 1), drag: (high_hz: 300))),
+            (id: "b", kind: "slider", at: (3, 0), size: (2, 1)),
+        ],
+    )"##;
+    let layout = parse(text, "map.ron").unwrap_or_else(|problems| panic!("{problems}")).layout;
+    let (Behaviour::Slider(a), Behaviour::Slider(b)) =
+        (layout.widgets[0].behaviour, layout.widgets[1].behaviour)
+    else {
+        panic!("both are sliders")
+    };
+    assert_eq!((a.min, a.max, a.axis), (10.0, 20.0, Axis::North));
+    // The kind's initial value 0 follows the new range.
+    assert_eq!(a.initial, 10.0);
+    assert_eq!(a.thresholds.press, Newtons(50.0));
+    assert_eq!(a.thresholds.release, b.thresholds.release);
+    assert_eq!((a.thresholds.lockout, b.thresholds.lockout), (Duration::ZERO, Duration::from_millis(20)));
+    let (a, b) = (&layout.widgets[0], &layout.widgets[1]);
+    assert_eq!((a.look.shape, a.look.face), (Shape::Round, Colour::rgb(0, 0, 0)));
+    assert_eq!((a.look.lit, a.look.ink), (b.look.lit, b.look.ink));
+    assert_eq!(a.feel.press, None);
+    let (release, kind_release) = (a.feel.release.clone().unwrap(), b.feel.release.clone().unwrap());
+    assert_eq!((release.level, release.modes), (Newtons(1.0), kind_release.modes));
+    let (drag, kind_drag) = (a.feel.drag.unwrap(), b.feel.drag.unwrap());
+    assert_eq!((drag.high_hz, drag.low_hz), (300.0, kind_drag.low_hz));
+}
+
+#[test]
+fn ron_is_read_however_it_is_written() {
+    let plain = shipped("map");
+    let text = builtin_layout("map").unwrap();
+    for (from, to) in [
+        ("Layout(", "("),
+        ("Layout(", "#![enable(implicit_some, unwrap_newtypes)]\nLayout ("),
+        ("version: 1", "version: Some(1)"),
+        ("title: \"Map navigation\"", "title: r#\"Map navigation\"#"),
+        ("title: \"Map navigation\"", "title: \"Map\\u{20}navigation\""),
+        ("(id: \"home\"", "/* a /* nested */ comment */ Widget(id: \"home\""),
+        ("(0.6, 0.6)", "(6e-1, 0.6_0)"),
+        ("size: (6, 4)", "size: (0x6, 0b100)"),
+        ("    ],\n)", "    ]\n)"),
+    ] {
+        assert!(text.contains(from), "{from}");
+        let varied = text.replacen(from, to, 1);
+        let loaded = parse(&varied, "map.ron").unwrap_or_else(|problems| panic!("{to}\n{problems}"));
+        assert_eq!(loaded.layout, plain, "{to}");
+        assert!(loaded.warnings.is_empty(), "{to}\n{}", loaded.warnings);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn links_and_read_only_files_are_read_like_any_other() {
+    let folder = tempfile::tempdir().unwrap();
+    let (file, link) = (folder.path().join("map.ron"), folder.path().join("link.ron"));
+    fs::write(&file, builtin_layout("map").unwrap()).unwrap();
+    let mut permissions = fs::metadata(&file).unwrap().permissions();
+    permissions.set_readonly(true);
+    fs::set_permissions(&file, permissions).unwrap();
+    std::os::unix::fs::symlink(&file, &link).unwrap();
+    let loaded = load_layout(&link, &Kinds::builtin(), &Geometry::default());
+    assert_eq!(loaded.unwrap().layout, shipped("map"));
+    // A link to nowhere is no file.
+    fs::remove_file(&file).unwrap();
+    let problems = load_layout(&link, &Kinds::builtin(), &Geometry::default()).unwrap_err();
+    assert!(problems.to_string().contains("there is no such file"), "{problems}");
 }

@@ -1,9 +1,9 @@
 use std::time::Duration;
 
 use super::fields::Fields;
+use super::node::Node;
 use super::number::plain;
 use super::problem::Problem;
-use super::reader::Node;
 use crate::units::Newtons;
 use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds};
 

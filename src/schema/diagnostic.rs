@@ -46,7 +46,7 @@ pub struct Diagnostic {
     pub expected: String,
     /// What to do about it.
     pub help: Option<String>,
-    /// The line as written; a very long one is cut around the place.
+    /// The line as shown: tabs are four spaces, a very long line is cut around the place.
     pub source_line: String,
     #[serde(skip)]
     pub(super) excerpt: Excerpt,
@@ -72,20 +72,29 @@ impl Diagnostic {
 }
 
 impl fmt::Display for Diagnostic {
+    /// Several lines: what is wrong, where, the line with carets, and what to do; `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        writeln!(f, "{}: {}", self.severity, self.message)?;
+        let paint = |colour: &'static str| if f.alternate() { (colour, "\x1b[0m") } else { ("", "") };
+        let (bold, end) = paint("\x1b[1m");
+        let (frame, _) = paint("\x1b[1;34m");
+        let (loud, _) = paint(match self.severity {
+            Severity::Error => "\x1b[1;31m",
+            Severity::Warning => "\x1b[1;33m",
+        });
         let margin = self.line.max(1).ilog10() as usize + 1;
+        writeln!(f, "{loud}{}{end}{bold}: {}{end}", self.severity, self.message)?;
         if self.line == 0 {
-            writeln!(f, "{:margin$}--> {}", "", self.path)?;
+            writeln!(f, "{:margin$}{frame}-->{end} {}", "", self.path)?;
         } else {
-            writeln!(f, "{:margin$}--> {}:{}:{}", "", self.path, self.line, self.column)?;
-            writeln!(f, "{:margin$} |", "")?;
-            writeln!(f, "{} | {}", self.line, self.excerpt.text)?;
-            let carets = self.excerpt.carets(&self.expected);
-            writeln!(f, "{:margin$} | {carets}", "")?;
+            let (indent, carets) = self.excerpt.carets();
+            let beside = if self.expected.is_empty() { String::new() } else { format!(" {}", self.expected) };
+            writeln!(f, "{:margin$}{frame}-->{end} {}:{}:{}", "", self.path, self.line, self.column)?;
+            writeln!(f, "{:margin$} {frame}|{end}", "")?;
+            writeln!(f, "{frame}{} |{end} {}", self.line, self.excerpt.text)?;
+            writeln!(f, "{:margin$} {frame}|{end} {indent}{loud}{carets}{beside}{end}", "")?;
         }
         if let Some(help) = &self.help {
-            writeln!(f, "{:margin$} = help: {help}", "")?;
+            writeln!(f, "{:margin$} {frame}={end} {bold}help{end}: {help}", "")?;
         }
         Ok(())
     }
@@ -96,17 +105,20 @@ impl fmt::Display for Diagnostic {
 #[serde(transparent)]
 pub struct Diagnostics {
     list: Vec<Diagnostic>,
-    /// Problems beyond [`Diagnostics::LIMIT`] of one file, counted and not kept.
+    /// Errors and warnings beyond [`Diagnostics::LIMIT`] of one file, counted and not kept.
     #[serde(skip)]
-    omitted: usize,
+    omitted: [usize; 2],
 }
 
 impl Diagnostics {
     /// Most problems of one file that are kept; what is beyond is counted in the closing line.
     pub const LIMIT: usize = 500;
 
-    pub(super) fn new(mut list: Vec<Diagnostic>, omitted: usize) -> Self {
+    /// `list` in the order of the text, and how bad those are that had no room in it.
+    pub(super) fn new(mut list: Vec<Diagnostic>, without: impl Iterator<Item = Severity>) -> Self {
         list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
+        let mut omitted = [0; 2];
+        without.for_each(|severity| omitted[severity as usize] += 1);
         Self { list, omitted }
     }
 
@@ -125,10 +137,10 @@ impl Diagnostics {
     /// Number of errors, those beyond [`Diagnostics::LIMIT`] included.
     #[must_use]
     pub fn errors(&self) -> usize {
-        self.count(Severity::Error) + self.omitted
+        self.count(Severity::Error)
     }
 
-    /// Number of warnings kept.
+    /// Number of warnings, those beyond [`Diagnostics::LIMIT`] included.
     #[must_use]
     pub fn warnings(&self) -> usize {
         self.count(Severity::Warning)
@@ -142,17 +154,18 @@ impl Diagnostics {
     /// Adds the problems of another reading after these.
     pub fn append(&mut self, other: Self) {
         self.list.extend(other.list);
-        self.omitted += other.omitted;
+        self.omitted.iter_mut().zip(other.omitted).for_each(|(sum, more)| *sum += more);
     }
 
     fn count(&self, severity: Severity) -> usize {
-        self.list.iter().filter(|problem| problem.severity == severity).count()
+        let kept = self.list.iter().filter(|problem| problem.severity == severity).count();
+        kept + self.omitted[severity as usize]
     }
 }
 
 impl From<Diagnostic> for Diagnostics {
     fn from(problem: Diagnostic) -> Self {
-        Self { list: vec![problem], omitted: 0 }
+        Self { list: vec![problem], omitted: [0; 2] }
     }
 }
 
@@ -176,12 +189,16 @@ impl<'a> IntoIterator for &'a Diagnostics {
 
 impl fmt::Display for Diagnostics {
     /// Every problem with its line and carets, then one line that counts them; nothing at all if there are none.
+    ///
+    /// `{:#}` adds colours for terminals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for problem in &self.list {
-            writeln!(f, "{problem}")?;
+            fmt::Display::fmt(problem, f)?;
+            writeln!(f)?;
         }
-        if self.omitted > 0 {
-            writeln!(f, "... and {}", counted(self.omitted, "more problem"))?;
+        let omitted: usize = self.omitted.iter().sum();
+        if omitted > 0 {
+            writeln!(f, "... and {}", counted(omitted, "more problem"))?;
         }
         let mut paths: Vec<&str> = self.list.iter().map(|problem| problem.path.as_str()).collect();
         paths.dedup();
@@ -204,4 +221,37 @@ impl Error for Diagnostics {}
 
 fn counted(count: usize, noun: &str) -> String {
     if count == 1 { format!("1 {noun}") } else { format!("{count} {noun}s") }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::source::Source;
+    use super::*;
+
+    #[test]
+    fn a_terminal_gets_the_same_words_in_colour() {
+        let source = Source::new("map.ron", "(id: 5)").unwrap();
+        let problem = source.diagnostic(Severity::Error, &(5..6), "`id` must be text".into());
+        let problems = Diagnostics::from(Diagnostic { expected: "expected text".into(), ..problem });
+        let plain = problems.to_string();
+        assert_eq!(
+            plain,
+            "error: `id` must be text\n --> map.ron:1:6\n  |\n1 | (id: 5)\n  |      ^ expected text\n\nmap.ron: 1 error"
+        );
+        let coloured = format!("{problems:#}");
+        assert!(coloured.contains("\x1b[1;31m^ expected text\x1b[0m"));
+        let stripped = coloured.split('\x1b').map(|part| part.split_once('m').map_or(part, |(_, rest)| rest));
+        // The first part has no escape before it: it is empty here.
+        assert_eq!(stripped.collect::<String>(), plain);
+    }
+
+    #[test]
+    fn several_files_are_counted_together() {
+        let of = |path| Diagnostics::from(Diagnostic::of_file(path, "there is no such file".into(), None));
+        let mut problems = of("a.ron");
+        assert_eq!(problems.to_string(), "error: there is no such file\n --> a.ron\n\na.ron: 1 error");
+        problems.append(of("b.ron"));
+        assert!(problems.to_string().ends_with("2 files: 2 errors"));
+        assert_eq!(Diagnostics::default().to_string(), "");
+    }
 }

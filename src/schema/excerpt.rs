@@ -1,5 +1,7 @@
 use std::ops::Range;
 
+use unicode_width::UnicodeWidthStr;
+
 /// Most characters of a line that are shown.
 const WIDTH: usize = 160;
 
@@ -11,7 +13,7 @@ const LEAD: usize = 60;
 pub(super) struct Excerpt {
     /// The text shown: tabs as spaces, control characters replaced.
     pub(super) text: String,
-    /// Characters of `text` above the carets.
+    /// Terminal columns of `text` above the carets, from 0.
     marked: Range<usize>,
 }
 
@@ -28,9 +30,9 @@ impl Excerpt {
             text.push('…');
         }
         show(&line[from..start.min(to)], &mut text);
-        let first = text.chars().count();
+        let first = text.width();
         show(&line[start.min(to)..end.min(to)], &mut text);
-        let last = text.chars().count();
+        let last = text.width();
         show(&line[end.min(to)..to], &mut text);
         if to < line.len() {
             text.push('…');
@@ -38,11 +40,9 @@ impl Excerpt {
         Self { text, marked: first..last.max(first + 1) }
     }
 
-    /// The line under `text`: spaces, carets, and `label` beside them.
-    pub(super) fn carets(&self, label: &str) -> String {
-        let indent = " ".repeat(self.marked.start);
-        let carets = "^".repeat(self.marked.len());
-        format!("{indent}{carets} {label}").trim_end().to_owned()
+    /// The line under `text`: the spaces before the carets, and the carets.
+    pub(super) fn carets(&self) -> (String, String) {
+        (" ".repeat(self.marked.start), "^".repeat(self.marked.len()))
     }
 }
 
@@ -71,13 +71,24 @@ fn show(part: &str, text: &mut String) {
 mod tests {
     use super::*;
 
+    fn under(excerpt: &Excerpt) -> String {
+        let (indent, carets) = excerpt.carets();
+        indent + &carets
+    }
+
     #[test]
     fn carets_stand_under_the_marked_characters_also_behind_tabs_and_accents() {
         let line = "\tlabel: \"Größe\", x";
         let at = line.find('"').unwrap();
         let excerpt = Excerpt::of(line, at..line.find(',').unwrap());
         assert_eq!(excerpt.text, "    label: \"Größe\", x");
-        assert_eq!(excerpt.carets("text"), "           ^^^^^^^ text");
+        assert_eq!(under(&excerpt), "           ^^^^^^^");
+
+        // Chinese characters are two columns wide.
+        let line = "label: \"放大\", prss_n: 60";
+        let at = line.find("prss").unwrap();
+        let excerpt = Excerpt::of(line, at..at + 6);
+        assert_eq!(under(&excerpt), "               ^^^^^^");
     }
 
     #[test]
@@ -85,14 +96,14 @@ mod tests {
         let line = format!("{}HERE{}", "a".repeat(600_000), "b".repeat(400_000));
         let excerpt = Excerpt::of(&line, 600_000..600_004);
         assert!(excerpt.text.chars().count() <= WIDTH + 2);
-        let marked: String = excerpt.text.chars().skip(excerpt.marked.start).take(4).collect();
+        let marked: String = excerpt.text.chars().skip(under(&excerpt).len() - 4).take(4).collect();
         assert_eq!(marked, "HERE");
         assert!(excerpt.text.starts_with('…') && excerpt.text.ends_with('…'));
     }
 
     #[test]
     fn the_end_of_a_line_gets_one_caret() {
-        assert_eq!(Excerpt::of("abc", 3..3).carets("here"), "   ^ here");
-        assert_eq!(Excerpt::of("", 0..0).carets(""), "^");
+        assert_eq!(under(&Excerpt::of("abc", 3..3)), "   ^");
+        assert_eq!(under(&Excerpt::of("", 0..0)), "^");
     }
 }

@@ -1,9 +1,9 @@
 use arrayvec::ArrayVec;
 
 use super::behaviour::single;
+use super::node::Node;
 use super::number::plain;
 use super::problem::Problem;
-use super::reader::Node;
 use crate::feel::{Click, Feel, Friction, MAX_MODES, Mode};
 use crate::units::Newtons;
 

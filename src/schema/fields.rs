@@ -2,8 +2,9 @@ use std::ops::Range;
 
 use ron2::ast::StructField;
 
+use super::node::Node;
 use super::problem::Problem;
-use super::reader::{Node, Reader, bytes};
+use super::reader::{Reader, bytes};
 use super::suggest::{did_you_mean, listed, nearest};
 use super::words::example;
 

@@ -5,9 +5,10 @@ use std::path::Path;
 use super::behaviour::single;
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
+use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
-use super::reader::{Node, Reader};
+use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
 use crate::floor::{Actuator, Board, Calibration, Corner, Floor, Geometry, GeometryError, SensorId, TileId};
@@ -283,4 +284,87 @@ fn actuators(node: Node<'_>, grid: Grid) -> Option<Vec<Option<Actuator>>> {
         }
     }
     Some(actuators)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::write_floor;
+    use super::*;
+
+    fn read(text: &str) -> Floor {
+        parse_floor(text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))
+    }
+
+    #[test]
+    fn an_empty_description_is_the_papers_floor() {
+        assert_eq!(read("Floor()"), Floor::default());
+        assert_eq!(read("()"), Floor::default());
+        assert_eq!(read(&write_floor(&Floor::default())), Floor::default());
+    }
+
+    #[test]
+    fn a_grid_of_another_size_is_wired_row_by_row() {
+        let floor = read("Floor(columns: 10, rows: 2, tile_m: 0.5)");
+        assert_eq!(floor, Floor::of(Geometry::new(10, 2, 0.5, 0.5, 0.02).unwrap()));
+    }
+
+    #[test]
+    fn what_is_listed_replaces_what_would_be_assumed() {
+        let floor = read(
+            "Floor(columns: 2, rows: 1,
+                boards: [
+                    (tiles: [(1, 0)]),
+                    (address: \"/lab/west\", channels: [(0, 0, Ne), None, (0, 0, Sw)]),
+                ],
+                sensors: [(tile: (0, 0), corner: Ne, a_n: 0.7, tare_n: 12.5)],
+                actuators: [(tile: (1, 0), channel: 7, full_scale_n: 55)],
+            )",
+        );
+        let sensor = |column, corner| Some(SensorId { tile: TileId::new(column, 0), corner });
+        assert_eq!(floor.boards[0].address, "/underfoot/board/0");
+        assert_eq!(floor.boards[0].channels, Corner::ALL.map(|corner| sensor(1, corner)));
+        assert_eq!(floor.boards[1].address, "/lab/west");
+        assert_eq!(
+            floor.boards[1].channels,
+            [sensor(0, Corner::NorthEast), None, sensor(0, Corner::SouthWest)]
+        );
+        let part = Calibration { a_n: 0.7, ..Calibration::NOMINAL };
+        assert_eq!(floor.calibration[0][Corner::NorthEast.index()], part);
+        assert_eq!(floor.calibration[0][0], Calibration::NOMINAL);
+        assert_eq!(floor.tare[0][Corner::NorthEast.index()], Newtons(12.5));
+        assert_eq!(floor.actuators, [None, Some(Actuator { channel: 7, full_scale: Newtons(55.0) })]);
+    }
+
+    #[test]
+    fn a_written_floor_can_be_edited_by_people() {
+        let mut floor = Floor::of(Geometry::of_paper_tiles(2, 1).unwrap());
+        floor.boards[0].channels.truncate(4);
+        floor.calibration[1][2].a_n = 0.52;
+        floor.actuators[0] = None;
+        insta::assert_snapshot!(write_floor(&floor), @r#"
+        // A floor: where its tiles are and what is wired to them.
+        // Tiles are (column, row) from the south-west, lengths in metres, forces in newtons.
+        Floor(
+            version: 1,
+            columns: 2,
+            rows: 1,
+            tile_m: 0.304,
+            pitch_m: 0.304,
+            sensor_inset_m: 0.02,
+
+            // Which tiles, or which sensors, are on the channels of each board.
+            boards: [
+                (tiles: [(0, 0)]),
+            ],
+            // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal.
+            sensors: [
+                (tile: (1, 0), corner: Nw, a_n: 0.52, b_per_volt: 1.34, tare_n: 0.0),
+            ],
+            // Output channels; tiles that are not listed have no actuator.
+            actuators: [
+                (tile: (1, 0), channel: 1, full_scale_n: 40.0),
+            ],
+        )
+        "#);
+    }
 }

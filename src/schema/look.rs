@@ -1,5 +1,5 @@
+use super::node::Node;
 use super::problem::Problem;
-use super::reader::Node;
 use crate::layout::{Colour, Look, Shape};
 
 /// The look of kinds that don't say: a calm grey blue.

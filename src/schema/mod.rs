@@ -5,7 +5,7 @@
 //!
 //! ```text
 //! bytes -source-> text -scan-> brackets that close, bounded nesting
-//!   -syntax-> tree with spans -reader, fields-> numbers, texts, names in range
+//!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range
 //!   -page, kind, floor-> what was meant -checks-> Layout, Kind, Floor
 //! ```
 
@@ -22,11 +22,13 @@ mod floor;
 mod floor_text;
 mod kind;
 mod look;
+mod node;
 mod number;
 mod page;
 mod pairs;
 mod problem;
 mod reader;
+mod remedy;
 mod scan;
 mod source;
 mod suggest;

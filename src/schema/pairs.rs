@@ -11,16 +11,16 @@ pub(super) struct Limits {
     pub(super) depth: usize,
     /// Entries of one list.
     pub(super) entries: usize,
-    /// Brackets and commas in the whole file; bounds the memory that parsing needs.
-    pub(super) marks: usize,
+    /// Words, numbers, texts, opening brackets and commas in the whole file; bounds the memory that parsing needs.
+    pub(super) tokens: usize,
 }
 
 impl Limits {
     /// For layouts and kinds.
-    pub(super) const LAYOUT: Self = Self { depth: 64, entries: 4096, marks: 400_000 };
+    pub(super) const LAYOUT: Self = Self { depth: 64, entries: 4096, tokens: 500_000 };
 
     /// For floors, which list every sensor.
-    pub(super) const FLOOR: Self = Self { entries: 400_000, ..Self::LAYOUT };
+    pub(super) const FLOOR: Self = Self { entries: 262_144, tokens: 1_200_000, ..Self::LAYOUT };
 }
 
 /// A round or square bracket or a comma.

@@ -16,16 +16,18 @@ pub(super) struct Scan {
     pub(super) problems: Vec<Problem>,
     /// Its brackets and commas, those in texts and comments left out.
     pub(super) marks: Vec<Mark>,
+    /// Number of its words, numbers, texts, opening brackets and commas: what a parser makes values of.
+    pub(super) tokens: usize,
     /// Whether `marks` can be relied upon in spite of `problems`.
     pub(super) certain: bool,
 }
 
-/// Looks through `text`; gives up when it holds more than `most` brackets and commas.
+/// Looks through `text`; gives up when it holds more than `most` tokens.
 pub(super) fn scan(text: &str, most: usize) -> Scan {
     let mut scanner = Scanner { text, at: 0, misled: false, braces: false, scan: Scan::default() };
     while scanner.step() {
-        if scanner.scan.marks.len() > most {
-            let message = format!("the file holds more than {most} brackets and commas");
+        if scanner.scan.tokens > most {
+            let message = format!("the file holds more than {most} words, numbers and marks");
             scanner.report_at(0, message, "gave up here");
             scanner.misled = true;
             break;
@@ -54,6 +56,8 @@ impl Scanner<'_> {
     fn step(&mut self) -> bool {
         let rest = &self.text[self.at..];
         let Some(first) = rest.chars().next() else { return false };
+        self.scan.tokens +=
+            usize::from(first.is_alphanumeric() || matches!(first, '_' | '"' | '(' | '[' | ','));
         match first {
             '"' => self.string(0),
             'r' | 'b' if self.at_boundary() => match string_prefix(rest) {
@@ -105,7 +109,9 @@ impl Scanner<'_> {
 
     fn word(&mut self) {
         let rest = &self.text[self.at..];
-        let word = rest.split(|c: char| !c.is_alphanumeric() && c != '_').next().unwrap_or_default();
+        let is_number = rest.starts_with(|c: char| c.is_ascii_digit());
+        let in_word = |c: char| c.is_alphanumeric() || c == '_' || (is_number && c == '.');
+        let word = rest.split(|c| !in_word(c)).next().unwrap_or_default();
         if !word.is_ascii() {
             self.report_at(
                 word.len(),
@@ -113,7 +119,7 @@ impl Scanner<'_> {
                 "names are made of a-z, A-Z, 0-9 and _",
             );
         }
-        // A number may end where `r` or `b` begins a text; the parser would see two tokens.
+        // Where the parser would cut this in two (`2r"..."`), a quote follows, and that is refused.
         self.at += word.len();
     }
 

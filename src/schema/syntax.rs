@@ -16,8 +16,8 @@ use super::problem::Problem;
 use super::scan::{Scan, scan};
 use super::suggest::did_you_mean;
 
-/// Bytes that may be parsed in all while one broken place after another is found.
-const EFFORT: usize = 32 << 20;
+/// Tokens that may be parsed in all while one broken place after another is found.
+const EFFORT: usize = 2_000_000;
 
 /// What could be made of a text.
 pub(super) struct Syntax<'t> {
@@ -31,7 +31,7 @@ pub(super) struct Syntax<'t> {
 
 /// Parses `text`, which is expected to hold one `kind` of thing, such as a `Layout`.
 pub(super) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t> {
-    let Scan { mut problems, marks, certain } = scan(text, limits.marks);
+    let Scan { mut problems, marks, tokens, certain } = scan(text, limits.tokens);
     if certain {
         let mispaired = pairs::check(text, &marks, limits);
         if mispaired.is_empty() {
@@ -39,7 +39,8 @@ pub(super) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t>
                 problems.iter().map(|problem| entry_around(&marks, problem.span.start)).collect();
             if let Some(holes) = holes {
                 let mut mended = Mended { text, marks, holes, repairs: Vec::new() };
-                let root = mended.parse(kind, &mut problems);
+                let rounds = (EFFORT / tokens.max(1)).clamp(1, 100);
+                let root = mended.parse(kind, rounds, &mut problems);
                 return Syntax { root, problems, holes: mended.holes };
             }
         }
@@ -57,8 +58,7 @@ struct Mended<'t> {
 }
 
 impl<'t> Mended<'t> {
-    fn parse(&mut self, kind: &str, problems: &mut Vec<Problem>) -> Option<Expr<'t>> {
-        let mut rounds = (EFFORT / self.text.len().max(1)).clamp(1, 100);
+    fn parse(&mut self, kind: &str, mut rounds: usize, problems: &mut Vec<Problem>) -> Option<Expr<'t>> {
         loop {
             let masked;
             let (seen, (document, errors)) = if self.holes.is_empty() && self.repairs.is_empty() {

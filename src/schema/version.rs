@@ -1,6 +1,7 @@
 use super::diagnostic::Diagnostics;
+use super::node::Node;
 use super::problem::Problem;
-use super::reader::{Node, Reader};
+use super::reader::Reader;
 
 /// The version of the formats that this program reads and writes.
 pub const FORMAT_VERSION: u32 = 1;

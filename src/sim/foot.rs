@@ -127,10 +127,13 @@ pub trait FootDriver: Send {
 
 /// The tiles that a print may touch, with the load on each.
 struct Window {
-    pitch_m: f32,
     first: TileId,
+    /// South-west corner of the first tile.
+    origin: Vec2,
+    per_pitch: f32,
     columns: usize,
-    /// Share of the load, and share times place, per tile.
+    rows: usize,
+    /// Share of the load, and share times place from `origin`, per tile.
     sums: SmallVec<[(f32, Vec2); 16]>,
 }
 
@@ -144,46 +147,67 @@ impl Window {
         (first.cmple(end).all()).then(|| {
             let size = (end - first).as_usizevec2() + 1;
             Self {
-                pitch_m,
                 first: TileId::new(first.x as u16, first.y as u16),
+                origin: first * pitch_m,
+                per_pitch: 1.0 / pitch_m,
                 columns: size.x,
+                rows: size.y,
                 sums: smallvec![(0.0, Vec2::ZERO); size.x * size.y],
             }
         })
     }
 
     /// Shares a cell among the tiles under it, taking its edges as upright.
+    #[inline(always)] // Runs for each cell of each foot, each millisecond; a call costs more than the work.
     fn add(&mut self, at: Vec2, size: Vec2, share: f32) {
+        let at = at - self.origin;
         let (low, high) = (at - size * 0.5, at + size * 0.5);
-        let (x, y) = (self.split(low.x, high.x), self.split(low.y, high.y));
-        for (column, part_x, mid_x) in x {
-            for (row, part_y, mid_y) in y {
-                self.add_to(column, row, share * part_x * part_y, Vec2::new(mid_x, mid_y));
+        let (west, east) = (self.line(low.x), self.line(high.x));
+        let (south, north) = (self.line(low.y), self.line(high.y));
+        if west == east && south == north {
+            self.add_to(west, south, share, at);
+            return;
+        }
+        self.add_cut(low, high, share);
+    }
+
+    /// Shares a cell that lies over a seam.
+    #[inline(never)]
+    fn add_cut(&mut self, low: Vec2, high: Vec2, share: f32) {
+        for (column, part_x, x) in self.split(low.x, high.x) {
+            for (row, part_y, y) in self.split(low.y, high.y) {
+                self.add_to(column, row, share * part_x * part_y, Vec2::new(x, y));
             }
         }
     }
 
-    /// An interval cut at the seam it crosses: the tile, the share and the middle of each piece.
+    /// The column or row of the window at a distance from its origin; -1 for all before it.
+    #[inline]
+    fn line(&self, distance: f32) -> i32 {
+        // Casts cut towards zero, so this is a floor, and far cheaper where the processor has none.
+        ((distance * self.per_pitch).max(-0.5) + 1.0) as i32 - 1
+    }
+
+    /// An interval cut at the seam it crosses: the line, the share and the middle of each piece.
     ///
     /// Cells are smaller than tiles, so there is at most one seam.
-    fn split(&self, low: f32, high: f32) -> [(f32, f32, f32); 2] {
-        let (first, last) = ((low / self.pitch_m).floor(), (high / self.pitch_m).floor());
+    fn split(&self, low: f32, high: f32) -> [(i32, f32, f32); 2] {
+        let (first, last) = (self.line(low), self.line(high));
         if first == last {
             return [(first, 1.0, 0.5 * (low + high)), (first, 0.0, low)];
         }
-        let seam = last * self.pitch_m;
+        let seam = last as f32 / self.per_pitch;
         let before = ((seam - low) / (high - low)).clamp(0.0, 1.0);
         [(first, before, 0.5 * (low + seam)), (last, 1.0 - before, 0.5 * (seam + high))]
     }
 
-    fn add_to(&mut self, column: f32, row: f32, share: f32, at: Vec2) {
-        let (column, row) = (column - f32::from(self.first.column), row - f32::from(self.first.row));
-        if share > 0.0 && column >= 0.0 && row >= 0.0 && (column as usize) < self.columns {
-            let index = row as usize * self.columns + column as usize;
-            if let Some((total, moment)) = self.sums.get_mut(index) {
-                *total += share;
-                *moment += at * share;
-            }
+    #[inline]
+    fn add_to(&mut self, column: i32, row: i32, share: f32, at: Vec2) {
+        let (Ok(column), Ok(row)) = (usize::try_from(column), usize::try_from(row)) else { return };
+        if column < self.columns && row < self.rows {
+            let (total, moment) = &mut self.sums[row * self.columns + column];
+            *total += share;
+            *moment += at * share;
         }
     }
 
@@ -195,7 +219,7 @@ impl Window {
         self.sums.iter().enumerate().filter(|(_, (share, _))| *share > 0.0).map(|(index, (share, moment))| {
             let (column, row) = (index % self.columns, index / self.columns);
             let tile = TileId::new(self.first.column + column as u16, self.first.row + row as u16);
-            (tile, *share, *moment / *share)
+            (tile, *share, self.origin + *moment / *share)
         })
     }
 }

@@ -49,6 +49,7 @@ pub enum Print {
 
 impl Print {
     /// Calls `visit` with each loaded cell, from heel to toe.
+    #[inline]
     pub fn for_each_cell(&self, mut visit: impl FnMut(Cell)) {
         match *self {
             Self::Shoe { length_m, roll } => {

@@ -1,4 +1,37 @@
 //! A simulated floor: plates, sensors and feet that make the packets a real floor would.
+//!
+//! ```text
+//! Scenario -resolve-> Script (or a hand) -> Feet (m, N)
+//!   -print-> loads on tiles -plate statics-> support forces
+//!   -parts-> volts, noise -converter-> counts -> Readings per board
+//! ```
+//!
+//! Nothing behind the packets knows that they were simulated: the floor has to
+//! be calibrated ([`calibrated`]) as a real one has. All of it is deterministic:
+//! the same seeds and feet give the same packets.
+//!
+//! ```
+//! use std::time::Duration;
+//! use underfoot::floor::Floor;
+//! use underfoot::glam::Vec2;
+//! use underfoot::sim::{Performance, Person, Script, SimConfig, SimFloor, calibrated};
+//! use underfoot::source::{Pace, SensorSource, SimulatedSource};
+//! use underfoot::units::Newtons;
+//!
+//! let nominal = Floor::default();
+//! let sim = SimFloor::new(&nominal, SimConfig::default(), 1);
+//! let floor = calibrated(&nominal, &sim, 1)?;
+//!
+//! let mut person = Performance::new(Person::default(), 1);
+//! person.appear(Vec2::new(0.9, 0.6), 0.0)?;
+//! person.press(Vec2::new(1.0, 1.1), Newtons(120.0), Duration::from_millis(300))?;
+//! let script = Script::new(vec![person], floor.geometry.bounds());
+//!
+//! let mut source = SimulatedSource::new(sim, Box::new(script), Pace::FreeRunning);
+//! let packet = source.next(Duration::ZERO)?;
+//! assert!(packet.is_some_and(|packet| packet.board == 0 && packet.readings.len() == 24));
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
 
 mod curve;
 mod floor;
@@ -7,6 +40,7 @@ mod footprint;
 mod gait;
 mod hand;
 mod loadcell;
+mod performance;
 mod person;
 mod plate;
 mod scenario;
@@ -14,6 +48,7 @@ mod script;
 mod sensor;
 mod sway;
 mod track;
+mod way;
 mod written;
 
 pub use floor::{Sensing, SimConfig, SimFloor};
@@ -22,8 +57,9 @@ pub use footprint::{Cell, Print, shoe_size};
 pub use gait::{Gait, PREFERRED_M_S};
 pub use hand::{FootHandle, HandDriver, feet_by_hand};
 pub use loadcell::{CalibrationError, calibrated};
-pub use person::{MoveError, Performance, Person};
+pub use performance::Performance;
+pub use person::{MoveError, Person};
 pub use plate::PlateConfig;
-pub use scenario::{Problem, Scenario, ScenarioError};
+pub use scenario::{Scenario, ScenarioError, ScenarioProblem};
 pub use script::Script;
 pub use sensor::{PartConfig, SensorFault};

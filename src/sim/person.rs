@@ -1,16 +1,14 @@
-//! A person on two feet, who stands, walks, turns, presses and drags.
+//! A person's body: how it stands and how far its feet reach.
 
 use std::f32::consts::TAU;
-use std::time::Duration;
 
 use glam::Vec2;
 use thiserror::Error;
 
 use super::footprint::{Print, shoe_size};
-use super::gait::{Gait, PREFERRED_M_S};
+use super::gait::PREFERRED_M_S;
 use super::plate::GRAVITY;
-use super::sway::Sway;
-use super::track::{Pose, Profile, Track, forward, turn_between};
+use super::track::{Pose, forward};
 use crate::units::Newtons;
 
 /// A body and its habits.
@@ -20,7 +18,7 @@ pub struct Person {
     pub mass_kg: f32,
     /// Length of the bare foot, in metres.
     pub foot_length_m: f32,
-    /// Walking speed, in metres per second; see [`Gait::at_speed`].
+    /// Walking speed, in metres per second; see [`super::Gait::at_speed`].
     pub speed_m_s: f32,
     /// Sideways distance between the feet while walking, in metres.
     pub step_width_m: f32,
@@ -64,6 +62,9 @@ pub enum MoveError {
     /// The person is on the floor already.
     #[error("the person is on the floor already: let it Leave first")]
     AlreadyThere,
+    /// A place, direction or force is NaN or infinite.
+    #[error("places, directions and forces must be finite numbers")]
+    NotFinite,
     /// The foot does not reach that far from where the other one stands.
     #[error(
         "the foot would have to reach {distance_m:.2} m from the one that stands, further than {reach_m:.2} m: WalkTo somewhere nearer first"
@@ -90,402 +91,33 @@ pub enum MoveError {
     },
 }
 
-/// A person's performance, put together move by move; each begins when the one before ends.
-#[derive(Clone, Debug)]
-pub struct Performance {
-    pub(super) person: Person,
-    pub(super) tracks: [Track; 2],
-    pub(super) sway: Sway,
-    now_s: f64,
-    standing: Option<Standing>,
-}
-
-#[derive(Clone, Copy, Debug)]
-struct Standing {
-    /// Between the feet.
-    middle: Vec2,
-    facing: f32,
-    /// Left, right.
-    feet: [Pose; 2],
-}
-
 /// Left is 0, right is 1.
-const SIDES: [f32; 2] = [-1.0, 1.0];
-
-/// Roll of a foot that stands: a little more than half of the load on the heel.
-const STAND_ROLL: f32 = 0.4;
+pub(super) const SIDES: [f32; 2] = [-1.0, 1.0];
 
 /// Roll of a foot that presses: with its ball.
-const PRESS_ROLL: f32 = 0.6;
+pub(super) const PRESS_ROLL: f32 = 0.6;
 
-/// Seconds to shift the weight onto one foot, and back.
-const SHIFT_S: f64 = 0.35;
-
-/// Nobody walks less than this.
-const SHORTEST_WAY_M: f32 = 0.02;
-
-/// Sharpest bend that is walked round without stopping, in radians.
-const EASY_BEND: f32 = 0.8;
-
-/// Largest turn made with one pair of steps on the spot, in radians.
-const TURN_STEP: f32 = 0.9;
-
-impl Performance {
-    /// Somebody who is not there yet; `seed` makes the sway.
-    #[must_use]
-    pub fn new(person: Person, seed: u64) -> Self {
-        Self {
-            person,
-            tracks: [Track::default(), Track::default()],
-            sway: Sway::new(seed),
-            now_s: 0.0,
-            standing: None,
-        }
-    }
-
-    /// How long the performance takes so far.
-    #[must_use]
-    pub fn duration(&self) -> Duration {
-        Duration::from_secs_f64(self.now_s.max(0.0))
-    }
-
-    /// Between the feet of the person, in floor metres; `None` while nobody is there.
-    #[must_use]
-    pub fn place(&self) -> Option<Vec2> {
-        self.standing.map(|standing| standing.middle)
-    }
-
-    /// Lets time pass; who is there stands, swaying a little.
-    pub fn wait(&mut self, time: Duration) {
-        self.now_s += time.as_secs_f64();
-    }
-
-    /// Appears, standing at `middle` and looking along `facing` (radians counter-clockwise from north).
-    ///
-    /// # Errors
-    /// [`MoveError::AlreadyThere`].
-    pub fn appear(&mut self, middle: Vec2, facing: f32) -> Result<(), MoveError> {
-        if self.standing.is_some() {
-            return Err(MoveError::AlreadyThere);
-        }
-        let standing = self.person.standing(middle, facing);
-        for (track, pose) in self.tracks.iter_mut().zip(standing.feet) {
-            track.put(self.now_s, pose);
-            track.load.rest(self.now_s, 0.0);
-            track.load.rest(self.now_s, 0.5);
-            track.roll.rest(self.now_s, STAND_ROLL);
-        }
-        self.sway.strength.rest(self.now_s, 1.0);
-        self.standing = Some(standing);
-        Ok(())
-    }
-
-    /// Is gone from one moment to the next: for somebody who has walked off the floor.
-    ///
-    /// # Errors
-    /// [`MoveError::NotThere`].
-    pub fn disappear(&mut self) -> Result<(), MoveError> {
-        self.standing.take().ok_or(MoveError::NotThere)?;
-        for track in &mut self.tracks {
-            track.load.hold(self.now_s);
-            track.load.rest(self.now_s, 0.0);
-        }
-        Ok(())
-    }
-
-    /// Walks along straight lines to each of `points` and stops on the last with the feet side by side.
-    ///
-    /// Turns on the spot where the way bends sharply. A way of less than 2 cm is no way.
-    ///
-    /// # Errors
-    /// [`MoveError::NotThere`].
-    pub fn walk(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
-        let mut stretch = vec![self.standing.ok_or(MoveError::NotThere)?.middle];
-        for &point in points {
-            match stretch[..] {
-                [.., last] if last.distance(point) < SHORTEST_WAY_M => continue,
-                [.., before, last] if bend(before, last, point) > EASY_BEND => {
-                    self.walk_stretch(&stretch)?;
-                    stretch = vec![last];
-                }
-                _ => {}
-            }
-            stretch.push(point);
-        }
-        self.walk_stretch(&stretch)
-    }
-
-    /// Turns on the spot to look along `facing`, by small steps.
-    ///
-    /// # Errors
-    /// [`MoveError::NotThere`].
-    pub fn turn(&mut self, facing: f32) -> Result<(), MoveError> {
-        let standing = self.standing.ok_or(MoveError::NotThere)?;
-        let turn = turn_between(standing.facing, facing);
-        let steps = (turn.abs() / TURN_STEP).ceil();
-        if turn.abs() < 0.02 {
-            return Ok(());
-        }
-        // The foot on the inner side goes first, so that the feet never cross.
-        let order = if turn > 0.0 { [0, 1] } else { [1, 0] };
-        for step in 1..=steps as usize {
-            let part = self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps);
-            self.leave_standing();
-            for side in order {
-                self.replant(side, part.feet[side]);
-            }
-            self.resume_standing(part);
-        }
-        Ok(())
-    }
-
-    /// Presses with the ball of the nearer foot on `target`, standing on the other one, and brings it back.
-    ///
-    /// The force rises within 60 to 120 ms, stays `hold` long and falls again.
-    /// The standing foot stays where it is and carries the rest of the weight.
-    ///
-    /// # Errors
-    /// [`MoveError`]: nobody there, out of reach, on the other foot, or heavier than the body.
-    pub fn press(&mut self, target: Vec2, force: Newtons, hold: Duration) -> Result<(), MoveError> {
-        self.press_along(target, target, force, hold, 0.0)
-    }
-
-    /// Presses on `from`, slides to `to` at `speed_m_s` under the same force, and lets go there.
-    ///
-    /// # Errors
-    /// As [`Performance::press`].
-    pub fn drag(&mut self, from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons) -> Result<(), MoveError> {
-        self.press_along(from, to, force, Duration::from_millis(150), speed_m_s.max(0.01))
-    }
-
-    fn press_along(
-        &mut self,
-        from: Vec2,
-        to: Vec2,
-        force: Newtons,
-        hold: Duration,
-        speed_m_s: f32,
-    ) -> Result<(), MoveError> {
-        let standing = self.standing.ok_or(MoveError::NotThere)?;
-        let weight = self.person.weight();
-        if force > weight {
-            return Err(MoveError::TooHeavy { force_n: force.0, weight_n: weight.0 });
-        }
-        let nearer = standing.nearer_foot((from + to) * 0.5);
-        let reached = self.reach(&standing, nearer, from, to);
-        let (side, [start, end]) = match reached {
-            Ok(poses) => (nearer, poses),
-            // The other foot may do; if not, the nearer one's trouble is the one to tell.
-            Err(trouble) => (1 - nearer, self.reach(&standing, 1 - nearer, from, to).map_err(|_| trouble)?),
-        };
-        let home = standing.feet[side];
-
-        self.leave_standing();
-        let share = force / weight;
-        // Heavier presses take longer to build up.
-        let rise_s = (0.06 + 0.0003 * f64::from(force.0)).min(0.12);
-        let slide_s = if from == to { 0.0 } else { f64::from(from.distance(to) / speed_m_s) + RAMP_S };
-        let out_s = swing_time(home, start);
-
-        self.shift_weight(side, 0.5, 0.0);
-        let lifted = self.now_s;
-        let touch = lifted + out_s;
-        let pressed = touch + rise_s;
-        let slide = pressed + hold.as_secs_f64();
-        let slid = slide + slide_s;
-        let let_go = if from == to { slid } else { slid + hold.as_secs_f64() };
-        let off = let_go + 0.08;
-        let back = off + swing_time(end, home);
-
-        let foot = &mut self.tracks[side];
-        foot.go(lifted, touch, start, Profile::Swing);
-        if from != to {
-            foot.go(slide, slid, end, Profile::Steady { ramp_s: RAMP_S as f32 });
-        }
-        foot.go(off, back, home, Profile::Swing);
-        foot.roll.rest(lifted, STAND_ROLL);
-        foot.roll.rest(0.5 * (lifted + touch), PRESS_ROLL);
-        foot.roll.rest(off, PRESS_ROLL);
-        foot.roll.rest(back, STAND_ROLL);
-        for (track, rest, pressing) in [(side, 0.0, share), (1 - side, 1.0, 1.0 - share)] {
-            let load = &mut self.tracks[track].load;
-            load.rest(touch, rest);
-            load.rest(pressed, pressing);
-            load.rest(let_go, pressing);
-            load.rest(off, rest);
-            load.rest(back, rest);
-        }
-        self.now_s = back;
-        self.shift_weight(side, 0.0, 0.5);
-        self.resume_standing(standing);
-        Ok(())
-    }
-
-    /// The shoe's poses at both ends of a press of one foot, if it can go there and all the way between.
-    fn reach(&self, standing: &Standing, side: usize, from: Vec2, to: Vec2) -> Result<[Pose; 2], MoveError> {
-        let (home, stance) = (standing.feet[side], standing.feet[1 - side]);
-        let pose = |target| self.person.pose_pressing(target, home.heading);
-        for part in 0..=8 {
-            self.person.can_put(pose(from.lerp(to, part as f32 / 8.0)), stance)?;
-        }
-        Ok([pose(from), pose(to)])
-    }
-
-    /// Walks along a way without sharp bends.
-    fn walk_stretch(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
-        let way = Way::new(points);
-        if way.length < SHORTEST_WAY_M {
-            return Ok(());
-        }
-        self.turn(way.at(0.0).1)?;
-        self.leave_standing();
-
-        let usual = Gait::at_speed(self.person.speed_m_s);
-        let steps = (way.length / usual.step_m).round().max(1.0) as usize;
-        // Steps that don't quite fit become shorter or longer, in the same rhythm.
-        let step_m = way.length / steps as f32;
-        let gait = Gait::with_step(step_m, usual.speed_m_s * step_m / usual.step_m);
-        let step_s = f64::from(gait.step_s);
-        let first_lift = self.now_s + SHIFT_S;
-        let first_landing = first_lift + f64::from(gait.swing_s());
-        let landing = |step: usize| first_landing + step_s * (step as f64 - 1.0);
-        // The right foot starts; the other one is the stance it starts from.
-        let side_of = |step: usize| step % 2;
-        self.shift_weight(1, 0.5, 0.0);
-        self.push_off(0, landing(1) + f64::from(gait.double_support_s()), &gait);
-
-        for step in 1..=steps {
-            let (middle, heading) = way.at(way.length * step as f32 / steps as f32);
-            let side = side_of(step);
-            let lift =
-                if step == 1 { first_lift } else { landing(step - 1) + f64::from(gait.double_support_s()) };
-            let pose = self.person.foot_beside(middle, heading, side, self.person.step_width_m);
-            self.tracks[side].roll.hold(lift);
-            self.tracks[side].go(lift, landing(step), pose, Profile::Swing);
-            if step < steps {
-                self.stride(side, landing(step), &gait);
-            } else {
-                self.arrive(side, landing(step), &gait);
-            }
-        }
-        // The last foot comes beside the one that has arrived.
-        let (middle, heading) = way.at(way.length);
-        let side = side_of(steps + 1);
-        let gathered = landing(steps + 1);
-        let lift = landing(steps) + f64::from(gait.double_support_s());
-        let wider = 0.5 * (self.person.stand_width_m - self.person.step_width_m);
-        let to_right = -forward(heading).perp();
-        let standing = self.person.standing(middle + to_right * (wider * SIDES[side]), heading);
-        self.tracks[side].go(lift, gathered, standing.feet[side], Profile::Swing);
-        self.tracks[side].roll.hold(lift);
-        self.tracks[side].roll.rest(gathered, 0.2);
-        self.tracks[side].roll.rest(gathered + SHIFT_S, STAND_ROLL);
-        self.now_s = gathered;
-        self.shift_weight(side, 0.0, 0.5);
-        self.resume_standing(standing);
-        Ok(())
-    }
-
-    /// A foot's load and roll from landing to leaving, in the middle of a walk.
-    fn stride(&mut self, side: usize, landing: f64, gait: &Gait) {
-        let stance_s = f64::from(gait.stance_s);
-        let at = |share: f32| landing + stance_s * f64::from(share);
-        let slope = gait.strike / gait.stance_s;
-        let Track { load, roll, .. } = &mut self.tracks[side];
-        load.rest(landing, 0.0);
-        load.pass(landing, 0.0, slope);
-        load.rest(at(gait.peak_at), gait.peak);
-        load.rest(at(0.5), gait.valley);
-        load.rest(at(1.0 - gait.peak_at), gait.peak);
-        load.pass(at(1.0), 0.0, -slope);
-        load.rest(at(1.0), 0.0);
-        roll.pass(landing, 0.0, 1.0 / gait.stance_s);
-        roll.pass(at(1.0), 1.0, 1.0 / gait.stance_s);
-    }
-
-    /// A foot's load from landing to standing alone on it, at the end of a walk.
-    fn arrive(&mut self, side: usize, landing: f64, gait: &Gait) {
-        let Track { load, roll, .. } = &mut self.tracks[side];
-        load.rest(landing, 0.0);
-        load.pass(landing, 0.0, gait.strike / gait.stance_s);
-        load.rest(landing + f64::from(gait.stance_s * gait.peak_at), gait.peak);
-        load.rest(landing + f64::from(gait.step_s), 1.0);
-        roll.pass(landing, 0.0, 1.0 / gait.stance_s);
-        roll.rest(landing + f64::from(0.5 * gait.stance_s), STAND_ROLL);
-    }
-
-    /// A foot's load from standing alone on it, which it does now, to leaving the floor at `off`.
-    fn push_off(&mut self, side: usize, off: f64, gait: &Gait) {
-        let peak = off - f64::from(gait.stance_s * gait.peak_at);
-        let Track { load, roll, .. } = &mut self.tracks[side];
-        load.rest(peak, gait.peak);
-        load.pass(off, 0.0, -gait.strike / gait.stance_s);
-        load.rest(off, 0.0);
-        roll.rest(self.now_s, STAND_ROLL);
-        roll.pass(off, 1.0, 0.5 / gait.stance_s);
-    }
-
-    /// Lifts a foot and puts it down at `pose`, half of the weight on it before and after.
-    fn replant(&mut self, side: usize, pose: Pose) {
-        self.shift_weight(side, 0.5, 0.0);
-        let lifted = self.now_s;
-        self.now_s += 0.3;
-        self.tracks[side].go(lifted, self.now_s, pose, Profile::Swing);
-        self.shift_weight(side, 0.0, 0.5);
-    }
-
-    /// Shifts weight between the feet until one of them carries `to`, which now carries `from`.
-    fn shift_weight(&mut self, side: usize, from: f32, to: f32) {
-        for (track, from, to) in [(side, from, to), (1 - side, 1.0 - from, 1.0 - to)] {
-            let load = &mut self.tracks[track].load;
-            load.rest(self.now_s, from);
-            load.rest(self.now_s + SHIFT_S, to);
-        }
-        self.now_s += SHIFT_S;
-    }
-
-    /// Sways until now, and no more.
-    fn leave_standing(&mut self) {
-        self.sway.strength.rest(self.now_s, 1.0);
-        self.sway.strength.rest(self.now_s + 0.2, 0.0);
-    }
-
-    /// Stands from now on, swaying.
-    fn resume_standing(&mut self, standing: Standing) {
-        self.sway.strength.rest(self.now_s - 0.1, 0.0);
-        self.sway.strength.rest(self.now_s, 1.0);
-        self.standing = Some(standing);
-    }
-}
-
-/// Seconds in which a drag reaches its speed.
-const RAMP_S: f64 = 0.1;
-
-/// Seconds that a foot takes from one place to another, without load.
-fn swing_time(from: Pose, to: Pose) -> f64 {
-    f64::from((0.25 + 0.5 * from.position.distance(to.position)).min(0.7))
-}
-
-/// The heading of somebody who moves along `direction`.
-fn heading_of(direction: Vec2) -> f32 {
-    (-direction.x).atan2(direction.y)
-}
-
-/// How sharply the way turns at `at`, in radians.
-fn bend(from: Vec2, at: Vec2, to: Vec2) -> f32 {
-    turn_between(heading_of(at - from), heading_of(to - at)).abs()
+/// Where somebody stands.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Standing {
+    /// Between the feet.
+    pub(super) middle: Vec2,
+    pub(super) facing: f32,
+    /// Left, right.
+    pub(super) feet: [Pose; 2],
 }
 
 impl Standing {
     /// The foot, 0 or 1, that has less far to go to `target` without crossing the other one.
-    fn nearer_foot(&self, target: Vec2) -> usize {
+    pub(super) fn nearer_foot(&self, target: Vec2) -> usize {
         let to_right = -forward(self.facing).perp();
         usize::from((target - self.middle).dot(to_right) >= 0.0)
     }
 }
 
 impl Person {
-    fn foot_beside(&self, middle: Vec2, facing: f32, side: usize, width_m: f32) -> Pose {
+    /// Where one foot is when the body's middle is there.
+    pub(super) fn foot_beside(&self, middle: Vec2, facing: f32, side: usize, width_m: f32) -> Pose {
         let to_right = -forward(facing).perp();
         Pose {
             position: middle + to_right * (0.5 * width_m * SIDES[side]),
@@ -493,18 +125,20 @@ impl Person {
         }
     }
 
-    fn standing(&self, middle: Vec2, facing: f32) -> Standing {
+    /// Standing with the feet side by side.
+    pub(super) fn standing(&self, middle: Vec2, facing: f32) -> Standing {
         let feet = [0, 1].map(|side| self.foot_beside(middle, facing, side, self.stand_width_m));
         Standing { middle, facing, feet }
     }
 
     /// Where the shoe has to be for its ball to press on `target`.
-    fn pose_pressing(&self, target: Vec2, heading: f32) -> Pose {
+    pub(super) fn pose_pressing(&self, target: Vec2, heading: f32) -> Pose {
         let print = Print::Shoe { length_m: self.foot_length_m, roll: PRESS_ROLL };
         Pose { position: target - Vec2::from_angle(heading).rotate(print.centre_of_pressure()), heading }
     }
 
-    fn can_put(&self, pose: Pose, stance: Pose) -> Result<(), MoveError> {
+    /// Whether a foot reaches a pose and finds it free while the other one stands in `stance`.
+    pub(super) fn can_put(&self, pose: Pose, stance: Pose) -> Result<(), MoveError> {
         let distance_m = pose.position.distance(stance.position);
         if distance_m > self.reach_m {
             return Err(MoveError::OutOfReach { distance_m, reach_m: self.reach_m });
@@ -525,35 +159,4 @@ fn shoes_overlap(one: Pose, other: Pose, half: Vec2) -> bool {
         let seen = Vec2::from_angle(-other.heading).rotate(at - other.position);
         (seen / half).length_squared() < 1.0
     })
-}
-
-/// A way along straight lines.
-struct Way<'a> {
-    points: &'a [Vec2],
-    length: f32,
-}
-
-impl<'a> Way<'a> {
-    fn new(points: &'a [Vec2]) -> Self {
-        Self { points, length: points.windows(2).map(|pair| pair[0].distance(pair[1])).sum() }
-    }
-
-    /// The place after `distance` metres, and the heading of the way there; the last place after its end.
-    fn at(&self, distance: f32) -> (Vec2, f32) {
-        let mut left = distance;
-        let mut last = (self.points.first().copied().unwrap_or_default(), 0.0);
-        for pair in self.points.windows(2) {
-            let (from, to) = (pair[0], pair[1]);
-            let stretch = from.distance(to);
-            if stretch > 0.0 {
-                let heading = heading_of(to - from);
-                if left < stretch {
-                    return (from.lerp(to, left / stretch), heading);
-                }
-                last = (to, heading);
-                left -= stretch;
-            }
-        }
-        last
-    }
 }

@@ -5,7 +5,8 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::person::{MoveError, Performance, Person};
+use super::performance::Performance;
+use super::person::{MoveError, Person};
 use super::script::Script;
 use super::written::{Body, Places, Side, Step, Written, read};
 use crate::floor::{Geometry, Rect};
@@ -66,12 +67,12 @@ pub struct ScenarioError {
     /// The file, as it was named when it was read.
     pub file: String,
     /// At least one problem.
-    pub problems: Vec<Problem>,
+    pub problems: Vec<ScenarioProblem>,
 }
 
 /// One problem and its place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Problem {
+pub struct ScenarioProblem {
     /// Line, from 1.
     pub line: usize,
     /// Column, from 1.
@@ -82,7 +83,7 @@ pub struct Problem {
 
 impl fmt::Display for ScenarioError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, Problem { line, column, message }) in self.problems.iter().enumerate() {
+        for (index, ScenarioProblem { line, column, message }) in self.problems.iter().enumerate() {
             let end = if index + 1 < self.problems.len() { "\n" } else { "" };
             write!(f, "{}:{line}:{column}: {message}{end}", self.file)?;
         }
@@ -159,7 +160,7 @@ struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    fn perform(&self, performer: &Performer, number: u64) -> Result<Performance, Vec<Problem>> {
+    fn perform(&self, performer: &Performer, number: u64) -> Result<Performance, Vec<ScenarioProblem>> {
         let Body { mass_kg, foot_m, speed_m_s } = performer.body;
         let person = Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() };
         let mut performance = Performance::new(person, number);
@@ -189,7 +190,7 @@ impl Stage<'_> {
     }
 
     /// The step with its names and places looked up.
-    fn ready(&self, step: &Step, places: &Places) -> Result<Ready, Problem> {
+    fn ready(&self, step: &Step, places: &Places) -> Result<Ready, ScenarioProblem> {
         let widget = |id: &str| self.widget(id).map_err(|message| places.of("widget").problem(message));
         let place = |at: (f32, f32)| self.place(at).map_err(|message| places.of("at").problem(message));
         let hold = |ms: u32| Duration::from_millis(ms.into());

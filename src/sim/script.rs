@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use super::foot::{Foot, FootDriver};
 use super::footprint::shoe_size;
-use super::person::Performance;
+use super::performance::Performance;
 use crate::floor::Rect;
 use crate::units::Instant;
 
@@ -268,7 +268,10 @@ mod tests {
         assert_eq!(person.appear(Vec2::ONE, 0.0), Err(MoveError::AlreadyThere));
         let far = person.press(Vec2::new(1.8, 1.8), Newtons(50.0), hold);
         assert!(matches!(far, Err(MoveError::OutOfReach { .. })), "{far:?}");
-        // Under the left foot's ball when the right foot is asked for, and the other way round.
+        let own = person.press(Vec2::new(0.9, 0.9), Newtons(50.0), hold);
+        assert!(matches!(own, Err(MoveError::Occupied { .. })), "between the feet: {own:?}");
+        assert_eq!(person.press(Vec2::NAN, Newtons(50.0), hold), Err(MoveError::NotFinite));
+        assert_eq!(person.walk(&[Vec2::new(1.0, f32::INFINITY)]), Err(MoveError::NotFinite));
         let heavy = person.press(Vec2::new(1.1, 1.2), Newtons(900.0), hold);
         assert!(matches!(heavy, Err(MoveError::TooHeavy { .. })), "{heavy:?}");
         assert_eq!(person.duration(), before);

@@ -9,7 +9,7 @@ use ron::extensions::Extensions;
 use ron2::ast::{Expr, StructBody, StructField, parse_document};
 use serde::Deserialize;
 
-use super::scenario::Problem;
+use super::scenario::ScenarioProblem;
 use crate::floor::Rect;
 
 /// A whole file.
@@ -223,8 +223,8 @@ pub(super) struct Place {
 }
 
 impl Place {
-    pub(super) fn problem(self, message: String) -> Problem {
-        Problem { line: self.line, column: self.column, message }
+    pub(super) fn problem(self, message: String) -> ScenarioProblem {
+        ScenarioProblem { line: self.line, column: self.column, message }
     }
 }
 
@@ -243,7 +243,7 @@ impl Places {
 }
 
 /// A file read and each number in it checked, with the places of all steps: the first person's, then the others'.
-pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<Problem>> {
+pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<ScenarioProblem>> {
     if text.len() > LARGEST_FILE {
         return Err(vec![Place { line: 1, column: 1 }.problem("the file is larger than 1 MB".into())]);
     }
@@ -278,7 +278,7 @@ pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<Proble
     if problems.is_empty() { Ok((written, casts)) } else { Err(problems) }
 }
 
-fn out_of_range((name, value, range): Number, places: &Places) -> Option<Problem> {
+fn out_of_range((name, value, range): Number, places: &Places) -> Option<ScenarioProblem> {
     let (low, high) = (range.start(), range.end());
     (!range.contains(&value))
         .then(|| places.of(name).problem(format!("{name} must be between {low} and {high}, not {value}")))

@@ -1,0 +1,223 @@
+use std::ops::{Range, RangeInclusive};
+
+use ron2::ast::{Expr, StructBody};
+
+use super::fields::Fields;
+use super::number::{NotANumber, Number, parse_number, plain};
+use super::problem::Problem;
+use super::reader::{Reader, bytes};
+use super::remedy::{NAMED_FIELDS, describe, remedy};
+use super::suggest::{listed, nearest};
+use super::words::unit;
+
+/// One value of the file, and the name by which messages speak of it.
+#[derive(Clone, Copy)]
+pub(super) struct Node<'r> {
+    pub(super) reader: &'r Reader<'r>,
+    pub(super) expr: &'r Expr<'r>,
+    /// The field it is the value of, or what the entries of its list are.
+    pub(super) what: &'static str,
+}
+
+impl<'r> Node<'r> {
+    /// Where it stands.
+    pub(super) fn span(&self) -> Range<usize> {
+        bytes(self.expr.span())
+    }
+
+    /// Notes a problem.
+    pub(super) fn report(&self, problem: Problem) {
+        self.reader.report(problem);
+    }
+
+    /// Whether it is `None`.
+    pub(super) fn is_none(&self) -> bool {
+        matches!(self.expr, Expr::Option(option) if option.value.is_none())
+    }
+
+    /// What is inside of any `Some(...)` around it.
+    pub(super) fn inside(mut self) -> Self {
+        while let Expr::Option(option) = self.expr
+            && let Some(some) = &option.value
+        {
+            self.expr = &some.expr;
+        }
+        self
+    }
+
+    /// The value of the field `name` if this is a `Kind(...)` that has one; nothing is reported.
+    pub(super) fn peek(&self, kind: &'static str, name: &'static str) -> Option<Node<'r>> {
+        let fields = match self.expr {
+            Expr::AnonStruct(node) => &node.fields,
+            Expr::Struct(node) if node.name.name == kind => match &node.body {
+                Some(StructBody::Fields(body)) => &body.fields,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let field = fields.iter().find(|field| field.name.name == name)?;
+        Some(Node { expr: &field.value, what: name, ..*self }.inside())
+    }
+
+    /// Its value if it is a number; nothing is reported.
+    pub(super) fn peek_number(&self) -> Option<f64> {
+        let Expr::Number(number) = self.expr else { return None };
+        parse_number(&number.raw).ok().map(|number| number.value)
+    }
+
+    /// Reports that this is not the `expected` thing, and gives `None`.
+    pub(super) fn mismatch<T>(&self, expected: &str) -> Option<T> {
+        // The parser has said already why an error node is none.
+        if !matches!(self.expr, Expr::Error(_)) {
+            let message = format!("`{}` must be {expected}", self.what);
+            let found = format!("expected {expected}, found {}", describe(self.expr));
+            self.report(
+                Problem::error(self.span(), message).expected(found).help_if(remedy(self.expr, expected)),
+            );
+        }
+        None
+    }
+
+    /// A finite number within `range`.
+    pub(super) fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
+        let Expr::Number(number) = self.expr else { return self.mismatch("a number") };
+        let (what, raw) = (self.what, &number.raw);
+        let (message, found) = match parse_number(raw) {
+            Ok(number) if range.contains(&number.value) => return Some(number),
+            Ok(number) => {
+                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), unit(what)))
+            }
+            Err(NotANumber::TooLarge) => (format!("`{what}` is out of range"), raw.to_string()),
+            Err(NotANumber::NotFinite) => (format!("`{what}` must be an ordinary number"), raw.to_string()),
+            Err(NotANumber::Malformed) => (format!("`{what}` must be a number"), raw.to_string()),
+        };
+        let (least, most) = (plain(*range.start()), plain(*range.end()));
+        let bounds = if least == most { least } else { format!("{least} to {most}{}", unit(what)) };
+        self.report(
+            Problem::error(self.span(), message).expected(format!("expected {bounds}, found {found}")),
+        );
+        None
+    }
+
+    /// A whole number within `range`.
+    pub(super) fn whole(&self, range: RangeInclusive<u32>) -> Option<u32> {
+        let number = self.number(f64::from(*range.start())..=f64::from(*range.end()))?;
+        if number.whole {
+            return Some(number.value as u32);
+        }
+        let message = format!("`{}` must be a whole number", self.what);
+        self.report(Problem::error(self.span(), message).expected("expected digits only"));
+        None
+    }
+
+    /// `true` or `false`.
+    pub(super) fn flag(&self) -> Option<bool> {
+        let Expr::Bool(flag) = self.expr else { return self.mismatch("true or false") };
+        Some(flag.value)
+    }
+
+    /// Text of at most `longest` characters.
+    pub(super) fn text(&self, longest: usize) -> Option<&'r str> {
+        let Expr::String(text) = self.expr else { return self.mismatch("text") };
+        let length = text.value.chars().count();
+        if length > longest {
+            let message = format!("`{}` is too long", self.what);
+            let expected = format!("expected at most {longest} characters, found {length}");
+            self.report(Problem::error(self.span(), message).expected(expected));
+            return None;
+        }
+        Some(&text.value)
+    }
+
+    /// A name that can be part of an OSC address: `a` to `z`, `0` to `9` and `_`, at most 64 of them.
+    pub(super) fn id(&self) -> Option<&'r str> {
+        let text = self.text(64)?;
+        let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
+        if !text.is_empty() && text.chars().all(legal) {
+            return Some(text);
+        }
+        let mended: String = text.to_lowercase().chars().map(|c| if legal(c) { c } else { '_' }).collect();
+        let help = (mended.len() == text.len() && !mended.is_empty()).then(|| format!("write \"{mended}\""));
+        let message = format!("`{}` can't be part of an address", self.what);
+        let expected = "expected 1 to 64 of the characters a-z, 0-9 and _";
+        self.report(Problem::error(self.span(), message).expected(expected).help_if(help));
+        None
+    }
+
+    /// One of the names in `choices`, and what it stands for.
+    pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let expected = listed(&names, "or");
+        let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
+        let written = &*variant.name.name;
+        if let (Some((_, choice)), None) = (choices.iter().find(|(name, _)| *name == written), &variant.body)
+        {
+            return Some(*choice);
+        }
+        if names.contains(&written) {
+            let problem = Problem::error(self.span(), format!("{written} stands alone"));
+            let help = format!("its settings are fields beside `{}`", self.what);
+            self.report(problem.expected(format!("expected {written} without brackets")).help(help));
+            return None;
+        }
+        let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.what));
+        let help = nearest(written, names).map(|name| format!("did you mean {name}?"));
+        self.report(problem.expected(format!("expected {expected}")).help_if(help));
+        None
+    }
+
+    /// The entries of a list of at most `most`; messages call each of them `entry`.
+    pub(super) fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
+        let Expr::Seq(list) = self.expr else { return self.mismatch("a list") };
+        if list.items.len() > most {
+            let message = format!("`{}` has too many entries", self.what);
+            let expected = format!("expected at most {most}, found {}", list.items.len());
+            self.report(Problem::error(bytes(&list.open_bracket), message).expected(expected));
+            return None;
+        }
+        Some(list.items.iter().map(|item| Node { expr: &item.expr, what: entry, ..*self }.inside()).collect())
+    }
+
+    /// The values of a tuple of `N`, shown as `pattern` if it is none.
+    pub(super) fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
+        let elements = match self.expr {
+            Expr::Tuple(tuple) => &tuple.elements,
+            _ => return self.mismatch(pattern),
+        };
+        let nodes: Vec<_> =
+            elements.iter().map(|element| Node { expr: &element.expr, ..*self }.inside()).collect();
+        nodes.try_into().ok().or_else(|| self.mismatch(pattern))
+    }
+
+    /// Two numbers within `range`: east and north.
+    pub(super) fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+        let [east, north] =
+            self.tuple(if self.what == "size" { "(width, depth)" } else { "(east, north)" })?;
+        let (east, north) = (east.number(range.clone()), north.number(range));
+        Some([east?.value, north?.value])
+    }
+
+    /// The named fields of a `Name(...)`, the name being optional.
+    pub(super) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
+        let (written, open, fields) = match self.expr {
+            Expr::AnonStruct(node) => (None, bytes(&node.open_paren), node.fields.as_slice()),
+            Expr::Unit(node) => (None, bytes(&node.span), [].as_slice()),
+            Expr::Struct(node) => match &node.body {
+                Some(StructBody::Fields(body)) => {
+                    (Some(&node.name), bytes(&node.name.span), body.fields.as_slice())
+                }
+                Some(StructBody::Tuple(body)) if body.elements.is_empty() => {
+                    (Some(&node.name), bytes(&node.name.span), [].as_slice())
+                }
+                _ => return self.mismatch(NAMED_FIELDS),
+            },
+            _ => return self.mismatch(NAMED_FIELDS),
+        };
+        if let Some(written) = written.filter(|written| written.name != name) {
+            let message = format!("this is a {}, not a {name}", written.name);
+            self.report(Problem::error(open, message).expected(format!("expected {name}(...)")));
+            return None;
+        }
+        Some(Fields::new(*self, name, open, fields))
+    }
+}

@@ -1,0 +1,382 @@
+//! What one person does, put together move by move.
+
+use std::time::Duration;
+
+use glam::Vec2;
+
+use super::gait::Gait;
+use super::person::{MoveError, PRESS_ROLL, Person, SIDES, Standing};
+use super::sway::Sway;
+use super::track::{Pose, Profile, Track, forward, turn_between};
+use super::way::{Way, bend};
+use crate::units::Newtons;
+
+/// A person's performance, put together move by move; each begins when the one before ends.
+#[derive(Clone, Debug)]
+pub struct Performance {
+    pub(super) person: Person,
+    pub(super) tracks: [Track; 2],
+    pub(super) sway: Sway,
+    now_s: f64,
+    standing: Option<Standing>,
+}
+
+/// Roll of a foot that stands: a little more than half of the load on the heel.
+const STAND_ROLL: f32 = 0.4;
+
+/// Seconds to shift the weight onto one foot, and back.
+const SHIFT_S: f64 = 0.35;
+
+/// Nobody walks less than this.
+const SHORTEST_WAY_M: f32 = 0.02;
+
+/// Sharpest bend that is walked round without stopping, in radians.
+const EASY_BEND: f32 = 0.8;
+
+/// Largest turn made with one pair of steps on the spot, in radians.
+const TURN_STEP: f32 = 0.9;
+
+impl Performance {
+    /// Somebody who is not there yet; `seed` makes the sway.
+    #[must_use]
+    pub fn new(person: Person, seed: u64) -> Self {
+        Self {
+            person,
+            tracks: [Track::default(), Track::default()],
+            sway: Sway::new(seed),
+            now_s: 0.0,
+            standing: None,
+        }
+    }
+
+    /// How long the performance takes so far.
+    #[must_use]
+    pub fn duration(&self) -> Duration {
+        Duration::from_secs_f64(self.now_s.max(0.0))
+    }
+
+    /// Between the feet of the person, in floor metres; `None` while nobody is there.
+    #[must_use]
+    pub fn place(&self) -> Option<Vec2> {
+        self.standing.map(|standing| standing.middle)
+    }
+
+    /// Lets time pass; who is there stands, swaying a little.
+    pub fn wait(&mut self, time: Duration) {
+        self.now_s += time.as_secs_f64();
+    }
+
+    /// Appears, standing at `middle` and looking along `facing` (radians counter-clockwise from north).
+    ///
+    /// # Errors
+    /// [`MoveError::AlreadyThere`], [`MoveError::NotFinite`].
+    pub fn appear(&mut self, middle: Vec2, facing: f32) -> Result<(), MoveError> {
+        must_be_finite(middle.is_finite() && facing.is_finite())?;
+        if self.standing.is_some() {
+            return Err(MoveError::AlreadyThere);
+        }
+        let standing = self.person.standing(middle, facing);
+        for (track, pose) in self.tracks.iter_mut().zip(standing.feet) {
+            track.put(self.now_s, pose);
+            track.load.rest(self.now_s, 0.0);
+            track.load.rest(self.now_s, 0.5);
+            track.roll.rest(self.now_s, STAND_ROLL);
+        }
+        self.sway.strength.rest(self.now_s, 1.0);
+        self.standing = Some(standing);
+        Ok(())
+    }
+
+    /// Is gone from one moment to the next: for somebody who has walked off the floor.
+    ///
+    /// # Errors
+    /// [`MoveError::NotThere`].
+    pub fn disappear(&mut self) -> Result<(), MoveError> {
+        self.standing.take().ok_or(MoveError::NotThere)?;
+        for track in &mut self.tracks {
+            track.load.hold(self.now_s);
+            track.load.rest(self.now_s, 0.0);
+        }
+        Ok(())
+    }
+
+    /// Walks along straight lines to each of `points` and stops on the last with the feet side by side.
+    ///
+    /// Turns on the spot where the way bends sharply. A way of less than 2 cm is no way.
+    ///
+    /// # Errors
+    /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
+    pub fn walk(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
+        must_be_finite(points.iter().all(|point| point.is_finite()))?;
+        let mut stretch = vec![self.standing.ok_or(MoveError::NotThere)?.middle];
+        for &point in points {
+            match stretch[..] {
+                [.., last] if last.distance(point) < SHORTEST_WAY_M => continue,
+                [.., before, last] if bend(before, last, point) > EASY_BEND => {
+                    self.walk_stretch(&stretch)?;
+                    stretch = vec![last];
+                }
+                _ => {}
+            }
+            stretch.push(point);
+        }
+        self.walk_stretch(&stretch)
+    }
+
+    /// Turns on the spot to look along `facing`, by small steps.
+    ///
+    /// # Errors
+    /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
+    pub fn turn(&mut self, facing: f32) -> Result<(), MoveError> {
+        must_be_finite(facing.is_finite())?;
+        let standing = self.standing.ok_or(MoveError::NotThere)?;
+        let turn = turn_between(standing.facing, facing);
+        let steps = (turn.abs() / TURN_STEP).ceil();
+        if turn.abs() < 0.02 {
+            return Ok(());
+        }
+        // The foot on the inner side goes first, so that the feet never cross.
+        let order = if turn > 0.0 { [0, 1] } else { [1, 0] };
+        for step in 1..=steps as usize {
+            let part = self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps);
+            self.leave_standing();
+            for side in order {
+                self.replant(side, part.feet[side]);
+            }
+            self.resume_standing(part);
+        }
+        Ok(())
+    }
+
+    /// Presses with the ball of the nearer foot on `target`, standing on the other one, and brings it back.
+    ///
+    /// The force rises within 60 to 120 ms, stays `hold` long and falls again.
+    /// The standing foot stays where it is and carries the rest of the weight.
+    ///
+    /// # Errors
+    /// [`MoveError`]: nobody there, out of reach, on the other foot, heavier than the body, or not finite.
+    pub fn press(&mut self, target: Vec2, force: Newtons, hold: Duration) -> Result<(), MoveError> {
+        self.press_along(target, target, force, hold, 0.0)
+    }
+
+    /// Presses on `from`, slides to `to` at `speed_m_s` under the same force, and lets go there.
+    ///
+    /// # Errors
+    /// As [`Performance::press`].
+    pub fn drag(&mut self, from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons) -> Result<(), MoveError> {
+        self.press_along(from, to, force, Duration::from_millis(150), speed_m_s.max(0.01))
+    }
+
+    fn press_along(
+        &mut self,
+        from: Vec2,
+        to: Vec2,
+        force: Newtons,
+        hold: Duration,
+        speed_m_s: f32,
+    ) -> Result<(), MoveError> {
+        must_be_finite(from.is_finite() && to.is_finite() && force.is_finite() && speed_m_s.is_finite())?;
+        let standing = self.standing.ok_or(MoveError::NotThere)?;
+        let weight = self.person.weight();
+        if force > weight {
+            return Err(MoveError::TooHeavy { force_n: force.0, weight_n: weight.0 });
+        }
+        let nearer = standing.nearer_foot((from + to) * 0.5);
+        let reached = self.reach(&standing, nearer, from, to);
+        let (side, [start, end]) = match reached {
+            Ok(poses) => (nearer, poses),
+            // The other foot may do; if not, the nearer one's trouble is the one to tell.
+            Err(trouble) => (1 - nearer, self.reach(&standing, 1 - nearer, from, to).map_err(|_| trouble)?),
+        };
+        let home = standing.feet[side];
+
+        self.leave_standing();
+        // Nobody pulls at the floor.
+        let share = (force / weight).max(0.0);
+        // Heavier presses take longer to build up.
+        let rise_s = (0.06 + 0.0003 * f64::from(force.0)).min(0.12);
+        let slide_s = if from == to { 0.0 } else { f64::from(from.distance(to) / speed_m_s) + RAMP_S };
+        let out_s = swing_time(home, start);
+
+        self.shift_weight(side, 0.5, 0.0);
+        let lifted = self.now_s;
+        let touch = lifted + out_s;
+        let pressed = touch + rise_s;
+        let slide = pressed + hold.as_secs_f64();
+        let slid = slide + slide_s;
+        let let_go = if from == to { slid } else { slid + hold.as_secs_f64() };
+        let off = let_go + 0.08;
+        let back = off + swing_time(end, home);
+
+        let foot = &mut self.tracks[side];
+        foot.go(lifted, touch, start, Profile::Swing);
+        if from != to {
+            foot.go(slide, slid, end, Profile::Steady { ramp_s: RAMP_S as f32 });
+        }
+        foot.go(off, back, home, Profile::Swing);
+        foot.roll.rest(lifted, STAND_ROLL);
+        foot.roll.rest(0.5 * (lifted + touch), PRESS_ROLL);
+        foot.roll.rest(off, PRESS_ROLL);
+        foot.roll.rest(back, STAND_ROLL);
+        for (track, rest, pressing) in [(side, 0.0, share), (1 - side, 1.0, 1.0 - share)] {
+            let load = &mut self.tracks[track].load;
+            load.rest(touch, rest);
+            load.rest(pressed, pressing);
+            load.rest(let_go, pressing);
+            load.rest(off, rest);
+            load.rest(back, rest);
+        }
+        self.now_s = back;
+        self.shift_weight(side, 0.0, 0.5);
+        self.resume_standing(standing);
+        Ok(())
+    }
+
+    /// The shoe's poses at both ends of a press of one foot, if it can go there and all the way between.
+    fn reach(&self, standing: &Standing, side: usize, from: Vec2, to: Vec2) -> Result<[Pose; 2], MoveError> {
+        let (home, stance) = (standing.feet[side], standing.feet[1 - side]);
+        let pose = |target| self.person.pose_pressing(target, home.heading);
+        for part in 0..=8 {
+            self.person.can_put(pose(from.lerp(to, part as f32 / 8.0)), stance)?;
+        }
+        Ok([pose(from), pose(to)])
+    }
+
+    /// Walks along a way without sharp bends.
+    fn walk_stretch(&mut self, points: &[Vec2]) -> Result<(), MoveError> {
+        let way = Way::new(points);
+        if way.length < SHORTEST_WAY_M {
+            return Ok(());
+        }
+        self.turn(way.at(0.0).1)?;
+        self.leave_standing();
+
+        let usual = Gait::at_speed(self.person.speed_m_s);
+        let steps = (way.length / usual.step_m).round().max(1.0) as usize;
+        // Steps that don't quite fit become shorter or longer, in the same rhythm.
+        let step_m = way.length / steps as f32;
+        let gait = Gait::with_step(step_m, usual.speed_m_s * step_m / usual.step_m);
+        let step_s = f64::from(gait.step_s);
+        let first_lift = self.now_s + SHIFT_S;
+        let first_landing = first_lift + f64::from(gait.swing_s());
+        let landing = |step: usize| first_landing + step_s * (step as f64 - 1.0);
+        // The right foot starts; the other one is the stance it starts from.
+        let side_of = |step: usize| step % 2;
+        self.shift_weight(1, 0.5, 0.0);
+        self.push_off(0, landing(1) + f64::from(gait.double_support_s()), &gait);
+
+        for step in 1..=steps {
+            let (middle, heading) = way.at(way.length * step as f32 / steps as f32);
+            let side = side_of(step);
+            let lift =
+                if step == 1 { first_lift } else { landing(step - 1) + f64::from(gait.double_support_s()) };
+            let pose = self.person.foot_beside(middle, heading, side, self.person.step_width_m);
+            self.tracks[side].roll.hold(lift);
+            self.tracks[side].go(lift, landing(step), pose, Profile::Swing);
+            if step < steps {
+                self.stride(side, landing(step), &gait);
+            } else {
+                self.arrive(side, landing(step), &gait);
+            }
+        }
+        // The last foot comes beside the one that has arrived.
+        let (middle, heading) = way.at(way.length);
+        let side = side_of(steps + 1);
+        let gathered = landing(steps + 1);
+        let lift = landing(steps) + f64::from(gait.double_support_s());
+        let wider = 0.5 * (self.person.stand_width_m - self.person.step_width_m);
+        let to_right = -forward(heading).perp();
+        let standing = self.person.standing(middle + to_right * (wider * SIDES[side]), heading);
+        self.tracks[side].go(lift, gathered, standing.feet[side], Profile::Swing);
+        self.tracks[side].roll.hold(lift);
+        self.tracks[side].roll.rest(gathered, 0.2);
+        self.tracks[side].roll.rest(gathered + SHIFT_S, STAND_ROLL);
+        self.now_s = gathered;
+        self.shift_weight(side, 0.0, 0.5);
+        self.resume_standing(standing);
+        Ok(())
+    }
+
+    /// A foot's load and roll from landing to leaving, in the middle of a walk.
+    fn stride(&mut self, side: usize, landing: f64, gait: &Gait) {
+        let stance_s = f64::from(gait.stance_s);
+        let at = |share: f32| landing + stance_s * f64::from(share);
+        let slope = gait.strike / gait.stance_s;
+        let Track { load, roll, .. } = &mut self.tracks[side];
+        load.rest(landing, 0.0);
+        load.pass(landing, 0.0, slope);
+        load.rest(at(gait.peak_at), gait.peak);
+        load.rest(at(0.5), gait.valley);
+        load.rest(at(1.0 - gait.peak_at), gait.peak);
+        load.pass(at(1.0), 0.0, -slope);
+        load.rest(at(1.0), 0.0);
+        roll.pass(landing, 0.0, 1.0 / gait.stance_s);
+        roll.pass(at(1.0), 1.0, 1.0 / gait.stance_s);
+    }
+
+    /// A foot's load from landing to standing alone on it, at the end of a walk.
+    fn arrive(&mut self, side: usize, landing: f64, gait: &Gait) {
+        let Track { load, roll, .. } = &mut self.tracks[side];
+        load.rest(landing, 0.0);
+        load.pass(landing, 0.0, gait.strike / gait.stance_s);
+        load.rest(landing + f64::from(gait.stance_s * gait.peak_at), gait.peak);
+        load.rest(landing + f64::from(gait.step_s), 1.0);
+        roll.pass(landing, 0.0, 1.0 / gait.stance_s);
+        roll.rest(landing + f64::from(0.5 * gait.stance_s), STAND_ROLL);
+    }
+
+    /// A foot's load from standing alone on it, which it does now, to leaving the floor at `off`.
+    fn push_off(&mut self, side: usize, off: f64, gait: &Gait) {
+        let peak = off - f64::from(gait.stance_s * gait.peak_at);
+        let Track { load, roll, .. } = &mut self.tracks[side];
+        load.rest(peak, gait.peak);
+        load.pass(off, 0.0, -gait.strike / gait.stance_s);
+        load.rest(off, 0.0);
+        roll.rest(self.now_s, STAND_ROLL);
+        roll.pass(off, 1.0, 0.5 / gait.stance_s);
+    }
+
+    /// Lifts a foot and puts it down at `pose`, half of the weight on it before and after.
+    fn replant(&mut self, side: usize, pose: Pose) {
+        self.shift_weight(side, 0.5, 0.0);
+        let lifted = self.now_s;
+        self.now_s += 0.3;
+        self.tracks[side].go(lifted, self.now_s, pose, Profile::Swing);
+        self.shift_weight(side, 0.0, 0.5);
+    }
+
+    /// Shifts weight between the feet until one of them carries `to`, which now carries `from`.
+    fn shift_weight(&mut self, side: usize, from: f32, to: f32) {
+        for (track, from, to) in [(side, from, to), (1 - side, 1.0 - from, 1.0 - to)] {
+            let load = &mut self.tracks[track].load;
+            load.rest(self.now_s, from);
+            load.rest(self.now_s + SHIFT_S, to);
+        }
+        self.now_s += SHIFT_S;
+    }
+
+    /// Sways until now, and no more.
+    fn leave_standing(&mut self) {
+        self.sway.strength.rest(self.now_s, 1.0);
+        self.sway.strength.rest(self.now_s + 0.2, 0.0);
+    }
+
+    /// Stands from now on, swaying.
+    fn resume_standing(&mut self, standing: Standing) {
+        self.sway.strength.rest(self.now_s - 0.1, 0.0);
+        self.sway.strength.rest(self.now_s, 1.0);
+        self.standing = Some(standing);
+    }
+}
+
+/// Seconds in which a drag reaches its speed.
+const RAMP_S: f64 = 0.1;
+
+/// Seconds that a foot takes from one place to another, without load.
+fn swing_time(from: Pose, to: Pose) -> f64 {
+    f64::from((0.25 + 0.5 * from.position.distance(to.position)).min(0.7))
+}
+
+fn must_be_finite(finite: bool) -> Result<(), MoveError> {
+    if finite { Ok(()) } else { Err(MoveError::NotFinite) }
+}
