@@ -137,14 +137,31 @@ impl Performance {
         }
         // The foot on the inner side goes first, so that the feet never cross.
         let order = if turn > 0.0 { [0, 1] } else { [1, 0] };
-        for step in 1..=steps as usize {
-            let part = self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps);
-            self.leave_standing();
-            for side in order {
-                self.replant(side, part.feet[side]);
-            }
-            self.resume_standing(part);
+        let parts = (1..=steps as usize)
+            .map(|step| self.person.standing(standing.middle, standing.facing + turn * step as f32 / steps));
+        let parts: Vec<Standing> = parts.collect();
+        self.shuffle(&parts, order);
+        Ok(())
+    }
+
+    /// Steps aside to stand at `to`, looking where one looked before, by small steps.
+    ///
+    /// # Errors
+    /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
+    pub fn step_aside(&mut self, to: Vec2) -> Result<(), MoveError> {
+        must_be_finite(to.is_finite())?;
+        let standing = self.standing.ok_or(MoveError::NotThere)?;
+        let way = to - standing.middle;
+        let steps = (way.length() / ASIDE_STEP_M).ceil();
+        if way.length() < SHORTEST_WAY_M {
+            return Ok(());
         }
+        // The foot that has less far to go goes first, so that the feet never cross.
+        let leading = standing.nearer_foot(to);
+        let parts: Vec<Standing> = (1..=steps as usize)
+            .map(|step| self.person.standing(standing.middle + way * (step as f32 / steps), standing.facing))
+            .collect();
+        self.shuffle(&parts, [leading, 1 - leading]);
         Ok(())
     }
 
@@ -336,13 +353,24 @@ impl Performance {
         roll.pass(off, 1.0, 0.5 / gait.stance_s);
     }
 
-    /// Lifts a foot and puts it down at `pose`, half of the weight on it before and after.
-    fn replant(&mut self, side: usize, pose: Pose) {
-        self.shift_weight(side, 0.5, 0.0);
-        let lifted = self.now_s;
-        self.now_s += 0.3;
-        self.tracks[side].go(lifted, self.now_s, pose, Profile::Swing);
-        self.shift_weight(side, 0.0, 0.5);
+    /// Puts one foot after the other, in this order, where each part of the way has it.
+    fn shuffle(&mut self, parts: &[Standing], order: [usize; 2]) {
+        self.leave_standing();
+        let mut carried = 0.5;
+        for part in parts {
+            for side in order {
+                self.shift_weight(side, carried, 0.0);
+                let lifted = self.now_s;
+                self.now_s += REPLANT_S;
+                self.tracks[side].go(lifted, self.now_s, part.feet[side], Profile::Swing);
+                // The other foot goes next, and carries everything now.
+                carried = 1.0;
+            }
+        }
+        self.shift_weight(order[1], 0.0, 0.5);
+        if let Some(last) = parts.last() {
+            self.resume_standing(*last);
+        }
     }
 
     /// Shifts weight between the feet until one of them carries `to`, which now carries `from`.
@@ -368,6 +396,12 @@ impl Performance {
         self.standing = Some(standing);
     }
 }
+
+/// Seconds that a foot is in the air for a small step.
+const REPLANT_S: f64 = 0.3;
+
+/// Longest small step aside, in metres.
+const ASIDE_STEP_M: f32 = 0.3;
 
 /// Seconds in which a drag reaches its speed.
 const RAMP_S: f64 = 0.1;

@@ -82,6 +82,9 @@ pub(super) enum Step {
         #[serde(default)]
         facing: Option<Side>,
     },
+    StepAside {
+        at: (f32, f32),
+    },
     Turn {
         to: Side,
     },
@@ -165,7 +168,10 @@ impl Step {
         let place = |(x, y): (f32, f32)| [("at", x, -1e4..=1e4), ("at", y, -1e4..=1e4)];
         match *self {
             Self::Wait { ms } => vec![millis("ms", ms)],
-            Self::Stand { at, .. } | Self::Enter { at, .. } | Self::WalkTo { at, .. } => place(at).into(),
+            Self::Stand { at, .. }
+            | Self::Enter { at, .. }
+            | Self::WalkTo { at, .. }
+            | Self::StepAside { at } => place(at).into(),
             Self::Turn { .. } | Self::Leave { .. } => Vec::new(),
             Self::Press { force_n, hold_ms, .. } => vec![force(force_n), millis("hold_ms", hold_ms)],
             Self::Tap { force_n, .. } => vec![force(force_n)],
