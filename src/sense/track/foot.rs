@@ -24,7 +24,7 @@ pub(super) const HALF_MOST: f64 = 0.2;
 pub(super) const HALF_REST: f64 = 0.075;
 
 /// Longest distance between two points under one shoe that carry noticeable load.
-const SHOE_M: f64 = 0.33;
+pub(super) const SHOE_M: f64 = 0.33;
 /// How far to the side of its line of roll a foot presses.
 const ASIDE_M: f64 = 0.11;
 /// How far from its centre of pressure a foot that has come down flat presses.
@@ -219,12 +219,7 @@ impl Foot {
     }
 
     /// Takes the tiles as its own and nobody else's (Eq. 4).
-    pub(super) fn alone(
-        &mut self,
-        list: &[LoadedTile],
-        dt: f64,
-        cell: impl Fn(&LoadedTile) -> (DVec2, DVec2),
-    ) {
+    pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
         let mut force = 0.0;
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
@@ -246,8 +241,31 @@ impl Foot {
         self.state[NORTH] = centre.y;
         self.be_sure(0.003);
         self.ambiguous = false;
-        if self.tiles.len() > 1 {
-            self.learn_halves(list, dt, cell);
+    }
+
+    /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
+    fn learn_halves(&mut self, lines: &Lines, pitch: f64, dt: f64) {
+        let fade = (-dt / 0.3).exp();
+        // The same error of the model is seen in many frames.
+        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        for axis in Axis::BOTH {
+            let half = axis.half();
+            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
+            let mut variance = self.covariance[half][half];
+            variance = variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
+            for line in lines.lines.iter().filter(|line| line.axis == axis) {
+                let slice = line.slice(pitch, axis.along(self.centre()), self.state[half]);
+                let seen = [line.force / lines.force - slice.share, line.moment / lines.force - slice.moment];
+                // A share that strays lies half a pitch from the line's middle.
+                let slopes = [slice.share_by[1], slice.moment_by[1]];
+                for (missing, slope, lever) in [(seen[0], slopes[0], 1.0), (seen[1], slopes[1], 0.5 * pitch)]
+                {
+                    let gain = variance * slope / (slope * slope * variance + doubt * lever * lever);
+                    self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
+                    variance *= 1.0 - gain * slope;
+                }
+            }
+            self.covariance[half][half] = variance;
         }
     }
 
@@ -261,6 +279,8 @@ impl Foot {
                 lines.line(axis, number);
             }
         }
+        self.learn_halves(&lines, pitch, dt);
+        let half = self.half();
         // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
         let weight =
             if self.alone_at.is_none() || self.age < HABIT_S { 1.0 } else { 1.0 - (-dt / HABIT_S).exp() };
@@ -323,31 +343,6 @@ impl Foot {
                 ..*habit
             })
             .unwrap_or(Habit::none(axis, number))
-    }
-
-    /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.
-    fn learn_halves(&mut self, list: &[LoadedTile], dt: f64, cell: impl Fn(&LoadedTile) -> (DVec2, DVec2)) {
-        let fade = (-dt / 0.3).exp();
-        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
-        for half in [HALF_EAST, HALF_NORTH] {
-            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
-            let variance = &mut self.covariance[half][half];
-            *variance = *variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
-        }
-        for position in 0..self.tiles.len() {
-            let tile = &list[self.tiles[position] as usize];
-            let on = self.on(cell(tile));
-            let missing = f64::from(tile.wrench.force) / self.force() - on.share();
-            for (half, slope) in [
-                (HALF_EAST, on.east.share_by[1] * on.north.share),
-                (HALF_NORTH, on.east.share * on.north.share_by[1]),
-            ] {
-                let variance = self.covariance[half][half];
-                let gain = variance * slope / (slope * slope * variance + doubt);
-                self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
-                self.covariance[half][half] = variance * (1.0 - gain * slope);
-            }
-        }
     }
 
     /// Moves the slow past on by `dt`.

@@ -17,7 +17,7 @@ mod patch;
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use self::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
+use self::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, SHOE_M, STATES};
 use self::joint::{Joint, MOST_FEET, Slope};
 use self::lines::{Axis, Lines};
 use super::contact::{ContactId, Covariance, TileLoad};
@@ -331,8 +331,7 @@ impl Tracker {
             if shared {
                 self.estimate_together(tiles, dt);
             } else {
-                let cells = self.cells;
-                self.feet[which].alone(tiles.list(), dt, |tile| cells.of(tile));
+                self.feet[which].alone(tiles.list(), dt);
             }
         }
         std::mem::swap(&mut self.links, &mut self.new_links);
@@ -398,6 +397,10 @@ impl Tracker {
         let (Some((_, host)), None) = (others.next(), others.next()) else { return false };
         if host.centre().distance(foot.centre()) < 0.6 * APART_M {
             return host.age >= foot.age;
+        }
+        if foot.centre().distance(foot.landed) > SHOE_M {
+            // Too far from where it landed to be the same foot still.
+            return true;
         }
         let Some(home) = host.alone_at else { return false };
         if foot.force() > 0.4 * host.force() && foot.age > host.age {
@@ -545,7 +548,8 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
         // Lines that a patch would reach but that carry nothing speak too.
         let foot = &feet[member as usize];
         for axis in Axis::BOTH {
-            let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()));
+            let wide = foot.covariance[axis.half()][axis.half()].sqrt();
+            let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
             for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
                 if (0..cells.count(axis)).contains(&number) {
                     lines.line(axis, number);
@@ -581,10 +585,7 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
     }
     for line in &lines.lines {
         let axis = line.axis;
-        let (place, half) = match axis {
-            Axis::East => (EAST, HALF_EAST),
-            Axis::North => (NORTH, HALF_NORTH),
-        };
+        let (place, half) = (axis.place(), axis.half());
         let aside = EAST + NORTH - place;
         let middle = (f64::from(line.number) + 0.5) * cells.pitch;
         let mut missing = [line.force, line.moment, line.cross];
@@ -594,7 +595,8 @@ fn observe(joint: &mut Joint, members: &[u32], feet: &[Foot], list: &[LoadedTile
             let foot = &feet[member as usize];
             let habit = foot.habit(axis, line.number);
             let place_along = axis.along(foot.centre());
-            let slice = line.slice(cells.pitch, place_along, axis.along(foot.half()));
+            let width = foot.covariance[half][half].sqrt();
+            let slice = line.slice_in_doubt(cells.pitch, place_along, axis.along(foot.half()), width);
             let share = (slice.share + habit.share).clamp(0.0, 1.0);
             if share <= 0.0 && slice.share <= 0.0 {
                 continue;
