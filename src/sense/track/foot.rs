@@ -193,26 +193,23 @@ impl Foot {
 
     /// Lists the loaded tiles that its patch may press.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
-        let near_home = self.habit_strength() > 0.3;
         self.tiles.clear();
         let reach = self.half() * 1.1 + 0.01;
-        let low = ((self.centre() - reach) / pitch).floor();
-        let high = ((self.centre() + reach) / pitch).floor();
-        for row in low.y as i32..=high.y as i32 {
-            for column in low.x as i32..=high.x as i32 {
-                if let Some(position) = tiles.find(column, row) {
-                    self.tiles.push(position as u32);
+        let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
+        let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
+        if self.habit_strength() > 0.3 {
+            // Where it was alone, it also presses what it pressed then.
+            for habit in self.habits.iter().filter(|habit| habit.share > 0.008) {
+                match habit.axis {
+                    Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
+                    Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),
                 }
             }
         }
-        if near_home {
-            // Where it was alone, it also presses what it pressed then.
-            for load in &self.past.loads {
-                if let Some(position) = tiles.place(load.index)
-                    && load.force > 0.01 * self.past.force
-                    && !self.tiles.contains(&position)
-                {
-                    self.tiles.push(position);
+        for row in low.y..=high.y {
+            for column in low.x..=high.x {
+                if let Some(position) = tiles.find(column, row) {
+                    self.tiles.push(position as u32);
                 }
             }
         }
