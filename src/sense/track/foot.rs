@@ -51,12 +51,18 @@ pub(super) struct Foot {
     pub faint: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
+    /// Whether this foot is the first of a group of several.
+    pub crowded: bool,
+    /// Whether it is one more than the joint filter holds.
+    pub beyond_filter: bool,
     /// Whether its part cannot be told from another's.
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
     pub habits: SmallVec<[Habit; 6]>,
+    /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
+    pub surprise: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub restless: f64,
     /// Where it was when last seen alone; `None` if it never was.
@@ -99,9 +105,12 @@ impl Foot {
             tiles: SmallVec::new(),
             faint: 0.0,
             group: 0,
+            crowded: false,
+            beyond_filter: false,
             ambiguous: false,
             shared: false,
             habits: SmallVec::new(),
+            surprise: 0.0,
             restless: 0.4,
             alone_at: None,
             landed: centre,
