@@ -24,7 +24,7 @@ pub(super) const HALF_MOST: f64 = 0.2;
 pub(super) const HALF_REST: f64 = 0.075;
 
 /// Longest distance between two points under one shoe that carry noticeable load.
-const SHOE_M: f64 = 0.33;
+pub(super) const SHOE_M: f64 = 0.33;
 /// How far to the side of its line of roll a foot presses.
 const ASIDE_M: f64 = 0.11;
 /// How far from its centre of pressure a foot that has come down flat presses.
@@ -51,12 +51,18 @@ pub(super) struct Foot {
     pub faint: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
+    /// Whether this foot is the first of a group of several.
+    pub crowded: bool,
+    /// Whether it is one more than the joint filter holds.
+    pub beyond_filter: bool,
     /// Whether its part cannot be told from another's.
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
     pub habits: SmallVec<[Habit; 6]>,
+    /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
+    pub surprise: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub restless: f64,
     /// Where it was when last seen alone; `None` if it never was.
@@ -99,9 +105,12 @@ impl Foot {
             tiles: SmallVec::new(),
             faint: 0.0,
             group: 0,
+            crowded: false,
+            beyond_filter: false,
             ambiguous: false,
             shared: false,
             habits: SmallVec::new(),
+            surprise: 0.0,
             restless: 0.4,
             alone_at: None,
             landed: centre,
@@ -193,38 +202,30 @@ impl Foot {
 
     /// Lists the loaded tiles that its patch may press.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
-        let near_home = self.habit_strength() > 0.3;
         self.tiles.clear();
         let reach = self.half() * 1.1 + 0.01;
-        let low = ((self.centre() - reach) / pitch).floor();
-        let high = ((self.centre() + reach) / pitch).floor();
-        for row in low.y as i32..=high.y as i32 {
-            for column in low.x as i32..=high.x as i32 {
-                if let Some(position) = tiles.find(column, row) {
-                    self.tiles.push(position as u32);
+        let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
+        let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
+        if self.habit_strength() > 0.3 {
+            // Where it was alone, it also presses what it pressed then.
+            for habit in self.habits.iter().filter(|habit| habit.share > 0.008) {
+                match habit.axis {
+                    Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
+                    Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),
                 }
             }
         }
-        if near_home {
-            // Where it was alone, it also presses what it pressed then.
-            for load in &self.past.loads {
-                if let Some(position) = tiles.place(load.index)
-                    && load.force > 0.01 * self.past.force
-                    && !self.tiles.contains(&position)
-                {
-                    self.tiles.push(position);
+        for row in low.y..=high.y {
+            for column in low.x..=high.x {
+                if let Some(position) = tiles.find(column, row) {
+                    self.tiles.push(position as u32);
                 }
             }
         }
     }
 
     /// Takes the tiles as its own and nobody else's (Eq. 4).
-    pub(super) fn alone(
-        &mut self,
-        list: &[LoadedTile],
-        dt: f64,
-        cell: impl Fn(&LoadedTile) -> (DVec2, DVec2),
-    ) {
+    pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
         let mut force = 0.0;
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
@@ -246,8 +247,31 @@ impl Foot {
         self.state[NORTH] = centre.y;
         self.be_sure(0.003);
         self.ambiguous = false;
-        if self.tiles.len() > 1 {
-            self.learn_halves(list, dt, cell);
+    }
+
+    /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
+    fn learn_halves(&mut self, lines: &Lines, pitch: f64, dt: f64) {
+        let fade = (-dt / 0.3).exp();
+        // The same error of the model is seen in many frames.
+        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        for axis in Axis::BOTH {
+            let half = axis.half();
+            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
+            let mut variance = self.covariance[half][half];
+            variance = variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
+            for line in lines.lines.iter().filter(|line| line.axis == axis) {
+                let slice = line.slice(pitch, axis.along(self.centre()), self.state[half]);
+                let seen = [line.force / lines.force - slice.share, line.moment / lines.force - slice.moment];
+                // A share that strays lies half a pitch from the line's middle.
+                let slopes = [slice.share_by[1], slice.moment_by[1]];
+                for (missing, slope, lever) in [(seen[0], slopes[0], 1.0), (seen[1], slopes[1], 0.5 * pitch)]
+                {
+                    let gain = variance * slope / (slope * slope * variance + doubt * lever * lever);
+                    self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
+                    variance *= 1.0 - gain * slope;
+                }
+            }
+            self.covariance[half][half] = variance;
         }
     }
 
@@ -261,6 +285,8 @@ impl Foot {
                 lines.line(axis, number);
             }
         }
+        self.learn_halves(&lines, pitch, dt);
+        let half = self.half();
         // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
         let weight =
             if self.alone_at.is_none() || self.age < HABIT_S { 1.0 } else { 1.0 - (-dt / HABIT_S).exp() };
@@ -323,31 +349,6 @@ impl Foot {
                 ..*habit
             })
             .unwrap_or(Habit::none(axis, number))
-    }
-
-    /// Learns the patch's half widths from how a seam divides a foot whose centre of pressure is known.
-    fn learn_halves(&mut self, list: &[LoadedTile], dt: f64, cell: impl Fn(&LoadedTile) -> (DVec2, DVec2)) {
-        let fade = (-dt / 0.3).exp();
-        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
-        for half in [HALF_EAST, HALF_NORTH] {
-            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
-            let variance = &mut self.covariance[half][half];
-            *variance = *variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
-        }
-        for position in 0..self.tiles.len() {
-            let tile = &list[self.tiles[position] as usize];
-            let on = self.on(cell(tile));
-            let missing = f64::from(tile.wrench.force) / self.force() - on.share();
-            for (half, slope) in [
-                (HALF_EAST, on.east.share_by[1] * on.north.share),
-                (HALF_NORTH, on.east.share * on.north.share_by[1]),
-            ] {
-                let variance = self.covariance[half][half];
-                let gain = variance * slope / (slope * slope * variance + doubt);
-                self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
-                self.covariance[half][half] = variance * (1.0 - gain * slope);
-            }
-        }
     }
 
     /// Moves the slow past on by `dt`.

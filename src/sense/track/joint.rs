@@ -3,7 +3,7 @@
 use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, NORTH, STATES};
 
 /// Most feet that are estimated together.
-pub(super) const MOST_FEET: usize = 4;
+pub(super) const MOST_FEET: usize = 8;
 const MOST: usize = MOST_FEET * STATES;
 
 /// An extended Kalman filter over the states of up to [`MOST_FEET`] feet.
@@ -105,7 +105,9 @@ impl Joint {
     }
 
     /// Takes in one scalar observation: what is missing from its prediction, the slopes, its variance.
-    pub(super) fn observe(&mut self, missing: f64, slopes: &[Slope], variance: f64) {
+    ///
+    /// Gives back how surprising it was: the square of what is missing over the variance expected of it.
+    pub(super) fn observe(&mut self, missing: f64, slopes: &[Slope], variance: f64) -> f64 {
         let n = self.states;
         let mut gain = [0.0; MOST];
         for &(state, slope) in slopes {
@@ -117,7 +119,7 @@ impl Joint {
         let explained: f64 = slopes.iter().map(|&(state, slope)| slope * gain[state]).sum();
         let total = explained + variance;
         if total.is_nan() || total <= 0.0 {
-            return;
+            return 0.0;
         }
         let scale = 1.0 / total;
         for row in 0..n {
@@ -127,6 +129,7 @@ impl Joint {
                 *p -= step * gain;
             }
         }
+        missing * missing * scale
     }
 
     /// Keeps every state where a foot can be.

@@ -9,6 +9,7 @@
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
+use super::foot::{EAST, HALF_EAST, HALF_NORTH, NORTH};
 use super::patch::Slice;
 use crate::sense::tile::LoadedTile;
 
@@ -24,6 +25,22 @@ pub(super) enum Axis {
 
 impl Axis {
     pub(super) const BOTH: [Self; 2] = [Self::East, Self::North];
+
+    /// Which number of a foot's state is its centre's place along the axis.
+    pub(super) fn place(self) -> usize {
+        match self {
+            Self::East => EAST,
+            Self::North => NORTH,
+        }
+    }
+
+    /// Which number of a foot's state is its half width along the axis.
+    pub(super) fn half(self) -> usize {
+        match self {
+            Self::East => HALF_EAST,
+            Self::North => HALF_NORTH,
+        }
+    }
 
     /// The component along the axis.
     pub(super) fn along(self, point: DVec2) -> f64 {
@@ -64,6 +81,12 @@ impl Line {
     pub(super) fn slice(&self, pitch: f64, c: f64, h: f64) -> Slice {
         let low = f64::from(self.number) * pitch;
         Slice::new(low, low + pitch, c, h)
+    }
+
+    /// The same for a half width known to within a standard deviation of `doubt`.
+    pub(super) fn slice_in_doubt(&self, pitch: f64, c: f64, h: f64, doubt: f64) -> Slice {
+        let low = f64::from(self.number) * pitch;
+        Slice::in_doubt(low, low + pitch, c, h, doubt)
     }
 }
 

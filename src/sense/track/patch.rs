@@ -47,6 +47,29 @@ impl Slice {
     }
 }
 
+impl Slice {
+    /// The slice one expects if the half width `h` is only known to within a standard deviation of `doubt`.
+    ///
+    /// A patch that just doesn't reach a seam has no slope there: nothing the
+    /// next tile carries could widen it. Looking at a narrower and a wider one
+    /// instead gives the slope over the range that matters.
+    pub(super) fn in_doubt(low: f64, high: f64, c: f64, h: f64, doubt: f64) -> Self {
+        if doubt < 0.002 {
+            return Self::new(low, high, c, h);
+        }
+        let narrow = (h - doubt).max(0.3 * h);
+        let wide = h + doubt;
+        let (a, b) = (Self::new(low, high, c, narrow), Self::new(low, high, c, wide));
+        let run = wide - narrow;
+        Self {
+            share: 0.5 * (a.share + b.share),
+            moment: 0.5 * (a.moment + b.moment),
+            share_by: [0.5 * (a.share_by[0] + b.share_by[0]), (b.share - a.share) / run],
+            moment_by: [0.5 * (a.moment_by[0] + b.moment_by[0]), (b.moment - a.moment) / run],
+        }
+    }
+}
+
 /// What of a foot's patch falls on one tile.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct PatchOnTile {

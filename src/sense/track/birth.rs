@@ -1,0 +1,117 @@
+//! Feet that land where others already stand.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::Tracker;
+use super::foot::{FORCE, Foot};
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::tile::LoadedTile;
+
+/// Least distance between the centres of pressure of two feet: side by side, touching.
+pub(super) const APART_M: f64 = 0.08;
+
+/// A foot that has just landed among another's tiles.
+#[derive(Clone, Debug, Default)]
+struct Newcomer {
+    force: f64,
+    place: DVec2,
+    deviation: f64,
+    /// Positions of the tiles on which it was noticed, in the list of loaded tiles.
+    tiles: SmallVec<[u32; 4]>,
+}
+
+impl Tracker {
+    /// Lets feet land on tiles that others already press.
+    pub(super) fn find_newcomers(&mut self, tiles: &LoadedTiles) {
+        let list = tiles.list();
+        for which in 0..self.feet.len() {
+            let foot = &self.feet[which];
+            if foot.age == 0.0 || foot.shared {
+                continue;
+            }
+            let Some(newcomer) = self.newcomer(foot, list) else { continue };
+            let others = self.feet.iter().enumerate().filter(|&(other, _)| other != which);
+            let nearest = others
+                .map(|(other, foot)| {
+                    (other, foot.beyond(newcomer.place), foot.centre().distance(newcomer.place))
+                })
+                .filter(|&(_, beyond, distance)| beyond < 0.0 || distance < APART_M)
+                .min_by(|a, b| a.2.total_cmp(&b.2));
+            if let Some((other, ..)) = nearest {
+                // Not a newcomer, but more of a foot that is already there.
+                let known = &mut self.feet[other];
+                for &position in &newcomer.tiles {
+                    if !known.tiles.contains(&position) {
+                        known.tiles.push(position);
+                    }
+                }
+                continue;
+            }
+            if foot.centre().distance(newcomer.place) < APART_M {
+                continue;
+            }
+            let mut newborn = Foot::new(self.name(), newcomer.force, newcomer.place, newcomer.deviation);
+            newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
+            newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
+            newborn.reach(tiles, self.cells.pitch);
+            for &position in &newcomer.tiles {
+                if !newborn.tiles.contains(&position) {
+                    newborn.tiles.push(position);
+                }
+            }
+            if !newborn.tiles.is_empty() {
+                self.feet[which].step_back();
+                self.feet.push(newborn);
+            }
+        }
+    }
+
+    /// The foot that has landed among the tiles of `foot`, if one has.
+    fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
+        let mut whole = 0.0;
+        let mut sum = DVec2::ZERO;
+        let mut found = Newcomer::default();
+        for &position in &foot.tiles {
+            let tile = &list[position as usize];
+            let force = f64::from(tile.wrench.force);
+            let centroid = tile.centroid.as_dvec2();
+            whole += force;
+            sum += centroid * force;
+            let slow = foot.slow_load(tile.index);
+            let centre = tile.centre.as_dvec2();
+            let added = force - slow.force;
+            if added < 10.0 {
+                continue;
+            }
+            let moment = (centroid - centre) * force - slow.moment;
+            // Moment of what was added about the foot's own centre of pressure.
+            let about = moment + (centre - foot.past.centre) * added;
+            let place = centre + moment / added;
+            let (low, high) = self.cells.of(tile);
+            let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
+            // What the foot's own sway may look like, at its own centre of pressure.
+            let sway = slow.force * 0.012;
+            if inside && about.length() > added * 0.08 + sway && foot.beyond(place) > sway / added {
+                found.place =
+                    (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);
+                found.force += added;
+                found.deviation = found.deviation.max(0.02 + (slow.force * 0.006 / added).min(0.1));
+                found.tiles.push(position);
+            }
+        }
+        if found.force > 0.0 {
+            return Some(found);
+        }
+        let leap = sum / whole - foot.past.centre;
+        if foot.age > 0.12 && whole > 120.0 && leap.length() > 0.02 {
+            let moment = leap * whole;
+            let added = (whole - foot.past.force).max(moment.length() / 0.45);
+            if added < whole {
+                let place = foot.past.centre + moment / added;
+                return Some(Newcomer { force: added, place, deviation: 0.08, ..Newcomer::default() });
+            }
+        }
+        None
+    }
+}

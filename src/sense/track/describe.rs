@@ -1,0 +1,83 @@
+//! Feet as contacts.
+
+use glam::Vec2;
+
+use super::foot::{EAST, Foot, NORTH};
+use super::{Cells, Tracker};
+use crate::sense::contact::{Covariance, TileLoad};
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::pool::ContactPool;
+use crate::sense::tile::LoadedTile;
+use crate::units::Newtons;
+
+/// How much more a joint position is doubted per unit of surprise.
+const MISTRUST: f64 = 4000.0;
+
+/// Standard deviation above which the place of a foot counts as a guess, in metres.
+const AMBIGUOUS_M: f64 = 0.04;
+
+/// The largest standard deviation that mistrust may lead to: it is in this group of tiles, no more is known.
+const LOST_M: f64 = 0.3;
+
+impl Tracker {
+    /// Fills `pool` with the feet as they are now.
+    pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
+        let list = tiles.list();
+        pool.clear();
+        for foot in &mut self.feet {
+            if !foot.shared {
+                foot.surprise = 0.0;
+            }
+            // Predictions that keep failing say that the feet are not what the filter takes them for.
+            let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
+            let mistrust = (1.0 + MISTRUST * foot.surprise).min(LOST_M * LOST_M / variance).max(1.0);
+            foot.ambiguous =
+                foot.shared && (foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M);
+            let contact = pool.add(foot.id);
+            contact.centroid = foot.centre().as_vec2();
+            contact.force = Newtons(foot.force() as f32);
+            contact.velocity = foot.velocity().as_vec2();
+            contact.ambiguous = foot.ambiguous;
+            let mut covariance = if foot.shared {
+                Covariance {
+                    xx: (mistrust * foot.covariance[EAST][EAST]) as f32,
+                    xy: (mistrust * foot.covariance[EAST][NORTH]) as f32,
+                    yy: (mistrust * foot.covariance[NORTH][NORTH]) as f32,
+                }
+            } else {
+                Covariance::default()
+            };
+            for &position in &foot.tiles {
+                let tile = &list[position as usize];
+                let (share, load) = part_of(foot, tile, &self.cells);
+                if load.force.0 > 0.0 {
+                    contact.tiles.push(load);
+                }
+                contact.quality = contact.quality.max(tile.quality);
+                covariance +=
+                    self.doubt.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
+            }
+            contact.covariance = covariance;
+            contact.finish();
+        }
+        pool.sort_by_id();
+    }
+}
+
+/// What `foot` presses on `tile`: as a share of the tile's load, and in newtons.
+fn part_of(foot: &Foot, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
+    let whole = TileLoad {
+        tile: tile.tile,
+        index: tile.index as usize,
+        force: Newtons(tile.wrench.force),
+        centroid: tile.centroid,
+    };
+    if !foot.shared {
+        return (1.0, whole);
+    }
+    let on = foot.on(cells.of(tile));
+    let force = (foot.force() * on.share()) as f32;
+    let share = (force / tile.wrench.force).min(1.0);
+    let arm = if on.share() > 1e-6 { (on.moment() / on.share()).as_vec2() } else { Vec2::ZERO };
+    (share, TileLoad { force: Newtons(force.min(tile.wrench.force)), centroid: tile.centre + arm, ..whole })
+}

@@ -1,0 +1,185 @@
+//! What the joint filter knows of feet and tiles: how feet change, and what they press.
+
+use arrayvec::ArrayVec;
+
+use super::Cells;
+use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
+use super::joint::{Joint, MOST_FEET, Slope};
+use super::lines::{Axis, Lines};
+use crate::sense::tile::LoadedTile;
+
+/// How far force that strays over a seam is spread along it, as a standard deviation.
+const SPREAD_M: f64 = 0.05;
+
+/// Lets `dt` seconds pass for the feet in `members`.
+pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64) {
+    const FORCE_FADE_S: f64 = 0.03;
+    const FORCE_RATE: f64 = 5000.0;
+    const PLACE_FADE_S: f64 = 0.08;
+    const SPEED: f64 = 0.4;
+    const HALF_FADE_S: f64 = 0.3;
+    const HALF_SPREAD: f64 = 0.04;
+    for (which, &member) in members.iter().enumerate() {
+        let at = which * STATES;
+        // A foot that has stood still is expected to go on standing still.
+        let speed = (2.0 * feet[member as usize].restless).clamp(0.05, SPEED);
+        for (value, fade_s, rate) in
+            [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
+        {
+            let fade = (-dt / fade_s).exp();
+            joint.drift(at + value, fade_s * (1.0 - fade), fade, rate * rate * (1.0 - fade * fade));
+        }
+        // What a foot is known to be shaped like, it keeps while it stays where it is.
+        let loose = 1.0 - feet[member as usize].habit_strength();
+        let fade = (-dt * loose / HALF_FADE_S).exp();
+        for half in [HALF_EAST, HALF_NORTH] {
+            joint.relax(at + half, HALF_REST, fade, HALF_SPREAD * HALF_SPREAD * (1.0 - fade * fade));
+        }
+    }
+}
+
+/// Shows the joint filter what the tiles of its feet carry; gives back how surprising that was on average.
+pub(super) fn observe(
+    joint: &mut Joint,
+    members: &[u32],
+    feet: &[Foot],
+    list: &[LoadedTile],
+    cells: &Cells,
+    dt: f64,
+) -> f64 {
+    // Errors of the patch model last for tens of milliseconds: many frames see the same one.
+    let frames = (0.03 / dt.max(1e-4)).max(1.0);
+    let mut seen: ArrayVec<u32, 64> = ArrayVec::new();
+    for &member in members {
+        for &position in &feet[member as usize].tiles {
+            if !seen.contains(&position) && !seen.is_full() {
+                seen.push(position);
+            }
+        }
+    }
+    let mut lines = Lines::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
+    let (force, middle) = (lines.force, lines.middle);
+    for &member in members {
+        // Lines that a patch would reach but that carry nothing speak too.
+        let foot = &feet[member as usize];
+        for axis in Axis::BOTH {
+            let wide = foot.covariance[axis.half()][axis.half()].sqrt();
+            let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
+            for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
+                if (0..cells.count(axis)).contains(&number) {
+                    lines.line(axis, number);
+                }
+            }
+        }
+    }
+    // The whole of it, free of any patch model.
+    let mut slopes = [[(0, 0.0); 2 * MOST_FEET]; 3];
+    for which in 0..members.len() {
+        let at = which * STATES;
+        let state = &joint.x[at..at + STATES];
+        slopes[0][which] = (at + FORCE, 1.0);
+        slopes[1][2 * which] = (at + FORCE, state[EAST] - middle.x);
+        slopes[1][2 * which + 1] = (at + EAST, state[FORCE]);
+        slopes[2][2 * which] = (at + FORCE, state[NORTH] - middle.y);
+        slopes[2][2 * which + 1] = (at + NORTH, state[FORCE]);
+    }
+    let n = members.len();
+    let start = joint.x;
+    let now = |joint: &Joint, slopes: &[Slope]| -> f64 {
+        // What the linearised prediction still misses after the observations so far.
+        slopes.iter().map(|&(state, slope)| slope * (joint.x[state] - start[state])).sum()
+    };
+    let whole: f64 = (0..n).map(|which| start[which * STATES + FORCE]).sum();
+    joint.observe(force - whole, &slopes[0][..n], 4.0);
+    for (axis, slopes) in [(EAST, slopes[1]), (NORTH, slopes[2])] {
+        let middle = if axis == EAST { middle.x } else { middle.y };
+        let moment: f64 =
+            (0..n).map(|which| start[which * STATES + FORCE] * (start[which * STATES + axis] - middle)).sum();
+        let missing = -moment - now(joint, &slopes[..2 * n]);
+        joint.observe(missing, &slopes[..2 * n], 0.09);
+    }
+    let mut surprise = 0.0;
+    for line in &lines.lines {
+        let axis = line.axis;
+        let (place, half) = (axis.place(), axis.half());
+        let aside = EAST + NORTH - place;
+        let middle = (f64::from(line.number) + 0.5) * cells.pitch;
+        let mut missing = [line.force, line.moment, line.cross];
+        let mut rows: Rows = Default::default();
+        let mut doubt = [[4.0, 0.0, 0.0], [0.0, 0.09, 0.0], [0.0, 0.0, 0.09]];
+        for (which, &member) in members.iter().enumerate() {
+            let foot = &feet[member as usize];
+            let habit = foot.habit(axis, line.number);
+            let place_along = axis.along(foot.centre());
+            let width = foot.covariance[half][half].sqrt();
+            let slice = line.slice_in_doubt(cells.pitch, place_along, axis.along(foot.half()), width);
+            let share = (slice.share + habit.share).clamp(0.0, 1.0);
+            if share <= 0.0 && slice.share <= 0.0 {
+                continue;
+            }
+            let (f, at) = (foot.force(), which * STATES);
+            let offset = axis.across(foot.centre() - lines.middle);
+            let moment = slice.moment + habit.moment;
+            let cross = share * offset + habit.cross;
+            missing[0] -= f * share;
+            missing[1] -= f * moment;
+            missing[2] -= f * cross;
+            // What the patch model leaves open: force that lies on the other side of the seam
+            // through the foot, and how that force is spread along the seam.
+            let strength = foot.habit_strength();
+            let straddle =
+                4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
+            let strange = 0.01 + 0.08 * (1.0 - strength);
+            let strayed = frames * (f * strange).powi(2) * straddle;
+            let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
+            for (row, values) in doubt.iter_mut().enumerate() {
+                for (column, value) in values.iter_mut().enumerate() {
+                    *value += strayed * lever[row] * lever[column];
+                }
+            }
+            doubt[1][1] += strayed * SPREAD_M * SPREAD_M;
+            doubt[2][2] += strayed * SPREAD_M * SPREAD_M;
+            for (row, value, along, wider, across) in [
+                (0, share, slice.share_by[0], slice.share_by[1], 0.0),
+                (1, moment, slice.moment_by[0], slice.moment_by[1], 0.0),
+                (2, cross, slice.share_by[0] * offset, slice.share_by[1] * offset, share),
+            ] {
+                rows[row].push((at + FORCE, value));
+                rows[row].push((at + place, f * along));
+                rows[row].push((at + half, f * wider));
+                rows[row].push((at + aside, f * across));
+            }
+        }
+        let variances = decorrelate(&mut missing, &mut rows, doubt);
+        for row in 0..3 {
+            let missing = missing[row] - now(joint, &rows[row]);
+            surprise += joint.observe(missing, &rows[row], variances[row]);
+        }
+    }
+    surprise / (3.0 * lines.lines.len() as f64)
+}
+
+/// The slopes of a line's force, moment and cross moment.
+type Rows = [ArrayVec<Slope, { 4 * MOST_FEET }>; 3];
+
+/// Turns three observations with correlated errors into three independent ones; gives their variances.
+///
+/// # Source
+/// R = L D Lᵀ: multiplied by the inverse of L, errors of covariance R have the diagonal covariance D.
+fn decorrelate(missing: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]) -> [f64; 3] {
+    for pivot in 0..2 {
+        for row in pivot + 1..3 {
+            let factor = doubt[row][pivot] / doubt[pivot][pivot];
+            let above = doubt[pivot];
+            for (below, above) in doubt[row].iter_mut().zip(above) {
+                *below -= factor * above;
+            }
+            missing[row] -= factor * missing[pivot];
+            let (above, below) = rows.split_at_mut(row);
+            for (slope, taken) in below[0].iter_mut().zip(&above[pivot]) {
+                slope.1 -= factor * taken.1;
+            }
+        }
+    }
+    [doubt[0][0], doubt[1][1], doubt[2][2]]
+}
