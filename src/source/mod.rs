@@ -1,7 +1,9 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+mod fault;
 mod udp;
 
+pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
 pub use udp::UdpSource;
 
 use std::time::Duration;
