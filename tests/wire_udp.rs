@@ -187,6 +187,29 @@ fn a_flood_of_rubbish_holds_no_call_for_long_and_lets_packets_through() {
     assert!(counters.malformed >= packets, "{counters:?}");
 }
 
+// N13
+#[cfg(target_os = "linux")]
+#[test]
+fn what_the_kernel_drops_while_nobody_reads_is_counted() {
+    let (mut source, sender) = link();
+    // Far more than the granted buffer holds; each datagram takes at least its own bytes there.
+    let datagram = [0; 1024];
+    let sent = 2 * source.granted_buffer() / datagram.len() + 10;
+    for _ in 0..sent {
+        let _ = sender.send(&datagram);
+    }
+    // The kernel is asked once a second.
+    let mut patience = 50;
+    while source.counters().overflowed == 0 && patience > 0 {
+        source.next(Duration::from_millis(100)).unwrap();
+        patience -= 1;
+    }
+    while source.next(Duration::from_millis(1)).unwrap().is_some() {}
+    let counters = source.counters();
+    assert!(counters.overflowed > 0);
+    assert_eq!(counters.datagrams + counters.overflowed, sent as u64);
+}
+
 #[test]
 fn the_granted_buffer_is_told() {
     let (source, _sender) = link();

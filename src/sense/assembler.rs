@@ -251,7 +251,7 @@ impl Assembler {
     pub fn tare(&self) -> Vec<[Newtons; 4]> {
         let mut tare = vec![[Newtons::ZERO; 4]; self.floor_tiles];
         for (tile, corner, force) in self.boards.iter().flat_map(BoardTrack::tares) {
-            tare[tile][corner] = force;
+            tare[tile][corner.index()] = force;
         }
         tare
     }
@@ -357,7 +357,7 @@ impl Assembler {
             // The board has just slipped back a slot: one of its samples is left out.
             return;
         }
-        board.store(waiting.buffer, &packet.readings, &mut self.counters);
+        board.store(waiting.buffer, &packet.readings);
         board.stream.deliver(self.now_ns);
         self.counters.packets += 1;
     }
@@ -383,8 +383,7 @@ impl Assembler {
 
     fn release(&mut self, buffer: usize) {
         for board in &mut self.boards {
-            self.counters.late += u64::from(board.has(buffer));
-            board.clear(buffer);
+            self.counters.late += u64::from(board.clear(buffer));
         }
     }
 
@@ -397,10 +396,7 @@ impl Assembler {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
         self.done = slot;
         for board in &mut self.boards {
-            board.apply(buffer, at_ns, &mut self.frame);
-            if let Some(buffer) = buffer {
-                board.clear(buffer);
-            }
+            board.apply(buffer, at_ns, &mut self.frame, &mut self.counters);
         }
         self.started |= !self.boards.iter().any(|board| board.stream.awaited && board.is_taring());
         if self.started {

@@ -14,9 +14,6 @@ const NOBODY: u32 = u32::MAX;
 /// How far a contact may have come in one frame without sharing a tile with its old self, in metres.
 const LEAP_M: f32 = 0.1;
 
-/// Force from which on a tile has its full weight in Eq. 4 (our choice: three times the least that counts as load).
-const FULL_WEIGHT: f32 = 12.0;
-
 /// The paper's own method: one contact per group of connected tiles, named by continuity.
 ///
 /// A group goes on under the name that most of its force had in the last frame.
@@ -24,9 +21,8 @@ const FULL_WEIGHT: f32 = 12.0;
 /// heavier part keeps the name.
 ///
 /// # Source
-/// x_c = Σ w_k x_ck, w_k = F_k / F over the group's tiles (paper, Eq. 4). Tiles
-/// under less than 12 N weigh less than that here, so that a foot sliding over
-/// a seam gains its next tile gradually, not with a jump when it first counts.
+/// x_c = Σ w_k x_ck, w_k = F_k / F over the group's tiles (paper, Eq. 4), but
+/// with [`LoadedTile::weight`] for F_k.
 #[derive(Clone, Debug)]
 pub(super) struct Eq4 {
     doubt: SensorDoubt,
@@ -116,7 +112,7 @@ impl Eq4 {
             let mut sum = Vec2::ZERO;
             for &member in members {
                 let tile = &tiles.list()[member as usize];
-                let weighed = fade(tile.wrench.force);
+                let weighed = tile.weight();
                 force += tile.wrench.force;
                 weight += weighed;
                 sum += tile.centroid * weighed;
@@ -208,9 +204,4 @@ impl Eq4 {
 /// Weight of a new velocity against the old one: a first-order low-pass of 25 ms.
 pub(super) fn smoothing(dt: f32) -> f32 {
     1.0 - (-dt / 0.025).exp()
-}
-
-/// What a tile's force weighs in a sum over tiles: all of it from [`FULL_WEIGHT`] on, ever less below.
-fn fade(force: f32) -> f32 {
-    force * (force / FULL_WEIGHT).min(1.0)
 }

@@ -105,7 +105,17 @@ pub struct LoadedTile {
     pub quality: Quality,
 }
 
+/// Force from which on a tile has its full weight among others (our choice: three times the least that counts as load).
+const FULL_WEIGHT: f32 = 12.0;
+
 impl LoadedTile {
+    /// What the tile's force weighs in a centroid over several tiles: all of it from 12 N on, ever
+    /// less below, so that a foot sliding over a seam gains its next tile gradually, not with a
+    /// jump when that tile first counts as loaded.
+    pub(super) fn weight(&self) -> f32 {
+        self.wrench.force * (self.wrench.force / FULL_WEIGHT).min(1.0)
+    }
+
     /// The tile at `index` of the floor, with sensors that read `corners`; `None` unless
     /// they add up to at least `least` and more than nothing.
     pub(super) fn new(

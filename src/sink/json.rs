@@ -42,7 +42,7 @@ impl JsonSink {
     pub fn new(out: impl Write + Send + 'static) -> Result<Self, SinkError> {
         let failed = |source| SinkError::Output { message: format!("cannot write events: {source}"), source };
         let worker = Worker::spawn("json out", move |jobs| {
-            if let Err(error) = write_all(&jobs, out) {
+            if let Err(error) = write_all(jobs, out) {
                 tracing::warn!("events are no longer written: {error}");
             }
         })

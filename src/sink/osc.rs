@@ -66,7 +66,7 @@ impl OscSink {
         let sender = Sender { socket, target, undelivered: undelivered.clone(), bytes: Vec::new() };
         let worker = Worker::spawn("osc out", {
             let latest = latest.clone();
-            move |jobs| sender.run(&jobs, &latest)
+            move |jobs| sender.run(jobs, &latest)
         })
         .map_err(failed)?;
         Ok(Self { worker, latest, undelivered, due: None })

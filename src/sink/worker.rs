@@ -1,4 +1,5 @@
 use std::io;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
@@ -17,20 +18,23 @@ pub(super) struct Worker<T> {
     jobs: Option<SyncSender<T>>,
     finished: Receiver<()>,
     thread: Option<JoinHandle<()>>,
-    dropped: AtomicU64,
+    dropped: Arc<AtomicU64>,
 }
 
 impl<T: Send + 'static> Worker<T> {
-    /// Starts a thread that runs `work` until the jobs end.
-    pub(super) fn spawn(name: &str, work: impl FnOnce(Receiver<T>) + Send + 'static) -> io::Result<Self> {
+    /// Starts a thread that runs `work` until the jobs end; what waits when it ends earlier is dropped.
+    pub(super) fn spawn(name: &str, work: impl FnOnce(&Receiver<T>) + Send + 'static) -> io::Result<Self> {
         let (jobs, queue) = sync_channel(QUEUE);
         let (finish, finished) = channel();
+        let dropped = Arc::new(AtomicU64::new(0));
+        let left = dropped.clone();
         let thread = Builder::new().name(name.into()).spawn(move || {
-            work(queue);
-            // Whoever waits for the end no longer needs to.
+            work(&queue);
+            left.fetch_add(queue.try_iter().count() as u64, Ordering::Relaxed);
+            // Whoever waits for the end may be gone.
             let _ = finish.send(());
         })?;
-        Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped: AtomicU64::new(0) })
+        Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped })
     }
 
     /// Gives the thread a job; false, and counted, if too many wait or the thread has ended.
@@ -73,7 +77,7 @@ mod tests {
     #[test]
     fn everything_offered_is_done_before_the_end() {
         let (done, results) = channel();
-        let worker = Worker::spawn("test", move |jobs: Receiver<u32>| {
+        let worker = Worker::spawn("test", move |jobs: &Receiver<u32>| {
             jobs.iter().for_each(|job| done.send(job).unwrap());
         })
         .unwrap();
@@ -85,7 +89,7 @@ mod tests {
     #[test]
     fn too_many_jobs_are_counted_and_never_wait() {
         let (go, gate) = channel::<()>();
-        let worker = Worker::spawn("test", move |jobs: Receiver<u32>| {
+        let worker = Worker::spawn("test", move |jobs: &Receiver<u32>| {
             let _ = gate.recv();
             jobs.iter().for_each(drop);
         })

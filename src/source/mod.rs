@@ -1,8 +1,10 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+mod fault;
 mod simulated;
 mod udp;
 
+pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
 pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;
 

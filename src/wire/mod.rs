@@ -9,6 +9,7 @@ mod counters;
 mod decode;
 mod encode;
 mod event;
+pub mod garble;
 mod guard;
 mod packet;
 

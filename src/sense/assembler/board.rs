@@ -1,6 +1,6 @@
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use crate::floor::{Calibration, Floor, SensorId};
+use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
@@ -15,27 +15,19 @@ const SATURATED: u16 = 64225;
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
     pub(super) stream: Stream,
+    geometry: Geometry,
     channels: Vec<Option<Channel>>,
-    samples: [Vec<Sample>; BUFFERS],
-    filled: [bool; BUFFERS],
+    waiting: [Option<Readings>; BUFFERS],
     tare: TareState,
 }
 
-/// What one channel measures.
+/// What one channel measures. Small, for a large floor has many.
 #[derive(Clone, Copy, Debug)]
 struct Channel {
-    sensor: SensorId,
-    tile: usize,
-    corner: usize,
+    tile: u32,
+    corner: Corner,
     calibration: Calibration,
     tare: f32,
-}
-
-/// One reading before the tare is taken off; NaN if it was bad.
-#[derive(Clone, Copy, Debug, Default)]
-struct Sample {
-    force: f32,
-    saturated: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -49,26 +41,30 @@ enum TareState {
 impl BoardTrack {
     pub(super) fn new(floor: &Floor, number: usize, tare: Tare) -> Self {
         let wiring = floor.boards.get(number).map(|board| board.channels.as_slice()).unwrap_or_default();
-        let channels: Vec<_> = wiring
-            .iter()
-            .map(|sensor| {
-                let sensor = (*sensor)?;
-                let (tile, corner) = (floor.geometry.index(sensor.tile)?, sensor.corner.index());
-                Some(Channel {
-                    sensor,
-                    tile,
-                    corner,
-                    calibration: floor.calibration.get(tile).map_or(Calibration::NOMINAL, |all| all[corner]),
-                    tare: floor.tare.get(tile).map_or(0.0, |all| all[corner].0),
-                })
+        let channel = |sensor: SensorId| {
+            let (tile, corner) = (floor.geometry.index(sensor.tile)?, sensor.corner);
+            Some(Channel {
+                tile: u32::try_from(tile).ok()?,
+                corner,
+                calibration: floor
+                    .calibration
+                    .get(tile)
+                    .map_or(Calibration::NOMINAL, |all| all[corner.index()]),
+                tare: floor.tare.get(tile).map_or(0.0, |all| all[corner.index()].0),
             })
-            .collect();
-        let samples = std::array::from_fn(|_| vec![Sample::default(); channels.len()]);
+        };
+        let channels: Vec<_> = wiring.iter().map(|sensor| sensor.and_then(channel)).collect();
         let tare = match tare {
             Tare::FromFloor => TareState::FromFloor,
             Tare::AtStart(rules) => TareState::Measuring(TareMeter::new(channels.len(), rules)),
         };
-        Self { stream: Stream::default(), channels, samples, filled: [false; BUFFERS], tare }
+        Self {
+            stream: Stream::default(),
+            geometry: floor.geometry,
+            channels,
+            waiting: Default::default(),
+            tare,
+        }
     }
 
     pub(super) fn channel_count(&self) -> usize {
@@ -76,38 +72,17 @@ impl BoardTrack {
     }
 
     pub(super) const fn has(&self, buffer: usize) -> bool {
-        self.filled[buffer]
+        self.waiting[buffer].is_some()
     }
 
-    /// Stores calibrated `readings` in `buffer`, counting bad ones.
-    pub(super) fn store(&mut self, buffer: usize, readings: &Readings, counters: &mut LinkCounters) {
-        self.filled[buffer] = true;
-        let channels = self.channels.iter().zip(&mut self.samples[buffer]);
-        let mut bad = 0;
-        match readings {
-            Readings::Counts(counts) => {
-                for ((channel, sample), &count) in channels.zip(counts) {
-                    bad += u64::from(channel.is_some() && count.is_none());
-                    let force = match (channel, count) {
-                        (Some(channel), Some(count)) => channel.calibration.force(count).0,
-                        _ => f32::NAN,
-                    };
-                    *sample = Sample { force, saturated: count.is_some_and(|count| count >= SATURATED) };
-                }
-            }
-            Readings::Newtons(forces) => {
-                for ((channel, sample), &force) in channels.zip(forces) {
-                    bad += u64::from(channel.is_some() && !force.is_finite());
-                    *sample = Sample { force, saturated: false };
-                }
-            }
-        }
-        counters.bad_readings += bad;
+    /// Keeps `readings` until the frame of `buffer`'s slot is made.
+    pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
+        self.waiting[buffer] = Some(readings.clone());
     }
 
-    /// Frees `buffer` for a later slot.
-    pub(super) fn clear(&mut self, buffer: usize) {
-        self.filled[buffer] = false;
+    /// Forgets what waits in `buffer`; true if there was something.
+    pub(super) fn clear(&mut self, buffer: usize) -> bool {
+        self.waiting[buffer].take().is_some()
     }
 
     /// How far all of its values can be trusted.
@@ -142,51 +117,86 @@ impl BoardTrack {
     }
 
     /// The tare in use, sensor by sensor.
-    pub(super) fn tares(&self) -> impl Iterator<Item = (usize, usize, Newtons)> + '_ {
-        self.channels.iter().flatten().map(|channel| (channel.tile, channel.corner, Newtons(channel.tare)))
+    pub(super) fn tares(&self) -> impl Iterator<Item = (usize, Corner, Newtons)> + '_ {
+        self.channels
+            .iter()
+            .flatten()
+            .map(|channel| (channel.tile as usize, channel.corner, Newtons(channel.tare)))
     }
 
-    /// Writes what it read in `buffer` into `frame`; without a sample there, what it read last stays.
-    pub(super) fn apply(&mut self, buffer: Option<usize>, at_ns: i64, frame: &mut ForceFrame) {
-        let buffer = buffer.filter(|&buffer| self.filled[buffer]);
-        if let Some(buffer) = buffer {
-            self.measure_tare(buffer, at_ns);
+    /// Writes what it read in `buffer` into `frame` and frees the buffer; without a sample there,
+    /// what it read last stays.
+    pub(super) fn apply(
+        &mut self,
+        buffer: Option<usize>,
+        at_ns: i64,
+        frame: &mut ForceFrame,
+        counters: &mut LinkCounters,
+    ) {
+        let readings = buffer.and_then(|buffer| self.waiting[buffer].take());
+        if let Some(readings) = &readings {
+            self.measure_tare(readings, at_ns);
         }
         let quality = self.quality();
-        match buffer {
-            Some(buffer) if !self.is_taring() => self.write(buffer, quality, frame),
+        match readings {
+            Some(readings) if !self.is_taring() => {
+                counters.bad_readings += self.write(&readings, quality, frame);
+            }
             _ if quality == Quality::Stale => self.mark_stale(frame),
             _ => {}
         }
     }
 
-    fn write(&self, buffer: usize, quality: Quality, frame: &mut ForceFrame) {
-        for (channel, sample) in self.channels.iter().zip(&self.samples[buffer]) {
-            let Some(channel) = channel else { continue };
-            let force = sample.force - channel.tare;
-            let own = match sample {
-                _ if !force.is_finite() => Quality::Faulty,
-                Sample { saturated: true, .. } => Quality::Degraded,
-                Sample { saturated: false, .. } => Quality::Live,
+    /// Writes calibrated and tared forces; gives the number of bad readings.
+    fn write(&self, readings: &Readings, quality: Quality, frame: &mut ForceFrame) -> u64 {
+        let mut bad = 0;
+        let mut put = |channel: &Channel, force: f32, saturated: bool| {
+            let (tile, corner) = (channel.tile as usize, channel.corner.index());
+            let force = force - channel.tare;
+            let own = if !force.is_finite() {
+                bad += 1;
+                Quality::Faulty
+            } else {
+                frame.forces[tile][corner] = force;
+                if saturated { Quality::Degraded } else { Quality::Live }
             };
-            if force.is_finite() {
-                frame.forces[channel.tile][channel.corner] = force;
+            frame.quality[tile][corner] = own.max(quality);
+        };
+        match readings {
+            Readings::Counts(counts) => {
+                for (channel, &count) in self.channels.iter().zip(counts) {
+                    let Some(channel) = channel else { continue };
+                    let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
+                    put(channel, force, count.is_some_and(|count| count >= SATURATED));
+                }
             }
-            frame.quality[channel.tile][channel.corner] = own.max(quality);
+            Readings::Newtons(forces) => {
+                for (channel, &force) in self.channels.iter().zip(forces) {
+                    let Some(channel) = channel else { continue };
+                    put(channel, force, false);
+                }
+            }
         }
+        bad
     }
 
     fn mark_stale(&self, frame: &mut ForceFrame) {
         for channel in self.channels.iter().flatten() {
-            let quality = &mut frame.quality[channel.tile][channel.corner];
+            let quality = &mut frame.quality[channel.tile as usize][channel.corner.index()];
             *quality = (*quality).max(Quality::Stale);
         }
     }
 
-    fn measure_tare(&mut self, buffer: usize, at_ns: i64) {
+    fn measure_tare(&mut self, readings: &Readings, at_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
-        let used = self.channels.iter().zip(&self.samples[buffer]);
-        let forces = used.map(|(channel, sample)| if channel.is_some() { sample.force } else { f32::NAN });
+        let forces = self.channels.iter().enumerate().map(|(number, channel)| match (channel, readings) {
+            (None, _) => f32::NAN,
+            (Some(channel), Readings::Counts(counts)) => {
+                let count = counts.get(number).copied().flatten();
+                count.map_or(f32::NAN, |count| channel.calibration.force(count).0)
+            }
+            (Some(_), Readings::Newtons(forces)) => forces.get(number).copied().unwrap_or(f32::NAN),
+        });
         match meter.add(at_ns, forces) {
             None => {}
             Some(Found::Quiet(means)) => {
@@ -198,7 +208,10 @@ impl BoardTrack {
                 self.tare = TareState::Taken;
             }
             Some(Found::Noisy { channel, mean, deviation }) => {
-                let sensor = self.channels.get(channel).copied().flatten().map(|channel| channel.sensor);
+                let sensor = self.channels.get(channel).copied().flatten().map(|channel| SensorId {
+                    tile: self.geometry.tile_at_index(channel.tile as usize),
+                    corner: channel.corner,
+                });
                 self.tare = sensor.map_or(TareState::FromFloor, |sensor| {
                     TareState::Refused(TareOutcome::Refused { sensor, mean, deviation })
                 });

@@ -9,8 +9,8 @@ const TOO_OLD_NS: i64 = 100 * SLOT_NS;
 /// The same for a board that is to be believed again after an outage.
 const TOO_OLD_TO_RETURN_NS: i64 = 20 * SLOT_NS;
 
-/// A packet this much earlier than any other of its board lately, and not next in line, is doubtful.
-const EARLY_NS: i64 = 3 * SLOT_NS / 2;
+/// A packet this much earlier than any other of its board lately is doubtful: a slot too early.
+const EARLY_NS: i64 = 3 * SLOT_NS / 4;
 
 /// How far a board's samples may lie from their slots before it slips: more than half a slot, so
 /// that a board on the border does not slip to and fro.

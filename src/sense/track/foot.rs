@@ -226,14 +226,16 @@ impl Foot {
 
     /// Takes the tiles as its own and nobody else's (Eq. 4).
     pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
-        let mut force = 0.0;
+        let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
             let tile = &list[position as usize];
+            let weighed = f64::from(tile.weight());
             force += f64::from(tile.wrench.force);
-            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+            weight += weighed;
+            sum += tile.centroid.as_dvec2() * weighed;
         }
-        let centre = sum / force;
+        let centre = sum / weight;
         if dt > 0.0 {
             let weight = 1.0 - (-dt / 0.015).exp();
             let rate = (force - self.state[FORCE]) / dt;

@@ -1,0 +1,103 @@
+//! What packets cost on their way from datagram to frame, and what hostile ones cost.
+//!
+//! `cargo bench --bench decode --no-default-features`
+
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
+use underfoot::floor::{Floor, Geometry};
+use underfoot::sense::Assembler;
+use underfoot::units::Instant;
+use underfoot::wire::garble::{bundle_bomb, hostile_address, tag_bomb};
+use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};
+
+/// The packets of one millisecond, one per board.
+fn millisecond(floor: &Floor, ms: u32) -> Vec<SensorPacket> {
+    let packet = |(board, channels): (u16, usize)| SensorPacket {
+        board,
+        sequence: ms,
+        received: Instant::from_millis(ms.into()),
+        readings: Readings::Counts(
+            (0..channels as u16).map(|n| Some(20_000 + (ms as u16 ^ n) % 512)).collect(),
+        ),
+    };
+    (0..).zip(floor.boards.iter().map(|board| board.channels.len())).map(packet).collect()
+}
+
+fn decode(c: &mut Criterion) {
+    let floor = Floor::default();
+    let decoder = Decoder::new(&floor);
+    let packet = &millisecond(&floor, 1)[3];
+    let formats =
+        [("counts", SensorFormat::Counts), ("newtons", SensorFormat::Newtons), ("blob", SensorFormat::Blob)];
+    let mut group = c.benchmark_group("packet of 24 channels");
+    for (name, format) in formats {
+        let mut encoder = SensorEncoder::new(&floor, format);
+        let datagram = encoder.encode(packet).unwrap().to_vec();
+        let mut batch = Batch::default();
+        group.bench_function(format!("decode {name}"), |b| {
+            b.iter(|| decoder.decode(black_box(&datagram), Instant::START, &mut batch));
+        });
+        group.bench_function(format!("guard alone {name}"), |b| {
+            b.iter(|| check(black_box(&datagram), &Limits::SENSORS));
+        });
+        group.bench_function(format!("encode {name}"), |b| {
+            b.iter(|| encoder.encode(black_box(packet)).map(<[u8]>::len));
+        });
+    }
+    group.finish();
+}
+
+fn refuse(c: &mut Criterion) {
+    let decoder = Decoder::new(&Floor::default());
+    // As large as the limits let through to the walk itself, and far larger.
+    let roomy = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+    let mut group = c.benchmark_group("refuse");
+    let bombs = [
+        ("bundle bomb 3000 deep, 60 kB", bundle_bomb(3000)),
+        ("tag bomb 22000 deep, 22 kB", tag_bomb(22_000)),
+        ("address of 60 kB", hostile_address(60_000)),
+    ];
+    for (name, bomb) in &bombs {
+        let mut batch = Batch::default();
+        group.bench_function(*name, |b| {
+            b.iter(|| decoder.decode(black_box(bomb), Instant::START, &mut batch).is_err());
+        });
+        group.bench_function(format!("{name}, without the size limit"), |b| {
+            b.iter(|| check(black_box(bomb), &roomy));
+        });
+    }
+    let small = bundle_bomb(400);
+    group.bench_function("bundle bomb 400 deep, 8 kB", |b| {
+        b.iter(|| check(black_box(&small), &Limits::SENSORS).is_err());
+    });
+    group.finish();
+}
+
+fn assemble(c: &mut Criterion) {
+    let mut group = c.benchmark_group("frame");
+    for (columns, rows) in [(6, 6), (24, 24), (96, 96)] {
+        let floor = Floor::of(Geometry::of_paper_tiles(columns, rows).unwrap());
+        let mut assembler = Assembler::new(&floor);
+        let mut ms = 0;
+        group.bench_function(format!("assemble {columns} x {rows}"), |b| {
+            b.iter_batched_ref(
+                || {
+                    ms += 1;
+                    millisecond(&floor, ms)
+                },
+                |packets| {
+                    packets.iter().for_each(|packet| assembler.take(packet));
+                    assembler.ready().is_some()
+                },
+                BatchSize::SmallInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, decode, refuse, assemble);
+criterion_main!(benches);

@@ -1,0 +1,150 @@
+//! Hostile and broken datagrams, for trying out what happens.
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+/// Makes hostile and broken datagrams, to try out whatever listens; the same seed makes the same ones.
+///
+/// They are meant to be sent beside a good stream, made from datagrams
+/// *already sent*: a damaged copy is then recognised as a duplicate, where
+/// damage made beforehand could be mistaken for the real thing.
+#[derive(Clone, Debug)]
+pub struct Garbler {
+    rng: Pcg64Mcg,
+}
+
+impl Garbler {
+    /// A garbler with its own random numbers.
+    #[must_use]
+    pub fn new(seed: u64) -> Self {
+        Self { rng: Pcg64Mcg::seed_from_u64(seed) }
+    }
+
+    /// A datagram of a kind chosen at random, made from `model` where the kind needs one.
+    pub fn garble(&mut self, model: &[u8]) -> Vec<u8> {
+        match self.rng.random_range(0..8) {
+            0 => self.truncate(model),
+            1 | 2 => self.flip(model),
+            3 => self.not_a_number(model),
+            4 => self.random_bytes(),
+            5 => bundle_bomb(self.rng.random_range(5..4000)),
+            6 => tag_bomb(self.rng.random_range(5..30_000)),
+            _ => hostile_address(self.rng.random_range(1..60_000)),
+        }
+    }
+
+    /// The first bytes of `model`.
+    pub fn truncate(&mut self, model: &[u8]) -> Vec<u8> {
+        let length = self.rng.random_range(0..model.len().max(1));
+        model.get(..length).unwrap_or_default().to_vec()
+    }
+
+    /// `model` with one to four bits turned over.
+    pub fn flip(&mut self, model: &[u8]) -> Vec<u8> {
+        let mut bytes = model.to_vec();
+        for _ in 0..self.rng.random_range(1..=4) {
+            let bit = 1 << self.rng.random_range(0..8);
+            let place = self.rng.random_range(0..bytes.len().max(1));
+            if let Some(byte) = bytes.get_mut(place) {
+                *byte ^= bit;
+            }
+        }
+        bytes
+    }
+
+    /// `model` with up to eight of its last words made NaN or infinite: the readings of a newton packet.
+    pub fn not_a_number(&mut self, model: &[u8]) -> Vec<u8> {
+        let mut bytes = model.to_vec();
+        let (words, _) = bytes.as_chunks_mut();
+        for word in words.iter_mut().rev().take(8) {
+            let odd = [f32::NAN, f32::INFINITY, f32::NEG_INFINITY, -f32::NAN, 1e38];
+            *word = odd[self.rng.random_range(0..odd.len())].to_be_bytes();
+        }
+        bytes
+    }
+
+    /// Up to 2000 random bytes, half of the time dressed up as a bundle or a message.
+    pub fn random_bytes(&mut self) -> Vec<u8> {
+        let length = self.rng.random_range(0..2000);
+        let mut bytes: Vec<u8> = match self.rng.random_range(0..4) {
+            0 => b"#bundle\0".to_vec(),
+            1 => b"/underfoot/board/0\0\0,".to_vec(),
+            _ => Vec::new(),
+        };
+        bytes.extend((0..length).map(|_| self.rng.random::<u8>()));
+        bytes
+    }
+}
+
+/// Bundles in bundles, `levels` deep, 20 bytes each: what makes a recursive decoder run out of stack.
+#[must_use]
+pub fn bundle_bomb(levels: usize) -> Vec<u8> {
+    let mut bytes = Vec::with_capacity(20 * levels);
+    for level in (0..levels).rev() {
+        bytes.extend(b"#bundle\0\0\0\0\0\0\0\0\x01");
+        if level > 0 {
+            let inside = u32::try_from(20 * level - 4).unwrap_or(u32::MAX);
+            bytes.extend(inside.to_be_bytes());
+        }
+    }
+    bytes
+}
+
+/// A message whose type tags open `depth` arrays: the same trap in another place.
+#[must_use]
+pub fn tag_bomb(depth: usize) -> Vec<u8> {
+    let mut bytes = b"/underfoot/board/0\0\0,".to_vec();
+    bytes.resize(bytes.len() + depth, b'[');
+    bytes.push(0);
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    bytes
+}
+
+/// A message to an address of `length` slashes and stars.
+#[must_use]
+pub fn hostile_address(length: usize) -> Vec<u8> {
+    let mut bytes: Vec<u8> = b"/*".iter().copied().cycle().take(length.max(1)).collect();
+    bytes.push(0);
+    bytes.resize(bytes.len().next_multiple_of(4), 0);
+    bytes.extend(b",\0\0\0");
+    bytes
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::wire::{Limits, Malformed, check};
+
+    /// Limits that let a bomb of any size through to the check it is made for.
+    const ROOMY: Limits = Limits { bytes: 65_507, tags: 65_507, address: 65_507, ..Limits::SENSORS };
+
+    #[test]
+    fn bombs_are_well_formed_but_for_their_depth() {
+        assert_eq!(check(&bundle_bomb(4), &ROOMY), Ok(()));
+        assert!(matches!(check(&bundle_bomb(5), &ROOMY), Err(Malformed::TooDeep { .. })));
+        assert!(matches!(check(&bundle_bomb(3000), &ROOMY), Err(Malformed::TooDeep { .. })));
+        assert!(matches!(check(&tag_bomb(20_000), &ROOMY), Err(Malformed::TooDeep { .. })));
+        assert_eq!(check(&hostile_address(50_000), &ROOMY), Ok(()));
+    }
+
+    #[test]
+    fn bombs_fit_their_datagram_and_are_refused_by_size_too() {
+        for bomb in [bundle_bomb(3000), tag_bomb(60_000), hostile_address(60_000)] {
+            assert!(bomb.len() <= 65_507);
+            assert!(matches!(check(&bomb, &Limits::SENSORS), Err(Malformed::TooLarge { .. })));
+        }
+    }
+
+    #[test]
+    fn the_same_seed_makes_the_same_garbage() {
+        let make = |seed| {
+            let mut garbler = Garbler::new(seed);
+            (0..100).map(|_| garbler.garble(&[7; 60])).collect::<Vec<_>>()
+        };
+        assert_eq!(make(5), make(5));
+        assert_ne!(make(5), make(6));
+        // An empty model is no trap either.
+        let mut garbler = Garbler::new(1);
+        (0..100).for_each(|_| drop(garbler.garble(&[])));
+    }
+}
