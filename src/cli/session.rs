@@ -2,7 +2,7 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use underfoot::engine::{Engine, Snapshot};
+use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::layout::Layout;
 use underfoot::picture;
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_events(Box::new(JsonSink::new(events)?));
     let mut camera = Camera::default();
     while server.turn()? == Ended::No {
-        camera.look(server.engine());
+        camera.look(&server);
     }
     let layout = server.engine().layout().clone();
     drop(server);
@@ -112,13 +112,13 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 const SETTLED: Duration = Duration::from_millis(500);
 
 impl Camera {
-    fn look(&mut self, engine: &Engine) {
-        let at = engine.now();
+    fn look(&mut self, server: &Server) {
+        let at = server.engine().now();
         if self.seen.is_some_and(|seen| at.since(seen) < LOOK_EVERY) {
             return;
         }
         self.seen = Some(at);
-        engine.snapshot(&mut self.now);
+        server.snapshot(&mut self.now);
         let pressed = self.now.widgets.iter().filter(|widget| widget.pressed);
         // A slider on its way tells more than a button that is held.
         let worth =

@@ -75,6 +75,8 @@ pub struct Assembler {
     /// `None` before the first packet.
     clock: Option<SampleClock>,
     now_ns: i64,
+    /// When the first packet came.
+    heard_ns: Option<i64>,
     swept_ns: i64,
     aligned_ns: i64,
     /// Slots that wait for boards, earliest first.
@@ -92,6 +94,9 @@ pub struct Assembler {
     /// Space for sorting the boards' delays.
     delays: Vec<(i64, usize)>,
 }
+
+/// How long after the first packet boards may still be silent without being missed.
+const GATHERING_NS: i64 = 100_000_000;
 
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
@@ -138,6 +143,7 @@ impl Assembler {
             boards,
             clock: None,
             now_ns: 0,
+            heard_ns: None,
             swept_ns: 0,
             aligned_ns: 0,
             waiting: ArrayVec::new(),
@@ -161,6 +167,7 @@ impl Assembler {
             Some(board) if board.channel_count() != packet.readings.len() => self.counters.wrong_shape += 1,
             Some(_) => {
                 self.pass_time(nanos(packet.received));
+                self.heard_ns.get_or_insert(self.now_ns);
                 self.sort_in(number, packet);
             }
         }
@@ -204,10 +211,13 @@ impl Assembler {
     }
 
     /// Whether packets arrive, as of the last packet or poll.
+    ///
+    /// While the boards are heard for the first time, one after the other, the floor is still awaited.
     #[must_use]
     pub fn link_state(&self) -> LinkState {
         let presences = || self.boards.iter().map(|board| &board.stream.presence);
-        if presences().all(|presence| !presence.was_heard()) {
+        let is_new = self.heard_ns.is_none_or(|heard| self.now_ns - heard < GATHERING_NS);
+        if is_new && presences().any(|presence| !presence.was_heard()) {
             LinkState::Waiting
         } else if presences().all(presence::Presence::is_live) {
             LinkState::Live

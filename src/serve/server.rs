@@ -132,6 +132,15 @@ impl Server {
         self.events.as_ref().map_or(0, |events| events.dropped())
     }
 
+    /// Writes everything there is to see into `snapshot`.
+    pub fn snapshot(&self, snapshot: &mut Snapshot) {
+        self.engine.snapshot(snapshot);
+        snapshot.link = self.link;
+        snapshot.counters = self.counters();
+        snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
+        snapshot.unsent_events = self.unsent_events();
+    }
+
     /// Works until the source ends or `stop` is set, which is noticed within some milliseconds.
     ///
     /// # Errors
@@ -201,20 +210,16 @@ impl Server {
     }
 
     fn show(&mut self, at: Instant) {
-        let Some(snapshots) = &mut self.snapshots else { return };
         if at.since(self.shown) < SNAPSHOT_EVERY {
             return;
         }
         self.shown = at;
-        self.engine.snapshot(snapshots.input_buffer_mut());
-        let (counters, unsent) = (self.counters(), self.unsent_events());
-        let Some(snapshots) = &mut self.snapshots else { return };
-        let snapshot = snapshots.input_buffer_mut();
-        snapshot.link = self.link;
-        snapshot.counters = counters;
-        snapshot.unsent_events = unsent;
-        snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
-        snapshots.publish();
+        let mut snapshots = self.snapshots.take();
+        if let Some(snapshots) = &mut snapshots {
+            self.snapshot(snapshots.input_buffer_mut());
+            snapshots.publish();
+        }
+        self.snapshots = snapshots;
     }
 
     /// Says so when the floor is lost or back, and lets no actuator move while it is lost.

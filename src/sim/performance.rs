@@ -148,7 +148,7 @@ impl Performance {
     ///
     /// # Errors
     /// [`MoveError::NotThere`], [`MoveError::NotFinite`].
-    pub fn step_aside(&mut self, to: Vec2) -> Result<(), MoveError> {
+    pub fn sidestep(&mut self, to: Vec2) -> Result<(), MoveError> {
         must_be_finite(to.is_finite())?;
         let standing = self.standing.ok_or(MoveError::NotThere)?;
         let way = to - standing.middle;

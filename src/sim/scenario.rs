@@ -35,7 +35,7 @@ use crate::widget::{Axis, Behaviour};
 ///         // As Press, on a bare place.
 ///         Point(at: (2.0, 3.0), force_n: 120, hold_ms: 300),
 ///         // By small steps, looking where one looked before.
-///         StepAside(at: (3.5, 0.6)),
+///         Sidestep(at: (3.5, 0.6)),
 ///         Turn(to: East),
 ///         Leave(to: East),
 ///     ],
@@ -201,7 +201,7 @@ impl Stage<'_> {
             Step::Stand { at, facing } => Ready::Stand(place(*at)?, facing.heading()),
             Step::Enter { from, at, facing } => Ready::Enter(*from, place(*at)?, facing.map(Side::heading)),
             Step::WalkTo { at, facing } => Ready::Walk(place(*at)?, facing.map(Side::heading)),
-            Step::StepAside { at } => Ready::StepAside(place(*at)?),
+            Step::Sidestep { at } => Ready::Sidestep(place(*at)?),
             Step::Turn { to } => Ready::Turn(to.heading()),
             Step::Press { widget: id, force_n, hold_ms } => {
                 Ready::Press(widget(id)?.area.centre(), Newtons(*force_n), hold(*hold_ms))
@@ -238,7 +238,7 @@ impl Stage<'_> {
                 performance.walk(&[at])?;
                 facing.map_or(Ok(()), |facing| performance.turn(facing))
             }
-            Ready::StepAside(at) => performance.step_aside(at),
+            Ready::Sidestep(at) => performance.sidestep(at),
             Ready::Turn(facing) => performance.turn(facing),
             Ready::Press(target, force, hold) => performance.press(target, force, hold),
             Ready::Drag { from, to, speed_m_s, force } => performance.drag(from, to, speed_m_s, force),
@@ -281,7 +281,7 @@ enum Ready {
     Stand(Vec2, f32),
     Enter(Side, Vec2, Option<f32>),
     Walk(Vec2, Option<f32>),
-    StepAside(Vec2),
+    Sidestep(Vec2),
     Turn(f32),
     Press(Vec2, Newtons, Duration),
     Drag { from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons },
@@ -465,7 +465,7 @@ mod tests {
                 .to_string(),
         ];
         insta::assert_snapshot!(told.join("\n"), @r#"
-        test.ron:2:1: Unexpected variant named `Pres` in enum `step`, expected one of `Wait`, `Stand`, `Enter`, `WalkTo`, `StepAside`, `Turn`, `Press`, `Tap`, `Drag`, `Point`, or `Leave` instead
+        test.ron:2:1: Unexpected variant named `Pres` in enum `step`, expected one of `Wait`, `Stand`, `Enter`, `WalkTo`, `Sidestep`, `Turn`, `Press`, `Tap`, `Drag`, `Point`, or `Leave` instead
         test.ron:2:7: Unexpected field named `wiget` in `Press`, expected one of `widget`, `force_n`, or `hold_ms` instead
         test.ron:2:35: force_n must be between 0 and 3000, not -5
         test.ron:2:35: force_n must be between 0 and 3000, not NaN

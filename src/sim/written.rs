@@ -82,7 +82,7 @@ pub(super) enum Step {
         #[serde(default)]
         facing: Option<Side>,
     },
-    StepAside {
+    Sidestep {
         at: (f32, f32),
     },
     Turn {
@@ -171,7 +171,7 @@ impl Step {
             Self::Stand { at, .. }
             | Self::Enter { at, .. }
             | Self::WalkTo { at, .. }
-            | Self::StepAside { at } => place(at).into(),
+            | Self::Sidestep { at } => place(at).into(),
             Self::Turn { .. } | Self::Leave { .. } => Vec::new(),
             Self::Press { force_n, hold_ms, .. } => vec![force(force_n), millis("hold_ms", hold_ms)],
             Self::Tap { force_n, .. } => vec![force(force_n)],
