@@ -25,8 +25,8 @@ use crate::widget::{Axis, Behaviour};
 ///         Wait(ms: 800),
 ///         // Walks on from beside the floor and stops there; facing may be left out.
 ///         Enter(from: West, at: (1.5, 0.5), facing: North),
-///         // Stops with the feet left and right of the place.
-///         WalkTo(at: (3.0, 0.6), facing: North),
+///         // Stops with the feet left and right of the place. Goes straight there or by the places of via.
+///         WalkTo(at: (3.0, 0.6), via: [(2.2, 0.3)], facing: North),
 ///         // The ball of the nearer foot on the middle of the control. 120 N and 300 ms may be left out.
 ///         Press(widget: "zoom_in", force_n: 120, hold_ms: 300),
 ///         Tap(widget: "layers", force_n: 120),
@@ -200,7 +200,14 @@ impl Stage<'_> {
             Step::Wait { ms } => Ready::Wait(hold(*ms)),
             Step::Stand { at, facing } => Ready::Stand(place(*at)?, facing.heading()),
             Step::Enter { from, at, facing } => Ready::Enter(*from, place(*at)?, facing.map(Side::heading)),
-            Step::WalkTo { at, facing } => Ready::Walk(place(*at)?, facing.map(Side::heading)),
+            Step::WalkTo { at, via, facing } => {
+                let mut way = via
+                    .iter()
+                    .map(|point| self.place(*point).map_err(|message| places.of("via").problem(message)))
+                    .collect::<Result<Vec<Vec2>, _>>()?;
+                way.push(place(*at)?);
+                Ready::Walk(way, facing.map(Side::heading))
+            }
             Step::Sidestep { at } => Ready::Sidestep(place(*at)?),
             Step::Turn { to } => Ready::Turn(to.heading()),
             Step::Press { widget: id, force_n, hold_ms } => {
@@ -234,8 +241,8 @@ impl Stage<'_> {
                 performance.walk(&[at])?;
                 facing.map_or(Ok(()), |facing| performance.turn(facing))
             }
-            Ready::Walk(at, facing) => {
-                performance.walk(&[at])?;
+            Ready::Walk(ref way, facing) => {
+                performance.walk(way)?;
                 facing.map_or(Ok(()), |facing| performance.turn(facing))
             }
             Ready::Sidestep(at) => performance.sidestep(at),
@@ -280,7 +287,7 @@ enum Ready {
     Wait(Duration),
     Stand(Vec2, f32),
     Enter(Side, Vec2, Option<f32>),
-    Walk(Vec2, Option<f32>),
+    Walk(Vec<Vec2>, Option<f32>),
     Sidestep(Vec2),
     Turn(f32),
     Press(Vec2, Newtons, Duration),
@@ -441,12 +448,13 @@ mod tests {
     fn mistakes_are_told_with_their_places_and_all_at_once() {
         let told = messages(
             "Stand(at: (3.0, 0.6)),\n  Press(widget: \"zom_in\"),\nDrag(widget: \"layers\", from: 0.1, to: 0.9),\n\
-             WalkTo(at: (7, 2)),",
+             WalkTo(at: (7, 2)),\nWalkTo(at: (1, 2), via: [(1, 1), (1, 9)]),",
         );
         insta::assert_snapshot!(told, @r#"
         test.ron:3:17: the layout has no control "zom_in"; did you mean "zoom_in"?
         test.ron:4:14: Drag needs a slider, and "layers" is a button
         test.ron:5:12: (7, 2) is not on this floor of 6 x 6 tiles
+        test.ron:6:25: (1, 9) is not on this floor of 6 x 6 tiles
         "#);
     }
 
@@ -498,6 +506,27 @@ mod tests {
         for end in (0..text.trim_end().len()).filter(|&end| text.is_char_boundary(end)) {
             assert!(Scenario::parse("cut", &text[..end]).is_err(), "{end}");
         }
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn a_slip_of_the_pen_never_panics(at in 0usize..1500, slip in "[(){}\\[\\],:.\"0-9a-z/*-]{0,3}") {
+            let mut text: Vec<char> = documented().chars().collect();
+            let at = at.min(text.len() - 1);
+            text.splice(at..=at, slip.chars());
+            let text: String = text.into_iter().collect();
+            if let Ok(scenario) = Scenario::parse("slip", &text) {
+                let _ = scenario.resolve(&layout(), &Geometry::default());
+            }
+        }
+    }
+
+    #[test]
+    fn deep_nesting_and_huge_files_are_refused() {
+        let deep = "(".repeat(100_000);
+        assert!(parse(&deep).is_err());
+        let huge = format!("{}\n{}", Scenario::CROSSING, " ".repeat(1 << 20));
+        assert!(Scenario::parse("huge", &huge).is_err());
     }
 
     #[test]

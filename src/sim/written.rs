@@ -80,6 +80,8 @@ pub(super) enum Step {
     WalkTo {
         at: (f32, f32),
         #[serde(default)]
+        via: Vec<(f32, f32)>,
+        #[serde(default)]
         facing: Option<Side>,
     },
     Sidestep {
@@ -165,13 +167,15 @@ impl Step {
         let force = |force_n: f32| ("force_n", force_n, 0.0..=3000.0);
         let millis = |name, ms: u32| (name, ms as f32, 0.0..=LONGEST_MS as f32);
         // That places are on the floor is checked where the floor is known.
-        let place = |(x, y): (f32, f32)| [("at", x, -1e4..=1e4), ("at", y, -1e4..=1e4)];
+        let place = |name, (x, y): (f32, f32)| [(name, x, -1e4..=1e4), (name, y, -1e4..=1e4)];
         match *self {
             Self::Wait { ms } => vec![millis("ms", ms)],
-            Self::Stand { at, .. }
-            | Self::Enter { at, .. }
-            | Self::WalkTo { at, .. }
-            | Self::Sidestep { at } => place(at).into(),
+            Self::Stand { at, .. } | Self::Enter { at, .. } | Self::Sidestep { at } => place("at", at).into(),
+            Self::WalkTo { at, ref via, .. } => {
+                let mut numbers: Vec<Number> = via.iter().flat_map(|&point| place("via", point)).collect();
+                numbers.extend(place("at", at));
+                numbers
+            }
             Self::Turn { .. } | Self::Leave { .. } => Vec::new(),
             Self::Press { force_n, hold_ms, .. } => vec![force(force_n), millis("hold_ms", hold_ms)],
             Self::Tap { force_n, .. } => vec![force(force_n)],
@@ -183,7 +187,7 @@ impl Step {
             ],
             Self::Point { at, force_n, hold_ms } => {
                 let mut numbers = vec![force(force_n), millis("hold_ms", hold_ms)];
-                numbers.extend(place(at));
+                numbers.extend(place("at", at));
                 numbers
             }
         }
