@@ -1,5 +1,7 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+#[cfg(feature = "audio")]
+mod device;
 mod latency;
 mod lockstep;
 mod manual;
@@ -11,6 +13,8 @@ use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+#[cfg(feature = "audio")]
+pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
 pub use latency::{HostClock, LatencyMeter, LatencyProbe, LatencySummary};
 pub use manual::ManualSink;
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
