@@ -254,13 +254,13 @@ fn stream<T: SizedSample + FromSample<f32>>(
     )
 }
 
-/// The device that the system or a person calls `name`.
+/// The device of that very name or identifier, or else the first that has it in its name, or what the system knows by it.
 fn named(host: &cpal::Host, name: &str) -> Option<cpal::Device> {
-    let by_name = || {
-        let wanted = name.to_lowercase();
-        host.output_devices().ok()?.find(|device| device.to_string().to_lowercase().contains(&wanted))
-    };
-    by_name().or_else(|| host.device_by_id(&DeviceId::new(host.id(), name)))
+    let wanted = name.to_lowercase();
+    let find = |fits: &dyn Fn(&cpal::Device) -> bool| host.output_devices().ok()?.find(fits);
+    find(&|device| device.id().is_ok_and(|id| id.id() == name) || device.to_string().to_lowercase() == wanted)
+        .or_else(|| find(&|device| device.to_string().to_lowercase().contains(&wanted)))
+        .or_else(|| host.device_by_id(&DeviceId::new(host.id(), name)))
 }
 
 fn missing(name: Option<&str>) -> SinkError {
