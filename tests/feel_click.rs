@@ -134,6 +134,23 @@ fn spots_share_a_click_by_weight_and_other_tiles_stay_silent() {
     }
 }
 
+/// 36 channels are two groups of sixteen and a rest: none may write over another.
+#[test]
+fn every_tile_gets_its_own_click() {
+    let (mut sender, mut sink) = floor(48_000);
+    for tile in 0..36_u16 {
+        let mode = Mode { frequency_hz: 100.0 + 10.0 * f32::from(tile), decay_s: 0.1, amplitude: 1.0 };
+        let click = Click { modes: [mode].into_iter().collect(), level: Newtons(4.0) };
+        sender.send(&cue(millis(20), &[(tile, 1.0)], &click));
+    }
+    sink.advance(millis(200)).unwrap();
+    for tile in 0..36 {
+        let wanted = 100.0 + 10.0 * tile as f64;
+        let (f, _) = measure_mode(sink.channel(tile), 48e3, wanted * 1.03, 960);
+        assert!((f / wanted - 1.0).abs() < 0.01, "tile {tile}: {f} Hz");
+    }
+}
+
 #[test]
 fn newtons_become_full_scales_by_each_actuators_own_measure() {
     let mut floor = Floor::default();

@@ -14,12 +14,15 @@ pub(super) struct Struck {
 /// The loudest that one mode is struck, in full scales: far above anything the limiter lets through.
 const LOUDEST: f32 = 16.0;
 
+/// The faintest, in full scales: -180 dB.
+const FAINTEST: f32 = 1e-9;
+
 /// Strikes `click` on `bank`, so that the very next sample is the first that moves.
 ///
 /// `gain` is full scales per unit of mode amplitude: the click's level times
 /// the spot's weight over the actuator's newtons at full scale. Modes start as
-/// sines, at zero, so nothing steps. A mode of no amplitude is left out
-/// without being counted; one louder than 16 full scales is struck at 16.
+/// sines, at zero, so nothing steps. A mode of no amplitude to speak
+/// of is left out without being counted; one louder than 16 full scales is struck at 16.
 ///
 /// # Real-time
 /// No allocation.
@@ -33,7 +36,7 @@ pub(super) fn strike(bank: &mut ModalBank, click: &Click, gain: f32) -> Struck {
             && !amplitude.is_nan();
         if !playable {
             struck.refused += 1;
-        } else if amplitude != 0.0 {
+        } else if amplitude.abs() >= FAINTEST {
             let stolen = bank.strike(mode.frequency_hz, mode.decay_s, amplitude.clamp(-LOUDEST, LOUDEST));
             struck.modes += 1;
             struck.stolen += u32::from(stolen);

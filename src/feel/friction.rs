@@ -29,6 +29,9 @@ const FOLLOW_S: f32 = 0.004;
 /// Time in which a new rub fades in, and one that is over fades out.
 const FADE_S: f32 = 0.015;
 
+/// A share of a texture below this (-100 dB) is none.
+const FAINT: f32 = 1e-5;
+
 /// A rub that was not renewed for this long is over: whoever sends them may have died.
 const STALE_S: f32 = 0.05;
 
@@ -121,7 +124,7 @@ impl Rubbing {
 
     /// Takes the rubs as they are now; a rub that is no longer among them fades out.
     ///
-    /// The answer is the number of spots without an actuator.
+    /// The answer is the number of spots of new rubs that no actuator can play.
     pub(super) fn follow(&mut self, rubs: &Rubs, wiring: &Wiring) -> u32 {
         self.age = 0;
         for voice in &mut self.voices {
@@ -197,15 +200,17 @@ impl Rubbing {
 }
 
 impl Voice {
+    /// Heads for what the rub is now; the answer is how many spots of a new rub no actuator can play.
     fn follow(&mut self, rub: &Rub, wiring: &Wiring) -> u32 {
         let friction = rub.friction;
         let speed = share(rub.speed_m_s, friction.full_speed_m_s);
         let force = share(rub.force.0, friction.full_force.0);
-        let level = if friction.level.0.is_finite() { friction.level.0.max(0.0) } else { 0.0 };
+        let level = if friction.level.0.is_finite() { friction.level.0 } else { 0.0 };
         self.wanted_speed_share = speed;
-        self.wanted_level_n = level * speed * force;
+        self.wanted_level_n = felt(level * speed * force);
         self.friction = Some(friction);
-        if self.state == State::Free {
+        let new = self.state == State::Free;
+        if new {
             // A new rub starts at its own pitch; its fade makes it start from silence.
             self.speed_share = self.wanted_speed_share;
             self.level_n = self.wanted_level_n;
@@ -215,15 +220,15 @@ impl Voice {
         for reach in &mut self.reaches {
             reach.wanted = 0.0;
         }
-        let mut nowhere = 0;
+        let mut unfelt = 0;
         for spot in &rub.spots {
-            let weight = if spot.weight > 0.0 { spot.weight.min(1.0) } else { 0.0 };
+            let weight = if spot.weight > FAINT { spot.weight.min(1.0) } else { 0.0 };
             let Some(output) = wiring.output(spot.tile) else {
-                nowhere += 1;
+                unfelt += u32::from(new);
                 continue;
             };
             if let Some(reach) = self.reaches.iter_mut().find(|reach| reach.output == output) {
-                reach.wanted = weight;
+                reach.wanted += weight;
                 continue;
             }
             if self.reaches.is_full()
@@ -234,7 +239,7 @@ impl Voice {
             // There is room: at most four spots are wanted at once.
             let _ = self.reaches.try_push(Reach { output, weight: 0.0, wanted: weight, gain: 0.0 });
         }
-        nowhere
+        unfelt
     }
 
     /// Moves on by `samples`; the answer is the centre of the band, in hertz.
@@ -242,7 +247,7 @@ impl Voice {
         let seconds = samples as f32 / sample_rate;
         let pull = 1.0 - (-seconds / FOLLOW_S).exp();
         self.speed_share += (self.wanted_speed_share - self.speed_share) * pull;
-        self.level_n += (self.wanted_level_n - self.level_n) * pull;
+        self.level_n = felt(self.level_n + (self.wanted_level_n - self.level_n) * pull);
         match self.state {
             State::Fading => self.fade = (self.fade - seconds / FADE_S).max(0.0),
             State::Rubbing | State::Free => self.fade = (self.fade + seconds / FADE_S).min(1.0),
@@ -265,17 +270,26 @@ impl Voice {
         let through = FRAC_PI_4 * self.centre_hz() / Q / (0.5 * sample_rate) / 3.0;
         // A sine's root mean square is its amplitude over the root of two.
         let level = self.level_n * self.fade / (2.0 * through).sqrt();
+        let mut own = [0.0; STEP];
+        for (sample, frame) in own.iter_mut().zip(noise) {
+            *sample = frame[lane];
+        }
         for reach in &mut self.reaches {
             let gain = level * reach.weight * reach.output.per_newton;
             let slope = (gain - reach.gain) / noise.len() as f32;
             let row = &mut mix.row(reach.output.channel)[start..start + noise.len()];
-            for (n, (sample, noise)) in row.iter_mut().zip(noise).enumerate() {
-                *sample += noise[lane] * (reach.gain + slope * (n + 1) as f32);
+            for ((sample, noise), n) in row.iter_mut().zip(&own).zip(1_u16..) {
+                *sample += noise * (reach.gain + slope * f32::from(n));
             }
             reach.gain = gain;
         }
-        self.reaches.retain(|reach| reach.wanted > 0.0 || reach.weight > 1e-5);
+        self.reaches.retain(|reach| reach.wanted > 0.0 || reach.weight > FAINT);
     }
+}
+
+/// `level_n`, or zero if it is below any that is felt: a level that fades for ever would end in denormal numbers.
+fn felt(level_n: f32) -> f32 {
+    if level_n > 1e-6 { level_n } else { 0.0 }
 }
 
 /// `value` as a share of `full`, 0 to 1; 0 if there is no sense in it.

@@ -3,9 +3,10 @@
 
 use std::f32::consts::TAU;
 
+use glam::{Mat4, Vec4};
 use multiversion::multiversion;
 
-use super::mix::LANES;
+use super::mix::{LANES, Mix};
 
 /// Below this share of full scale the limiter changes nothing; our choice.
 const KNEE: f32 = 0.8;
@@ -21,6 +22,9 @@ const DC_BLOCK_HZ: f32 = 5.0;
 
 /// Below this (-140 dB of full scale) what is left of a sound is dropped.
 const SILENCE: f32 = 1e-7;
+
+/// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
+const TRIFLE: f32 = 1e-12;
 
 /// Keeps a group of channels within full scale, whatever comes in.
 ///
@@ -46,11 +50,11 @@ pub(super) struct Limiter {
 struct Lanes {
     /// The peak that is being held down.
     envelope: [f32; LANES],
+    /// Whether any of them is above [`KNEE`]; if none is, and no sample either, there is nothing to limit.
+    holding: bool,
     /// Last input and output of the direct-current block.
     dc_in: [f32; LANES],
     dc_out: [f32; LANES],
-    not_finite: [u32; LANES],
-    overloaded: [u32; LANES],
 }
 
 /// Samples that were faults, not sound.
@@ -81,28 +85,25 @@ impl Limiter {
         self.idle = true;
     }
 
-    /// Writes one block of the group's samples into `out`.
+    /// Writes the samples of one of the mix's groups into `out`.
     ///
-    /// `rows` are the channels' samples, `gains` one factor per sample for
-    /// all of them. `out` is interleaved, `channels` wide, and starts at the
-    /// group's first channel; a group at the end may be narrower than [`LANES`].
+    /// `gains` is one factor per sample for all of the group's channels. `out`
+    /// is interleaved, `channels` wide; only this group's samples are written.
     pub(super) fn process(
         &mut self,
-        rows: &[&[f32]; LANES],
+        mix: &mut Mix,
+        group: usize,
         gains: &[f32],
         out: &mut [f32],
         channels: usize,
     ) -> Faults {
-        limit(&mut self.lanes, [self.release, self.dc_pole], rows, gains, out, channels);
-        let faults = Faults {
-            not_finite: self.lanes.not_finite.iter().sum(),
-            overloaded: self.lanes.overloaded.iter().sum(),
-        };
-        self.lanes.not_finite = [0; LANES];
-        self.lanes.overloaded = [0; LANES];
-        // The envelope alone moves nothing: with silence coming in it only decays.
-        let left = self.lanes.dc_out.iter().chain(&self.lanes.dc_in).fold(0.0_f32, |a, b| a.max(b.abs()));
-        self.idle = left < SILENCE;
+        let first = group * LANES;
+        let width = LANES.min(channels - first);
+        mix.open(group);
+        let filters = [self.release, self.dc_pole];
+        let faults = limit(&mut self.lanes, filters, mix, group, gains, &mut out[first..], [channels, width]);
+        // The peak that is held alone moves nothing: with silence coming in it only decays.
+        self.idle = !self.lanes.settle();
         if self.idle {
             self.clear();
         }
@@ -110,46 +111,122 @@ impl Limiter {
     }
 }
 
+/// Limits a group of rows into `out`, `width` samples into each frame, with the widest registers this processor has.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn limit(
     lanes: &mut Lanes,
     [release, dc_pole]: [f32; 2],
-    rows: &[&[f32]; LANES],
+    mix: &Mix,
+    group: usize,
     gains: &[f32],
     out: &mut [f32],
-    channels: usize,
-) {
-    let width = channels.min(LANES);
-    for ((n, gain), frame) in gains.iter().enumerate().zip(out.chunks_mut(channels)) {
-        let mut samples = [0.0; LANES];
-        for lane in 0..LANES {
-            samples[lane] = rows[lane][n];
+    [channels, width]: [usize; 2],
+) -> Faults {
+    let mut faults = Faults::default();
+    for (span, (gains, out)) in gains.chunks(LANES).zip(out.chunks_mut(LANES * channels)).enumerate() {
+        let square = mix.square(group, span);
+        let calm = square.iter().all(|row| row.iter().fold(true, |calm, x| calm & (x.abs() <= KNEE)));
+        let mut columns = transposed(&square);
+        let columns = &mut columns[..gains.len()];
+        if !calm || lanes.holding {
+            faults.mend(columns.as_flattened_mut());
+            for column in columns.iter_mut() {
+                lanes.hold_down(column, release);
+            }
+            lanes.holding = lanes.envelope.iter().any(|peak| *peak > KNEE);
         }
-        for lane in 0..LANES {
-            let raw = samples[lane];
-            let finite = raw.abs() < f32::INFINITY;
-            let sound = if finite { raw } else { 0.0 };
-            let over = sound.abs() > OVERLOAD;
-            lanes.not_finite[lane] += u32::from(!finite);
-            lanes.overloaded[lane] += u32::from(over);
-            let sound = if over { OVERLOAD.copysign(sound) } else { sound };
-
-            // A floor far below audibility keeps the envelope from becoming a denormal number.
-            let peak = sound.abs().max(lanes.envelope[lane] * release).max(1e-12);
-            lanes.envelope[lane] = peak;
-            let excess = (peak - KNEE).max(0.0) / (1.0 - KNEE);
-            let reach = KNEE + (1.0 - KNEE) * excess;
-            let limited = sound * ((KNEE + excess) / (reach * (1.0 + excess)));
-
-            let blocked = limited - lanes.dc_in[lane] + dc_pole * lanes.dc_out[lane];
-            let blocked = if blocked.abs() < 1e-12 { 0.0 } else { blocked };
-            lanes.dc_in[lane] = limited;
-            lanes.dc_out[lane] = blocked;
-            samples[lane] = blocked.clamp(-1.0, 1.0) * gain;
+        for (column, gain) in columns.iter_mut().zip(gains) {
+            lanes.block_direct_current(column, dc_pole, *gain);
         }
-        let width = width.min(frame.len());
-        frame[..width].copy_from_slice(&samples[..width]);
+        for (frame, column) in out.chunks_mut(channels).zip(columns) {
+            let (fours, rest) = frame[..width].as_chunks_mut::<4>();
+            let (from_fours, from_rest) = column[..width].as_chunks::<4>();
+            for (four, from) in fours.iter_mut().zip(from_fours) {
+                *four = *from;
+            }
+            for (sample, from) in rest.iter_mut().zip(from_rest) {
+                *sample = *from;
+            }
+        }
     }
+    faults
+}
+
+/// Makes columns of rows, in squares of four by four.
+#[inline(always)]
+fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES] {
+    let mut columns = [[0.0; LANES]; LANES];
+    for lane in (0..LANES).step_by(4) {
+        for n in (0..LANES).step_by(4) {
+            let corner = |row: usize| Vec4::from_slice(&rows[lane + row][n..]);
+            let square = Mat4::from_cols(corner(0), corner(1), corner(2), corner(3)).transpose();
+            square.x_axis.write_to_slice(&mut columns[n][lane..]);
+            square.y_axis.write_to_slice(&mut columns[n + 1][lane..]);
+            square.z_axis.write_to_slice(&mut columns[n + 2][lane..]);
+            square.w_axis.write_to_slice(&mut columns[n + 3][lane..]);
+        }
+    }
+    columns
+}
+
+impl Lanes {
+    /// Holds one frame below full scale, in a smooth curve from [`KNEE`] on.
+    #[inline(always)]
+    fn hold_down(&mut self, frame: &mut [f32; LANES], release: f32) {
+        for lane in 0..LANES {
+            let peak = larger(frame[lane].abs(), self.envelope[lane] * release);
+            self.envelope[lane] = peak;
+            let excess = larger(peak - KNEE, 0.0) * (1.0 / (1.0 - KNEE));
+            let reach = KNEE + (1.0 - KNEE) * excess;
+            frame[lane] *= (KNEE + excess) / (reach * (1.0 + excess));
+        }
+    }
+
+    #[inline(always)]
+    fn block_direct_current(&mut self, frame: &mut [f32; LANES], pole: f32, gain: f32) {
+        for lane in 0..LANES {
+            let blocked = frame[lane] - self.dc_in[lane] + pole * self.dc_out[lane];
+            self.dc_in[lane] = frame[lane];
+            self.dc_out[lane] = blocked;
+            frame[lane] = -larger(-1.0, -larger(-1.0, blocked)) * gain;
+        }
+    }
+
+    /// Makes exact zeros of what has become too small to matter, long before it would become a denormal number.
+    ///
+    /// The answer is whether anything is left that can still be heard.
+    fn settle(&mut self) -> bool {
+        let mut left = 0.0;
+        for lane in 0..LANES {
+            let settled = |value: f32| if value.abs() < TRIFLE { 0.0 } else { value };
+            self.envelope[lane] = settled(self.envelope[lane]);
+            self.dc_in[lane] = settled(self.dc_in[lane]);
+            self.dc_out[lane] = settled(self.dc_out[lane]);
+            left = larger(left, larger(self.dc_in[lane].abs(), self.dc_out[lane].abs()));
+        }
+        left >= SILENCE
+    }
+}
+
+impl Faults {
+    /// Silences samples that are not finite, cuts off those that are too loud, and counts both.
+    fn mend(&mut self, samples: &mut [f32]) {
+        for sample in samples {
+            if !sample.is_finite() {
+                self.not_finite += 1;
+                *sample = 0.0;
+            } else if sample.abs() > OVERLOAD {
+                self.overloaded += 1;
+                *sample = OVERLOAD.copysign(*sample);
+            }
+        }
+    }
+}
+
+/// The larger of two numbers, in one instruction; [`f32::max`] takes three to do right by NaN, which never comes here.
+#[inline(always)]
+fn larger(a: f32, b: f32) -> f32 {
+    if a > b { a } else { b }
 }
 
 /// A gain that rises and falls in 5 ms, for starting, stopping and muting.
@@ -205,17 +282,18 @@ impl Ramp {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::feel::mix::Mix;
 
     const RATE: f32 = 48_000.0;
 
     /// One channel's way through the limiter.
     fn through(limiter: &mut Limiter, input: &[f32]) -> (Vec<f32>, Faults) {
-        let silence = vec![0.0; input.len()];
-        let mut rows = [silence.as_slice(); LANES];
-        rows[0] = input;
+        let mut mix = Mix::new(1, input.len());
+        mix.begin(input.len());
+        mix.row(0).copy_from_slice(input);
         let mut out = vec![f32::NAN; input.len()];
         let gains = vec![1.0; input.len()];
-        let faults = limiter.process(&rows, &gains, &mut out, 1);
+        let faults = limiter.process(&mut mix, 0, &gains, &mut out, 1);
         (out, faults)
     }
 

@@ -42,7 +42,7 @@ pub(super) struct Mix {
     stride: usize,
     frames: usize,
     /// Which rows hold this block's samples; the others hold old ones.
-    open: Vec<bool>,
+    is_open: Vec<bool>,
 }
 
 impl Mix {
@@ -50,41 +50,47 @@ impl Mix {
     pub(super) fn new(channels: usize, max_frames: usize) -> Self {
         let rows = channels.next_multiple_of(LANES);
         // An odd number of cache lines: rows at a power of two apart would share the same cache sets.
-        let stride = max_frames.next_multiple_of(16) + 16;
-        Self { samples: vec![0.0; rows * stride], stride, frames: 0, open: vec![false; rows] }
+        let stride = max_frames.next_multiple_of(LANES) + 16;
+        Self { samples: vec![0.0; rows * stride], stride, frames: 0, is_open: vec![false; rows] }
     }
 
     /// Starts a block of `frames` silent samples per channel.
     pub(super) fn begin(&mut self, frames: usize) {
         self.frames = frames;
-        self.open.fill(false);
+        self.is_open.fill(false);
     }
 
     /// The block of one channel, to add to.
     pub(super) fn row(&mut self, channel: usize) -> &mut [f32] {
         let start = channel * self.stride;
         let row = &mut self.samples[start..start + self.frames];
-        if !self.open[channel] {
+        if !self.is_open[channel] {
             row.fill(0.0);
-            self.open[channel] = true;
+            self.is_open[channel] = true;
         }
         row
     }
 
     /// Whether anybody has written to the channels of this group.
     pub(super) fn is_open(&self, group: usize) -> bool {
-        self.open[group * LANES..(group + 1) * LANES].contains(&true)
+        self.is_open[group * LANES..(group + 1) * LANES].contains(&true)
     }
 
-    /// The rows of one group of channels.
-    pub(super) fn group(&mut self, group: usize) -> [&[f32]; LANES] {
+    /// Makes sure that every row of a group holds this block's samples.
+    pub(super) fn open(&mut self, group: usize) {
         for channel in group * LANES..(group + 1) * LANES {
             self.row(channel);
         }
-        let start = group * LANES;
+    }
+
+    /// The [`LANES`] samples from number `LANES * span` on of each row of an open group.
+    ///
+    /// What lies beyond the block is of no meaning.
+    #[inline(always)]
+    pub(super) fn square(&self, group: usize, span: usize) -> [&[f32; LANES]; LANES] {
         std::array::from_fn(|lane| {
-            let row = (start + lane) * self.stride;
-            &self.samples[row..row + self.frames]
+            let start = (group * LANES + lane) * self.stride + span * LANES;
+            self.samples[start..].first_chunk().unwrap_or(&[0.0; LANES])
         })
     }
 }
@@ -114,8 +120,8 @@ mod tests {
         mix.begin(4);
         assert!(!mix.is_open(0));
         mix.row(0)[3] = 0.5;
-        let rows = mix.group(0);
-        assert_eq!(rows[0], [0.0, 0.0, 0.0, 0.5]);
-        assert_eq!(rows[1], [0.0; 4]);
+        mix.open(0);
+        assert_eq!(mix.square(0, 0)[0][..4], [0.0, 0.0, 0.0, 0.5]);
+        assert_eq!(mix.square(0, 0)[1][..4], [0.0; 4]);
     }
 }

@@ -218,8 +218,8 @@ impl Renderer {
             return 0;
         }
         if self.rubs.update() {
-            let nowhere = self.rubbing.follow(self.rubs.output_buffer(), &self.wiring);
-            count(&self.shared.unfelt, nowhere);
+            let unfelt = self.rubbing.follow(self.rubs.output_buffer(), &self.wiring);
+            count(&self.shared.unfelt, unfelt);
         }
         let whole = out.len() - out.len() % self.channels;
         let (out, rest) = out.split_at_mut(whole);
@@ -316,9 +316,7 @@ impl Renderer {
             if !self.mix.is_open(group) && limiter.is_idle() {
                 continue;
             }
-            let rows = self.mix.group(group);
-            let found =
-                limiter.process(&rows, &self.gains[..frames], &mut out[group * LANES..], self.channels);
+            let found = limiter.process(&mut self.mix, group, &self.gains[..frames], out, self.channels);
             faults.not_finite += found.not_finite;
             faults.overloaded += found.overloaded;
         }

@@ -15,7 +15,7 @@ pub struct FeelCounters {
     pub muted: u64,
     /// Cues that were played later than their time.
     pub late: u64,
-    /// Spots of cues and rubs without an actuator that could play them.
+    /// Spots of cues and of new rubs that no actuator can play.
     pub unfelt: u64,
     /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub refused: u64,

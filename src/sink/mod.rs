@@ -1,5 +1,7 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+#[cfg(feature = "audio")]
+mod device;
 mod fanout;
 mod json;
 mod latency;
@@ -20,6 +22,8 @@ use crate::widget::WidgetEvent;
 pub use fanout::Fanout;
 pub use json::JsonSink;
 pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
+#[cfg(feature = "audio")]
+pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
 pub use manual::ManualSink;
 pub use osc::OscSink;
 pub use silent::SilentSink;

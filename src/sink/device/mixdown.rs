@@ -1,0 +1,131 @@
+use std::f32::consts::FRAC_PI_2;
+
+use cpal::{FromSample, Sample};
+
+use super::Mix;
+use crate::floor::Floor;
+
+/// Puts the renderer's channels onto those of a device.
+#[derive(Debug)]
+pub(super) struct Mixdown {
+    /// Channels that come in.
+    width: usize,
+    /// Channels that go out, at least one.
+    device_width: usize,
+    /// How much of each incoming channel goes to the left and to the right; empty if channels go straight through.
+    pans: Vec<[f32; 2]>,
+}
+
+impl Mixdown {
+    /// From `width` channels of `floor` to `device_width` of a device.
+    pub(super) fn new(floor: &Floor, mix: Mix, width: usize, device_width: usize) -> Self {
+        let pans = match mix {
+            Mix::PerActuator | Mix::AsManyAsThereAre => Vec::new(),
+            Mix::Stereo => pans(floor, width),
+        };
+        Self { width, device_width: device_width.max(1), pans }
+    }
+
+    /// Channels that go out.
+    pub(super) fn device_width(&self) -> usize {
+        self.device_width
+    }
+
+    /// Writes the frames `from` to `to`; device channels without a source are silent.
+    ///
+    /// # Real-time
+    /// No allocation.
+    pub(super) fn write<T: Sample + FromSample<f32>>(&self, from: &[f32], to: &mut [T]) {
+        to.fill(T::EQUILIBRIUM);
+        if self.width == 0 {
+            return;
+        }
+        for (from, to) in from.chunks_exact(self.width).zip(to.chunks_exact_mut(self.device_width)) {
+            if self.pans.is_empty() {
+                for (from, to) in from.iter().zip(to) {
+                    *to = T::from_sample(*from);
+                }
+                continue;
+            }
+            let mut sides = [0.0; 2];
+            for (sample, pan) in from.iter().zip(&self.pans) {
+                sides[0] += sample * pan[0];
+                sides[1] += sample * pan[1];
+            }
+            match to {
+                [both] => *both = T::from_sample((0.5 * (sides[0] + sides[1])).clamp(-1.0, 1.0)),
+                _ => {
+                    for (side, to) in sides.into_iter().zip(to) {
+                        *to = T::from_sample(side.clamp(-1.0, 1.0));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Where each channel is heard between left and right, by the column of its tile, equally loud everywhere.
+fn pans(floor: &Floor, width: usize) -> Vec<[f32; 2]> {
+    let columns = f32::from(floor.geometry.columns());
+    let mut pans = vec![[0.0; 2]; width];
+    for (tile, actuator) in floor.geometry.tiles().zip(&floor.actuators) {
+        if let Some(actuator) = actuator
+            && let Some(pan) = pans.get_mut(usize::from(actuator.channel))
+        {
+            let (right, left) = ((f32::from(tile.column) + 0.5) / columns * FRAC_PI_2).sin_cos();
+            *pan = [left, right];
+        }
+    }
+    pans
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+
+    fn floor() -> Floor {
+        Floor::of(Geometry::of_paper_tiles(3, 1).unwrap())
+    }
+
+    #[test]
+    fn channels_go_straight_through_and_the_rest_is_silent() {
+        let mut out = [9.0_f32; 8];
+        Mixdown::new(&floor(), Mix::PerActuator, 3, 4).write(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], &mut out);
+        assert_eq!(out, [0.1, 0.2, 0.3, 0.0, 0.4, 0.5, 0.6, 0.0]);
+        let mut out = [9.0_f32; 4];
+        Mixdown::new(&floor(), Mix::AsManyAsThereAre, 3, 2).write(&[0.1, 0.2, 0.3, 0.4, 0.5, 0.6], &mut out);
+        assert_eq!(out, [0.1, 0.2, 0.4, 0.5]);
+    }
+
+    #[test]
+    fn samples_take_the_devices_own_format() {
+        let mut out = [0_i16; 3];
+        Mixdown::new(&floor(), Mix::PerActuator, 3, 3).write(&[1.0, -0.5, 0.0], &mut out);
+        assert_eq!(out, [i16::MAX, -16_384, 0]);
+        let mut out = [0_u8; 4];
+        Mixdown::new(&floor(), Mix::PerActuator, 3, 4).write(&[0.0, 0.5, -1.0], &mut out);
+        assert_eq!(out, [128, 192, 0, 128]);
+    }
+
+    #[test]
+    fn in_stereo_the_west_is_left_and_no_column_is_louder() {
+        let mixdown = Mixdown::new(&floor(), Mix::Stereo, 3, 2);
+        let heard = |tile: usize| {
+            let mut frame = [0.0; 3];
+            frame[tile] = 0.6;
+            let mut out = [0.0_f32; 2];
+            mixdown.write(&frame, &mut out);
+            out
+        };
+        assert!(heard(0)[0] > 0.55 && heard(0)[1] < 0.2);
+        assert!((heard(1)[0] - heard(1)[1]).abs() < 1e-6);
+        assert!(heard(2)[1] > 0.55);
+        for tile in 0..3 {
+            assert!((heard(tile)[0].hypot(heard(tile)[1]) - 0.6).abs() < 1e-6);
+        }
+        let mut out = [0.0_f32; 2];
+        mixdown.write(&[1.0, 1.0, 1.0], &mut out);
+        assert_eq!(out, [1.0, 1.0]);
+    }
+}
