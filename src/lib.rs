@@ -17,6 +17,8 @@ pub mod floor;
 pub mod layout;
 #[cfg(feature = "program")]
 pub mod picture;
+#[cfg(feature = "preview")]
+pub mod preview;
 pub mod scene;
 pub mod schema;
 pub mod sense;

@@ -79,17 +79,20 @@ impl<'a> Face<'a> {
 
     /// A soft shadow that lies to the south, as under a lamp at the floor's far end.
     fn shadow(&self, scene: &mut Scene) {
-        for (grow, opacity) in [(0.010, 0.035), (0.007, 0.045), (0.004, 0.06), (0.001, 0.08)] {
-            let area =
-                Rect::new(self.area.min - Vec2::new(0.0, 0.006), self.area.max - Vec2::new(0.0, 0.006));
-            self.shaped(scene, area.grown(grow), Paint::fill(Ink::faint(self.theme.shadow, opacity)));
+        let south = Vec2::new(0.0, 0.006);
+        let area = Rect::new(self.area.min - south, self.area.max - south);
+        for (reach, opacity) in [(0.016, 0.04), (0.012, 0.05), (0.008, 0.06), (0.005, 0.07)] {
+            // A stroke just inside and outside the edge; the face hides its inner half.
+            let stroke = Stroke::new(reach + 0.006, Ink::faint(self.theme.shadow, opacity));
+            self.shaped(scene, area.grown(0.5 * (reach - 0.006)), Paint::stroke(stroke));
         }
     }
 
     /// A halo in the lit colour around a pressed face.
     fn glow(&self, scene: &mut Scene) {
-        for (grow, opacity) in [(0.026, 0.10), (0.018, 0.16), (0.010, 0.26)] {
-            self.outlined(scene, grow, Paint::fill(Ink::faint(self.widget.look.lit, opacity)));
+        for (reach, opacity) in [(0.026, 0.10), (0.018, 0.16), (0.010, 0.26)] {
+            let stroke = Stroke::new(reach, Ink::faint(self.widget.look.lit, opacity));
+            self.shaped(scene, self.area.grown(0.5 * reach), Paint::stroke(stroke));
         }
     }
 

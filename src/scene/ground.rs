@@ -7,28 +7,56 @@ use super::widths::CAP_HEIGHT;
 use super::{Scene, View, outline};
 use crate::engine::{LinkState, TileState};
 use crate::floor::{Corner, Rect, TileId};
+use crate::layout::Colour;
 use crate::sense::Quality;
 
 /// The plates with their load, as one slab.
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let slab = view.geometry.bounds();
-    for (grow, opacity) in
-        [(0.034, 0.012), (0.029, 0.014), (0.024, 0.018), (0.019, 0.022), (0.014, 0.03), (0.010, 0.04)]
-    {
-        let area = Rect::new(slab.min - Vec2::new(0.0, 0.008), slab.max - Vec2::new(0.0, 0.008));
-        scene.add_box(area.grown(grow), 0.03, Paint::fill(Ink::faint(theme.shadow, opacity)));
-    }
-    scene.add_box(slab.grown(0.006), 0.014, Paint::fill(Ink::solid(theme.seam)));
+    rim(scene, slab, 0.010, theme.shadow, &[(0.034, 0.012), (0.027, 0.018), (0.020, 0.026), (0.013, 0.04)]);
+    // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
+    let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
+    seams(scene, view, gap);
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the root shows light steps too.
         let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
         let colour = theme.plate.mix(theme.load, share);
-        // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
-        let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
+    }
+}
+
+/// What is seen between the plates: a frame around all of them and lines between them.
+///
+/// Lines rather than one large ground: a window that is painted without a
+/// graphics card spends its time on area.
+fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
+    let slab = view.geometry.bounds();
+    let colour = Ink::solid(view.theme.seam);
+    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(0.014, colour)));
+    // A little wider than the seam, for the plates' round corners.
+    let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006, colour));
+    let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
+    for column in 1..view.geometry.columns() {
+        let south = slab.min + Vec2::new(f32::from(column) * pitch_m, 0.0);
+        scene.add_line(south, south + Vec2::new(0.0, size.y), stroke);
+    }
+    for row in 1..view.geometry.rows() {
+        let west = slab.min + Vec2::new(0.0, f32::from(row) * pitch_m);
+        scene.add_line(west, west + Vec2::new(size.x, 0.0), stroke);
+    }
+}
+
+/// A soft shadow around `area` as strokes outside its edge, each a reach in metres and an opacity.
+fn rim(scene: &mut Scene, area: Rect, radius_m: f32, colour: Colour, layers: &[(f32, f32)]) {
+    for (reach, opacity) in layers {
+        // From the edge outwards; a little further to the south, as under a lamp at the floor's far end.
+        let around = area.grown(0.5 * reach);
+        let around = Rect::new(around.min - Vec2::new(0.0, 0.006), around.max - Vec2::new(0.0, 0.006));
+        let stroke = Stroke::new(*reach, Ink::faint(colour, *opacity));
+        scene.add_box(around, radius_m + 0.5 * reach, Paint::stroke(stroke));
     }
 }
 

@@ -33,15 +33,30 @@ mod widths;
 
 pub use board::Scene;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
+pub use outline::outline_of;
 pub use theme::Theme;
 pub use view::{Shoe, Show, View};
 
 use glam::Vec2;
 
-use crate::floor::Rect;
+use crate::floor::{Geometry, Rect};
 
 /// Width of the empty edge around the floor, in metres.
 const MARGIN_M: f32 = 0.085;
+
+/// What a drawing of this floor covers, in floor metres: the floor, and the room that words around it take.
+#[must_use]
+pub fn extent(geometry: &Geometry, show: Show) -> Rect {
+    let margin = if show.ruler || show.header { MARGIN_M } else { 0.0 };
+    let mut bounds = geometry.bounds().grown(margin);
+    if show.header {
+        bounds.max.y += strip::HEADER_M - margin;
+    }
+    if show.legend {
+        bounds.min.y -= strip::LEGEND_M - 0.02;
+    }
+    bounds
+}
 
 /// Draws `view` into `scene`, in place of what was there.
 ///
@@ -49,14 +64,7 @@ const MARGIN_M: f32 = 0.085;
 /// them, what is under them, feet, and words about all of it.
 pub fn draw(scene: &mut Scene, view: &View<'_>) {
     let floor = view.geometry.bounds();
-    let margin = if view.show.ruler || view.show.header { MARGIN_M } else { 0.0 };
-    let mut bounds = floor.grown(margin);
-    if view.show.header {
-        bounds.max.y += strip::HEADER_M - margin;
-    }
-    if view.show.legend {
-        bounds.min.y -= strip::LEGEND_M - 0.02;
-    }
+    let bounds = extent(view.geometry, view.show);
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
     if view.show.ruler {

@@ -4,7 +4,26 @@ use std::f32::consts::{PI, TAU};
 
 use glam::Vec2;
 
+use super::{Mark, Scene};
 use crate::floor::Rect;
+
+/// Calls `visit` with points around a mark, the first one again at the end of a closed outline; none for text.
+///
+/// For painters that break outlines into dashes themselves.
+pub fn outline_of(scene: &Scene, mark: &Mark, visit: impl FnMut(Vec2)) {
+    match *mark {
+        Mark::Box { area, radius_m, .. } => box_arc(area, radius_m, 1.0).for_each(visit),
+        Mark::Ellipse { centre, radii, .. } => {
+            ellipse_arc(Rect::from_centre_size(centre, 2.0 * radii), 1.0).for_each(visit);
+        }
+        Mark::Path { points, closed, .. } => {
+            let points = scene.points(points);
+            let back = points.first().filter(|_| closed);
+            points.iter().chain(back).copied().for_each(visit);
+        }
+        Mark::Text { .. } => {}
+    }
+}
 
 /// Points along a quarter of a circle.
 const QUARTER_STEPS: usize = 8;

@@ -177,19 +177,17 @@ fn the_handle_of_a_slider_is_where_the_value_is() {
     }
 }
 
-/// How many marks of a kind lie within a centimetre of a point.
-fn marks_near(scene: &Scene, at: Vec2, wanted: impl Fn(&Mark) -> bool) -> usize {
+/// The numbers of points of the paths whose middle is within a centimetre of `at`.
+fn paths_near(scene: &Scene, at: Vec2) -> Vec<usize> {
     let near = |mark: &Mark| match mark {
-        Mark::Box { area, .. } => area.centre().distance(at) < 0.01,
-        Mark::Ellipse { centre, .. } => centre.distance(at) < 0.01,
         Mark::Path { points, .. } => {
             let points = scene.points(*points);
             let mean = points.iter().copied().sum::<Vec2>() / points.len() as f32;
-            mean.distance(at) < 0.01
+            (mean.distance(at) < 0.01).then_some(points.len())
         }
-        Mark::Text { .. } => false,
+        _ => None,
     };
-    scene.marks().iter().filter(|mark| near(mark) && wanted(mark)).count()
+    scene.marks().iter().filter_map(near).collect()
 }
 
 #[test]
@@ -202,21 +200,12 @@ fn sensors_that_cannot_be_trusted_have_shapes_of_their_own() {
         let mut snapshot = at_rest(&layout);
         snapshot.tiles[index].quality[Corner::NorthWest.index()] = quality;
         // Seen even where sensor forces are not shown.
-        let scene = shown(&layout, &snapshot, Show::LAYOUT);
-        let paths: Vec<usize> = scene
-            .marks()
-            .iter()
-            .filter_map(|mark| match mark {
-                Mark::Path { points, .. } => Some(scene.points(*points).len()),
-                _ => None,
-            })
-            .collect();
-        (paths, marks_near(&scene, at, |_| true))
+        paths_near(&shown(&layout, &snapshot, Show::LAYOUT), at)
     };
-    assert_eq!(lines(Quality::Live), (vec![], 0));
-    assert_eq!(lines(Quality::Degraded).0, [3], "a triangle");
-    assert_eq!(lines(Quality::Stale).0, [4], "a diamond");
-    assert_eq!(lines(Quality::Faulty).0, [2, 2], "a cross");
+    assert_eq!(lines(Quality::Live), [0; 0]);
+    assert_eq!(lines(Quality::Degraded), [3], "a triangle");
+    assert_eq!(lines(Quality::Stale), [4], "a diamond");
+    assert_eq!(lines(Quality::Faulty), [2, 2], "a cross");
 }
 
 #[test]

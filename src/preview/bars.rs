@@ -1,0 +1,210 @@
+//! The strips at the window's edges: what runs, how to work it, what is wrong.
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Align, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo, vec2};
+
+use super::app::App;
+use super::feed::PreviewCommand;
+use super::painter::color;
+use super::style::{panel_colour, panel_frame, pill, quiet};
+use crate::engine::LinkState;
+use crate::scene::Theme;
+
+/// How long the window tells that a saved file was loaded, in seconds.
+const TELL_S: f64 = 6.0;
+
+impl App {
+    /// Title, file and rates.
+    pub(super) fn top_bar(&mut self, ui: &mut Ui) {
+        let frame = panel_frame(&self.theme, Margin::symmetric(14, 7));
+        Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
+            ui.horizontal(|ui| {
+                ui.set_min_height(26.0);
+                // From the right first: the title gives way.
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    self.rates(ui);
+                    self.buttons(ui);
+                    ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.heading(ui));
+                });
+            });
+        });
+    }
+
+    fn heading(&mut self, ui: &mut Ui) {
+        let title = self.inbox.layout.title.clone();
+        if self.choices.is_empty() {
+            let text = RichText::new(&title).size(17.0).strong().color(color(self.theme.ink));
+            ui.add(egui::Label::new(text).truncate());
+        } else {
+            let mut chosen = None;
+            let text = RichText::new(&title).size(15.0).color(color(self.theme.ink));
+            let menu = egui::ComboBox::from_id_salt("layout").selected_text(text).width(150.0);
+            let response = menu.show_ui(ui, |ui| {
+                for (index, choice) in self.choices.iter().enumerate() {
+                    if ui.selectable_label(*choice == title, choice).clicked() {
+                        chosen = Some(index);
+                    }
+                }
+            });
+            response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Layout"));
+            if let Some(index) = chosen {
+                self.command(PreviewCommand::Open(index));
+            }
+        }
+        match &self.inbox.file {
+            Some(file) if file.diagnostics.is_some() => {
+                pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
+            }
+            Some(file) if self.now_s - file.at_s < TELL_S => {
+                pill(ui, self.theme.good, &self.theme, &format!("{}: saved changes loaded", file.name));
+            }
+            Some(file) => {
+                ui.add(egui::Label::new(quiet(&self.theme, &file.name)).truncate());
+            }
+            None => {
+                ui.add(egui::Label::new(quiet(&self.theme, &self.source)).truncate());
+            }
+        }
+    }
+
+    fn rates(&self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let snapshot = self.snapshots.output_buffer();
+        let (text, colour) = link(snapshot.link, theme);
+        pill(ui, colour, theme, text);
+        let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
+        let texts = [
+            (74.0, format!("{} fps", rate(self.pictures.per_second())), "Pictures a second in this window"),
+            (96.0, format!("{} frames/s", rate(self.frames.per_second())), "Sensor frames a second"),
+        ];
+        for (width, text, meaning) in texts {
+            // A place of fixed width, so that nothing moves when a figure gets longer.
+            let size = vec2(width, 18.0);
+            ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
+                ui.set_min_size(size);
+                ui.label(quiet(theme, text)).on_hover_text(meaning);
+            });
+        }
+    }
+
+    fn buttons(&mut self, ui: &mut Ui) {
+        let dark = self.theme.is_dark();
+        if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Light or dark window").clicked() {
+            self.turn_theme(ui.ctx());
+        }
+        let sensors = ui.selectable_label(self.marks, "Sensors");
+        if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
+            self.marks = !self.marks;
+        }
+        let Some((feet, _)) = &mut self.feet else { return };
+        let stands = feet.standing().is_some();
+        let button = ui.selectable_label(stands, "Stance foot");
+        let hint = "A second foot that stays where it is left; Space puts it under the mouse";
+        if button.on_hover_text(hint).clicked() {
+            if stands {
+                feet.lift_standing();
+            } else {
+                let floor = self.floor.geometry.bounds();
+                let place = self.inbox.layout.stances.first().map(|stance| stance.area);
+                // Where people stand if the layout does not say: in the middle of the south side.
+                let south = floor.min + floor.size() * glam::Vec2::new(0.5, 0.12);
+                feet.stand(place.map_or(south, |area| area.centre()).clamp(floor.min, floor.max));
+            }
+        }
+    }
+
+    /// How to work the floor.
+    pub(super) fn help_bar(&self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let frame = panel_frame(theme, Margin::symmetric(14, 5));
+        Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
+            let steps: &[(&str, &str)] = if self.feet.is_some() {
+                &[
+                    ("Hold", "press"),
+                    ("Drag", "slide"),
+                    ("Wheel", "harder, softer"),
+                    ("Right-drag, Q, E", "turn"),
+                    ("Space", "stance foot here"),
+                    ("Shift-click", "look at a tile"),
+                ]
+            } else {
+                &[("Click", "look at a tile"), ("Arrows", "the next one")]
+            };
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 5.0;
+                for (key, does) in steps {
+                    ui.label(RichText::new(*key).size(12.0).color(color(theme.ink)));
+                    ui.label(RichText::new(*does).size(12.0).color(color(theme.quiet)));
+                    ui.add_space(9.0);
+                }
+                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                    ui.add(egui::Label::new(quiet(theme, &self.source).size(12.0)).truncate());
+                });
+            });
+        });
+    }
+
+    /// Sentences from the program, until they are put away.
+    pub(super) fn notices(&mut self, ui: &mut Ui) {
+        if self.inbox.notes.is_empty() {
+            return;
+        }
+        let ground = color(panel_colour(&self.theme).mix(self.theme.warning, 0.12));
+        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 4));
+        let mut put_away = None;
+        Panel::top("notices").frame(frame).resizable(false).show(ui, |ui| {
+            for (index, note) in self.inbox.notes.iter().enumerate() {
+                ui.horizontal(|ui| {
+                    ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                        let button = ui.small_button("Hide");
+                        button
+                            .widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Hide: {note}")));
+                        if button.clicked() {
+                            put_away = Some(index);
+                        }
+                        ui.with_layout(Layout::left_to_right(Align::Center), |ui| {
+                            ui.add(egui::Label::new(RichText::new(note).color(color(self.theme.ink))).wrap());
+                        });
+                    });
+                });
+            }
+        });
+        if let Some(index) = put_away {
+            self.inbox.notes.remove(index);
+        }
+    }
+
+    /// What is wrong with the layout file, under the floor that still shows the last good one.
+    pub(super) fn problems(&mut self, ui: &mut Ui) {
+        let Some(file) = &self.inbox.file else { return };
+        let Some(diagnostics) = &file.diagnostics else { return };
+        let theme = &self.theme;
+        let frame = egui::Frame::new()
+            .fill(color(panel_colour(theme).mix(theme.fault, 0.05)))
+            .inner_margin(Margin { left: 14, right: 8, top: 8, bottom: 8 });
+        let half = 0.45 * ui.available_height();
+        let panel = Panel::bottom("problems").frame(frame).resizable(true);
+        panel.default_size(half.min(230.0)).size_range(70.0..=half.max(71.0)).show(ui, |ui| {
+            let title = format!("{} has problems", file.name);
+            ui.horizontal(|ui| {
+                ui.label(RichText::new(title).size(14.5).strong().color(color(theme.fault)));
+                let rest = "The floor keeps the last good layout; saving a better file replaces it.";
+                ui.add(egui::Label::new(quiet(theme, rest)).truncate());
+            });
+            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                let text = RichText::new(diagnostics).monospace().size(12.5).color(color(theme.ink));
+                ui.add(egui::Label::new(text).extend().selectable(true));
+            });
+        });
+    }
+}
+
+fn link(state: LinkState, theme: &Theme) -> (&'static str, crate::layout::Colour) {
+    match state {
+        LinkState::Waiting => ("waiting", theme.warning),
+        LinkState::Live => ("live", theme.good),
+        LinkState::Partial => ("partial", theme.warning),
+        LinkState::Lost => ("lost", theme.fault),
+    }
+}

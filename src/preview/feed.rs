@@ -1,0 +1,112 @@
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender};
+
+use glam::Vec2;
+
+use crate::engine::Snapshot;
+use crate::floor::Floor;
+use crate::layout::Layout;
+use crate::scene::Shoe;
+use crate::widget::{Value, WidgetEvent, WidgetId};
+
+/// A shoe that the window moves; its `length_m` is the sole's, a centimetre more than the bare foot's.
+pub type PreviewFoot = Shoe;
+
+/// Everything the window shows and everything it can do, filled in by the program.
+///
+/// The window only looks: sensing, sound and outputs run on other threads and
+/// go on while it is covered. A sender that hangs up is no fault; what it sent
+/// last stays.
+pub struct PreviewInput {
+    /// The floor that is shown.
+    pub floor: Arc<Floor>,
+    /// The layout to begin with.
+    pub layout: Arc<Layout>,
+    /// What the floor is, in a few words: `simulated floor`, `walk.mcap`, `port 9000`.
+    pub source: String,
+    /// The latest state, written by the sensing thread.
+    pub snapshots: triple_buffer::Output<Snapshot>,
+    /// Every event, in order.
+    pub events: Receiver<WidgetEvent>,
+    /// What became of changes to the layout file.
+    pub layouts: Receiver<LayoutNews>,
+    /// Sentences for the person at the window, such as why there is no sound.
+    pub notices: Receiver<String>,
+    /// What the actuators do; `None` where nothing is rendered.
+    pub scopes: Option<Box<dyn ScopeFeed>>,
+    /// The feet of a simulated floor; `None` for a real floor or a recording, which nobody can step on with a mouse.
+    pub feet: Option<Box<dyn FootSink>>,
+    /// Names of layouts that can be opened from the window; empty if there is no choice.
+    pub choices: Vec<String>,
+    /// What the person at the window wants.
+    pub commands: Sender<PreviewCommand>,
+}
+
+/// What became of a layout file that changed.
+#[derive(Clone, Debug)]
+pub enum LayoutNews {
+    /// The engine was given this one.
+    Loaded {
+        /// The layout.
+        layout: Arc<Layout>,
+        /// The [`Snapshot::layout_revision`] from which on snapshots belong to it. The window
+        /// shows it from then on, so that controls and their states always match.
+        revision: u64,
+        /// What to say about it: `map.ron`.
+        name: String,
+    },
+    /// It has problems; the last good layout stays.
+    Refused {
+        /// What to say about it: `map.ron`.
+        name: String,
+        /// All problems, as the program would print them.
+        diagnostics: String,
+    },
+}
+
+/// What the person at the window wants from the program.
+#[derive(Clone, Debug, PartialEq)]
+pub enum PreviewCommand {
+    /// Open the layout at this place in [`PreviewInput::choices`].
+    Open(usize),
+    /// Switch a control on or off, as an app would.
+    Enable {
+        /// Which control.
+        id: WidgetId,
+        /// Whether it shall work.
+        enabled: bool,
+    },
+    /// Give a control a value, as an app would.
+    Set {
+        /// Which control.
+        id: WidgetId,
+        /// What it shall hold.
+        value: Value,
+    },
+}
+
+/// What each actuator channel did lately.
+pub trait ScopeFeed {
+    /// Takes in what happened since the last call; called once for each picture.
+    fn update(&mut self) {}
+
+    /// Lowest and highest sample of short stretches of `channel`, oldest first, in full scales:
+    /// about 128 of them over 100 ms. Empty for a channel that does not exist.
+    fn scope(&mut self, channel: usize) -> &[(f32, f32)];
+}
+
+/// A simulated floor's feet.
+pub trait FootSink {
+    /// Takes the feet that stand on the floor or hover above it; called for each picture.
+    fn set(&mut self, feet: &[PreviewFoot]);
+
+    /// Where the force of `foot` acts, in floor metres: the window puts that point under the mouse.
+    ///
+    /// As it stands, a straight line from 36 % of the sole's length behind its
+    /// middle (heel) to 32 % before it (toes).
+    fn centre_of_pressure(&self, foot: &PreviewFoot) -> Vec2 {
+        let forward = Vec2::from_angle(foot.heading_rad).rotate(Vec2::Y);
+        let roll = foot.roll.clamp(0.0, 1.0);
+        foot.position + forward * (foot.length_m * (0.68 * roll - 0.36))
+    }
+}

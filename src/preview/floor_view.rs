@@ -1,0 +1,278 @@
+//! The floor in the middle of the window, and the mouse on it.
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Align2, CursorIcon, Event, FontId, Key, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect,
+    Response, Sense, Ui, WidgetInfo, pos2, vec2,
+};
+use glam::Vec2;
+
+use super::app::App;
+use super::feet::{Feet, Hand};
+use super::painter::{self, color};
+use super::transform::ScreenFromFloor;
+use super::watch::Banner;
+use crate::floor::TileId;
+use crate::scene::{self, Show, Theme, View};
+use crate::widget::{Behaviour, Value};
+
+/// Radius of the standing foot's handle, in points: easy to hit with a mouse.
+const HANDLE: f32 = 13.0;
+
+/// Turn for each point that the mouse moves sideways with the right button, in radians.
+const TURN_PER_POINT: f32 = 0.012;
+
+/// Turn while Q or E is held, in radians per second.
+const TURN_PER_S: f32 = 1.8;
+
+/// What the mouse is doing to the standing foot.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Grip {
+    /// Whether it is being dragged.
+    held: bool,
+}
+
+impl App {
+    /// Fills what is left of the window with the floor.
+    pub(super) fn floor_view(&mut self, ui: &mut Ui) {
+        let rect = ui.available_rect_before_wrap();
+        let canvas = ui.allocate_rect(rect, Sense::drag());
+        canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
+        let show = Show { sensors: self.marks, ..Show::WINDOW };
+        let map = ScreenFromFloor::fit(scene::extent(&self.floor.geometry, show), rect.shrink(6.0));
+        self.look_at_tiles(ui, &canvas, map);
+        let on_handle = self.move_feet(ui, &canvas, map);
+        self.draw(ui, rect, map, show);
+        self.name_controls(ui, map);
+        if self.feet.is_some() && canvas.contains_pointer() {
+            ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
+            self.read_out(ui, rect, on_handle);
+        }
+        let link = self.snapshots.output_buffer().link;
+        if let Some(banner) = self.watch.banner(self.now_s, link, &self.source) {
+            show_banner(ui, rect, &self.theme, &banner);
+        }
+    }
+
+    fn draw(&mut self, ui: &Ui, rect: Rect, map: ScreenFromFloor, show: Show) {
+        let view = View {
+            show,
+            shoes: self.feet.as_ref().map_or(&[], |(feet, _)| feet.shoes()),
+            levels: self.scopes.levels(),
+            chosen: self.looked.pinned(),
+            ..View::new(&self.floor.geometry, &self.inbox.layout, self.snapshots.output_buffer(), &self.theme)
+        };
+        scene::draw(&mut self.scene, &view);
+        let painter = ui.painter_at(rect);
+        painter::paint(&painter, &self.scene, map);
+    }
+
+    /// Chooses the tile that the side panel shows.
+    fn look_at_tiles(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor) {
+        let (pressed, shift, pointer) =
+            ui.input(|i| (i.pointer.primary_pressed(), i.modifiers.shift, i.pointer.interact_pos()));
+        if let (true, Some(pointer)) = (pressed && canvas.contains_pointer(), pointer)
+            && (shift || self.feet.is_none())
+            && let Some(tile) = self.floor.geometry.tile_under(map.floor(pointer))
+        {
+            self.looked.pin(tile);
+        }
+        if ui.ctx().memory(|memory| memory.focused().is_none()) {
+            for (key, east, north) in [
+                (Key::ArrowLeft, -1, 0),
+                (Key::ArrowRight, 1, 0),
+                (Key::ArrowDown, 0, -1),
+                (Key::ArrowUp, 0, 1),
+            ] {
+                if ui.input(|i| i.key_pressed(key)) {
+                    let tile = self.looked.tile();
+                    let moved = TileId::new(
+                        tile.column.saturating_add_signed(east),
+                        tile.row.saturating_add_signed(north),
+                    );
+                    if self.floor.geometry.index(moved).is_some() {
+                        self.looked.pin(moved);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Moves the simulated feet; the answer is whether the pointer is on the standing foot's handle.
+    fn move_feet(&mut self, ui: &mut Ui, canvas: &Response, map: ScreenFromFloor) -> bool {
+        let Some((feet, sink)) = &mut self.feet else { return false };
+        let (on_handle, drag) =
+            stand_and_drag(ui, canvas, map, feet, &mut self.grip, self.floor.geometry.bounds());
+        let mut hand = read_hand(ui, canvas, map);
+        hand.on_handle = on_handle;
+        hand.drag = drag;
+        hand.pressed &= !on_handle && !self.grip.held;
+        if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
+            feet.lift_working();
+            hand.pressed = false;
+        }
+        feet.step(&hand, sink.as_mut());
+        on_handle || self.grip.held
+    }
+
+    /// Force and turn of the foot in hand, beside the pointer.
+    fn read_out(&self, ui: &Ui, rect: Rect, on_handle: bool) {
+        let (Some((feet, _)), Some(pointer)) = (&self.feet, ui.input(|i| i.pointer.hover_pos())) else {
+            return;
+        };
+        let (force, heading) = feet.wanted(on_handle);
+        let mut text = format!("{:.0} N", force.0);
+        let degrees = heading.to_degrees().round();
+        if degrees != 0.0 {
+            let way = if degrees > 0.0 { "left" } else { "right" };
+            text.push_str(&format!(" · {:.0}° {way}", degrees.abs()));
+        }
+        let pressing = feet.is_pressing() || on_handle;
+        let theme = &self.theme;
+        let (ground, ink) = if pressing { (theme.ink, theme.plate) } else { (theme.plate, theme.ink) };
+        let painter = ui.painter_at(rect);
+        let galley = painter.layout_no_wrap(text, FontId::proportional(13.0), color(ink));
+        let size = galley.size() + vec2(14.0, 6.0);
+        // South-east of the pointer, or on the other side where the view ends.
+        let x = if pointer.x + 18.0 + size.x > rect.right() {
+            pointer.x - 18.0 - size.x
+        } else {
+            pointer.x + 18.0
+        };
+        let y = (pointer.y + 18.0).min(rect.bottom() - size.y - 2.0);
+        let plate = Rect::from_min_size(pos2(x, y), size);
+        let edge = egui::Stroke::new(1.0, color(theme.quiet));
+        painter.rect(plate, 6, color(ground), edge, egui::StrokeKind::Inside);
+        painter.galley(plate.min + vec2(7.0, 3.0), galley, color(ink));
+    }
+
+    /// Tells screen readers and tests what is on the floor and how it is.
+    fn name_controls(&self, ui: &Ui, map: ScreenFromFloor) {
+        let snapshot = self.snapshots.output_buffer();
+        for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
+            let state = snapshot.widgets.get(index).copied().unwrap_or_default();
+            let id = ui.scope_id().with(("floor control", index));
+            let node = ui.interact(map.rect(widget.area), id, Sense::hover());
+            node.widget_info(|| {
+                let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
+                let enabled = !state.disabled;
+                match (&widget.behaviour, state.value) {
+                    (Behaviour::Switch(_), Some(Value::Switch(on))) => {
+                        WidgetInfo::selected(Role::Switch, enabled, on, name)
+                    }
+                    (Behaviour::Slider(_), Some(Value::Number(value))) => {
+                        WidgetInfo::slider(enabled, f64::from(value), name)
+                    }
+                    _ => WidgetInfo::selected(Role::Button, enabled, state.pressed, name),
+                }
+            });
+        }
+    }
+}
+
+/// Puts the standing foot down where Space is hit, and drags it by its handle or, with Alt, by its sole.
+fn stand_and_drag(
+    ui: &mut Ui,
+    canvas: &Response,
+    map: ScreenFromFloor,
+    feet: &mut Feet,
+    grip: &mut Grip,
+    floor: crate::floor::Rect,
+) -> (bool, Vec2) {
+    let pointer = ui.input(|i| i.pointer.interact_pos()).filter(|_| canvas.contains_pointer());
+    let keys = ui.ctx().memory(|memory| memory.focused().is_none());
+    if let (true, Some(pointer)) = (keys && ui.input(|i| i.key_pressed(Key::Space)), pointer) {
+        let on_it =
+            feet.standing().is_some_and(|shoe| map.point(shoe.position).distance(pointer) < 2.0 * HANDLE);
+        if on_it {
+            feet.lift_standing();
+        } else {
+            feet.stand(map.floor(pointer).clamp(floor.min, floor.max));
+        }
+    }
+    let Some(shoe) = feet.standing().copied() else {
+        grip.held = false;
+        return (false, Vec2::ZERO);
+    };
+    let middle = map.point(shoe.position);
+    let handle = ui.interact(
+        Rect::from_center_size(middle, egui::Vec2::splat(2.0 * HANDLE)),
+        ui.scope_id().with("standing foot"),
+        Sense::drag(),
+    );
+    handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Standing foot"));
+    let near = |pointer: Pos2, reach: f32| pointer.distance(middle) <= reach;
+    let alt = ui.input(|i| i.modifiers.alt);
+    let reach = if alt { 0.5 * shoe.length_m * map.scale() } else { HANDLE };
+    let over = pointer.is_some_and(|pointer| near(pointer, reach)) && !feet.is_pressing();
+    let (began, down) = ui.input(|i| (i.pointer.primary_pressed(), i.pointer.primary_down()));
+    grip.held = (grip.held || (over && began)) && down;
+    let drag = if grip.held { map.floor_vector(ui.input(|i| i.pointer.delta())) } else { Vec2::ZERO };
+    // Its middle stays on the floor, however far the mouse goes.
+    let drag = (shoe.position + drag).clamp(floor.min, floor.max) - shoe.position;
+    (over || grip.held, drag)
+}
+
+fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
+    let inside = canvas.contains_pointer();
+    let keys = ui.ctx().memory(|memory| memory.focused().is_none());
+    ui.input(|i| {
+        let down = i.pointer.primary_down();
+        // A press that began on the floor goes on beyond its edge, as a foot would.
+        let pointer = i.pointer.latest_pos().filter(|_| inside || down);
+        let turned =
+            if i.pointer.button_down(PointerButton::Secondary) && inside { i.pointer.delta().x } else { 0.0 };
+        let key = |key: Key| f32::from(u8::from(keys && i.key_down(key)));
+        let elapsed_s = i.stable_dt.clamp(0.0, 0.1);
+        Hand {
+            pointer: pointer.map(|at| map.floor(at)),
+            pressed: i.pointer.primary_pressed() && inside && !i.modifiers.shift,
+            down,
+            wheel: if inside { notches(&i.events) } else { 0.0 },
+            turn_rad: -turned * TURN_PER_POINT + (key(Key::Q) - key(Key::E)) * TURN_PER_S * elapsed_s,
+            elapsed_s,
+            ..Hand::default()
+        }
+    })
+}
+
+/// How far the wheel was turned, in notches.
+fn notches(events: &[Event]) -> f32 {
+    let notches = |event: &Event| match event {
+        // What a touch pad adds after the fingers are gone is nobody's wish to press harder.
+        Event::MouseWheel { source: MouseWheelSource::Momentum, .. } => 0.0,
+        Event::MouseWheel { unit, delta, .. } => match unit {
+            // A notch is about 50 points on a touch pad.
+            MouseWheelUnit::Point => delta.y / 50.0,
+            MouseWheelUnit::Line => delta.y,
+            MouseWheelUnit::Page => delta.y * 5.0,
+        },
+        _ => 0.0,
+    };
+    events.iter().map(notches).sum::<f32>().clamp(-20.0, 20.0)
+}
+
+/// A broad strip across the floor that cannot be overlooked.
+fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
+    let colour = if banner.severe { theme.fault } else { theme.warning };
+    let painter = ui.painter_at(rect);
+    let strip = Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)).intersect(rect);
+    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.93));
+    let ink = color(if theme.is_dark() { theme.seam } else { theme.plate });
+    // A narrow view gets smaller letters rather than cut ones.
+    let size = (rect.width() / 26.0).clamp(13.0, 24.0);
+    let middle = strip.center();
+    painter.text(
+        middle - vec2(0.0, 14.0),
+        Align2::CENTER_CENTER,
+        &banner.headline,
+        FontId::proportional(size),
+        ink,
+    );
+    let small = FontId::proportional((0.62 * size).max(12.0));
+    painter.text(middle + vec2(0.0, 18.0), Align2::CENTER_CENTER, &banner.detail, small, ink);
+    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
+    let spoken = format!("{}. {}", banner.headline, banner.detail);
+    node.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
+}

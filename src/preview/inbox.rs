@@ -1,0 +1,154 @@
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::mpsc::Receiver;
+
+use super::feed::LayoutNews;
+use crate::layout::Layout;
+use crate::widget::WidgetEvent;
+
+/// Events that are kept for the list: some minutes of busy feet.
+const KEPT: usize = 500;
+
+/// Notices that are kept; a program that says more says the same again.
+const NOTICES: usize = 4;
+
+/// What other threads said, sorted.
+pub(super) struct Inbox {
+    events: Receiver<WidgetEvent>,
+    layouts: Receiver<LayoutNews>,
+    notices: Receiver<String>,
+    /// Events, newest first.
+    pub(super) recent: VecDeque<WidgetEvent>,
+    /// Events since the window opened.
+    pub(super) event_count: u64,
+    /// The layout that snapshots belong to.
+    pub(super) layout: Arc<Layout>,
+    /// Layouts that the engine was given and no snapshot shows yet.
+    coming: VecDeque<(Arc<Layout>, u64)>,
+    /// What became of the layout file last.
+    pub(super) file: Option<FileNote>,
+    /// Sentences for the person at the window, oldest first.
+    pub(super) notes: VecDeque<String>,
+}
+
+/// What became of the layout file last.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct FileNote {
+    /// The file's name.
+    pub(super) name: String,
+    /// When it was heard, on the window's clock.
+    pub(super) at_s: f64,
+    /// All problems; `None` if it was loaded.
+    pub(super) diagnostics: Option<String>,
+}
+
+impl Inbox {
+    pub(super) fn new(
+        layout: Arc<Layout>,
+        events: Receiver<WidgetEvent>,
+        layouts: Receiver<LayoutNews>,
+        notices: Receiver<String>,
+    ) -> Self {
+        Self {
+            events,
+            layouts,
+            notices,
+            recent: VecDeque::with_capacity(KEPT),
+            event_count: 0,
+            layout,
+            coming: VecDeque::new(),
+            file: None,
+            notes: VecDeque::new(),
+        }
+    }
+
+    /// Takes in everything that waits; `revision` is the latest snapshot's.
+    pub(super) fn receive(&mut self, now_s: f64, revision: u64) {
+        for event in self.events.try_iter() {
+            self.recent.truncate(KEPT - 1);
+            self.recent.push_front(event);
+            self.event_count += 1;
+        }
+        for news in self.layouts.try_iter() {
+            self.file = Some(match news {
+                LayoutNews::Loaded { layout, revision, name } => {
+                    self.coming.push_back((layout, revision));
+                    FileNote { name, at_s: now_s, diagnostics: None }
+                }
+                LayoutNews::Refused { name, diagnostics } => {
+                    FileNote { name, at_s: now_s, diagnostics: Some(diagnostics) }
+                }
+            });
+        }
+        while let Some((layout, _)) = self.coming.pop_front_if(|(_, from)| *from <= revision) {
+            self.layout = layout;
+        }
+        for note in self.notices.try_iter() {
+            if !self.notes.contains(&note) {
+                self.notes.push_back(note);
+            }
+        }
+        while self.notes.len() > NOTICES {
+            self.notes.pop_front();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::channel;
+
+    use super::*;
+    use crate::scene::sample::map;
+
+    fn named(title: &str) -> Arc<Layout> {
+        Arc::new(Layout { title: title.into(), ..map() })
+    }
+
+    #[test]
+    fn a_layout_is_shown_once_snapshots_belong_to_it() {
+        let (news, layouts) = channel();
+        let mut inbox = Inbox::new(named("old"), channel().1, layouts, channel().1);
+        for (title, revision) in [("newer", 2), ("newest", 3)] {
+            let name = "map.ron".into();
+            news.send(LayoutNews::Loaded { layout: named(title), revision, name }).unwrap();
+        }
+        inbox.receive(1.0, 1);
+        assert_eq!(inbox.layout.title, "old", "a foot was still on it");
+        inbox.receive(1.1, 2);
+        assert_eq!(inbox.layout.title, "newer");
+        inbox.receive(1.2, 9);
+        assert_eq!(inbox.layout.title, "newest");
+    }
+
+    #[test]
+    fn a_bad_layout_leaves_the_good_one_until_a_good_one_comes() {
+        let (news, layouts) = channel();
+        let mut inbox = Inbox::new(named("good"), channel().1, layouts, channel().1);
+        let diagnostics = "map.ron:3:9: unknown field".to_owned();
+        news.send(LayoutNews::Refused { name: "map.ron".into(), diagnostics: diagnostics.clone() }).unwrap();
+        inbox.receive(1.0, 0);
+        assert_eq!(inbox.layout.title, "good");
+        assert_eq!(inbox.file.as_ref().unwrap().diagnostics, Some(diagnostics));
+        news.send(LayoutNews::Loaded { layout: named("mended"), revision: 1, name: "map.ron".into() })
+            .unwrap();
+        inbox.receive(2.0, 0);
+        assert_eq!(inbox.file.as_ref().unwrap().diagnostics, None);
+    }
+
+    #[test]
+    fn the_list_of_events_stays_short_and_the_same_notice_is_said_once() {
+        let (event, events) = channel();
+        let (say, notices) = channel();
+        let mut inbox = Inbox::new(named("it"), events, channel().1, notices);
+        for at in 0..2000 {
+            event.send(crate::preview::tests::event(at, "home")).unwrap();
+            say.send("no sound card".into()).unwrap();
+        }
+        inbox.receive(1.0, 0);
+        assert_eq!(inbox.recent.len(), KEPT);
+        assert_eq!(inbox.event_count, 2000);
+        assert_eq!(inbox.recent[0].at, crate::units::Instant::from_millis(1999), "newest first");
+        assert_eq!(inbox.notes, ["no sound card"]);
+    }
+}

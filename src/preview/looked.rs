@@ -1,0 +1,76 @@
+use crate::engine::Snapshot;
+use crate::floor::{Geometry, TileId};
+
+/// Which tile the side panel shows: the one under the foot that works, or one that was pinned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Looked {
+    tile: TileId,
+    pinned: bool,
+}
+
+impl Looked {
+    /// The middle of the floor, until a foot comes.
+    pub(super) fn new(geometry: &Geometry) -> Self {
+        Self { tile: TileId::new(geometry.columns() / 2, geometry.rows() / 2), pinned: false }
+    }
+
+    /// Goes along with the cursor's heaviest tile, or the heaviest contact's, unless pinned.
+    pub(super) fn follow(&mut self, snapshot: &Snapshot) {
+        if self.pinned {
+            return;
+        }
+        let leads = |id| snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == id);
+        let foot = snapshot.contacts.iter().max_by(|a, b| {
+            (leads(a.id), a.force.0)
+                .partial_cmp(&(leads(b.id), b.force.0))
+                .unwrap_or(std::cmp::Ordering::Equal)
+        });
+        if let Some(load) = foot.and_then(|contact| contact.tiles.first()) {
+            self.tile = load.tile;
+        }
+    }
+
+    pub(super) fn pin(&mut self, tile: TileId) {
+        *self = Self { tile, pinned: true };
+    }
+
+    pub(super) fn unpin(&mut self) {
+        self.pinned = false;
+    }
+
+    pub(super) fn tile(self) -> TileId {
+        self.tile
+    }
+
+    pub(super) fn pinned(self) -> Option<TileId> {
+        self.pinned.then_some(self.tile)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::scene::sample::{at_rest, map, pressing, step_on};
+
+    #[test]
+    fn follows_the_working_foot_and_stays_when_it_is_gone() {
+        let layout = map();
+        let mut looked = Looked::new(&Geometry::default());
+        assert_eq!(looked.tile(), TileId::new(3, 3));
+        // The standing foot is heavier, but the other one is the cursor.
+        looked.follow(&pressing(&layout));
+        assert_eq!(looked.tile(), TileId::new(0, 4));
+        looked.follow(&at_rest(&layout));
+        assert_eq!(looked.tile(), TileId::new(0, 4));
+        looked.pin(TileId::new(5, 5));
+        let mut elsewhere = at_rest(&layout);
+        step_on(&mut elsewhere, 3, Vec2::new(1.0, 1.0), 300.0, Vec2::ZERO);
+        looked.follow(&elsewhere);
+        assert_eq!(looked.pinned(), Some(TileId::new(5, 5)));
+        looked.unpin();
+        looked.follow(&elsewhere);
+        assert_eq!(looked.tile(), TileId::new(3, 3));
+    }
+}

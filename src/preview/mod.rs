@@ -1,0 +1,74 @@
+//! The window: a simulated or real floor, drawn and played with the mouse.
+//!
+//! [`run`] shows whatever its [`PreviewInput`] brings in; sensing, sound and
+//! outputs run on other threads and never wait for it. Only this module knows
+//! egui.
+
+mod app;
+mod bars;
+mod feed;
+mod feet;
+mod floor_view;
+mod inbox;
+mod looked;
+mod painter;
+mod panel;
+mod rate;
+mod scopes;
+mod style;
+#[cfg(test)]
+mod tests;
+mod transform;
+mod watch;
+
+pub use feed::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed};
+
+use eframe::egui;
+use thiserror::Error;
+
+use crate::scene::Theme;
+
+/// How the window looks at first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreviewOptions {
+    /// What the window's title bar says.
+    pub title: String,
+    /// Width and height of the inside, in points.
+    pub size: (f32, f32),
+    /// The colours.
+    pub theme: Theme,
+}
+
+impl Default for PreviewOptions {
+    fn default() -> Self {
+        Self { title: "underfoot".into(), size: (1280.0, 800.0), theme: Theme::LIGHT }
+    }
+}
+
+/// Why there is no window.
+#[derive(Debug, Error)]
+pub enum PreviewError {
+    /// The window could not be opened: no display, or one without OpenGL. What needs no window still works.
+    #[error("no window can be opened: {0}")]
+    NoWindow(String),
+}
+
+/// Shows the window until it is closed; to be called on the main thread.
+///
+/// # Errors
+/// [`PreviewError::NoWindow`] if there is no display or no OpenGL on it.
+pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewError> {
+    let viewport = egui::ViewportBuilder::default()
+        .with_title(&options.title)
+        .with_app_id("underfoot")
+        .with_inner_size([options.size.0, options.size.1])
+        .with_min_inner_size([720.0, 480.0]);
+    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Glow, ..Default::default() };
+    let app = app::App::new(input, options);
+    let start = Box::new(move |context: &eframe::CreationContext<'_>| {
+        style::apply(&context.egui_ctx, &app.theme);
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    });
+    eframe::run_native(&options.title, native, start)
+        .map_err(|error| PreviewError::NoWindow(error.to_string()))
+}

@@ -1,0 +1,146 @@
+use eframe::egui;
+use eframe::egui::epaint::{
+    self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape,
+};
+use eframe::egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Shape, StrokeKind, vec2};
+
+use super::transform::ScreenFromFloor;
+use crate::layout::Colour;
+use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
+
+/// Draws a scene with egui.
+pub(super) fn paint(painter: &egui::Painter, scene: &Scene, map: ScreenFromFloor) {
+    let mut brush = Brush { painter, map, points: Vec::new() };
+    for mark in scene.marks() {
+        brush.mark(scene, mark);
+    }
+}
+
+/// egui's colour for one of ours.
+pub(super) fn color(colour: Colour) -> Color32 {
+    Color32::from_rgb(colour.red, colour.green, colour.blue)
+}
+
+/// egui's colour for ink that lets something through.
+pub(super) fn ink_color(ink: Ink) -> Color32 {
+    let alpha = (ink.opacity.clamp(0.0, 1.0) * 255.0).round() as u8;
+    Color32::from_rgba_unmultiplied(ink.colour.red, ink.colour.green, ink.colour.blue, alpha)
+}
+
+struct Brush<'a> {
+    painter: &'a egui::Painter,
+    map: ScreenFromFloor,
+    points: Vec<Pos2>,
+}
+
+impl Brush<'_> {
+    fn mark(&mut self, scene: &Scene, mark: &Mark) {
+        match mark {
+            Mark::Box { area, radius_m, paint } => {
+                let rect = self.map.rect(*area);
+                let radius = CornerRadius::from(radius_m * self.map.scale());
+                let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
+                self.painter.add(RectShape::new(rect, radius, fill, stroke, StrokeKind::Middle));
+                self.dashes(scene, mark, paint);
+            }
+            Mark::Ellipse { centre, radii, paint } => {
+                let centre = self.map.point(*centre);
+                let radius = vec2(radii.x, radii.y) * self.map.scale();
+                let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
+                if radius.x == radius.y {
+                    self.painter.add(CircleShape { center: centre, radius: radius.x, fill, stroke });
+                } else {
+                    self.painter.add(EllipseShape { center: centre, radius, fill, stroke, angle: 0.0 });
+                }
+                self.dashes(scene, mark, paint);
+            }
+            Mark::Path { points, closed, paint } => {
+                self.points.clear();
+                self.points.extend(scene.points(*points).iter().map(|point| self.map.point(*point)));
+                if let Some(ink) = paint.fill {
+                    self.fan(ink_color(ink));
+                }
+                let stroke = self.plain_stroke(paint);
+                if stroke.width > 0.0 {
+                    let stroke = PathStroke::from(stroke);
+                    let (points, closed) = (self.points.clone(), *closed);
+                    self.painter.add(PathShape { points, closed, fill: Color32::TRANSPARENT, stroke });
+                }
+                self.dashes(scene, mark, paint);
+            }
+            Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
+        }
+    }
+
+    /// The inside of a path, as triangles around the mean of its points.
+    fn fan(&self, color: Color32) {
+        let count = self.points.len() as u32;
+        let sum = self.points.iter().fold(egui::Vec2::ZERO, |sum, point| sum + point.to_vec2());
+        let mut mesh = Mesh::default();
+        mesh.colored_vertex((sum / count as f32).to_pos2(), color);
+        for (at, point) in (0..count).zip(&self.points) {
+            mesh.colored_vertex(*point, color);
+            mesh.add_triangle(0, at + 1, (at + 1) % count + 1);
+        }
+        self.painter.add(Shape::mesh(mesh));
+    }
+
+    fn stroke(&self, stroke: &Stroke) -> egui::Stroke {
+        // Below this a line would dissolve.
+        egui::Stroke::new((stroke.width_m * self.map.scale()).max(0.7), ink_color(stroke.ink))
+    }
+
+    /// The outline, if it is not broken.
+    fn plain_stroke(&self, paint: &Paint) -> egui::Stroke {
+        match &paint.stroke {
+            Some(stroke) if stroke.dash.is_none() => self.stroke(stroke),
+            _ => egui::Stroke::NONE,
+        }
+    }
+
+    /// The outline, if it is broken.
+    fn dashes(&mut self, scene: &Scene, mark: &Mark, paint: &Paint) {
+        let Some((stroke, (on, off))) = paint.stroke.and_then(|stroke| Some((stroke, stroke.dash?))) else {
+            return;
+        };
+        let (map, scale) = (self.map, self.map.scale());
+        self.points.clear();
+        outline_of(scene, mark, |point| self.points.push(map.point(point)));
+        let dashes = Shape::dashed_line(&self.points, self.stroke(&stroke), on * scale, off * scale);
+        self.painter.extend(dashes);
+    }
+
+    fn text(&self, letters: &str, lettering: &Lettering) {
+        // Quarter steps keep the glyph atlas small while the window is resized.
+        let size = (lettering.size_m * self.map.scale() * 4.0).floor() / 4.0;
+        if size < 4.0 {
+            return;
+        }
+        let color = ink_color(lettering.ink);
+        let font = FontId::new(size, FontFamily::Proportional);
+        let galley = self.painter.layout_no_wrap(letters.to_owned(), font, color);
+        let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |glyph| glyph.pos.y);
+        let start = match lettering.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5,
+            Anchor::End => 1.0,
+        };
+        // egui turns clockwise and about the upper left corner.
+        let turn = epaint::emath::Rot2::from_angle(-lettering.turn_rad);
+        let corner = turn * vec2(-start * galley.size().x, -base);
+        let at = self.map.point(lettering.at) + corner;
+        let mut shape = TextShape::new(at, galley, color);
+        shape.angle = -lettering.turn_rad;
+        if lettering.strong {
+            // The font has one weight; printed twice, a little apart, it is heavier.
+            let mut again = shape.clone();
+            again.pos += turn * vec2((0.022 * size).max(0.3), 0.0);
+            self.painter.add(again);
+        }
+        self.painter.add(shape);
+    }
+}
+
+fn fill(paint: &Paint) -> Color32 {
+    paint.fill.map_or(Color32::TRANSPARENT, ink_color)
+}

@@ -1,0 +1,52 @@
+use eframe::egui::Ui;
+
+use super::super::app::App;
+use super::super::painter::color;
+use super::super::style::{quiet, row, section};
+
+/// Lines that are always there, so that nothing below moves when feet come and go.
+const LINES: usize = 3;
+
+/// Most contacts that are listed.
+const MOST: usize = 8;
+
+impl App {
+    /// One line for each contact, heaviest first as they come.
+    pub(super) fn contacts_part(&mut self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let snapshot = self.snapshots.output_buffer();
+        section(ui, theme, "Contacts", |ui| {
+            ui.label(quiet(theme, "x m   y m   N   m/s").size(12.0));
+        });
+        let leads = |id| snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == id);
+        ui.spacing_mut().item_spacing.y = 2.0;
+        for contact in snapshot.contacts.iter().take(MOST) {
+            let cursor = leads(contact.id);
+            let (at, force, speed) = (contact.centroid, contact.force.0, contact.velocity.length());
+            let id = contact.id.0;
+            let what = if cursor { "cursor" } else { "" };
+            let spoken =
+                format!("Contact {id} {what}: {force:.0} newtons at {:.2}, {:.2} metres", at.x, at.y);
+            let line = row(ui, 19.0, 13.0, &spoken);
+            let ink = color(theme.ink);
+            let name = color(if cursor { theme.cursor } else { theme.contact });
+            line.left(0.0, 0.3, &format!("{id}"), name);
+            line.left(0.13, 0.34, what, name);
+            line.right(0.50, &format!("{:.3}", at.x), ink);
+            line.right(0.68, &format!("{:.3}", at.y), ink);
+            line.right(0.84, &format!("{force:.0}"), ink);
+            line.right(1.0, &format!("{speed:.2}"), ink);
+        }
+        for missing in snapshot.contacts.len()..LINES {
+            let line = row(ui, 19.0, 13.0, "");
+            if missing == 0 {
+                line.left(0.0, 1.0, "nobody on the floor", color(theme.quiet));
+            }
+        }
+        let more = snapshot.contacts.len().saturating_sub(MOST);
+        if more > 0 {
+            ui.label(quiet(theme, format!("and {more} more")));
+        }
+        ui.spacing_mut().item_spacing.y = 5.0;
+    }
+}

@@ -1,0 +1,69 @@
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{CollapsingHeader, DragValue, Ui, WidgetInfo};
+
+use super::super::app::App;
+use super::super::feed::PreviewCommand;
+use super::super::style::quiet;
+use crate::widget::{Behaviour, Value};
+
+impl App {
+    /// What an app can do to each control: give it a value, switch it off.
+    pub(super) fn controls_part(&mut self, ui: &mut Ui) {
+        ui.add_space(6.0);
+        let mut commands = Vec::new();
+        let header = CollapsingHeader::new("Controls, as an app sets them").id_salt("controls");
+        header.show_unindented(ui, |ui| {
+            let snapshot = self.snapshots.output_buffer();
+            for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
+                let Some(state) = snapshot.widgets.get(index) else { break };
+                let id = &widget.id;
+                ui.horizontal(|ui| {
+                    let mut works = !state.disabled;
+                    let tick = ui.checkbox(&mut works, id.as_str());
+                    tick.widget_info(|| {
+                        WidgetInfo::selected(Role::CheckBox, true, works, format!("{id} works"))
+                    });
+                    if tick.on_hover_text("Whether it works").changed() {
+                        commands.push(PreviewCommand::Enable { id: id.clone(), enabled: works });
+                    }
+                    ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                        match (&widget.behaviour, state.value) {
+                            (Behaviour::Slider(slider), Some(Value::Number(value))) => {
+                                let mut wanted = value;
+                                let speed = 0.005 * (slider.max - slider.min);
+                                let range = slider.min..=slider.max;
+                                let drag = ui.add(DragValue::new(&mut wanted).range(range).speed(speed));
+                                drag.widget_info(|| {
+                                    WidgetInfo::slider(true, f64::from(value), format!("{id} value"))
+                                });
+                                if drag.changed() && wanted != value {
+                                    let value = Value::Number(wanted);
+                                    commands.push(PreviewCommand::Set { id: id.clone(), value });
+                                }
+                            }
+                            (Behaviour::Switch(_), Some(Value::Switch(on))) => {
+                                let mut wanted = on;
+                                let tick = ui.checkbox(&mut wanted, if on { "on" } else { "off" });
+                                tick.widget_info(|| {
+                                    WidgetInfo::selected(Role::CheckBox, true, on, format!("{id} value"))
+                                });
+                                if tick.changed() {
+                                    let value = Value::Switch(wanted);
+                                    commands.push(PreviewCommand::Set { id: id.clone(), value });
+                                }
+                            }
+                            _ => {
+                                let text = if state.pressed { "pressed" } else { "" };
+                                ui.label(quiet(&self.theme, text));
+                            }
+                        }
+                    });
+                });
+            }
+        });
+        for command in commands {
+            self.command(command);
+        }
+    }
+}

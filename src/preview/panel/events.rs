@@ -1,0 +1,64 @@
+use eframe::egui::accesskit::Role;
+use eframe::egui::{ScrollArea, Sense, Ui, WidgetInfo, vec2};
+
+use super::super::app::App;
+use super::super::painter::color;
+use super::super::style::{Row, quiet, section};
+use crate::scene::Theme;
+use crate::widget::{EventKind, Value, WidgetEvent};
+
+/// Height of one line, in points.
+const LINE: f32 = 18.0;
+
+impl App {
+    /// What happened, newest first, in `height` points with its heading.
+    pub(super) fn events_part(&mut self, ui: &mut Ui, height: f32) {
+        let theme = &self.theme;
+        let top = ui.cursor().top();
+        section(ui, theme, "Events", |ui| {
+            ui.label(quiet(theme, format!("{} so far", self.inbox.event_count)).size(12.0));
+        });
+        let left = height - (ui.cursor().top() - top) - 8.0;
+        ui.spacing_mut().item_spacing.y = 0.0;
+        let recent = &self.inbox.recent;
+        let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
+        area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
+            if recent.is_empty() {
+                ui.label(quiet(theme, "nothing yet"));
+            }
+            for event in lines.filter_map(|line| recent.get(line)) {
+                show(ui, theme, event);
+            }
+        });
+        ui.spacing_mut().item_spacing.y = 5.0;
+    }
+}
+
+fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
+    let value = value(event.kind);
+    let spoken = format!("{} {} {value}", event.id, event.kind.name());
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, spoken.trim_end()));
+    let line = Row { ui, rect, size: 12.5 };
+    line.right(0.19, &format!("{:.3}", event.at.secs()), color(theme.quiet));
+    line.left(0.23, 0.56, event.id.as_str(), color(theme.ink));
+    let colour = match event.kind {
+        EventKind::Pressed => theme.accent,
+        EventKind::Clicked | EventKind::Changed(_) => theme.good,
+        EventKind::Cancelled => theme.warning,
+        EventKind::Released => theme.quiet,
+    };
+    line.left(0.58, 0.82, event.kind.name(), color(colour));
+    let force = if event.contact.is_some() { format!("{:.0} N", event.force.0) } else { String::new() };
+    let end = if value.is_empty() { force } else { value };
+    line.right(1.0, &end, color(theme.ink));
+}
+
+/// What a control changed to.
+fn value(kind: EventKind) -> String {
+    match kind {
+        EventKind::Changed(Value::Switch(on)) => if on { "on" } else { "off" }.into(),
+        EventKind::Changed(Value::Number(value)) => format!("{value:.3}"),
+        EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => String::new(),
+    }
+}

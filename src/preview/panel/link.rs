@@ -1,0 +1,88 @@
+use eframe::egui;
+use eframe::egui::{CollapsingHeader, Ui};
+
+use super::super::app::App;
+use super::super::painter::color;
+use super::super::style::row;
+use crate::scene::Theme;
+use crate::wire::LinkCounters;
+
+impl App {
+    /// What came over the wire and what was refused, by reason.
+    pub(super) fn link_part(&mut self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let counters = self.snapshots.output_buffer().counters;
+        ui.add_space(2.0);
+        let headline = headline(&counters);
+        let bad = counters.refused() + counters.lost + counters.overflowed + counters.bad_readings > 0;
+        let colour = color(if bad { theme.warning } else { theme.ink });
+        let title = egui::RichText::new(headline).color(colour);
+        CollapsingHeader::new(title).id_salt("link").show_unindented(ui, |ui| details(ui, theme, &counters));
+    }
+}
+
+/// The whole story in one line, whose length hardly changes.
+fn headline(counters: &LinkCounters) -> String {
+    format!("Link: {} lost, {} refused", grouped(counters.lost), grouped(counters.refused()))
+}
+
+fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
+    ui.spacing_mut().item_spacing.y = 1.0;
+    for (name, count, fault) in lines(counters) {
+        let figure = grouped(count);
+        let line = row(ui, 17.0, 12.5, &format!("{name}: {figure}"));
+        let seen = fault && count > 0;
+        line.left(0.04, 0.75, name, color(if seen { theme.warning } else { theme.quiet }));
+        line.right(1.0, &figure, color(if seen { theme.warning } else { theme.ink }));
+    }
+    ui.spacing_mut().item_spacing.y = 5.0;
+}
+
+/// Name, count, and whether anything but zero is a fault.
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 12] {
+    [
+        ("datagrams", counters.datagrams, false),
+        ("sensor packets", counters.packets, false),
+        ("frames", counters.frames, false),
+        ("lost packets", counters.lost, true),
+        ("late packets", counters.late, true),
+        ("repeated packets", counters.duplicate, true),
+        ("boards restarted", counters.restarts, true),
+        ("refused: malformed", counters.malformed, true),
+        ("refused: unknown address", counters.unknown_address, true),
+        ("refused: wrong shape", counters.wrong_shape, true),
+        ("bad readings", counters.bad_readings, true),
+        ("dropped by the system", counters.overflowed, true),
+    ]
+}
+
+/// Digits in groups of three, so that millions can be read.
+fn grouped(count: u64) -> String {
+    let digits = count.to_string();
+    let mut text = String::with_capacity(digits.len() + digits.len() / 3);
+    for (at, digit) in digits.chars().enumerate() {
+        if at > 0 && (digits.len() - at).is_multiple_of(3) {
+            text.push('\u{a0}');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn large_counts_can_be_read() {
+        assert_eq!(grouped(0), "0");
+        assert_eq!(grouped(999), "999");
+        assert_eq!(grouped(1_234_567), "1\u{a0}234\u{a0}567");
+    }
+
+    #[test]
+    fn the_headline_counts_every_reason_to_refuse() {
+        let counters = LinkCounters { lost: 1200, malformed: 1, wrong_shape: 2, ..LinkCounters::default() };
+        assert_eq!(headline(&counters), "Link: 1\u{a0}200 lost, 3 refused");
+    }
+}

@@ -1,0 +1,39 @@
+//! The side panel: one file for each of its parts.
+
+mod contacts;
+mod controls;
+mod events;
+mod link;
+mod scopes;
+mod tile;
+
+use eframe::egui::{Margin, Panel, ScrollArea, Ui};
+
+use super::app::App;
+use super::style::panel_frame;
+
+/// Least height of the list of events, in points.
+const EVENTS: f32 = 150.0;
+
+impl App {
+    pub(super) fn side_panel(&mut self, ui: &mut Ui) {
+        let frame = panel_frame(&self.theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
+        let panel = Panel::right("side panel").frame(frame).resizable(true);
+        panel.default_size(304.0).size_range(264.0..=440.0).show(ui, |ui| {
+            let height = ui.available_height();
+            ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                // The scroll bar has its own place beside the figures.
+                ui.set_width(ui.available_width() - 8.0);
+                let top = ui.cursor().top();
+                self.tile_part(ui);
+                self.scopes_part(ui);
+                self.contacts_part(ui);
+                self.controls_part(ui);
+                self.link_part(ui);
+                let events = (height - self.above_events).max(EVENTS);
+                self.above_events = ui.cursor().top() - top;
+                self.events_part(ui, events);
+            });
+        });
+    }
+}

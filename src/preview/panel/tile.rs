@@ -1,0 +1,112 @@
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
+
+use super::super::app::App;
+use super::super::painter::color;
+use super::super::style::{panel_colour, quiet, section};
+use crate::engine::TileState;
+use crate::floor::Corner;
+use crate::layout::Colour;
+use crate::scene::Theme;
+use crate::sense::Quality;
+
+/// Force at which a sensor's bar is full: the nominal part's end of range.
+const FULL: f32 = 400.0;
+
+impl App {
+    /// The four sensors of the tile that is looked at, where they are on it.
+    pub(super) fn tile_part(&mut self, ui: &mut Ui) {
+        let theme = self.theme;
+        let tile = self.looked.tile();
+        let pinned = self.looked.pinned().is_some();
+        let mut unpin = false;
+        section(ui, &theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
+            if pinned {
+                unpin = ui.small_button("Follow the foot").clicked();
+            } else {
+                ui.label(quiet(&theme, "follows the foot").size(12.0));
+            }
+        });
+        if unpin {
+            self.looked.unpin();
+        }
+        let state = self
+            .floor
+            .geometry
+            .index(tile)
+            .and_then(|index| self.snapshots.output_buffer().tiles.get(index).copied())
+            .unwrap_or_default();
+        let cell = vec2(0.5 * (ui.available_width() - 14.0), 38.0);
+        for row in [[Corner::NorthWest, Corner::NorthEast], [Corner::SouthWest, Corner::SouthEast]] {
+            ui.horizontal(|ui| {
+                ui.spacing_mut().item_spacing.x = 14.0;
+                for corner in row {
+                    sensor(ui, &theme, cell, corner, &state);
+                }
+            });
+        }
+        let place = state.centroid.map_or_else(
+            || "too light to say where".to_owned(),
+            |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
+        );
+        ui.label(quiet(&theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+    }
+}
+
+/// One sensor: where it is, newtons, a bar, and a word if it cannot be trusted.
+fn sensor(ui: &mut Ui, theme: &Theme, size: egui::Vec2, corner: Corner, state: &TileState) {
+    let (force, quality) = (state.forces[corner.index()], state.quality[corner.index()]);
+    let (rect, response) = ui.allocate_exact_size(size, Sense::hover());
+    let word = word(quality, theme);
+    let name = corner.name();
+    let spoken =
+        format!("{name} {:.1} newtons{}", force, word.map_or(String::new(), |(word, _)| format!(", {word}")));
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let painter = ui.painter();
+    let line = rect.top() + 11.0;
+    let small = FontId::proportional(12.0);
+    painter.text(
+        pos2(rect.left(), line),
+        Align2::LEFT_CENTER,
+        name.to_uppercase(),
+        small.clone(),
+        color(theme.quiet),
+    );
+    if let Some((word, colour)) = word {
+        painter.text(pos2(rect.left() + 26.0, line), Align2::LEFT_CENTER, word, small, color(colour));
+    }
+    let newtons = format!("{:.1} N", clean(force));
+    let ink = if quality >= Quality::Stale { theme.quiet } else { theme.ink };
+    painter.text(
+        pos2(rect.right(), line),
+        Align2::RIGHT_CENTER,
+        newtons,
+        FontId::proportional(13.5),
+        color(ink),
+    );
+    let bar = Rect::from_min_size(pos2(rect.left(), rect.top() + 23.0), vec2(rect.width(), 6.0));
+    painter.rect_filled(bar, CornerRadius::same(3), color(panel_colour(theme).mix(theme.ink, 0.09)));
+    // The root, as for the dots on the floor: light touches are seen too.
+    let share = (force / FULL).clamp(0.0, 1.0).sqrt();
+    if share > 0.0 {
+        let filled = Rect::from_min_size(bar.min, vec2((share * bar.width()).max(6.0), bar.height()));
+        let colour = word.map_or(theme.contact, |(_, colour)| colour);
+        painter.rect_filled(filled, CornerRadius::same(3), color(colour));
+    }
+}
+
+/// No minus sign before what reads as zero.
+fn clean(force: f32) -> f32 {
+    if force.abs() < 0.05 { 0.0 } else { force }
+}
+
+/// What to say of a sensor that cannot be trusted.
+fn word(quality: Quality, theme: &Theme) -> Option<(&'static str, Colour)> {
+    match quality {
+        Quality::Live => None,
+        Quality::Degraded => Some(("degraded", theme.warning)),
+        Quality::Stale => Some(("silent", theme.stale.mix(theme.ink, 0.3))),
+        Quality::Faulty => Some(("faulty", theme.fault)),
+    }
+}

@@ -1,0 +1,139 @@
+use super::feed::ScopeFeed;
+use crate::engine::Snapshot;
+use crate::floor::{Floor, TileId};
+
+/// Scopes that are shown at once.
+pub(super) const SLOTS: usize = 3;
+
+/// How fast the level shown on a tile falls, as a share left after a second: a click of 20 ms is seen.
+const FALL: f32 = 1e-3;
+
+/// What the actuators do: a level for every tile, and waveforms for some.
+pub(super) struct Scopes {
+    feed: Option<Box<dyn ScopeFeed>>,
+    levels: Vec<f32>,
+    /// The tiles whose waveforms are shown, and how long ago a foot was on each, in pictures.
+    slots: [Option<(TileId, u32)>; SLOTS],
+}
+
+impl Scopes {
+    pub(super) fn new(feed: Option<Box<dyn ScopeFeed>>, floor: &Floor) -> Self {
+        Self { feed, levels: vec![0.0; floor.geometry.tile_count()], slots: [None; SLOTS] }
+    }
+
+    /// Whether there is anything to show at all.
+    pub(super) fn is_fed(&self) -> bool {
+        self.feed.is_some()
+    }
+
+    /// Peak of each tile's actuator, in tile-index order, 0 to 1: rising at once, falling softly.
+    pub(super) fn levels(&self) -> &[f32] {
+        &self.levels
+    }
+
+    /// Takes in what the actuators did since the last picture, `elapsed_s` ago.
+    pub(super) fn update(&mut self, floor: &Floor, snapshot: &Snapshot, looked: TileId, elapsed_s: f32) {
+        let Some(feed) = &mut self.feed else { return };
+        feed.update();
+        let fall = FALL.powf(elapsed_s.clamp(0.0, 1.0));
+        for (level, actuator) in self.levels.iter_mut().zip(&floor.actuators) {
+            let wave = actuator.map_or(&[][..], |actuator| feed.scope(usize::from(actuator.channel)));
+            let peak = peak(wave);
+            *level = (*level * fall).max(peak);
+            if *level < 1e-4 {
+                *level = 0.0;
+            }
+        }
+        self.choose(snapshot, looked);
+    }
+
+    /// Keeps waveforms in their places: a tile that comes under a foot takes the place unused for longest.
+    fn choose(&mut self, snapshot: &Snapshot, looked: TileId) {
+        for (_, age) in self.slots.iter_mut().flatten() {
+            *age = age.saturating_add(1);
+        }
+        let heaviest =
+            snapshot.contacts.iter().filter_map(|contact| contact.tiles.first()).map(|load| load.tile);
+        for tile in std::iter::once(looked).chain(heaviest).take(SLOTS) {
+            if let Some((_, age)) = self.slots.iter_mut().flatten().find(|(shown, _)| *shown == tile) {
+                *age = 0;
+            } else if let Some(slot) =
+                self.slots.iter_mut().max_by_key(|slot| slot.map_or(u32::MAX, |(_, age)| age))
+            {
+                *slot = Some((tile, 0));
+            }
+        }
+    }
+
+    /// Calls `show` for each place, with its tile and waveform; the waveform is empty where the tile has no actuator.
+    pub(super) fn for_each(&mut self, floor: &Floor, mut show: impl FnMut(Option<TileId>, &[(f32, f32)])) {
+        for slot in self.slots {
+            let tile = slot.map(|(tile, _)| tile);
+            let actuator = tile
+                .and_then(|tile| floor.geometry.index(tile))
+                .and_then(|index| floor.actuators.get(index).copied().flatten());
+            match (&mut self.feed, actuator) {
+                (Some(feed), Some(actuator)) => show(tile, feed.scope(usize::from(actuator.channel))),
+                _ => show(tile, &[]),
+            }
+        }
+    }
+}
+
+/// The greatest absolute sample; 0 for none, NaN left out.
+pub(super) fn peak(wave: &[(f32, f32)]) -> f32 {
+    wave.iter().fold(0.0_f32, |peak, (low, high)| peak.max(-low).max(*high)).min(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::scene::sample::{at_rest, map, step_on};
+
+    struct Beat(Vec<(f32, f32)>);
+
+    impl ScopeFeed for Beat {
+        fn scope(&mut self, channel: usize) -> &[(f32, f32)] {
+            if channel == 7 { &self.0 } else { &[] }
+        }
+    }
+
+    #[test]
+    fn a_click_is_seen_on_its_tile_and_fades() {
+        let floor = Floor::default();
+        let snapshot = at_rest(&map());
+        let wave = vec![(0.0, 0.0), (-0.4, 0.2), (f32::NAN, f32::NAN)];
+        let mut scopes = Scopes::new(Some(Box::new(Beat(wave))), &floor);
+        scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.016);
+        assert_eq!(scopes.levels()[7], 0.4);
+        assert_eq!(scopes.levels()[8], 0.0);
+        scopes.feed = Some(Box::new(Beat(vec![])));
+        scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.1);
+        let faded = scopes.levels()[7];
+        assert!((0.15..0.3).contains(&faded), "{faded}");
+        for _ in 0..20 {
+            scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.1);
+        }
+        assert_eq!(scopes.levels()[7], 0.0);
+    }
+
+    #[test]
+    fn waveforms_keep_their_places_while_feet_come_and_go() {
+        let floor = Floor::default();
+        let mut scopes = Scopes::new(Some(Box::new(Beat(vec![]))), &floor);
+        let tiles = |scopes: &Scopes| scopes.slots.map(|slot| slot.map(|(tile, _)| (tile.column, tile.row)));
+        let empty = at_rest(&map());
+        let looked = TileId::new(0, 0);
+        scopes.update(&floor, &empty, looked, 0.016);
+        let mut one = empty.clone();
+        step_on(&mut one, 1, Vec2::new(1.0, 1.0), 300.0, Vec2::ZERO);
+        scopes.update(&floor, &one, looked, 0.016);
+        let before = tiles(&scopes);
+        assert!(before.contains(&Some((0, 0))) && before.contains(&Some((3, 3))));
+        // The foot is lifted: nothing jumps.
+        scopes.update(&floor, &empty, looked, 0.016);
+        assert_eq!(tiles(&scopes), before);
+    }
+}

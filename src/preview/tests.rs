@@ -1,0 +1,387 @@
+//! The window without a display: what a person sees by name, and what the mouse does to the floor.
+
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::{Arc, Mutex};
+
+use eframe::egui::{self, Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::{NodeT, Queryable};
+use glam::Vec2;
+
+use super::app::App;
+use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
+use crate::engine::{LinkState, Snapshot};
+use crate::floor::{Floor, TileId};
+use crate::layout::Layout;
+use crate::scene::sample::{at_rest, map, pressing};
+use crate::sense::ContactId;
+use crate::units::{Instant, Newtons};
+use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+
+pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
+    WidgetEvent {
+        at: Instant::from_millis(at_ms),
+        id: WidgetId::new(id),
+        kind: EventKind::Pressed,
+        contact: Some(ContactId(1)),
+        force: Newtons(80.0),
+        position: Vec2::new(0.5, 0.5),
+    }
+}
+
+/// A window and everything on its other side.
+struct Room {
+    window: Harness<'static, App>,
+    snapshots: triple_buffer::Input<Snapshot>,
+    events: Sender<WidgetEvent>,
+    layouts: Sender<LayoutNews>,
+    notices: Sender<String>,
+    commands: Receiver<PreviewCommand>,
+    feet: Arc<Mutex<Vec<PreviewFoot>>>,
+}
+
+struct Feet(Arc<Mutex<Vec<PreviewFoot>>>);
+
+impl FootSink for Feet {
+    fn set(&mut self, feet: &[PreviewFoot]) {
+        *self.0.lock().unwrap() = feet.to_vec();
+    }
+}
+
+/// Where the force of a foot acts, as the window was told.
+fn acts_at(foot: &PreviewFoot) -> Vec2 {
+    Feet(Arc::default()).centre_of_pressure(foot)
+}
+
+struct Silence;
+
+impl ScopeFeed for Silence {
+    fn scope(&mut self, _channel: usize) -> &[(f32, f32)] {
+        &[(0.0, 0.0); 128]
+    }
+}
+
+impl Room {
+    fn simulated() -> Self {
+        Self::of(true, 1280.0, 800.0)
+    }
+
+    fn of(simulated: bool, width: f32, height: f32) -> Self {
+        let layout = Arc::new(map());
+        let (snapshots, output) = triple_buffer::triple_buffer(&at_rest(&layout));
+        let (events, event_list) = channel();
+        let (layouts, news) = channel();
+        let (notices, notes) = channel();
+        let (sender, commands) = channel();
+        let feet = Arc::<Mutex<Vec<PreviewFoot>>>::default();
+        let sink: Box<dyn FootSink> = Box::new(Feet(Arc::clone(&feet)));
+        let input = PreviewInput {
+            floor: Arc::new(Floor::default()),
+            layout,
+            source: "simulated floor".into(),
+            snapshots: output,
+            events: event_list,
+            layouts: news,
+            notices: notes,
+            scopes: Some(Box::new(Silence)),
+            feet: simulated.then_some(sink),
+            choices: vec!["Map navigation".into(), "Surgery".into()],
+            commands: sender,
+        };
+        let app = App::new(input, &PreviewOptions::default());
+        let window = Harness::builder()
+            .with_size(vec2(width, height))
+            .with_step_dt(1.0 / 60.0)
+            .build_ui_state(|ui, app: &mut App| app.show(ui), app);
+        Self { window, snapshots, events, layouts, notices, commands, feet }
+    }
+
+    fn run(&mut self, pictures: usize) {
+        self.window.run_steps(pictures);
+    }
+
+    fn write(&mut self, snapshot: Snapshot) {
+        self.snapshots.write(snapshot);
+        self.run(2);
+    }
+
+    /// Where on the screen the control called `name` is.
+    fn place(&self, name: &str) -> Pos2 {
+        self.window.get_by_label(name).rect().center()
+    }
+
+    fn hover(&mut self, at: Pos2) {
+        self.window.event(Event::PointerMoved(at));
+        self.run(1);
+    }
+
+    fn button(&mut self, at: Pos2, button: PointerButton, pressed: bool) {
+        self.window.event(Event::PointerButton { pos: at, button, pressed, modifiers: Modifiers::NONE });
+        self.run(1);
+    }
+
+    fn press(&mut self, at: Pos2) {
+        self.hover(at);
+        self.button(at, PointerButton::Primary, true);
+        self.run(15);
+    }
+
+    fn release(&mut self, at: Pos2) {
+        self.button(at, PointerButton::Primary, false);
+        self.run(20);
+    }
+
+    fn wheel(&mut self, notches: f32) {
+        self.window.event(Event::MouseWheel {
+            unit: MouseWheelUnit::Line,
+            delta: vec2(0.0, notches),
+            phase: egui::TouchPhase::Move,
+            source: egui::MouseWheelSource::Wheel,
+            modifiers: Modifiers::NONE,
+        });
+        self.run(20);
+    }
+
+    fn hold_key(&mut self, key: Key, pictures: usize) {
+        self.window.key_down(key);
+        self.run(pictures);
+        self.window.key_up(key);
+        self.run(1);
+    }
+
+    /// The foot that works, and the one that stands.
+    fn feet(&self) -> (Option<PreviewFoot>, Option<PreviewFoot>) {
+        let feet = self.feet.lock().unwrap();
+        let foot = |left| feet.iter().copied().find(|foot| foot.left == left);
+        (foot(false), foot(true))
+    }
+
+    fn says(&self, text: &str) -> bool {
+        self.window.query_all_by_label_contains(text).next().is_some()
+    }
+}
+
+fn middle_of(name: &str) -> Vec2 {
+    map().widgets.iter().find(|widget| widget.label == name).unwrap().area.centre()
+}
+
+#[test]
+fn a_press_on_the_floor_puts_force_where_the_mouse_is() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.hover(home);
+    assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO, "in the air above it");
+    room.press(home);
+    let foot = room.feet().0.unwrap();
+    assert!((foot.force.0 - 150.0).abs() < 1.0, "{foot:?}");
+    // A pixel is about 3 mm of floor in this window.
+    let off = acts_at(&foot).distance(middle_of("Home"));
+    assert!(off < 0.004, "{off} m beside the control");
+    let west = room.place("West");
+    room.hover(west);
+    let off = acts_at(&room.feet().0.unwrap()).distance(middle_of("West"));
+    assert!(off < 0.004, "dragging slides: {off}");
+    room.release(west);
+    assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO);
+}
+
+#[test]
+fn the_wheel_presses_harder_and_softer() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.press(home);
+    room.wheel(3.0);
+    let harder = room.feet().0.unwrap().force.0;
+    assert!((harder - 150.0 * 1.12_f32.powi(3)).abs() < 2.0, "{harder}");
+    room.wheel(-6.0);
+    assert!(room.feet().0.unwrap().force.0 < 120.0);
+}
+
+#[test]
+fn q_e_and_the_right_button_turn_the_foot_about_its_pressure() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.press(home);
+    room.hold_key(Key::Q, 12);
+    let left = room.feet().0.unwrap();
+    assert!((0.2..0.6).contains(&left.heading_rad), "Q turns to the left: {}", left.heading_rad);
+    assert!(acts_at(&left).distance(middle_of("Home")) < 0.004);
+    room.hold_key(Key::E, 24);
+    assert!(room.feet().0.unwrap().heading_rad < -0.1, "E turns to the right");
+    room.release(home);
+    let before = room.feet().0.unwrap().heading_rad;
+    room.button(home, PointerButton::Secondary, true);
+    room.hover(home + vec2(-50.0, 0.0));
+    room.button(home + vec2(-50.0, 0.0), PointerButton::Secondary, false);
+    let turned = room.feet().0.unwrap().heading_rad - before;
+    assert!((turned - 0.6).abs() < 0.05, "50 points to the left: {turned}");
+    assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO, "the right button does not press");
+}
+
+#[test]
+fn the_standing_foot_stays_where_space_left_it() {
+    let mut room = Room::simulated();
+    let stance = room.place("South");
+    room.hover(stance);
+    room.window.key_press(Key::Space);
+    room.run(20);
+    let standing = room.feet().1.unwrap();
+    assert!(standing.position.distance(middle_of("South")) < 0.004);
+    assert!((standing.force.0 - 600.0).abs() < 2.0);
+    let home = room.place("Home");
+    room.press(home);
+    assert_eq!(room.feet().1.unwrap().position, standing.position);
+    assert!(room.feet().0.unwrap().force.0 > 100.0, "both feet are down");
+    room.release(home);
+    // Dragged by its handle it moves, and the working foot does not press.
+    let handle = room.place("Standing foot");
+    room.hover(handle);
+    room.button(handle, PointerButton::Primary, true);
+    room.hover(handle + vec2(80.0, 0.0));
+    let moved = room.feet();
+    assert!(moved.1.unwrap().position.x > standing.position.x + 0.1);
+    assert!(moved.0.is_none(), "the hand holds the standing foot");
+    room.button(handle + vec2(80.0, 0.0), PointerButton::Primary, false);
+    // Space on it lifts it.
+    room.window.key_press(Key::Space);
+    room.run(2);
+    assert!(room.feet().1.is_none());
+}
+
+#[test]
+fn a_button_stands_the_foot_in_the_layouts_own_place() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Stance foot").click();
+    room.run(3);
+    assert_eq!(room.feet().1.unwrap().position, map().stances[0].area.centre());
+    room.window.get_by_label("Stance foot").click();
+    room.run(3);
+    assert!(room.feet().1.is_none());
+}
+
+#[test]
+fn a_real_floor_has_no_mouse_feet_and_a_click_chooses_a_tile() {
+    let mut room = Room::of(false, 1280.0, 800.0);
+    assert!(!room.says("Stance foot"));
+    let zoom = room.place("Zoom in");
+    room.press(zoom);
+    assert!(room.feet.lock().unwrap().is_empty());
+    let tile = Floor::default().geometry.tile_under(middle_of("Zoom in")).unwrap();
+    assert!(room.says(&format!("Tile {}, {}", tile.column, tile.row)));
+    room.window.key_press(Key::ArrowRight);
+    room.run(2);
+    assert!(room.says(&format!("Tile {}, {}", tile.column + 1, tile.row)));
+    room.window.get_by_label("Follow the foot").click();
+    room.run(2);
+    assert!(room.says("follows the foot"));
+}
+
+#[test]
+fn the_panel_follows_the_foot_and_lists_its_sensors() {
+    let mut room = Room::simulated();
+    let mut snapshot = pressing(&map());
+    let index = Floor::default().geometry.index(TileId::new(0, 4)).unwrap();
+    snapshot.tiles[index].quality[2] = crate::sense::Quality::Faulty;
+    room.write(snapshot);
+    assert!(room.says("Tile 0, 4"));
+    assert!(room.says(", faulty"));
+    assert!(room.says("Contact 7 cursor: 152 newtons"));
+    assert!(room.says("Contact 6 : 520 newtons"));
+    let pressed = room.window.get_by_label("Zoom in");
+    assert_eq!(pressed.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+}
+
+#[test]
+fn events_are_listed_newest_first() {
+    let mut room = Room::simulated();
+    room.events.send(event(100, "home")).unwrap();
+    let changed = EventKind::Changed(Value::Number(7.25));
+    room.events.send(WidgetEvent { kind: changed, ..event(200, "time") }).unwrap();
+    room.run(2);
+    let (older, newer) = (room.place("home pressed"), room.place("time changed 7.250"));
+    assert!(newer.y < older.y);
+    assert!(room.says("2 so far"));
+}
+
+#[test]
+fn a_lost_floor_is_said_across_the_view() {
+    let mut room = Room::simulated();
+    let mut snapshot = at_rest(&map());
+    snapshot.counters.packets = 6000;
+    room.write(snapshot.clone());
+    assert!(!room.says("No sensor packets"));
+    snapshot.link = LinkState::Lost;
+    room.snapshots.write(snapshot);
+    room.run(24);
+    assert!(room.says("No sensor packets for 0.4 s. Every control is released."));
+}
+
+#[test]
+fn a_bad_layout_is_told_while_the_last_good_one_works() {
+    let mut room = Room::simulated();
+    let diagnostics: String =
+        (1..=30).map(|line| format!("error: layouts/map.ron:{line}:5: unknown field `pres_n`\n")).collect();
+    room.layouts.send(LayoutNews::Refused { name: "map.ron".into(), diagnostics }).unwrap();
+    room.run(3);
+    assert!(room.says("map.ron has problems"));
+    assert!(room.says("layouts/map.ron:30:5: unknown field"));
+    let home = room.place("Home");
+    room.press(home);
+    assert!(acts_at(&room.feet().0.unwrap()).distance(middle_of("Home")) < 0.005);
+    room.release(home);
+    // Mended: another page of controls, and no more problems.
+    let mut layout = Layout { title: "Mended".into(), ..map() };
+    layout.widgets.truncate(1);
+    let name = "map.ron".into();
+    room.layouts.send(LayoutNews::Loaded { layout: Arc::new(layout), revision: 0, name }).unwrap();
+    room.run(3);
+    assert!(!room.says("has problems"));
+    assert!(room.says("saved changes loaded"));
+    assert!(!room.says("Home") && room.says("Zoom in"));
+}
+
+#[test]
+fn notices_stay_until_they_are_put_away() {
+    let mut room = Room::simulated();
+    room.notices.send("No sound card was found.".into()).unwrap();
+    room.run(3);
+    assert!(room.says("No sound card was found."));
+    room.window.get_by_label("Hide: No sound card was found.").click();
+    room.run(3);
+    assert!(!room.says("No sound card was found."));
+}
+
+#[test]
+fn an_apps_part_can_be_played_from_the_panel() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Controls, as an app sets them").click();
+    room.run(20);
+    room.window.get_by_label("home works").click();
+    room.run(3);
+    let id = WidgetId::new("home");
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Enable { id, enabled: false }));
+    room.window.get_by_label("satellite value").click();
+    room.run(3);
+    let id = WidgetId::new("satellite");
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Set { id, value: Value::Switch(true) }));
+}
+
+#[test]
+fn everything_that_can_be_worked_has_a_name_and_room_at_every_size() {
+    for (width, height) in [(720.0, 480.0), (900.0, 600.0), (1600.0, 1000.0)] {
+        let mut room = Room::of(true, width, height);
+        room.notices.send("No sound card was found.".into()).unwrap();
+        room.write(pressing(&map()));
+        room.window.get_by_label("Stance foot").click();
+        room.run(3);
+        assert_eq!(room.window.unnamed_widgets(), Vec::<String>::new());
+        let floor = room.window.get_by_label("Floor").rect();
+        assert!(
+            floor.width() > 0.5 * width && floor.height() > 0.7 * height,
+            "{floor:?} of {width} x {height}"
+        );
+        for widget in &map().widgets {
+            assert!(floor.contains_rect(room.window.get_by_label(&widget.label).rect()), "{}", widget.label);
+        }
+    }
+}

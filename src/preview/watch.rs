@@ -1,0 +1,109 @@
+//! Whether what is shown is still true: how long no packet and no snapshot has come.
+
+use crate::engine::{LinkState, Snapshot};
+
+/// Silence after which the sensing thread is taken to have stopped.
+const STOPPED_S: f64 = 0.5;
+
+/// When packets and snapshots last came, on the window's clock.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Watch {
+    packets: u64,
+    packets_at_s: f64,
+    snapshot_at_s: Option<f64>,
+}
+
+/// What has to be said across the floor.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Banner {
+    /// The first line: what is wrong.
+    pub(super) headline: String,
+    /// The second line: what that means, or what to do.
+    pub(super) detail: String,
+    /// Whether it is worse than a warning.
+    pub(super) severe: bool,
+}
+
+impl Watch {
+    /// Takes in a picture's state at `now_s`; `fresh` if the sensing thread wrote it since the last one.
+    pub(super) fn observe(&mut self, now_s: f64, snapshot: &Snapshot, fresh: bool) {
+        if snapshot.counters.packets != self.packets {
+            self.packets = snapshot.counters.packets;
+            self.packets_at_s = now_s;
+        }
+        if fresh || self.snapshot_at_s.is_none() {
+            self.snapshot_at_s = Some(now_s);
+        }
+    }
+
+    /// What is wrong at `now_s`, if anything.
+    pub(super) fn banner(&self, now_s: f64, link: LinkState, source: &str) -> Option<Banner> {
+        let still_s = self.snapshot_at_s.map_or(0.0, |at| now_s - at);
+        if still_s >= STOPPED_S && link != LinkState::Waiting {
+            return Some(Banner {
+                headline: format!("Nothing new from the sensing for {still_s:.1} s"),
+                detail: "What is shown is the last that was known.".into(),
+                severe: true,
+            });
+        }
+        let silent_s = now_s - self.packets_at_s;
+        match link {
+            LinkState::Live => None,
+            LinkState::Waiting => Some(Banner {
+                headline: "Waiting for the floor’s first packet".into(),
+                detail: format!("Listening: {source}"),
+                severe: false,
+            }),
+            LinkState::Partial => Some(Banner {
+                headline: "Some boards are silent".into(),
+                detail: "Hatched tiles are not sensed.".into(),
+                severe: false,
+            }),
+            LinkState::Lost => Some(Banner {
+                headline: format!("No sensor packets for {silent_s:.1} s"),
+                detail: "Every control is released.".into(),
+                severe: true,
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(packets: u64) -> Snapshot {
+        let mut snapshot = Snapshot::default();
+        snapshot.counters.packets = packets;
+        snapshot
+    }
+
+    #[test]
+    fn silence_is_counted_from_the_last_packet() {
+        let mut watch = Watch::default();
+        watch.observe(5.0, &at(600), true);
+        watch.observe(5.4, &at(600), true);
+        let banner = watch.banner(5.4, LinkState::Lost, "").unwrap();
+        assert_eq!(banner.headline, "No sensor packets for 0.4 s");
+        assert!(banner.severe);
+        watch.observe(5.5, &at(606), true);
+        assert_eq!(watch.banner(5.5, LinkState::Live, ""), None);
+    }
+
+    #[test]
+    fn a_sensing_thread_that_stops_writing_is_noticed() {
+        let mut watch = Watch::default();
+        watch.observe(1.0, &at(1), true);
+        assert_eq!(watch.banner(1.4, LinkState::Live, ""), None);
+        watch.observe(1.6, &at(1), false);
+        assert!(watch.banner(1.6, LinkState::Live, "").unwrap().headline.starts_with("Nothing new"));
+    }
+
+    #[test]
+    fn before_the_first_packet_the_window_says_what_it_waits_for() {
+        let watch = Watch::default();
+        let banner = watch.banner(9.0, LinkState::Waiting, "port 9000").unwrap();
+        assert_eq!(banner.detail, "Listening: port 9000");
+        assert!(!banner.severe);
+    }
+}
