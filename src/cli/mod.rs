@@ -7,7 +7,10 @@ mod check;
 mod failure;
 mod floor_args;
 mod layout_args;
+mod outputs;
 mod play;
+#[cfg(feature = "preview")]
+mod preview;
 mod render;
 mod run;
 mod sense;
@@ -39,6 +42,9 @@ struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
+    /// Open the window on a layout: a simulated floor with the mouse as a foot, a scenario, or a real floor.
+    #[cfg(feature = "preview")]
+    Preview(preview::Args),
     /// Serve a floor: sensor packets in, events and actuator samples out.
     Run(run::Args),
     /// Play a scenario on a simulated floor in a process of its own, sending real packets.
@@ -74,6 +80,8 @@ pub(crate) fn main() -> ExitCode {
 fn dispatch(command: Option<Command>) -> Result<(), Failure> {
     match command {
         None => by_default(),
+        #[cfg(feature = "preview")]
+        Some(Command::Preview(args)) => preview::run(&args),
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Simulate(args)) => simulate::run(&args),
         Some(Command::Session(args)) => session::run(&args),
@@ -89,6 +97,15 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
 
 /// The main job with nothing asked: the window if there can be one, the played session otherwise.
 fn by_default() -> Result<(), Failure> {
+    #[cfg(feature = "preview")]
+    if preview::has_display() {
+        match preview::run(&preview::Args::default()) {
+            Err(Failure::NoWindow(reason)) => {
+                anstream::eprintln!("No window: {reason}. Playing the built-in session instead.");
+            }
+            done => return done,
+        }
+    }
     session::run(&session::Args::default())
 }
 

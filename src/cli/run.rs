@@ -1,14 +1,13 @@
-use std::io;
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::Duration;
 
-use tracing::{info, warn};
+use tracing::info;
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
-use underfoot::sink::{Fanout, JsonSink, LatencyMeter, OscSink};
+use underfoot::sink::LatencyMeter;
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::wire::LinkCounters;
 
@@ -16,6 +15,7 @@ use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::outputs::OutputArgs;
 use super::stop::stop_flag;
 use super::watch::Watch;
 
@@ -29,15 +29,8 @@ pub(crate) struct Args {
     /// Where the boards' packets and apps' requests arrive.
     #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
     listen: SocketAddr,
-    /// Where events and contacts are sent as OSC.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9001")]
-    osc: SocketAddr,
-    /// Send no OSC.
-    #[arg(long, conflicts_with = "osc")]
-    no_osc: bool,
-    /// Print every event as a line of JSON on standard output.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    outputs: OutputArgs,
     #[command(flatten)]
     actuate: ActuateArgs,
     /// The paper's plain sensing: one contact per group of connected tiles.
@@ -61,9 +54,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), source.clock())?;
-    if let Some(notice) = notice {
-        warn!("{notice}");
-    }
+    anstream::eprintln!("{notice}");
     let stop = stop_flag()?;
     let (commands, inbox) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
@@ -82,7 +73,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let mut server = Server::new(&floor, layout, method, Box::new(source))
         .with_feel(feel, sink)
-        .with_events(Box::new(args.events()?))
+        .with_events(Box::new(args.outputs.open()?))
         .with_commands(inbox);
     let served = server.run(&stop);
     let counters = server.counters();
@@ -91,19 +82,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     drop(server);
     report(&counters, dropped, &latency);
     Ok(served?)
-}
-
-impl Args {
-    fn events(&self) -> Result<Fanout, Failure> {
-        let mut events = Fanout::new();
-        if !self.no_osc {
-            events.push(OscSink::new(self.osc)?);
-        }
-        if self.json {
-            events.push(JsonSink::new(io::stdout())?);
-        }
-        Ok(events)
-    }
 }
 
 fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {

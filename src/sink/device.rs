@@ -15,9 +15,9 @@ use self::choice::Choice;
 use self::mixdown::Mixdown;
 use self::player::Player;
 use super::{ActuatorSink, LatencyProbe, SinkError};
-use crate::units::HostClock;
 use crate::feel::Renderer;
 use crate::floor::Floor;
+use crate::units::HostClock;
 use crate::units::Instant;
 
 /// How the floor's channels go onto those of the device.

@@ -19,11 +19,11 @@ use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+#[cfg(feature = "audio")]
+pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
 pub use fanout::Fanout;
 pub use json::JsonSink;
 pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
-#[cfg(feature = "audio")]
-pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
 pub use manual::ManualSink;
 pub use osc::OscSink;
 pub use silent::SilentSink;

@@ -1,0 +1,356 @@
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::Instant as HostInstant;
+
+use underfoot::engine::Snapshot;
+use underfoot::feel::ScopeReader;
+use underfoot::floor::{Floor, Geometry};
+use underfoot::glam::Vec2;
+use underfoot::layout::Layout;
+use underfoot::preview::{
+    self, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput, PreviewOptions,
+    ScopeFeed,
+};
+use underfoot::schema;
+use underfoot::sense::{Contact, Method};
+use underfoot::serve::{Command, Server};
+use underfoot::sim::{Foot, FootDriver, FootHandle, feet_by_hand};
+use underfoot::sink::{EventSink, Fanout};
+use underfoot::source::{Pace, SensorSource, SimulatedSource, UdpSource};
+use underfoot::units::{HostClock, Instant};
+use underfoot::widget::WidgetEvent;
+use underfoot::wire::ControlMessage;
+
+use super::actuate::{ActuateArgs, Actuation};
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
+use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::outputs::OutputArgs;
+use super::play::{self, SimArgs};
+use super::watch::Watch;
+
+/// What `underfoot preview` is asked to do.
+#[derive(clap::Args, Debug, Default)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// Show a real floor, whose packets arrive here.
+    #[arg(long, value_name = "ADDR", conflicts_with_all = ["scenario", "session"])]
+    listen: Option<SocketAddr>,
+    /// Show a scenario played on the simulated floor, instead of the mouse's feet.
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+    /// Show the built-in session played on the simulated floor.
+    #[arg(long, conflicts_with = "scenario")]
+    session: bool,
+    #[command(flatten)]
+    sim: SimArgs,
+    #[command(flatten)]
+    outputs: OutputArgs,
+    #[command(flatten)]
+    actuate: ActuateArgs,
+    /// The paper's plain sensing: one contact per group of connected tiles.
+    #[arg(long)]
+    eq4: bool,
+}
+
+/// Whether a window can be hoped for.
+pub(crate) fn has_display() -> bool {
+    let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
+    !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
+}
+
+/// Events that may wait for the window; it takes them 60 times a second.
+const EVENTS_WAITING: usize = 4096;
+
+/// Opens the window and serves its floor on a thread of its own until the window is closed.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if !has_display() {
+        return Err(Failure::NoWindow("there is no display".into()));
+    }
+    let floor = args.floor.load()?;
+    let layout = args.layout.load(&floor.geometry)?;
+    let stage = args.stage(&floor, &layout)?;
+
+    let (snapshot_input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
+    let (news, layouts) = mpsc::channel();
+    let (notice_sender, notices) = mpsc::channel();
+    let (commands, inbox) = mpsc::channel();
+    let (wishes, wished) = mpsc::channel();
+
+    let desk = Desk::new(commands.clone(), news);
+    let _watch = watch(&args.layout, floor.geometry, &desk)?;
+    let choices = args.choices();
+    obey(wished, args.layout.clone(), choices.clone(), floor.geometry, desk, commands);
+
+    let mut told = args.outputs.open()?;
+    told.push(ToWindow { events: event_sender, missed: 0 });
+    let served = Served {
+        floor: stage.floor.clone(),
+        layout: layout.clone(),
+        source: stage.source,
+        clock: stage.clock,
+        method: if args.eq4 { Method::Eq4 } else { Method::default() },
+        actuate: args.actuate.clone(),
+        told,
+        snapshots: snapshot_input,
+        inbox,
+        notices: notice_sender,
+    };
+    let stop = Arc::new(AtomicBool::new(false));
+    let (scope_sender, scopes) = mpsc::channel();
+    let server = {
+        let stop = Arc::clone(&stop);
+        thread::Builder::new()
+            .name("sensing".into())
+            .spawn(move || served.serve(&stop, &scope_sender))
+            .map_err(|error| Failure::Other(format!("no thread for sensing: {error}")))?
+    };
+    let scopes =
+        scopes.recv().ok().flatten().map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
+    let input = PreviewInput {
+        floor: Arc::new(stage.floor),
+        layout: Arc::new(layout),
+        source: stage.name,
+        snapshots,
+        events,
+        layouts,
+        notices,
+        scopes,
+        feet: stage.feet,
+        choices,
+        commands: wishes,
+    };
+    let shown = preview::run(input, &PreviewOptions::default());
+    stop.store(true, Ordering::Relaxed);
+    let served =
+        server.join().unwrap_or_else(|_| Err(Failure::Other("sensing failed; please report it".into())));
+    match shown {
+        Ok(()) => served,
+        Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+    }
+}
+
+/// Where packets come from, and what is known of them.
+struct Stage {
+    floor: Floor,
+    source: Box<dyn SensorSource>,
+    clock: HostClock,
+    name: String,
+    feet: Option<Box<dyn FootSink>>,
+}
+
+impl Args {
+    fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
+        if let Some(address) = self.listen {
+            let source = UdpSource::bind(address, floor)?;
+            return Ok(Stage {
+                floor: floor.clone(),
+                clock: source.clock(),
+                source: Box::new(source),
+                name: format!("floor on port {}", address.port()),
+                feet: None,
+            });
+        }
+        let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
+            if self.session || self.scenario.is_some() {
+                let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+                (Box::new(script), "scenario on a simulated floor", None)
+            } else {
+                let (handle, driver) = feet_by_hand();
+                (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
+            };
+        let (sim, floor) = self.sim.calibrated(floor)?;
+        let begun = HostInstant::now();
+        Ok(Stage {
+            floor,
+            source: Box::new(SimulatedSource::new(sim, driver, Pace::RealTime)),
+            clock: Arc::new(move || Instant::START + begun.elapsed()),
+            name: name.into(),
+            feet,
+        })
+    }
+
+    /// The layout given and the built-in ones.
+    fn choices(&self) -> Vec<String> {
+        let given = self.layout.path().map(|path| path.display().to_string());
+        given.into_iter().chain(schema::builtin_layouts().map(String::from)).collect()
+    }
+}
+
+/// Everything that the sensing thread owns.
+struct Served {
+    floor: Floor,
+    layout: Layout,
+    source: Box<dyn SensorSource>,
+    clock: HostClock,
+    method: Method,
+    actuate: ActuateArgs,
+    told: Fanout,
+    snapshots: triple_buffer::Input<Snapshot>,
+    inbox: Receiver<Command>,
+    notices: Sender<String>,
+}
+
+impl Served {
+    fn serve(self, stop: &AtomicBool, scopes: &Sender<Option<ScopeReader>>) -> Result<(), Failure> {
+        // Sound is made here because not every system lets a stream change threads.
+        let Actuation { feel, sink, scope, notice, .. } =
+            self.actuate.start(&self.floor, self.source.now(), self.clock)?;
+        // A window that is closed already needs neither.
+        let _ = scopes.send(scope);
+        let _ = self.notices.send(notice);
+        let mut server = Server::new(&self.floor, self.layout, self.method, self.source)
+            .with_feel(feel, sink)
+            .with_events(Box::new(self.told))
+            .with_snapshots(self.snapshots)
+            .with_commands(self.inbox);
+        Ok(server.run(stop)?)
+    }
+}
+
+/// Gives layouts to the engine and tells the window which.
+#[derive(Clone)]
+struct Desk(Arc<Mutex<Counter>>);
+
+struct Counter {
+    commands: Sender<Command>,
+    news: Sender<LayoutNews>,
+    given: u64,
+}
+
+impl Desk {
+    fn new(commands: Sender<Command>, news: Sender<LayoutNews>) -> Self {
+        Self(Arc::new(Mutex::new(Counter { commands, news, given: 0 })))
+    }
+
+    fn take(&self, name: &str, read: Result<Layout, String>) {
+        let mut desk = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let name = name.to_string();
+        let news = match read {
+            Ok(layout) => {
+                desk.given += 1;
+                let loaded = Arc::new(layout.clone());
+                // The engine numbers the layouts it is given in the same way.
+                let _ = desk.commands.send(Command::SetLayout(Box::new(layout)));
+                LayoutNews::Loaded { layout: loaded, revision: desk.given, name }
+            }
+            Err(diagnostics) => LayoutNews::Refused { name, diagnostics },
+        };
+        let _ = desk.news.send(news);
+    }
+}
+
+fn watch(files: &LayoutArgs, geometry: Geometry, desk: &Desk) -> Result<Option<Watch>, Failure> {
+    let name = files.path().map(|path| path.display().to_string()).unwrap_or_default();
+    let desk = desk.clone();
+    Watch::start(files, geometry, move |read| desk.take(&name, read.map_err(|wrong| wrong.to_string())))
+}
+
+/// Does what the person at the window wants, on a thread that ends with the window.
+fn obey(
+    wished: Receiver<PreviewCommand>,
+    files: LayoutArgs,
+    choices: Vec<String>,
+    geometry: Geometry,
+    desk: Desk,
+    commands: Sender<Command>,
+) {
+    thread::spawn(move || {
+        for wish in wished {
+            let control = match wish {
+                PreviewCommand::Open(choice) => {
+                    let name = choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str);
+                    let chosen = LayoutArgs { layout: Some(name.into()), widgets: files.widgets.clone() };
+                    desk.take(name, chosen.load(&geometry).map_err(|failure| failure.to_string()));
+                    continue;
+                }
+                PreviewCommand::Enable { id, enabled: true } => ControlMessage::Enable { id },
+                PreviewCommand::Enable { id, enabled: false } => ControlMessage::Disable { id },
+                PreviewCommand::Set { id, value } => ControlMessage::Set { id, value },
+            };
+            if commands.send(Command::Control(control)).is_err() {
+                break;
+            }
+        }
+    });
+}
+
+/// Passes events on to the window.
+struct ToWindow {
+    events: SyncSender<WidgetEvent>,
+    missed: u64,
+}
+
+impl EventSink for ToWindow {
+    fn events(&mut self, events: &[WidgetEvent]) {
+        for event in events {
+            if let Err(TrySendError::Full(_)) = self.events.try_send(event.clone()) {
+                self.missed += 1;
+            }
+        }
+    }
+
+    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
+
+    fn dropped(&self) -> u64 {
+        self.missed
+    }
+}
+
+/// The mouse's feet on the simulated floor.
+struct Mouse(FootHandle);
+
+impl FootSink for Mouse {
+    fn set(&mut self, feet: &[PreviewFoot]) {
+        self.0.set(feet.iter().map(foot).collect());
+    }
+
+    fn centre_of_pressure(&self, shoe: &PreviewFoot) -> Vec2 {
+        foot(shoe).centre_of_pressure()
+    }
+}
+
+/// A centimetre of shoe around the foot's length.
+const SHOE_M: f32 = 0.01;
+
+fn foot(shoe: &PreviewFoot) -> Foot {
+    Foot {
+        position: shoe.position,
+        heading: shoe.heading_rad,
+        length_m: shoe.length_m - SHOE_M,
+        force: shoe.force,
+        roll: shoe.roll,
+    }
+}
+
+/// What the actuators did, as the window draws it.
+struct Scopes {
+    reader: ScopeReader,
+    points: Vec<(f32, f32)>,
+}
+
+impl Scopes {
+    fn new(reader: ScopeReader) -> Self {
+        Self { reader, points: Vec::new() }
+    }
+}
+
+impl ScopeFeed for Scopes {
+    fn update(&mut self) {
+        self.reader.update();
+    }
+
+    fn scope(&mut self, channel: usize) -> &[(f32, f32)] {
+        self.points.clear();
+        self.points.extend(self.reader.channel(channel).iter().map(|point| (point.min, point.max)));
+        &self.points
+    }
+}
