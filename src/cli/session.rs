@@ -7,9 +7,10 @@ use underfoot::feel::{RendererConfig, renderer};
 use underfoot::layout::Layout;
 use underfoot::picture;
 use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
+use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Foot, Script};
+use underfoot::sim::{Foot, Script, SimFloor};
 use underfoot::sink::{JsonSink, WavOptions, WavSink, WhenFull};
 use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
@@ -32,6 +33,10 @@ pub(crate) struct Args {
     /// Scenario file; without it, the built-in session.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
+    /// Calibrate the simulated floor first, as a lab would, and leave its floor file beside the picture.
+    /// Without it the sensors are taken for nominal parts, as `underfoot run` takes them without a floor file.
+    #[arg(long)]
+    calibrate: bool,
     /// Folder for the picture, the sound file and the event log.
     #[arg(short, long, value_name = "DIR", default_value = DEFAULT_OUT)]
     out: PathBuf,
@@ -53,6 +58,7 @@ impl Default for Args {
             floor: FloorArgs::default(),
             sim: SimArgs::default(),
             scenario: None,
+            calibrate: false,
             out: DEFAULT_OUT.into(),
             rate: SAMPLE_RATE,
         }
@@ -65,9 +71,17 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = floor.geometry;
     let layout = args.layout.load(&geometry)?;
     let script = play::script(args.scenario.as_deref(), &layout, &geometry)?;
-    let (sim, floor) = args.sim.calibrated(&floor)?;
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
     let file = |name: &str| args.out.join(name);
+    let (sim, floor) = if args.calibrate {
+        let (sim, floor) = args.sim.calibrated(&floor)?;
+        let described = file("floor.ron");
+        std::fs::write(&described, schema::write_floor(&floor))
+            .map_err(|error| Failure::File(described, error))?;
+        (sim, floor)
+    } else {
+        (SimFloor::new(&floor, args.sim.config(), args.sim.seed), floor)
+    };
     let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);

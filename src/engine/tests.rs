@@ -7,7 +7,7 @@ use glam::Vec2;
 
 use super::*;
 use crate::feel::{Click, Cue, Feel, Friction, Mode};
-use crate::floor::{Corner, Geometry, Rect};
+use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, Layout, Look, Region, Shape, Widget};
 use crate::sense::{ForceFrame, Method, Quality};
 use crate::units::{Instant, Newtons};
@@ -106,12 +106,7 @@ impl Floor {
         frame.at = self.now;
         frame.received = self.now;
         for &(at, force) in feet {
-            let tile = self.geometry.tile_under(at).unwrap();
-            let arm = (at - self.geometry.centre(tile)) / self.geometry.sensor_reach_m();
-            for corner in Corner::ALL {
-                frame.forces[self.geometry.index(tile).unwrap()][corner.index()] +=
-                    0.25 * force * (1.0 + corner.direction().dot(arm));
-            }
+            frame.add_load(&self.geometry, at, Newtons(force));
         }
         frame
     }

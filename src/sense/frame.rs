@@ -1,6 +1,8 @@
+use glam::Vec2;
+
 use super::Quality;
-use crate::floor::Geometry;
-use crate::units::Instant;
+use crate::floor::{Corner, Geometry};
+use crate::units::{Instant, Newtons};
 
 /// The forces of all sensors at one instant, calibrated and tared.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,6 +30,24 @@ impl ForceFrame {
             received: Instant::START,
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
+        }
+    }
+
+    /// Adds a point load where it lies, shared by the tile's four sensors as an ideal rigid plate shares it.
+    ///
+    /// A load beyond the floor, or one that is not finite, adds nothing. For
+    /// apps without hardware and for tests; [`crate::sim`] has plates, feet and
+    /// sensors with their faults.
+    ///
+    /// # Source
+    /// Eq. 2 of the paper solved for four equal springs: `f_i = F/4 (1 + s_i . a)`, with the load's
+    /// offset `a` from the tile's centre in units of the sensors' reach and `s_i` the corner's direction.
+    pub fn add_load(&mut self, geometry: &Geometry, at: Vec2, force: Newtons) {
+        let Some(tile) = geometry.tile_under(at).filter(|_| force.is_finite()) else { return };
+        let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
+        let Some(sensors) = geometry.index(tile).and_then(|index| self.forces.get_mut(index)) else { return };
+        for (sensor, corner) in sensors.iter_mut().zip(Corner::ALL) {
+            *sensor += 0.25 * force.0 * (1.0 + corner.direction().dot(arm));
         }
     }
 }

@@ -107,17 +107,12 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::floor::{Corner, TileId};
+    use crate::floor::TileId;
     use crate::sense::Quality;
+    use crate::units::Newtons;
 
-    /// Lays a point load on the floor as four equal springs under a rigid plate.
     fn press(frame: &mut ForceFrame, geometry: &Geometry, at: Vec2, force: f32) {
-        let tile = geometry.tile_under(at).unwrap();
-        let arm = (at - geometry.centre(tile)) / geometry.sensor_reach_m();
-        for corner in Corner::ALL {
-            frame.forces[geometry.index(tile).unwrap()][corner.index()] +=
-                0.25 * force * (1.0 + corner.direction().dot(arm));
-        }
+        frame.add_load(geometry, at, Newtons(force));
     }
 
     fn eq4() -> (Geometry, Sensing) {

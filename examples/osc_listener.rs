@@ -1,0 +1,48 @@
+//! An app in another process: listens to a floor over OSC and answers it.
+//!
+//! Start `underfoot simulate` and `underfoot run layouts/map.ron` beside it. Any OSC library of any language will do.
+
+use std::error::Error;
+use std::net::UdpSocket;
+
+use rosc::{OscMessage, OscPacket, OscType, decoder, encoder};
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let socket = UdpSocket::bind("127.0.0.1:9001")?;
+    println!("Listening on {}; Ctrl-C ends it.", socket.local_addr()?);
+    loop {
+        for line in listen(&socket, "127.0.0.1:9000")? {
+            println!("{line}");
+        }
+    }
+}
+
+/// Waits for one datagram and gives what it says of controls; resets the zoom whenever `home` is clicked.
+pub fn listen(socket: &UdpSocket, floor: &str) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut bytes = [0; 1536];
+    let length = socket.recv(&mut bytes)?;
+    let mut lines = Vec::new();
+    for message in messages(decoder::decode_udp(&bytes[..length])?.1) {
+        let Some(("", widget)) = message.addr.split_once("/underfoot/widget/") else { continue };
+        lines.push(match message.args.first() {
+            // Value first, then force, x and y.
+            Some(OscType::Float(value)) if widget.ends_with("/changed") => format!("{widget} to {value:.2}"),
+            Some(OscType::Int(on)) => format!("{widget} to {}", if *on == 1 { "on" } else { "off" }),
+            _ => widget.to_string(),
+        });
+        if widget == "home/clicked" {
+            let reset =
+                OscMessage { addr: "/underfoot/widget/zoom/set".into(), args: vec![OscType::Float(0.3)] };
+            socket.send_to(&encoder::encode(&OscPacket::Message(reset))?, floor)?;
+        }
+    }
+    Ok(lines)
+}
+
+/// The messages of a packet, bundles unwrapped.
+fn messages(packet: OscPacket) -> Vec<OscMessage> {
+    match packet {
+        OscPacket::Message(message) => vec![message],
+        OscPacket::Bundle(bundle) => bundle.content.into_iter().flat_map(messages).collect(),
+    }
+}
