@@ -64,6 +64,14 @@ impl Tracker {
                 covariance +=
                     self.doubt.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
             }
+            if contact.tiles.is_empty() {
+                // Its patch has come to lie beside every tile that could carry it.
+                contact.tiles.extend(foot.tiles.first().map(|&position| {
+                    let tile = &list[position as usize];
+                    let force = Newtons(tile.wrench.force.min(contact.force.0));
+                    TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
+                }));
+            }
             contact.covariance = covariance;
             contact.finish();
         }
