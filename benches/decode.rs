@@ -5,10 +5,13 @@
 #![allow(missing_docs, clippy::unwrap_used)]
 
 use std::hint::black_box;
+use std::net::UdpSocket;
+use std::time::Duration;
 
 use criterion::{BatchSize, Criterion, criterion_group, criterion_main};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
+use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::garble::{bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};
@@ -99,5 +102,20 @@ fn assemble(c: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, decode, refuse, assemble);
+fn receive(c: &mut Criterion) {
+    let floor = Floor::default();
+    let mut source = UdpSource::bind("127.0.0.1:0".parse().unwrap(), &floor).unwrap();
+    let sender = UdpSocket::bind("127.0.0.1:0").unwrap();
+    sender.connect(source.local_addr().unwrap()).unwrap();
+    let datagram =
+        SensorEncoder::new(&floor, SensorFormat::Counts).encode(&millisecond(&floor, 1)[3]).unwrap().to_vec();
+    c.bench_function("send and receive one packet over loopback", |b| {
+        b.iter(|| {
+            sender.send(&datagram).unwrap();
+            source.next(Duration::from_millis(10)).unwrap().is_some()
+        });
+    });
+}
+
+criterion_group!(benches, decode, refuse, assemble, receive);
 criterion_main!(benches);

@@ -56,8 +56,8 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// **Completeness.** A frame is ready when every board heard within the last
 /// 100 ms has delivered its slot or a later one, or when any board is two slots
 /// ahead. Boards without a sample in the slot keep their last values. What
-/// comes later than that, comes twice, or is more than 100 ms old is dropped
-/// and counted.
+/// comes later than that, comes twice, or comes after silence and was more than
+/// 20 ms on its way, is dropped and counted.
 ///
 /// **Trust.** A board without a usable sample for 100 ms becomes
 /// [`Quality::Stale`], and so does one that rebooted, for at least one frame.

@@ -1,11 +1,13 @@
+use smallvec::SmallVec;
+
 use super::Quality;
 use super::contact::{Contact, ContactId, Covariance};
 
 /// The contacts of one frame, in objects that are used again and again.
 ///
-/// A contact on more than four tiles keeps its list on the heap; using the
-/// objects again keeps those lists too, so nothing is allocated once the floor
-/// has been as full as it gets.
+/// A contact on many tiles keeps its list on the heap; using the objects again
+/// keeps those lists too, so nothing is allocated once the floor has been as
+/// full as it gets.
 #[derive(Clone, Debug, Default)]
 pub(super) struct ContactPool {
     contacts: Vec<Contact>,
@@ -13,8 +15,11 @@ pub(super) struct ContactPool {
 }
 
 impl ContactPool {
+    /// A pool of `contacts` contacts to begin with, each with room for [`ROOM`] tiles.
     pub(super) fn with_capacity(contacts: usize) -> Self {
-        Self { contacts: Vec::with_capacity(contacts), used: 0 }
+        let mut pool = Self { contacts: Vec::with_capacity(contacts), used: 0 };
+        pool.contacts.resize_with(contacts, roomy);
+        pool
     }
 
     pub(super) fn clear(&mut self) {
@@ -24,7 +29,7 @@ impl ContactPool {
     /// A contact called `id` with nothing else known of it.
     pub(super) fn add(&mut self, id: ContactId) -> &mut Contact {
         if self.used == self.contacts.len() {
-            self.contacts.push(Contact::default());
+            self.contacts.push(roomy());
         }
         self.used += 1;
         let contact = &mut self.contacts[self.used - 1];
@@ -46,6 +51,13 @@ impl ContactPool {
     pub(super) fn contacts(&self) -> &[Contact] {
         self.contacts.get(..self.used).unwrap_or_default()
     }
+}
+
+/// Tiles that a contact of the pool holds without allocating: two feet on four tiles each, and some.
+const ROOM: usize = 12;
+
+fn roomy() -> Contact {
+    Contact { tiles: SmallVec::with_capacity(ROOM), ..Contact::default() }
 }
 
 impl Contact {

@@ -3,11 +3,9 @@ use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{Sequence, Verdict};
 use crate::wire::LinkCounters;
 
-/// A sample older than this, beyond its board's usual delay, tells nothing about the foot now.
-const TOO_OLD_NS: i64 = 100 * SLOT_NS;
-
-/// The same for a board that is to be believed again after an outage.
-const TOO_OLD_TO_RETURN_NS: i64 = 20 * SLOT_NS;
+/// After silence, a sample older than this, beyond its board's usual delay, tells nothing about the
+/// foot now: it was held up on the way, and newer ones follow.
+const TOO_OLD_NS: i64 = 20 * SLOT_NS;
 
 /// A packet this much earlier than any other of its board lately is doubtful: a slot too early.
 const EARLY_NS: i64 = 3 * SLOT_NS / 4;
@@ -137,9 +135,8 @@ impl Stream {
         let delay = now_ns - clock.at_ns(slot);
         self.arrivals.note(now_ns, delay);
         let usual = self.arrivals.least_ns().unwrap_or(0).max(0);
-        let back_soon = self.presence.is_live() || !self.presence.was_heard();
-        let too_old = if back_soon { TOO_OLD_NS } else { TOO_OLD_TO_RETURN_NS };
-        slot > done && delay - usual <= too_old
+        let returning = self.presence.was_heard() && !self.presence.is_live();
+        slot > done && !(returning && delay - usual > TOO_OLD_NS)
     }
 
     /// Notes a packet that was used.

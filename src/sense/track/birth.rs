@@ -104,7 +104,7 @@ impl Tracker {
             return Some(found);
         }
         let leap = sum / whole - foot.past.centre;
-        if foot.age > 0.12 && whole > 120.0 && leap.length() > 0.02 {
+        if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 {
             let moment = leap * whole;
             let added = (whole - foot.past.force).max(moment.length() / 0.45);
             if added < whole {

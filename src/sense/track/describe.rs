@@ -13,6 +13,9 @@ use crate::units::Newtons;
 /// How much more a joint position is doubted per unit of surprise.
 const MISTRUST: f64 = 4000.0;
 
+/// Which part of the gain errors under other feet falls on a foot that shares their tiles.
+const OTHERS_MISREAD: f32 = 0.25;
+
 /// Standard deviation above which the place of a foot counts as a guess, in metres.
 const AMBIGUOUS_M: f64 = 0.04;
 
@@ -49,13 +52,25 @@ impl Tracker {
             };
             for &position in &foot.tiles {
                 let tile = &list[position as usize];
-                let (share, load) = part_of(foot, tile, &self.cells);
+                let (mut share, load) = part_of(foot, tile, &self.cells);
+                if foot.shared {
+                    // What the others' loads are misread by is known in part, from when they stood alone.
+                    share += (1.0 - share) * OTHERS_MISREAD;
+                }
                 if load.force.0 > 0.0 {
                     contact.tiles.push(load);
                 }
                 contact.quality = contact.quality.max(tile.quality);
                 covariance +=
                     self.doubt.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
+            }
+            if contact.tiles.is_empty() {
+                // Its patch has come to lie beside every tile that could carry it.
+                contact.tiles.extend(foot.tiles.first().map(|&position| {
+                    let tile = &list[position as usize];
+                    let force = Newtons(tile.wrench.force.min(contact.force.0));
+                    TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
+                }));
             }
             contact.covariance = covariance;
             contact.finish();

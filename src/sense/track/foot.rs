@@ -49,6 +49,8 @@ pub(super) struct Foot {
     pub tiles: SmallVec<[u32; 12]>,
     /// Seconds for which it has been too light to be there.
     pub faint: f64,
+    /// Seconds for which its own sway is not to be taken for a newcomer.
+    pub calm: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
     /// Whether this foot is the first of a group of several.
@@ -104,6 +106,7 @@ impl Foot {
             past: Past { force, centre, ..Past::default() },
             tiles: SmallVec::new(),
             faint: 0.0,
+            calm: 0.0,
             group: 0,
             crowded: false,
             beyond_filter: false,
@@ -356,6 +359,7 @@ impl Foot {
     /// Moves the slow past on by `dt`.
     pub(super) fn foretell(&mut self, dt: f64) {
         self.age += dt;
+        self.calm = (self.calm - dt).max(0.0);
         self.past.centre += self.past.velocity * dt;
         self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
     }

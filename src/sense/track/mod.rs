@@ -65,6 +65,15 @@ struct Link {
 /// Over which time surprise is averaged, in seconds.
 const SURPRISE_S: f64 = 0.05;
 
+/// Force below which a foot that shares its tiles may be gone, in newtons.
+const FAINT_N: f64 = 4.0;
+
+/// How long a foot must have seemed to be gone before it is, in seconds.
+const FAINT_S: f64 = 0.01;
+
+/// How long after a companion has gone a foot's own sway is not taken for a new one, in seconds.
+const CALM_S: f64 = 0.25;
+
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
 struct Cells {
@@ -290,11 +299,17 @@ impl Tracker {
     fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
         for which in 0..self.feet.len() {
             let foot = &self.feet[which];
-            let gone = foot.shared && (foot.force() < 8.0 || self.superfluous(which, tiles.list()));
+            let gone = foot.shared && (foot.force() < FAINT_N || self.superfluous(which, tiles.list()));
             let foot = &mut self.feet[which];
             foot.faint = if gone { foot.faint + dt } else { 0.0 };
+            if foot.faint >= FAINT_S {
+                let group = foot.group;
+                for mate in self.feet.iter_mut().filter(|mate| mate.group == group) {
+                    mate.calm = CALM_S;
+                }
+            }
         }
-        self.feet.retain(|foot| foot.faint < 0.01);
+        self.feet.retain(|foot| foot.faint < FAINT_S);
     }
 
     /// Whether the tiles carry what the foot that shares them with foot `which` presses
