@@ -1,5 +1,5 @@
 //! The examples run, and do what they say.
-#![allow(clippy::unwrap_used, clippy::panic, dead_code)]
+#![allow(clippy::unwrap_used, clippy::panic, dead_code, unreachable_pub)]
 
 use std::net::UdpSocket;
 use std::time::Duration;

@@ -46,15 +46,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
     let source = UdpSource::bind(args.listen, &floor)?;
-    if let Ok(address) = source.local_addr() {
-        anstream::eprintln!(
-            "Listening on {address} with a receive buffer of {} KiB; Ctrl-C ends it.",
-            source.granted_buffer() / 1024
-        );
-    }
+    let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), source.clock())?;
-    anstream::eprintln!("{notice}");
     let stop = stop_flag()?;
     let (commands, inbox) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
@@ -67,6 +61,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             anstream::eprintln!("{diagnostics}The last good layout stays on the floor.");
         }
     })?;
+    if let Ok(address) = address {
+        anstream::eprintln!(
+            "Listening on {address} with a receive buffer of {} KiB. {notice} Ctrl-C ends it.",
+            granted / 1024
+        );
+    }
     if let Some(seconds) = args.seconds {
         stop_after(seconds, Arc::clone(&stop));
     }
