@@ -12,7 +12,7 @@ use super::app::App;
 use super::feet::{Feet, Hand};
 use super::painter::{self, color};
 use super::transform::ScreenFromFloor;
-use super::watch::Banner;
+use super::watch::{Banner, Weight};
 use crate::floor::TileId;
 use crate::scene::{self, Show, Theme, View};
 use crate::widget::{Behaviour, Value};
@@ -253,26 +253,34 @@ fn notches(events: &[Event]) -> f32 {
     events.iter().map(notches).sum::<f32>().clamp(-20.0, 20.0)
 }
 
-/// A broad strip across the floor that cannot be overlooked.
+/// A strip across the floor that cannot be overlooked; a narrow one at its top where the floor still works.
 fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
-    let colour = if banner.severe { theme.fault } else { theme.warning };
+    let colour = match banner.weight {
+        Weight::Hint => theme.warning,
+        Weight::Pause => theme.quiet,
+        Weight::Fault => theme.fault,
+    };
+    let strip = match banner.weight {
+        Weight::Hint => Rect::from_min_size(rect.min, vec2(rect.width(), 28.0)),
+        Weight::Pause | Weight::Fault => Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)),
+    };
+    let strip = strip.intersect(rect);
     let painter = ui.painter_at(rect);
-    let strip = Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)).intersect(rect);
-    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.93));
+    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.94));
     let ink = color(if theme.is_dark() { theme.seam } else { theme.plate });
-    // A narrow view gets smaller letters rather than cut ones.
-    let size = (rect.width() / 26.0).clamp(13.0, 24.0);
-    let middle = strip.center();
-    painter.text(
-        middle - vec2(0.0, 14.0),
-        Align2::CENTER_CENTER,
-        &banner.headline,
-        FontId::proportional(size),
-        ink,
-    );
-    let small = FontId::proportional((0.62 * size).max(12.0));
-    painter.text(middle + vec2(0.0, 18.0), Align2::CENTER_CENTER, &banner.detail, small, ink);
-    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
+    let write = |at: Pos2, size: f32, text: &str| {
+        painter.text(at, Align2::CENTER_CENTER, text, FontId::proportional(size), ink);
+    };
     let spoken = format!("{}. {}", banner.headline, banner.detail);
+    let middle = strip.center();
+    if banner.weight == Weight::Hint {
+        write(middle, 13.5, &spoken);
+    } else {
+        // A narrow view gets smaller letters rather than cut ones.
+        let size = (rect.width() / 26.0).clamp(13.0, 24.0);
+        write(middle - vec2(0.0, 14.0), size, &banner.headline);
+        write(middle + vec2(0.0, 18.0), (0.62 * size).max(12.0), &banner.detail);
+    }
+    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
     node.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
 }

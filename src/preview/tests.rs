@@ -360,6 +360,8 @@ fn an_apps_part_can_be_played_from_the_panel() {
     room.run(3);
     let id = WidgetId::new("home");
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Enable { id, enabled: false }));
+    room.window.get_by_label("satellite value").scroll_to_me();
+    room.run(3);
     room.window.get_by_label("satellite value").click();
     room.run(3);
     let id = WidgetId::new("satellite");

@@ -59,7 +59,7 @@ fn switch(scene: &mut Scene, face: &Face<'_>, on: bool) {
     let across = if wide { 0.42 * size.x } else { 0.8 * size.x }.min(0.135);
     let down = (0.46 * across).min(if wide { 0.8 * size.y } else { 0.42 * size.y });
     let pill_size = Vec2::new(across, down);
-    let gap = 0.012;
+    let gap = if wide { 0.022 } else { 0.012 };
     let labelled = !face.widget.label.is_empty();
     let (label, middle) = match (labelled, wide) {
         (false, _) => (None, room.centre()),

@@ -82,9 +82,9 @@ impl<'a> Face<'a> {
         let south = Vec2::new(0.0, 0.006);
         let area = Rect::new(self.area.min - south, self.area.max - south);
         for (reach, opacity) in [(0.016, 0.04), (0.012, 0.05), (0.008, 0.06), (0.005, 0.07)] {
-            // A stroke just inside and outside the edge; the face hides its inner half.
-            let stroke = Stroke::new(reach + 0.006, Ink::faint(self.theme.shadow, opacity));
-            self.shaped(scene, area.grown(0.5 * (reach - 0.006)), Paint::stroke(stroke));
+            // Around the edge; the face hides what lies inside it.
+            let stroke = Stroke::new(reach + 0.016, Ink::faint(self.theme.shadow, opacity));
+            self.shaped(scene, area.grown(0.5 * (reach - 0.016)), Paint::stroke(stroke));
         }
     }
 

@@ -143,6 +143,18 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
 /// Area of a sensor's dot per newton, in square metres: 300 N make a dot of 3 cm.
 const DOT_M2_PER_N: f32 = 0.015 * 0.015 / 300.0;
 
+/// Slanted lines over the tiles of which nothing is known.
+pub(super) fn unknown(scene: &mut Scene, view: &View<'_>) {
+    if view.snapshot.link == LinkState::Waiting {
+        return;
+    }
+    for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
+        if state.quality.iter().all(|quality| *quality >= Quality::Stale) {
+            hatch(scene, view, view.geometry.tile_at_index(index), state);
+        }
+    }
+}
+
 /// Dots whose area follows the sensors' forces; broken and silent sensors are shown by their own shapes.
 pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     // Before the first packet nothing is known; 144 marks would say no more.
@@ -151,8 +163,9 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     }
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let tile = view.geometry.tile_at_index(index);
-        if state.quality.iter().all(|quality| *quality >= Quality::Stale) {
-            hatch(scene, view, tile, state);
+        // The hatching says it for a tile that is silent as a whole.
+        if state.quality == [Quality::Stale; 4] {
+            continue;
         }
         for corner in Corner::ALL {
             let at = view.geometry.sensor(tile, corner);
@@ -205,7 +218,6 @@ pub(super) fn mark_quality(scene: &mut Scene, view: &View<'_>, at: Vec2, quality
     }
 }
 
-/// Slanted lines over a tile of which nothing is known.
 fn hatch(scene: &mut Scene, view: &View<'_>, tile: TileId, state: &TileState) {
     let faulty = state.quality.iter().all(|quality| *quality == Quality::Faulty);
     let colour = if faulty { view.theme.fault } else { view.theme.stale };

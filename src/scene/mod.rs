@@ -67,6 +67,7 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     let bounds = extent(view.geometry, view.show);
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
+    ground::unknown(scene, view);
     if view.show.ruler {
         ground::ruler(scene, view);
     }

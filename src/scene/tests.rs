@@ -214,6 +214,7 @@ fn a_tile_of_which_nothing_is_known_is_hatched() {
     let mut snapshot = at_rest(&layout);
     let before = drawn(&layout, &snapshot).marks().len();
     snapshot.tiles[8].quality = [Quality::Stale; 4];
+    // Four rings of live sensors go, the lines come.
     assert!(drawn(&layout, &snapshot).marks().len() > before + 10);
     // Before the first packet every tile is like that, and the window says so in words.
     snapshot.link = LinkState::Waiting;
