@@ -46,7 +46,7 @@ fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
 
 fn button(scene: &mut Scene, face: &Face<'_>) {
     face.draw(scene);
-    face.write(scene, &face.widget.label, face.room(), Anchor::Middle);
+    face.write_label(scene);
     face.draw_badge(scene);
 }
 
@@ -116,7 +116,6 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
     face.draw(scene);
     let area = face.area;
     let text = Reading { value, slider };
-    let badge_at_south = face.state.disabled || face.state.needs_lift;
     let size = area.size();
     let inset = 0.010;
     let track = match slider.axis {
@@ -133,8 +132,14 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
         }
     };
     self::track(scene, face, slider, track, value);
-    if badge_at_south {
-        face.draw_badge(scene);
+    match slider.axis {
+        // On the half of the track where the handle is not.
+        Axis::East => {
+            let east = if value > 0.5 * (slider.min + slider.max) { 0.25 } else { 0.75 };
+            let x = track.min.x + east * track.size().x;
+            face.draw_badge_at(scene, Vec2::new(x, track.centre().y));
+        }
+        Axis::North => face.draw_badge(scene),
     }
 }
 

@@ -14,7 +14,7 @@ use crate::sense::Quality;
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let slab = view.geometry.bounds();
-    rim(scene, slab, 0.010, theme.shadow, &[(0.034, 0.012), (0.027, 0.018), (0.020, 0.026), (0.013, 0.04)]);
+    rim(scene, slab, 0.010, theme.shadow, &[(0.032, 0.016), (0.022, 0.030), (0.013, 0.045)]);
     // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
     let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
     seams(scene, view, gap);
@@ -22,10 +22,20 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the root shows light steps too.
         let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
-        let colour = theme.plate.mix(theme.load, share);
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
+        let active = view.layout.regions.iter().any(|region| holds(region.area, cell));
+        let colour = theme.plate.mix(theme.accent, if active { TINT } else { 0.0 }).mix(theme.load, share);
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
     }
+}
+
+/// How much of the accent's colour an active area has.
+const TINT: f32 = 0.045;
+
+/// Whether `area` has all of `cell`, give or take what rounding does to metres.
+fn holds(area: Rect, cell: Rect) -> bool {
+    let area = area.grown(1e-4);
+    cell.min.cmpge(area.min).all() && cell.max.cmple(area.max).all()
 }
 
 /// What is seen between the plates: a frame around all of them and lines between them.
@@ -87,8 +97,14 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
         let area = region.area.grown(-0.010);
+        // Plates within it are tinted already; one that ends amid plates tints its own ground.
+        let cut = view.geometry.tiles().any(|tile| {
+            let plate = view.geometry.plate(tile);
+            plate.grown(-1e-4).overlaps(region.area) && !holds(region.area, plate)
+        });
         let stroke = Stroke::new(0.003, Ink::faint(theme.accent, 0.45));
-        scene.add_box(area, 0.022, Paint::fill(Ink::faint(theme.accent, 0.045)).with_stroke(stroke));
+        let fill = cut.then_some(Ink::faint(theme.accent, TINT));
+        scene.add_box(area, 0.022, Paint { fill, stroke: Some(stroke) });
         let size_m = 0.024;
         let lettering = Lettering {
             at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
@@ -179,12 +195,9 @@ fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Qua
     let theme = view.theme;
     let radius = (force.clamp(0.0, 2000.0) * DOT_M2_PER_N).sqrt();
     if view.show.sensors && quality <= Quality::Degraded {
-        let rim = Stroke::new(0.0012, Ink::faint(theme.contact, 0.35));
-        scene.add_circle(at, 0.0035, Paint::stroke(rim));
-        // Below 1 N a dot would only show noise.
-        if force >= 1.0 {
-            scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, 0.62)));
-        }
+        // Below 1 N a dot would only show noise: a faint one marks the place.
+        let (radius, opacity) = if force >= 1.0 { (radius, 0.62) } else { (0.0032, 0.20) };
+        scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, opacity)));
     }
     mark_quality(scene, view, at, quality);
 }
