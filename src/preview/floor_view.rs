@@ -107,7 +107,7 @@ impl App {
         let mut hand = read_hand(ui, canvas, map);
         hand.on_handle = on_handle;
         hand.drag = drag;
-        hand.pressed &= !on_handle && !self.grip.held;
+        hand.pressed &= !self.grip.held;
         if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
             feet.lift_working();
             hand.pressed = false;

@@ -260,6 +260,37 @@ fn a_button_stands_the_foot_in_the_layouts_own_place() {
 }
 
 #[test]
+fn shift_chooses_a_tile_and_presses_nothing() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.hover(home);
+    let modifiers = Modifiers::SHIFT;
+    for pressed in [true, false] {
+        room.window.event(Event::ModifiersChanged(modifiers));
+        room.window.event(Event::PointerButton {
+            pos: home,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        });
+        room.run(5);
+        assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO);
+    }
+    let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();
+    assert!(room.says(&format!("Tile {}, {}", tile.column, tile.row)) && room.says("Follow the foot"));
+}
+
+#[test]
+fn a_window_that_loses_the_keyboard_lifts_the_foot() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.press(home);
+    room.window.event(Event::WindowFocused(false));
+    room.run(20);
+    assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO, "its button may come up elsewhere, unseen");
+}
+
+#[test]
 fn a_real_floor_has_no_mouse_feet_and_a_click_chooses_a_tile() {
     let mut room = Room::of(false, 1280.0, 800.0);
     assert!(!room.says("Stance foot"));

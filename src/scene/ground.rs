@@ -72,7 +72,8 @@ fn rim(scene: &mut Scene, area: Rect, radius_m: f32, colour: Colour, layers: &[(
 
 /// Numbers of columns and rows along the south and west sides, at the tiles' middles.
 pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
-    let size_m = 0.030;
+    let by = super::magnification(view.geometry);
+    let size_m = 0.030 * by;
     let mut lettering = Lettering {
         at: Vec2::ZERO,
         anchor: Anchor::Middle,
@@ -81,13 +82,15 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
         turn_rad: 0.0,
         ink: Ink::solid(view.theme.quiet),
     };
-    for column in 0..view.geometry.columns() {
-        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058);
+    // Where tiles are smaller than their numbers, only every so many get one.
+    let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
+    for column in (0..view.geometry.columns()).step_by(every) {
+        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058 * by);
         scene.add_text(lettering, format_args!("{column}"));
     }
-    for row in 0..view.geometry.rows() {
+    for row in (0..view.geometry.rows()).step_by(every) {
         let middle = view.geometry.centre(TileId::new(0, row)) * Vec2::Y;
-        lettering.at = middle - Vec2::new(0.048, 0.5 * CAP_HEIGHT * size_m);
+        lettering.at = middle - Vec2::new(0.048 * by, 0.5 * CAP_HEIGHT * size_m);
         scene.add_text(lettering, format_args!("{row}"));
     }
 }
@@ -171,6 +174,9 @@ pub(super) fn unknown(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
+/// Tiles from which on sensors without force are not drawn: their dots would be finer than a pixel.
+const MANY_TILES: usize = 400;
+
 /// Dots whose area follows the sensors' forces; broken and silent sensors are shown by their own shapes.
 pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     // Before the first packet nothing is known; 144 marks would say no more.
@@ -195,7 +201,10 @@ fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Qua
     let theme = view.theme;
     let radius = (force.clamp(0.0, 2000.0) * DOT_M2_PER_N).sqrt();
     if view.show.sensors && quality <= Quality::Degraded {
-        // Below 1 N a dot would only show noise: a faint one marks the place.
+        // Below 1 N a dot would only show noise: a faint one marks the place, where there are few enough.
+        if force < 1.0 && view.geometry.tile_count() > MANY_TILES {
+            return mark_quality(scene, view, at, quality);
+        }
         let (radius, opacity) = if force >= 1.0 { (radius, 0.62) } else { (0.0032, 0.20) };
         scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, opacity)));
     }

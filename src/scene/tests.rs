@@ -324,3 +324,25 @@ fn a_projector_sees_the_floor_and_nothing_around_it() {
     assert!(words.contains("Zoom in"));
     assert!(!words.iter().any(|text| text.contains(" N")), "forces are for windows: {words:?}");
 }
+
+#[test]
+fn words_around_a_floor_grow_with_it() {
+    let layout = Layout { widgets: vec![], stances: vec![], regions: vec![], ..map() };
+    let snapshot = Snapshot::default();
+    for (columns, rows) in [(1, 1), (6, 6), (24, 2), (96, 96)] {
+        let geometry = Geometry::of_paper_tiles(columns, rows).unwrap();
+        let mut scene = Scene::new();
+        let show = Show::PICTURE;
+        draw(&mut scene, &View { show, ..View::new(&geometry, &layout, &snapshot, &Theme::LIGHT) });
+        let wide = geometry.bounds().size().x;
+        for (text, lettering) in scene.texts() {
+            let place = extent(text, lettering);
+            assert!(scene.bounds().contains(place.min) && scene.bounds().contains(place.max), "“{text}”");
+            assert!((0.012..0.04).contains(&(lettering.size_m / wide)), "“{text}” on {columns} x {rows}");
+        }
+        let words: Vec<_> = scene.texts().map(|(text, lettering)| extent(text, lettering)).collect();
+        for (at, place) in words.iter().enumerate() {
+            assert!(!words[..at].iter().any(|other| other.overlaps(*place)), "{columns} x {rows}");
+        }
+    }
+}
