@@ -31,6 +31,8 @@ const TURN_PER_S: f32 = 1.8;
 pub(super) struct Grip {
     /// Whether it is being dragged.
     held: bool,
+    /// Where its handle is, while the pointer is near enough to want it.
+    handle: Option<Pos2>,
 }
 
 impl App {
@@ -45,6 +47,9 @@ impl App {
         let on_handle = self.move_feet(ui, &canvas, map);
         self.draw(ui, rect, map, show);
         self.name_controls(ui, map);
+        if let Some(at) = self.grip.handle {
+            self.draw_handle(ui, rect, at);
+        }
         if self.feet.is_some() && canvas.contains_pointer() {
             ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
             self.read_out(ui, rect, on_handle);
@@ -114,6 +119,20 @@ impl App {
         }
         feet.step(&hand, sink.as_mut());
         on_handle || self.grip.held
+    }
+
+    /// A disc with a cross of arrows: the standing foot can be moved.
+    fn draw_handle(&self, ui: &Ui, rect: Rect, at: Pos2) {
+        let (painter, theme) = (ui.painter_at(rect), &self.theme);
+        let edge = egui::Stroke::new(1.5, color(if self.grip.held { theme.accent } else { theme.ink }));
+        painter.circle(at, HANDLE - 2.0, color(theme.plate), edge);
+        for way in [vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0), vec2(0.0, -1.0)] {
+            let tip = at + way * 7.0;
+            painter.line_segment([at, tip], edge);
+            for side in [1.0, -1.0] {
+                painter.line_segment([tip, tip - way * 2.5 + way.rot90() * 2.5 * side], edge);
+            }
+        }
     }
 
     /// Force and turn of the foot in hand, beside the pointer.
@@ -192,7 +211,7 @@ fn stand_and_drag(
         }
     }
     let Some(shoe) = feet.standing().copied() else {
-        grip.held = false;
+        *grip = Grip::default();
         return (false, Vec2::ZERO);
     };
     let middle = map.point(shoe.position);
@@ -207,6 +226,7 @@ fn stand_and_drag(
     let reach = if alt { 0.5 * shoe.length_m * map.scale() } else { HANDLE };
     let over = pointer.is_some_and(|pointer| near(pointer, reach)) && !feet.is_pressing();
     let (began, down) = ui.input(|i| (i.pointer.primary_pressed(), i.pointer.primary_down()));
+    grip.handle = Some(middle).filter(|_| grip.held || pointer.is_some_and(|at| near(at, 5.0 * HANDLE)));
     grip.held = (grip.held || (over && began)) && down;
     let drag = if grip.held { map.floor_vector(ui.input(|i| i.pointer.delta())) } else { Vec2::ZERO };
     // Its middle stays on the floor, however far the mouse goes.

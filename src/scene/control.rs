@@ -199,7 +199,7 @@ fn steps(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, a
 /// Label at the strip's beginning, value at its end.
 fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: Reading<'_>) {
     // Clear of the round ends of a slider whose kind is round.
-    let inset = 0.016 + 0.5 * (face.radius_m - 0.028).max(0.0);
+    let inset = 0.022 + 0.5 * (face.radius_m - 0.028).max(0.0);
     let size_m = (0.60 * strip.size().y).min(0.036);
     let wide = reading.widest() * size_m;
     let value = Vec2::new(strip.max.x - inset, strip.centre().y - 0.5 * CAP_HEIGHT * size_m);

@@ -14,7 +14,9 @@ use crate::sense::Quality;
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let slab = view.geometry.bounds();
-    rim(scene, slab, 0.010, theme.shadow, &[(0.032, 0.016), (0.022, 0.030), (0.013, 0.045)]);
+    // On a floor of a few tiles all of it has to stay within the margin.
+    let by = super::magnification(view.geometry).min(1.0);
+    rim(scene, slab, 0.010, theme.shadow, &[(0.032 * by, 0.016), (0.022 * by, 0.030), (0.013 * by, 0.045)]);
     // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
     let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
     seams(scene, view, gap);
@@ -45,7 +47,8 @@ fn holds(area: Rect, cell: Rect) -> bool {
 fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     let slab = view.geometry.bounds();
     let colour = Ink::solid(view.theme.seam);
-    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(0.014, colour)));
+    let width_m = 0.014 * super::magnification(view.geometry).clamp(0.4, 1.0);
+    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
     // A little wider than the seam, for the plates' round corners.
     let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006, colour));
     let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
