@@ -47,7 +47,7 @@ pub(super) struct App {
     /// When the next picture is due.
     due: Instant,
     /// Height of the side panel's other parts at the last picture, in points.
-    pub(super) above_events: f32,
+    pub(super) other_parts: f32,
 }
 
 impl App {
@@ -72,7 +72,7 @@ impl App {
             frames: Rate::default(),
             picture_count: 0,
             due: Instant::now(),
-            above_events: 0.0,
+            other_parts: 0.0,
         }
     }
 

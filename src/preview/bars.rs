@@ -62,9 +62,7 @@ impl App {
             Some(file) => {
                 ui.add(egui::Label::new(quiet(&self.theme, &file.name)).truncate());
             }
-            None => {
-                ui.add(egui::Label::new(quiet(&self.theme, &self.source)).truncate());
-            }
+            None => {}
         }
     }
 
@@ -93,13 +91,13 @@ impl App {
         if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Light or dark window").clicked() {
             self.turn_theme(ui.ctx());
         }
-        let sensors = ui.selectable_label(self.marks, "Sensors");
+        let sensors = ui.add(egui::Button::selectable(self.marks, "Sensors").frame_when_inactive(true));
         if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
             self.marks = !self.marks;
         }
         let Some((feet, _)) = &mut self.feet else { return };
         let stands = feet.standing().is_some();
-        let button = ui.selectable_label(stands, "Stance foot");
+        let button = ui.add(egui::Button::selectable(stands, "Stance foot").frame_when_inactive(true));
         let hint = "A second foot that stays where it is left; Space puts it under the mouse";
         if button.on_hover_text(hint).clicked() {
             if stands {
@@ -185,18 +183,21 @@ impl App {
             .inner_margin(Margin { left: 14, right: 8, top: 8, bottom: 8 });
         let half = 0.45 * ui.available_height();
         let panel = Panel::bottom("problems").frame(frame).resizable(true);
-        panel.default_size(half.min(230.0)).size_range(70.0..=half.max(71.0)).show(ui, |ui| {
-            let title = format!("{} has problems", file.name);
-            ui.horizontal(|ui| {
-                ui.label(RichText::new(title).size(14.5).strong().color(color(theme.fault)));
-                let rest = "The floor keeps the last good layout; saving a better file replaces it.";
-                ui.add(egui::Label::new(quiet(theme, rest)).truncate());
+        panel
+            .default_size((0.33 * ui.available_height()).clamp(90.0, 230.0))
+            .size_range(70.0..=half.max(71.0))
+            .show(ui, |ui| {
+                let title = format!("{} has problems", file.name);
+                ui.horizontal(|ui| {
+                    ui.label(RichText::new(title).size(14.5).strong().color(color(theme.fault)));
+                    let rest = "The floor keeps the last good layout; saving a better file replaces it.";
+                    ui.add(egui::Label::new(quiet(theme, rest)).truncate());
+                });
+                ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                    let text = RichText::new(diagnostics).monospace().size(12.5).color(color(theme.ink));
+                    ui.add(egui::Label::new(text).extend().selectable(true));
+                });
             });
-            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
-                let text = RichText::new(diagnostics).monospace().size(12.5).color(color(theme.ink));
-                ui.add(egui::Label::new(text).extend().selectable(true));
-            });
-        });
     }
 }
 

@@ -12,7 +12,7 @@ use super::app::App;
 use super::feet::{Feet, Hand};
 use super::painter::{self, color};
 use super::transform::ScreenFromFloor;
-use super::watch::Banner;
+use super::watch::{Banner, Weight};
 use crate::floor::TileId;
 use crate::scene::{self, Show, Theme, View};
 use crate::widget::{Behaviour, Value};
@@ -31,6 +31,8 @@ const TURN_PER_S: f32 = 1.8;
 pub(super) struct Grip {
     /// Whether it is being dragged.
     held: bool,
+    /// Where its handle is, while the pointer is near enough to want it.
+    handle: Option<Pos2>,
 }
 
 impl App {
@@ -45,6 +47,9 @@ impl App {
         let on_handle = self.move_feet(ui, &canvas, map);
         self.draw(ui, rect, map, show);
         self.name_controls(ui, map);
+        if let Some(at) = self.grip.handle {
+            self.draw_handle(ui, rect, at);
+        }
         if self.feet.is_some() && canvas.contains_pointer() {
             ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
             self.read_out(ui, rect, on_handle);
@@ -107,13 +112,27 @@ impl App {
         let mut hand = read_hand(ui, canvas, map);
         hand.on_handle = on_handle;
         hand.drag = drag;
-        hand.pressed &= !on_handle && !self.grip.held;
+        hand.pressed &= !self.grip.held;
         if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
             feet.lift_working();
             hand.pressed = false;
         }
         feet.step(&hand, sink.as_mut());
         on_handle || self.grip.held
+    }
+
+    /// A disc with a cross of arrows: the standing foot can be moved.
+    fn draw_handle(&self, ui: &Ui, rect: Rect, at: Pos2) {
+        let (painter, theme) = (ui.painter_at(rect), &self.theme);
+        let edge = egui::Stroke::new(1.5, color(if self.grip.held { theme.accent } else { theme.ink }));
+        painter.circle(at, HANDLE - 2.0, color(theme.plate), edge);
+        for way in [vec2(1.0, 0.0), vec2(0.0, 1.0), vec2(-1.0, 0.0), vec2(0.0, -1.0)] {
+            let tip = at + way * 7.0;
+            painter.line_segment([at, tip], edge);
+            for side in [1.0, -1.0] {
+                painter.line_segment([tip, tip - way * 2.5 + way.rot90() * 2.5 * side], edge);
+            }
+        }
     }
 
     /// Force and turn of the foot in hand, beside the pointer.
@@ -192,7 +211,7 @@ fn stand_and_drag(
         }
     }
     let Some(shoe) = feet.standing().copied() else {
-        grip.held = false;
+        *grip = Grip::default();
         return (false, Vec2::ZERO);
     };
     let middle = map.point(shoe.position);
@@ -207,6 +226,7 @@ fn stand_and_drag(
     let reach = if alt { 0.5 * shoe.length_m * map.scale() } else { HANDLE };
     let over = pointer.is_some_and(|pointer| near(pointer, reach)) && !feet.is_pressing();
     let (began, down) = ui.input(|i| (i.pointer.primary_pressed(), i.pointer.primary_down()));
+    grip.handle = Some(middle).filter(|_| grip.held || pointer.is_some_and(|at| near(at, 5.0 * HANDLE)));
     grip.held = (grip.held || (over && began)) && down;
     let drag = if grip.held { map.floor_vector(ui.input(|i| i.pointer.delta())) } else { Vec2::ZERO };
     // Its middle stays on the floor, however far the mouse goes.
@@ -253,26 +273,34 @@ fn notches(events: &[Event]) -> f32 {
     events.iter().map(notches).sum::<f32>().clamp(-20.0, 20.0)
 }
 
-/// A broad strip across the floor that cannot be overlooked.
+/// A strip across the floor that cannot be overlooked; a narrow one at its top where the floor still works.
 fn show_banner(ui: &Ui, rect: Rect, theme: &Theme, banner: &Banner) {
-    let colour = if banner.severe { theme.fault } else { theme.warning };
+    let colour = match banner.weight {
+        Weight::Hint => theme.warning,
+        Weight::Pause => theme.quiet,
+        Weight::Fault => theme.fault,
+    };
+    let strip = match banner.weight {
+        Weight::Hint => Rect::from_min_size(rect.min, vec2(rect.width(), 28.0)),
+        Weight::Pause | Weight::Fault => Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)),
+    };
+    let strip = strip.intersect(rect);
     let painter = ui.painter_at(rect);
-    let strip = Rect::from_center_size(rect.center(), vec2(rect.width(), 92.0)).intersect(rect);
-    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.93));
+    painter.rect_filled(strip, 0, color(colour).gamma_multiply(0.94));
     let ink = color(if theme.is_dark() { theme.seam } else { theme.plate });
-    // A narrow view gets smaller letters rather than cut ones.
-    let size = (rect.width() / 26.0).clamp(13.0, 24.0);
-    let middle = strip.center();
-    painter.text(
-        middle - vec2(0.0, 14.0),
-        Align2::CENTER_CENTER,
-        &banner.headline,
-        FontId::proportional(size),
-        ink,
-    );
-    let small = FontId::proportional((0.62 * size).max(12.0));
-    painter.text(middle + vec2(0.0, 18.0), Align2::CENTER_CENTER, &banner.detail, small, ink);
-    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
+    let write = |at: Pos2, size: f32, text: &str| {
+        painter.text(at, Align2::CENTER_CENTER, text, FontId::proportional(size), ink);
+    };
     let spoken = format!("{}. {}", banner.headline, banner.detail);
+    let middle = strip.center();
+    if banner.weight == Weight::Hint {
+        write(middle, 13.5, &spoken);
+    } else {
+        // A narrow view gets smaller letters rather than cut ones.
+        let size = (rect.width() / 26.0).clamp(13.0, 24.0);
+        write(middle - vec2(0.0, 14.0), size, &banner.headline);
+        write(middle + vec2(0.0, 18.0), (0.62 * size).max(12.0), &banner.detail);
+    }
+    let node = ui.interact(strip, ui.scope_id().with("banner"), Sense::hover());
     node.widget_info(|| WidgetInfo::labeled(Role::Alert, true, &spoken));
 }

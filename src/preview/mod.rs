@@ -49,7 +49,9 @@ impl Default for PreviewOptions {
 #[derive(Debug, Error)]
 pub enum PreviewError {
     /// The window could not be opened: no display, or one without OpenGL. What needs no window still works.
-    #[error("no window can be opened: {0}")]
+    #[error(
+        "no window can be opened ({0}): start it on a desktop with OpenGL, or use the commands that need no window"
+    )]
     NoWindow(String),
 }
 
@@ -63,12 +65,24 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .with_app_id("underfoot")
         .with_inner_size([options.size.0, options.size.1])
         .with_min_inner_size([720.0, 480.0]);
-    let native = eframe::NativeOptions { viewport, renderer: eframe::Renderer::Glow, ..Default::default() };
+    // No gradients here that dithering would help, and without a graphics card it costs a tenth of each picture.
+    let native = eframe::NativeOptions {
+        viewport,
+        renderer: eframe::Renderer::Glow,
+        dithering: false,
+        ..Default::default()
+    };
     let app = app::App::new(input, options);
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         style::apply(&context.egui_ctx, &app.theme);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native(&options.title, native, start)
-        .map_err(|error| PreviewError::NoWindow(error.to_string()))
+        .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
+}
+
+/// What a person can use of winit's message: the part after the source line that it names.
+fn reason(message: &str) -> &str {
+    let after_line = message.rsplit_once(".rs:").and_then(|(_, line)| line.split_once(": "));
+    after_line.map_or(message, |(_, reason)| reason).trim_end_matches('.')
 }

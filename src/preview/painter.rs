@@ -47,6 +47,8 @@ impl Brush<'_> {
                 let centre = self.map.point(*centre);
                 let radius = vec2(radii.x, radii.y) * self.map.scale();
                 let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
+                // egui strokes ellipses outside their edge, boxes along it.
+                let radius = (radius - egui::Vec2::splat(0.5 * stroke.width)).max(egui::Vec2::splat(0.1));
                 if radius.x == radius.y {
                     self.painter.add(CircleShape { center: centre, radius: radius.x, fill, stroke });
                 } else {
@@ -113,7 +115,7 @@ impl Brush<'_> {
     fn text(&self, letters: &str, lettering: &Lettering) {
         // Quarter steps keep the glyph atlas small while the window is resized.
         let size = (lettering.size_m * self.map.scale() * 4.0).floor() / 4.0;
-        if size < 4.0 {
+        if size < 3.0 {
             return;
         }
         let color = ink_color(lettering.ink);
@@ -132,10 +134,8 @@ impl Brush<'_> {
         let mut shape = TextShape::new(at, galley, color);
         shape.angle = -lettering.turn_rad;
         if lettering.strong {
-            // The font has one weight; printed twice, a little apart, it is heavier.
-            let mut again = shape.clone();
-            again.pos += turn * vec2((0.022 * size).max(0.3), 0.0);
-            self.painter.add(again);
+            // The font has one weight; printed twice, its soft edges get heavier.
+            self.painter.add(shape.clone());
         }
         self.painter.add(shape);
     }

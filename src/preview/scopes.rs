@@ -58,7 +58,12 @@ impl Scopes {
             if let Some((_, age)) = self.slots.iter_mut().flatten().find(|(shown, _)| *shown == tile) {
                 *age = 0;
             } else if let Some(slot) =
-                self.slots.iter_mut().max_by_key(|slot| slot.map_or(u32::MAX, |(_, age)| age))
+                // The first of those unused for longest: empty places fill from the top.
+                self
+                    .slots
+                    .iter_mut()
+                    .rev()
+                    .max_by_key(|slot| slot.map_or(u32::MAX, |(_, age)| age))
             {
                 *slot = Some((tile, 0));
             }

@@ -86,10 +86,10 @@ pub(super) fn panel_frame(theme: &Theme, margin: Margin) -> egui::Frame {
     egui::Frame::new().fill(color(panel_colour(theme))).inner_margin(margin)
 }
 
-/// A heading over a part of the side panel, with something short at its right end.
-pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) {
+/// A heading over a part of the side panel, with something short at its right end; gives back its line's place.
+pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnce(&mut Ui)) -> egui::Rect {
     ui.add_space(10.0);
-    ui.horizontal(|ui| {
+    let heading = ui.horizontal(|ui| {
         ui.label(RichText::new(title).size(14.5).color(color(theme.ink)).strong());
         ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), aside);
     });
@@ -97,6 +97,7 @@ pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnc
     let (line, _) = ui.allocate_exact_size(vec2(width, 1.0), egui::Sense::hover());
     ui.painter().hline(line.x_range(), line.center().y, Stroke::new(1.0, color(theme.line)));
     ui.add_space(2.0);
+    heading.response.rect
 }
 
 /// Text that need not be read at once.

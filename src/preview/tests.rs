@@ -260,6 +260,37 @@ fn a_button_stands_the_foot_in_the_layouts_own_place() {
 }
 
 #[test]
+fn shift_chooses_a_tile_and_presses_nothing() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.hover(home);
+    let modifiers = Modifiers::SHIFT;
+    for pressed in [true, false] {
+        room.window.event(Event::ModifiersChanged(modifiers));
+        room.window.event(Event::PointerButton {
+            pos: home,
+            button: PointerButton::Primary,
+            pressed,
+            modifiers,
+        });
+        room.run(5);
+        assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO);
+    }
+    let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();
+    assert!(room.says(&format!("Tile {}, {}", tile.column, tile.row)) && room.says("Follow the foot"));
+}
+
+#[test]
+fn a_window_that_loses_the_keyboard_lifts_the_foot() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    room.press(home);
+    room.window.event(Event::WindowFocused(false));
+    room.run(20);
+    assert_eq!(room.feet().0.unwrap().force, Newtons::ZERO, "its button may come up elsewhere, unseen");
+}
+
+#[test]
 fn a_real_floor_has_no_mouse_feet_and_a_click_chooses_a_tile() {
     let mut room = Room::of(false, 1280.0, 800.0);
     assert!(!room.says("Stance foot"));
@@ -360,6 +391,8 @@ fn an_apps_part_can_be_played_from_the_panel() {
     room.run(3);
     let id = WidgetId::new("home");
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Enable { id, enabled: false }));
+    room.window.get_by_label("satellite value").scroll_to_me();
+    room.run(3);
     room.window.get_by_label("satellite value").click();
     room.run(3);
     let id = WidgetId::new("satellite");
@@ -384,4 +417,11 @@ fn everything_that_can_be_worked_has_a_name_and_room_at_every_size() {
             assert!(floor.contains_rect(room.window.get_by_label(&widget.label).rect()), "{}", widget.label);
         }
     }
+}
+
+#[test]
+fn why_there_is_no_window_is_said_without_source_lines() {
+    let winit = "winit EventLoopError: os error at /somewhere/linux/mod.rs:765: neither WAYLAND_DISPLAY nor DISPLAY is set.";
+    assert_eq!(super::reason(winit), "neither WAYLAND_DISPLAY nor DISPLAY is set");
+    assert_eq!(super::reason("no matching configs"), "no matching configs");
 }

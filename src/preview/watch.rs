@@ -20,8 +20,19 @@ pub(super) struct Banner {
     pub(super) headline: String,
     /// The second line: what that means, or what to do.
     pub(super) detail: String,
-    /// Whether it is worse than a warning.
-    pub(super) severe: bool,
+    /// How much of the floor it may cover.
+    pub(super) weight: Weight,
+}
+
+/// How much a banner matters.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Weight {
+    /// The floor works in part.
+    Hint,
+    /// The floor does not work yet.
+    Pause,
+    /// The floor does not work any more.
+    Fault,
 }
 
 impl Watch {
@@ -43,7 +54,7 @@ impl Watch {
             return Some(Banner {
                 headline: format!("Nothing new from the sensing for {still_s:.1} s"),
                 detail: "What is shown is the last that was known.".into(),
-                severe: true,
+                weight: Weight::Fault,
             });
         }
         let silent_s = now_s - self.packets_at_s;
@@ -52,17 +63,17 @@ impl Watch {
             LinkState::Waiting => Some(Banner {
                 headline: "Waiting for the floor’s first packet".into(),
                 detail: format!("Listening: {source}"),
-                severe: false,
+                weight: Weight::Pause,
             }),
             LinkState::Partial => Some(Banner {
                 headline: "Some boards are silent".into(),
                 detail: "Hatched tiles are not sensed.".into(),
-                severe: false,
+                weight: Weight::Hint,
             }),
             LinkState::Lost => Some(Banner {
                 headline: format!("No sensor packets for {silent_s:.1} s"),
                 detail: "Every control is released.".into(),
-                severe: true,
+                weight: Weight::Fault,
             }),
         }
     }
@@ -85,7 +96,7 @@ mod tests {
         watch.observe(5.4, &at(600), true);
         let banner = watch.banner(5.4, LinkState::Lost, "").unwrap();
         assert_eq!(banner.headline, "No sensor packets for 0.4 s");
-        assert!(banner.severe);
+        assert_eq!(banner.weight, Weight::Fault);
         watch.observe(5.5, &at(606), true);
         assert_eq!(watch.banner(5.5, LinkState::Live, ""), None);
     }
@@ -104,6 +115,6 @@ mod tests {
         let watch = Watch::default();
         let banner = watch.banner(9.0, LinkState::Waiting, "port 9000").unwrap();
         assert_eq!(banner.detail, "Listening: port 9000");
-        assert!(!banner.severe);
+        assert_eq!(banner.weight, Weight::Pause);
     }
 }

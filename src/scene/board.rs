@@ -121,6 +121,35 @@ impl Scene {
         width
     }
 
+    /// Draws what `draw` draws `by` times as large, seen from `about`.
+    pub(super) fn magnified(&mut self, about: Vec2, by: f32, draw: impl FnOnce(&mut Self)) {
+        let (first_mark, first_point) = (self.marks.len(), self.points.len());
+        draw(self);
+        let place = |point: Vec2| about + (point - about) * by;
+        for point in self.points.iter_mut().skip(first_point) {
+            *point = place(*point);
+        }
+        for mark in self.marks.iter_mut().skip(first_mark) {
+            match mark {
+                Mark::Box { area, radius_m, paint } => {
+                    *area = Rect::new(place(area.min), place(area.max));
+                    *radius_m *= by;
+                    paint.magnify(by);
+                }
+                Mark::Ellipse { centre, radii, paint } => {
+                    *centre = place(*centre);
+                    *radii *= by;
+                    paint.magnify(by);
+                }
+                Mark::Path { paint, .. } => paint.magnify(by),
+                Mark::Text { lettering, .. } => {
+                    lettering.at = place(lettering.at);
+                    lettering.size_m *= by;
+                }
+            }
+        }
+    }
+
     /// Adds `text` on one line within `room_m` metres, between the lettering's size and `smallest_m`.
     pub(super) fn add_line_of(&mut self, lettering: Lettering, text: &str, room_m: f32, smallest_m: f32) {
         let fitted = fit_line(text, room_m, lettering.size_m, smallest_m);
@@ -192,6 +221,27 @@ mod tests {
         assert_eq!(scene.texts().next().unwrap().0, "Zoom in 3");
         scene.add_text(lettering(), format_args!("\u{7}"));
         assert_eq!(scene.texts().count(), 1, "nothing to write, no mark");
+    }
+
+    #[test]
+    fn magnified_marks_keep_their_shape() {
+        let ink = Ink::solid(Colour::rgb(0, 0, 0));
+        let stroke = Paint::stroke(super::super::Stroke::new(0.01, ink).dashed(0.02, 0.03));
+        let draw = |scene: &mut Scene, at: Vec2, by: f32| {
+            scene.add_box(Rect::from_min_size(at, Vec2::splat(0.2 * by)), 0.05 * by, stroke);
+            scene.add_circle(at, 0.1 * by, Paint::fill(ink));
+            scene.add_line(at, at + Vec2::X * by, Paint::fill(ink));
+            scene.add_text(Lettering { at, size_m: 0.1 * by, ..lettering() }, format_args!("it"));
+        };
+        let (mut small, mut large) = (Scene::new(), Scene::new());
+        let about = Vec2::new(1.0, 2.0);
+        small.magnified(about, 2.0, |scene| draw(scene, Vec2::new(1.0, 3.0), 1.0));
+        draw(&mut large, Vec2::new(1.0, 4.0), 2.0);
+        assert_eq!(small.points, large.points);
+        assert_eq!(small.marks[1..], large.marks[1..]);
+        let Mark::Box { area, paint, .. } = small.marks[0] else { panic!("not a box") };
+        assert!(area.size().distance(Vec2::splat(0.4)) < 1e-6);
+        assert_eq!(paint.stroke.unwrap().dash, Some((0.04, 0.06)));
     }
 
     #[test]

@@ -46,7 +46,7 @@ fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
 
 fn button(scene: &mut Scene, face: &Face<'_>) {
     face.draw(scene);
-    face.write(scene, &face.widget.label, face.room(), Anchor::Middle);
+    face.write_label(scene);
     face.draw_badge(scene);
 }
 
@@ -59,7 +59,7 @@ fn switch(scene: &mut Scene, face: &Face<'_>, on: bool) {
     let across = if wide { 0.42 * size.x } else { 0.8 * size.x }.min(0.135);
     let down = (0.46 * across).min(if wide { 0.8 * size.y } else { 0.42 * size.y });
     let pill_size = Vec2::new(across, down);
-    let gap = 0.012;
+    let gap = if wide { 0.022 } else { 0.012 };
     let labelled = !face.widget.label.is_empty();
     let (label, middle) = match (labelled, wide) {
         (false, _) => (None, room.centre()),
@@ -116,7 +116,6 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
     face.draw(scene);
     let area = face.area;
     let text = Reading { value, slider };
-    let badge_at_south = face.state.disabled || face.state.needs_lift;
     let size = area.size();
     let inset = 0.010;
     let track = match slider.axis {
@@ -133,8 +132,14 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
         }
     };
     self::track(scene, face, slider, track, value);
-    if badge_at_south {
-        face.draw_badge(scene);
+    match slider.axis {
+        // On the half of the track where the handle is not.
+        Axis::East => {
+            let east = if value > 0.5 * (slider.min + slider.max) { 0.25 } else { 0.75 };
+            let x = track.min.x + east * track.size().x;
+            face.draw_badge_at(scene, Vec2::new(x, track.centre().y));
+        }
+        Axis::North => face.draw_badge(scene),
     }
 }
 
@@ -194,7 +199,7 @@ fn steps(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, a
 /// Label at the strip's beginning, value at its end.
 fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: Reading<'_>) {
     // Clear of the round ends of a slider whose kind is round.
-    let inset = 0.016 + 0.5 * (face.radius_m - 0.028).max(0.0);
+    let inset = 0.022 + 0.5 * (face.radius_m - 0.028).max(0.0);
     let size_m = (0.60 * strip.size().y).min(0.036);
     let wide = reading.widest() * size_m;
     let value = Vec2::new(strip.max.x - inset, strip.centre().y - 0.5 * CAP_HEIGHT * size_m);

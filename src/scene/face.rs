@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::fit::fit;
+use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
@@ -81,10 +81,10 @@ impl<'a> Face<'a> {
     fn shadow(&self, scene: &mut Scene) {
         let south = Vec2::new(0.0, 0.006);
         let area = Rect::new(self.area.min - south, self.area.max - south);
-        for (reach, opacity) in [(0.016, 0.04), (0.012, 0.05), (0.008, 0.06), (0.005, 0.07)] {
-            // A stroke just inside and outside the edge; the face hides its inner half.
-            let stroke = Stroke::new(reach + 0.006, Ink::faint(self.theme.shadow, opacity));
-            self.shaped(scene, area.grown(0.5 * (reach - 0.006)), Paint::stroke(stroke));
+        for (reach, opacity) in [(0.015, 0.045), (0.010, 0.065), (0.006, 0.09)] {
+            // Around the edge; the face hides what lies inside it.
+            let stroke = Stroke::new(reach + 0.010, Ink::faint(self.theme.shadow, opacity));
+            self.shaped(scene, area.grown(0.5 * (reach - 0.010)), Paint::stroke(stroke));
         }
     }
 
@@ -162,23 +162,44 @@ impl<'a> Face<'a> {
 
     /// Draws the badge of a control that does not work just now, over everything else on the face.
     pub(super) fn draw_badge(&self, scene: &mut Scene) {
-        let Some(text) = self.badge() else { return };
-        let (ink, ground) = match self.state.needs_lift {
-            true => (self.theme.plate, self.theme.warning),
-            false => (self.theme.plate, self.theme.quiet),
-        };
         let lift = match self.shape {
             Shape::Box => 0.028,
             Shape::Round => 0.028 + 0.10 * self.area.size().y,
         };
-        let middle = Vec2::new(self.area.centre().x, self.area.min.y + lift);
-        let plate = Paint::fill(Ink::solid(ground));
-        scene.add_badge(middle, SMALL_M, Ink::solid(readable(ink, ground)), plate, format_args!("{text}"));
+        self.draw_badge_at(scene, Vec2::new(self.area.centre().x, self.area.min.y + lift));
+    }
+
+    /// The same, with its middle elsewhere.
+    pub(super) fn draw_badge_at(&self, scene: &mut Scene, middle: Vec2) {
+        let Some(text) = self.badge() else { return };
+        let ground = if self.state.needs_lift { self.theme.warning } else { self.theme.quiet };
+        let ink = Ink::solid(readable(self.theme.plate, ground));
+        scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
+    }
+
+    /// Writes the label in the middle of the face.
+    pub(super) fn write_label(&self, scene: &mut Scene) {
+        let room = self.room();
+        let label = &self.widget.label;
+        let fitted = fit(label, room.size(), LABEL_M, SMALL_M);
+        if self.shape == Shape::Round && self.badge().is_none() {
+            // One line may be longer than the square in the circle is wide.
+            let middle = Rect::from_centre_size(self.area.centre(), self.area.size() * Vec2::new(0.88, 0.42));
+            let flat = fit(label, middle.size(), LABEL_M, SMALL_M);
+            if (fitted.shortened && !flat.shortened) || flat.size_m > fitted.size_m {
+                self.set(scene, label, middle, Anchor::Middle, &flat);
+                return;
+            }
+        }
+        self.set(scene, label, room, Anchor::Middle, &fitted);
     }
 
     /// Writes `text` into `room`, as large as it fits, with its lines' middle in the room's middle.
     pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
-        let fitted = fit(text, room.size(), LABEL_M, SMALL_M);
+        self.set(scene, text, room, anchor, &fit(text, room.size(), LABEL_M, SMALL_M));
+    }
+
+    fn set(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, fitted: &Fitted) {
         let x = match anchor {
             Anchor::Start => room.min.x,
             Anchor::Middle => room.centre().x,

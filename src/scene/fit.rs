@@ -87,22 +87,49 @@ fn wrap(text: &str, room: f32, allowed: usize) -> Option<ArrayVec<Range<usize>, 
     Some(lines)
 }
 
-/// As much of `text` as fits at `size_m`, an ellipsis counted in; no line at all where not even that fits.
+/// As much of `text` as fits at `size_m`, words broken where they must be, an ellipsis counted in if the end is
+/// left out; no line at all where not even that fits.
 fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
-    let room_em = room.x / size_m - width("…");
-    let start = trimmed(text).start;
-    let mut end = start;
-    let mut used = 0.0;
-    for (at, letter) in text[start..].char_indices() {
-        used += width(letter.encode_utf8(&mut [0; 4]));
-        if used > room_em {
+    // A single line may stand a little closer to what is above and below it.
+    let fitting = (room.y / (LINE_HEIGHT * size_m)) as usize;
+    let allowed = if room.y >= size_m { fitting.clamp(1, MAX_LINES) } else { 0 };
+    let mut lines = ArrayVec::<Range<usize>, MAX_LINES>::new();
+    let mut left = trimmed(text);
+    while !left.is_empty() && lines.len() < allowed {
+        let last = lines.len() + 1 == allowed;
+        let mut end = left.start + prefix(&text[left.clone()], room.x / size_m);
+        if last && end < left.end {
+            end = left.start + prefix(&text[left.clone()], room.x / size_m - width("…"));
+        } else if end < left.end && !text[end..].starts_with(char::is_whitespace) {
+            // Rather between words than within one.
+            end = text[left.start..end].rfind(char::is_whitespace).map_or(end, |at| left.start + at);
+        }
+        let line = left.start..left.start + text[left.start..end].trim_end().len();
+        if line.is_empty() {
+            // Not one letter more fits: the ellipsis has to find room on a line before.
+            while let Some(before) = lines.pop() {
+                let kept = prefix(&text[before.clone()], room.x / size_m - width("…"));
+                if kept > 0 {
+                    lines.push(before.start..before.start + kept);
+                    break;
+                }
+            }
             break;
         }
-        end = start + at + letter.len_utf8();
+        lines.push(line);
+        left.start = end + (text[end..left.end].len() - text[end..left.end].trim_start().len());
     }
-    let line = start..start + text[start..end].trim_end().len();
-    let lines = (!line.is_empty() && room.y >= size_m).then_some(line).into_iter().collect();
-    Fitted { size_m, lines, shortened: true }
+    Fitted { size_m, lines, shortened: !left.is_empty() }
+}
+
+/// The bytes of the longest beginning of `text` that is at most `room` em wide.
+fn prefix(text: &str, room: f32) -> usize {
+    let mut used = 0.0;
+    let fits = |(_, letter): &(usize, char)| {
+        used += width(letter.encode_utf8(&mut [0; 4]));
+        used <= room
+    };
+    text.char_indices().take_while(fits).last().map_or(0, |(at, letter)| at + letter.len_utf8())
 }
 
 fn trimmed(text: &str) -> Range<usize> {
@@ -144,10 +171,14 @@ mod tests {
 
     #[test]
     fn what_cannot_fit_is_cut_off_visibly() {
-        // 15 cm hold about seven letters of 3 cm.
-        let fitted = fit("Donaudampfschifffahrt", Vec2::new(0.15, 0.05), 0.05, 0.03);
+        // 15 cm hold about nine letters of 3 cm, 5 cm one line of them.
+        let name = "Donaudampfschifffahrt";
+        let fitted = fit(name, Vec2::new(0.15, 0.05), 0.05, 0.03);
         assert!(fitted.shortened);
-        assert_eq!(fitted.lines.len(), 1);
+        assert_eq!(lines(name, &fitted), ["Donaud"]);
+        let deeper = fit(name, Vec2::new(0.15, 0.12), 0.05, 0.03);
+        assert!(!deeper.shortened, "{deeper:?}");
+        assert_eq!(lines(name, &deeper).concat(), name);
         assert!(fit("Home", Vec2::ZERO, 0.05, 0.02).lines.is_empty());
     }
 
@@ -160,8 +191,9 @@ mod tests {
         ) {
             let room = Vec2::new(across, down);
             let fitted = fit(&text, room, 0.05, 0.02);
-            let ellipsis = if fitted.shortened { width("…") } else { 0.0 };
-            for line in &fitted.lines {
+            for (at, line) in fitted.lines.iter().enumerate() {
+                let last = at + 1 == fitted.lines.len();
+                let ellipsis = if fitted.shortened && last { width("…") } else { 0.0 };
                 let line_m = (width(&text[line.clone()]) + ellipsis) * fitted.size_m;
                 prop_assert!(line_m <= room.x + 1e-4, "{line_m} m in {} m", room.x);
             }

@@ -14,7 +14,9 @@ use crate::sense::Quality;
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     let slab = view.geometry.bounds();
-    rim(scene, slab, 0.010, theme.shadow, &[(0.034, 0.012), (0.027, 0.018), (0.020, 0.026), (0.013, 0.04)]);
+    // On a floor of a few tiles all of it has to stay within the margin.
+    let by = super::magnification(view.geometry).min(1.0);
+    rim(scene, slab, 0.010, theme.shadow, &[(0.032 * by, 0.016), (0.022 * by, 0.030), (0.013 * by, 0.045)]);
     // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
     let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
     seams(scene, view, gap);
@@ -22,10 +24,20 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the root shows light steps too.
         let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
-        let colour = theme.plate.mix(theme.load, share);
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
+        let active = view.layout.regions.iter().any(|region| holds(region.area, cell));
+        let colour = theme.plate.mix(theme.accent, if active { TINT } else { 0.0 }).mix(theme.load, share);
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
     }
+}
+
+/// How much of the accent's colour an active area has.
+const TINT: f32 = 0.045;
+
+/// Whether `area` has all of `cell`, give or take what rounding does to metres.
+fn holds(area: Rect, cell: Rect) -> bool {
+    let area = area.grown(1e-4);
+    cell.min.cmpge(area.min).all() && cell.max.cmple(area.max).all()
 }
 
 /// What is seen between the plates: a frame around all of them and lines between them.
@@ -35,7 +47,8 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
 fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     let slab = view.geometry.bounds();
     let colour = Ink::solid(view.theme.seam);
-    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(0.014, colour)));
+    let width_m = 0.014 * super::magnification(view.geometry).clamp(0.4, 1.0);
+    scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
     // A little wider than the seam, for the plates' round corners.
     let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006, colour));
     let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
@@ -62,7 +75,8 @@ fn rim(scene: &mut Scene, area: Rect, radius_m: f32, colour: Colour, layers: &[(
 
 /// Numbers of columns and rows along the south and west sides, at the tiles' middles.
 pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
-    let size_m = 0.030;
+    let by = super::magnification(view.geometry);
+    let size_m = 0.030 * by;
     let mut lettering = Lettering {
         at: Vec2::ZERO,
         anchor: Anchor::Middle,
@@ -71,13 +85,15 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
         turn_rad: 0.0,
         ink: Ink::solid(view.theme.quiet),
     };
-    for column in 0..view.geometry.columns() {
-        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058);
+    // Where tiles are smaller than their numbers, only every so many get one.
+    let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
+    for column in (0..view.geometry.columns()).step_by(every) {
+        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058 * by);
         scene.add_text(lettering, format_args!("{column}"));
     }
-    for row in 0..view.geometry.rows() {
+    for row in (0..view.geometry.rows()).step_by(every) {
         let middle = view.geometry.centre(TileId::new(0, row)) * Vec2::Y;
-        lettering.at = middle - Vec2::new(0.048, 0.5 * CAP_HEIGHT * size_m);
+        lettering.at = middle - Vec2::new(0.048 * by, 0.5 * CAP_HEIGHT * size_m);
         scene.add_text(lettering, format_args!("{row}"));
     }
 }
@@ -87,8 +103,14 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
         let area = region.area.grown(-0.010);
+        // Plates within it are tinted already; one that ends amid plates tints its own ground.
+        let cut = view.geometry.tiles().any(|tile| {
+            let plate = view.geometry.plate(tile);
+            plate.grown(-1e-4).overlaps(region.area) && !holds(region.area, plate)
+        });
         let stroke = Stroke::new(0.003, Ink::faint(theme.accent, 0.45));
-        scene.add_box(area, 0.022, Paint::fill(Ink::faint(theme.accent, 0.045)).with_stroke(stroke));
+        let fill = cut.then_some(Ink::faint(theme.accent, TINT));
+        scene.add_box(area, 0.022, Paint { fill, stroke: Some(stroke) });
         let size_m = 0.024;
         let lettering = Lettering {
             at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
@@ -143,6 +165,21 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
 /// Area of a sensor's dot per newton, in square metres: 300 N make a dot of 3 cm.
 const DOT_M2_PER_N: f32 = 0.015 * 0.015 / 300.0;
 
+/// Slanted lines over the tiles of which nothing is known.
+pub(super) fn unknown(scene: &mut Scene, view: &View<'_>) {
+    if view.snapshot.link == LinkState::Waiting {
+        return;
+    }
+    for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
+        if state.quality.iter().all(|quality| *quality >= Quality::Stale) {
+            hatch(scene, view, view.geometry.tile_at_index(index), state);
+        }
+    }
+}
+
+/// Tiles from which on sensors without force are not drawn: their dots would be finer than a pixel.
+const MANY_TILES: usize = 400;
+
 /// Dots whose area follows the sensors' forces; broken and silent sensors are shown by their own shapes.
 pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     // Before the first packet nothing is known; 144 marks would say no more.
@@ -151,8 +188,9 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     }
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let tile = view.geometry.tile_at_index(index);
-        if state.quality.iter().all(|quality| *quality >= Quality::Stale) {
-            hatch(scene, view, tile, state);
+        // The hatching says it for a tile that is silent as a whole.
+        if state.quality == [Quality::Stale; 4] {
+            continue;
         }
         for corner in Corner::ALL {
             let at = view.geometry.sensor(tile, corner);
@@ -166,12 +204,12 @@ fn sensor(scene: &mut Scene, view: &View<'_>, at: Vec2, force: f32, quality: Qua
     let theme = view.theme;
     let radius = (force.clamp(0.0, 2000.0) * DOT_M2_PER_N).sqrt();
     if view.show.sensors && quality <= Quality::Degraded {
-        let rim = Stroke::new(0.0012, Ink::faint(theme.contact, 0.35));
-        scene.add_circle(at, 0.0035, Paint::stroke(rim));
-        // Below 1 N a dot would only show noise.
-        if force >= 1.0 {
-            scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, 0.62)));
+        // Below 1 N a dot would only show noise: a faint one marks the place, where there are few enough.
+        if force < 1.0 && view.geometry.tile_count() > MANY_TILES {
+            return mark_quality(scene, view, at, quality);
         }
+        let (radius, opacity) = if force >= 1.0 { (radius, 0.62) } else { (0.0032, 0.20) };
+        scene.add_circle(at, radius, Paint::fill(Ink::faint(theme.contact, opacity)));
     }
     mark_quality(scene, view, at, quality);
 }
@@ -205,7 +243,6 @@ pub(super) fn mark_quality(scene: &mut Scene, view: &View<'_>, at: Vec2, quality
     }
 }
 
-/// Slanted lines over a tile of which nothing is known.
 fn hatch(scene: &mut Scene, view: &View<'_>, tile: TileId, state: &TileState) {
     let faulty = state.quality.iter().all(|quality| *quality == Quality::Faulty);
     let colour = if faulty { view.theme.fault } else { view.theme.stale };

@@ -73,6 +73,14 @@ impl Paint {
         Self { fill: None, stroke: Some(stroke) }
     }
 
+    /// Makes the outline `by` times as wide.
+    pub(super) fn magnify(&mut self, by: f32) {
+        if let Some(stroke) = &mut self.stroke {
+            stroke.width_m *= by;
+            stroke.dash = stroke.dash.map(|(on, off)| (on * by, off * by));
+        }
+    }
+
     /// The same inside with this outline.
     #[must_use]
     pub const fn with_stroke(self, stroke: Stroke) -> Self {

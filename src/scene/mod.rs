@@ -41,19 +41,25 @@ use glam::Vec2;
 
 use crate::floor::{Geometry, Rect};
 
-/// Width of the empty edge around the floor, in metres.
+/// Width of the empty edge around the paper's floor, in metres.
 const MARGIN_M: f32 = 0.085;
+
+/// How many times as wide as the paper's floor this one is: words around a floor grow with it.
+fn magnification(geometry: &Geometry) -> f32 {
+    geometry.bounds().size().x / Geometry::default().bounds().size().x
+}
 
 /// What a drawing of this floor covers, in floor metres: the floor, and the room that words around it take.
 #[must_use]
 pub fn extent(geometry: &Geometry, show: Show) -> Rect {
-    let margin = if show.ruler || show.header { MARGIN_M } else { 0.0 };
+    let by = magnification(geometry);
+    let margin = if show.ruler || show.header { MARGIN_M * by } else { 0.0 };
     let mut bounds = geometry.bounds().grown(margin);
     if show.header {
-        bounds.max.y += strip::HEADER_M - margin;
+        bounds.max.y += strip::HEADER_M * by - margin;
     }
     if show.legend {
-        bounds.min.y -= strip::LEGEND_M - 0.02;
+        bounds.min.y -= (strip::LEGEND_M - 0.02) * by;
     }
     bounds
 }
@@ -67,6 +73,7 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     let bounds = extent(view.geometry, view.show);
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
+    ground::unknown(scene, view);
     if view.show.ruler {
         ground::ruler(scene, view);
     }
@@ -80,13 +87,16 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     if view.show.contacts {
         feet::contacts(scene, view);
     }
+    let by = magnification(view.geometry);
+    let wide = Geometry::default().bounds().size().x;
     if view.show.header {
-        let strip = Rect::new(Vec2::new(floor.min.x, floor.max.y), Vec2::new(floor.max.x, bounds.max.y));
-        strip::header(scene, view, strip);
+        let south = Vec2::new(floor.min.x, floor.max.y);
+        let strip = Rect::from_min_size(south, Vec2::new(wide, strip::HEADER_M));
+        scene.magnified(south, by, |scene| strip::header(scene, view, strip));
     }
     if view.show.legend {
         let south = Vec2::new(floor.min.x, bounds.min.y);
-        let strip = Rect::new(south, south + Vec2::new(floor.size().x, strip::LEGEND_M));
-        strip::legend(scene, view, strip);
+        let strip = Rect::from_min_size(south, Vec2::new(wide, strip::LEGEND_M));
+        scene.magnified(south, by, |scene| strip::legend(scene, view, strip));
     }
 }

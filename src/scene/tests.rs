@@ -214,6 +214,7 @@ fn a_tile_of_which_nothing_is_known_is_hatched() {
     let mut snapshot = at_rest(&layout);
     let before = drawn(&layout, &snapshot).marks().len();
     snapshot.tiles[8].quality = [Quality::Stale; 4];
+    // Four rings of live sensors go, the lines come.
     assert!(drawn(&layout, &snapshot).marks().len() > before + 10);
     // Before the first packet every tile is like that, and the window says so in words.
     snapshot.link = LinkState::Waiting;
@@ -322,4 +323,26 @@ fn a_projector_sees_the_floor_and_nothing_around_it() {
     let words: HashSet<_> = scene.texts().map(|(text, _)| text).collect();
     assert!(words.contains("Zoom in"));
     assert!(!words.iter().any(|text| text.contains(" N")), "forces are for windows: {words:?}");
+}
+
+#[test]
+fn words_around_a_floor_grow_with_it() {
+    let layout = Layout { widgets: vec![], stances: vec![], regions: vec![], ..map() };
+    let snapshot = Snapshot::default();
+    for (columns, rows) in [(1, 1), (6, 6), (24, 2), (96, 96)] {
+        let geometry = Geometry::of_paper_tiles(columns, rows).unwrap();
+        let mut scene = Scene::new();
+        let show = Show::PICTURE;
+        draw(&mut scene, &View { show, ..View::new(&geometry, &layout, &snapshot, &Theme::LIGHT) });
+        let wide = geometry.bounds().size().x;
+        for (text, lettering) in scene.texts() {
+            let place = extent(text, lettering);
+            assert!(scene.bounds().contains(place.min) && scene.bounds().contains(place.max), "“{text}”");
+            assert!((0.012..0.04).contains(&(lettering.size_m / wide)), "“{text}” on {columns} x {rows}");
+        }
+        let words: Vec<_> = scene.texts().map(|(text, lettering)| extent(text, lettering)).collect();
+        for (at, place) in words.iter().enumerate() {
+            assert!(!words[..at].iter().any(|other| other.overlaps(*place)), "{columns} x {rows}");
+        }
+    }
 }

@@ -2,10 +2,13 @@ use eframe::egui::Ui;
 
 use super::super::app::App;
 use super::super::painter::color;
-use super::super::style::{quiet, row, section};
+use super::super::style::{Row, quiet, row, section};
 
 /// Lines that are always there, so that nothing below moves when feet come and go.
 const LINES: usize = 3;
+
+/// Where the figures end, as shares of the width.
+const COLUMNS: [f32; 4] = [0.50, 0.68, 0.84, 1.0];
 
 /// Most contacts that are listed.
 const MOST: usize = 8;
@@ -15,9 +18,12 @@ impl App {
     pub(super) fn contacts_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
-        section(ui, theme, "Contacts", |ui| {
-            ui.label(quiet(theme, "x m   y m   N   m/s").size(12.0));
-        });
+        // The units stand in the heading's line, over their columns.
+        let rect = section(ui, theme, "Contacts", |_| {});
+        let line = Row { ui, rect, size: 12.0 };
+        for (column, unit) in COLUMNS.into_iter().zip(["x m", "y m", "N", "m/s"]) {
+            line.right(column, unit, color(theme.quiet));
+        }
         let leads = |id| snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == id);
         ui.spacing_mut().item_spacing.y = 2.0;
         for contact in snapshot.contacts.iter().take(MOST) {
@@ -32,10 +38,15 @@ impl App {
             let name = color(if cursor { theme.cursor } else { theme.contact });
             line.left(0.0, 0.3, &format!("{id}"), name);
             line.left(0.13, 0.34, what, name);
-            line.right(0.50, &format!("{:.3}", at.x), ink);
-            line.right(0.68, &format!("{:.3}", at.y), ink);
-            line.right(0.84, &format!("{force:.0}"), ink);
-            line.right(1.0, &format!("{speed:.2}"), ink);
+            let figures = [
+                format!("{:.3}", at.x),
+                format!("{:.3}", at.y),
+                format!("{force:.0}"),
+                format!("{speed:.2}"),
+            ];
+            for (column, figure) in COLUMNS.into_iter().zip(figures) {
+                line.right(column, &figure, ink);
+            }
         }
         for missing in snapshot.contacts.len()..LINES {
             let line = row(ui, 19.0, 13.0, "");

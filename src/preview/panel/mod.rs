@@ -26,13 +26,14 @@ impl App {
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
                 self.tile_part(ui);
-                self.scopes_part(ui);
                 self.contacts_part(ui);
+                // The list takes what the other parts leave, as they were at the last picture.
+                let events = (height - self.other_parts).max(EVENTS);
+                self.events_part(ui, events);
+                self.scopes_part(ui);
                 self.controls_part(ui);
                 self.link_part(ui);
-                let events = (height - self.above_events).max(EVENTS);
-                self.above_events = ui.cursor().top() - top;
-                self.events_part(ui, events);
+                self.other_parts = ui.cursor().top() - top - events;
             });
         });
     }
