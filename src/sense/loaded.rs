@@ -6,6 +6,9 @@ use crate::units::Newtons;
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
 
+/// Tiles looked at together.
+const BLOCK: usize = 16;
+
 /// From which force on a tile counts as loaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadThreshold {
@@ -93,12 +96,25 @@ impl LoadedTiles {
         if let Some(rest) = self.sums.get_mut(missing..) {
             rest.fill(0.0);
         }
-        let readings = frame.forces.iter().zip(&frame.quality);
-        for (index, (sum, (forces, quality))) in self.sums.iter_mut().zip(readings).enumerate() {
-            let [sw, se, nw, ne] = *forces;
-            *sum = (sw + se) + (nw + ne);
-            if *sum >= off || *quality != [Quality::Live; 4] {
-                self.candidates.push(index as u32);
+        let blocks = self.sums.chunks_mut(BLOCK);
+        let readings = frame.forces.chunks(BLOCK).zip(frame.quality.chunks(BLOCK));
+        for (block, (sums, (forces, quality))) in blocks.zip(readings).enumerate() {
+            // Without branches, so that whole blocks of an empty floor are passed over at once.
+            let mut loaded = false;
+            let mut doubt = 0;
+            for (sum, (forces, quality)) in sums.iter_mut().zip(forces.iter().zip(quality)) {
+                let [sw, se, nw, ne] = *forces;
+                *sum = (sw + se) + (nw + ne);
+                loaded |= *sum >= off;
+                doubt |= quality.iter().fold(0, |worst, &quality| worst | quality as u8);
+            }
+            if !loaded && doubt == Quality::Live as u8 {
+                continue;
+            }
+            for (at, (sum, quality)) in sums.iter().zip(quality).enumerate() {
+                if *sum >= off || *quality != [Quality::Live; 4] {
+                    self.candidates.push((block * BLOCK + at) as u32);
+                }
             }
         }
         self.sift(frame);

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! ForceFrame -loaded-> loaded tiles (F, M per tile; Eq. 2-3)
-//!   -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
+//!   -track-> feet, followed through time, several on one group of tiles
+//!   or -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
 //!   -cursor-> the contact that operates a region
 //! ```
 //!

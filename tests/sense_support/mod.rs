@@ -2,7 +2,8 @@
 //!
 //! The soles here are made of heel, arch, ball and toes that take and leave load
 //! one after the other; nothing of it is shared with what the tracker assumes.
-#![allow(dead_code, reason = "each test and bench uses its own part")]
+#![allow(dead_code, unreachable_pub, reason = "each test and bench uses its own part")]
+#![allow(clippy::expect_used, reason = "a scene that cannot be made fails its test")]
 
 use std::collections::HashMap;
 use std::f32::consts::{PI, TAU};
@@ -187,7 +188,7 @@ pub fn walk(seed: u64, sensors: Sensors) -> Scene {
         + Vec2::new(rng.random_range(-0.15..0.15), rng.random_range(-0.15..0.15));
     let mut steps = Vec::new();
     for count in 0..8_u8 {
-        let side = if count % 2 == 0 { 1.0 } else { -1.0 };
+        let side = if count.is_multiple_of(2) { 1.0 } else { -1.0 };
         let from_s = 0.05 + f32::from(count) * beat;
         steps.push(Step {
             from_s,
@@ -254,7 +255,7 @@ pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     let phase = rng.random_range(0.0..6.0_f32);
     let tap_force = move |t: f32, count: u8| {
         let from_s = 1.0 + f32::from(count) * 1.3;
-        let to_s = from_s + if count % 2 == 0 { 0.25 } else { 1.0 };
+        let to_s = from_s + if count.is_multiple_of(2) { 0.25 } else { 1.0 };
         tapping * ease(t, from_s, from_s + 0.04) * (1.0 - ease(t, to_s - 0.04, to_s))
     };
     let mut steps = vec![Step {
@@ -272,7 +273,7 @@ pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     }];
     for count in 0..5_u8 {
         let from_s = 1.0 + f32::from(count) * 1.3;
-        let slides = count % 2 == 1;
+        let slides = !count.is_multiple_of(2);
         steps.push(Step {
             from_s,
             to_s: from_s + if slides { 1.0 } else { 0.25 },
