@@ -5,7 +5,7 @@
 //!           ==rubs==> friction voices ---------------------+-> mix -> limiter -> samples
 //! ```
 //!
-//! [`renderer`] makes both ends. Everything behind [`Renderer::render`] is
+//! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
 //! free of allocation, locks, logs and system calls.
 
 mod click;

@@ -151,5 +151,9 @@ mod tests {
         assert_eq!(clock.frame_of(Instant::from_millis(6)), 48);
         assert_eq!(clock.frame_of(Instant::from_millis(4)), -48);
         assert!(clock.frame_of(Instant::from_micros(u64::MAX)) > 1 << 40);
+        // Even a gap of a single sample.
+        clock.advance(48);
+        clock.begin(Instant::from_micros(6_021));
+        assert_eq!(clock.frame_of(Instant::from_micros(7_021)), 48);
     }
 }
