@@ -29,6 +29,7 @@ Layout(
 )
 "#;
 
+/// Leans on the pedal and prints what comes of it.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let geometry = Floor::default().geometry;
     let mut kinds = Kinds::builtin();

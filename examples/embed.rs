@@ -7,6 +7,7 @@ use underfoot::sense::{ForceFrame, Method};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value};
 
+/// Presses the light and prints what the app hears.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     // A floor from a layout.
     let floor = Floor::default();

@@ -39,18 +39,22 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 12] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 16] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
         ("frames", counters.frames, false),
+        ("frames held back for the tare", counters.held_back, false),
         ("lost packets", counters.lost, true),
         ("late packets", counters.late, true),
         ("repeated packets", counters.duplicate, true),
+        ("packets out of line", counters.doubtful, true),
         ("boards restarted", counters.restarts, true),
+        ("clock slips", counters.slips, false),
         ("refused: malformed", counters.malformed, true),
         ("refused: unknown address", counters.unknown_address, true),
         ("refused: wrong shape", counters.wrong_shape, true),
+        ("refused: foreign sender", counters.foreign, true),
         ("bad readings", counters.bad_readings, true),
         ("dropped by the system", counters.overflowed, true),
     ]
