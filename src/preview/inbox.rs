@@ -4,7 +4,7 @@ use std::sync::mpsc::Receiver;
 
 use super::feed::LayoutNews;
 use crate::layout::Layout;
-use crate::widget::WidgetEvent;
+use crate::widget::{EventKind, Value, WidgetEvent};
 
 /// Events that are kept for the list: some minutes of busy feet.
 const KEPT: usize = 500;
@@ -65,9 +65,15 @@ impl Inbox {
     /// Takes in everything that waits; `revision` is the latest snapshot's.
     pub(super) fn receive(&mut self, now_s: f64, revision: u64) {
         for event in self.events.try_iter() {
-            self.recent.truncate(KEPT - 1);
-            self.recent.push_front(event);
             self.event_count += 1;
+            match self.recent.front_mut() {
+                // A slider on its way is one line that follows it, or it would push out everything else.
+                Some(newest) if follows(newest, &event) => *newest = event,
+                _ => {
+                    self.recent.truncate(KEPT - 1);
+                    self.recent.push_front(event);
+                }
+            }
         }
         for news in self.layouts.try_iter() {
             self.file = Some(match news {
@@ -92,6 +98,12 @@ impl Inbox {
             self.notes.pop_front();
         }
     }
+}
+
+/// Whether `next` only says how far a slider has moved on since `last`.
+fn follows(last: &WidgetEvent, next: &WidgetEvent) -> bool {
+    let moves = |event: &WidgetEvent| matches!(event.kind, EventKind::Changed(Value::Number(_)));
+    last.id == next.id && moves(last) && moves(next)
 }
 
 #[cfg(test)]
@@ -150,5 +162,22 @@ mod tests {
         assert_eq!(inbox.event_count, 2000);
         assert_eq!(inbox.recent[0].at, crate::units::Instant::from_millis(1999), "newest first");
         assert_eq!(inbox.notes, ["no sound card"]);
+    }
+
+    #[test]
+    fn a_slider_on_its_way_is_one_line() {
+        let (event, events) = channel();
+        let mut inbox = Inbox::new(named("it"), events, channel().1, channel().1);
+        let moved = |at: u64, id| WidgetEvent {
+            kind: EventKind::Changed(Value::Number(at as f32)),
+            ..crate::preview::tests::event(at, id)
+        };
+        let told = [moved(1, "zoom"), moved(2, "zoom"), moved(3, "volume"), moved(4, "zoom")];
+        told.into_iter().for_each(|told| event.send(told).unwrap());
+        inbox.receive(1.0, 0);
+        let listed: Vec<_> =
+            inbox.recent.iter().map(|event| (event.at.micros() / 1000, event.id.as_str())).collect();
+        assert_eq!(listed, [(4, "zoom"), (3, "volume"), (2, "zoom")]);
+        assert_eq!(inbox.event_count, 4);
     }
 }

@@ -1,0 +1,110 @@
+//! What one frame costs: `cargo bench --bench engine --no-default-features`.
+//!
+//! Two people walk on the paper's floor with the map layout; frames are recorded first, so that only the engine is
+//! measured. The whole path adds decoding six datagrams and assembling them.
+#![allow(missing_docs, clippy::unwrap_used)]
+
+use std::hint::black_box;
+
+use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
+use underfoot::engine::Engine;
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::schema::{self, Kinds};
+use underfoot::sense::{Assembler, ForceFrame, Method};
+use underfoot::sim::{self, FootDriver, Scenario, SimConfig, SimFloor};
+use underfoot::units::Instant;
+use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
+
+/// Two people who walk up and down the floor for longer than is measured.
+const WALKERS: &str = r#"
+Scenario(
+    title: "Two walkers",
+    steps: [
+        Stand(at: (1.5, 0.5), facing: North),
+        WalkTo(at: (1.5, 5.2)), WalkTo(at: (1.5, 0.5)), WalkTo(at: (1.5, 5.2)),
+    ],
+    others: [(person: (mass_kg: 90), steps: [
+        Stand(at: (4.2, 5.3), facing: South),
+        WalkTo(at: (4.2, 0.6)), WalkTo(at: (4.2, 5.3)), WalkTo(at: (4.2, 0.6)),
+    ])],
+)
+"#;
+
+/// Milliseconds recorded.
+const MILLIS: u32 = 8000;
+
+struct Recorded {
+    floor: Floor,
+    layout: Layout,
+    datagrams: Vec<(Instant, Vec<Vec<u8>>)>,
+    frames: Vec<ForceFrame>,
+}
+
+fn recorded() -> Recorded {
+    let wired = Floor::default();
+    let text = schema::builtin_layout("map").unwrap();
+    let layout = schema::parse_layout(text, "map", &Kinds::builtin(), &wired.geometry).unwrap().layout;
+    let mut sim = SimFloor::new(&wired, SimConfig::default(), 3);
+    let floor = sim::calibrated(&wired, &sim, 3).unwrap();
+    let mut script = Scenario::parse("walkers", WALKERS).unwrap().resolve(&layout, &floor.geometry).unwrap();
+    let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
+    let mut assembler = Assembler::new(&floor);
+    let (mut datagrams, mut frames, mut feet) = (Vec::new(), Vec::new(), Vec::new());
+    for millis in 0..MILLIS {
+        let received = Instant::from_millis(millis.into());
+        assert!(script.feet(received, &mut feet), "the walk is long enough");
+        let mut sent = Vec::new();
+        for (board, readings) in (0..).zip(sim.step(&feet)) {
+            let packet = SensorPacket { board, sequence: millis, received, readings: readings.clone() };
+            sent.push(encoder.encode(&packet).unwrap().to_vec());
+            assembler.take(&packet);
+        }
+        while let Some(frame) = assembler.ready() {
+            frames.push(frame.clone());
+        }
+        datagrams.push((received, sent));
+    }
+    Recorded { floor, layout, datagrams, frames }
+}
+
+fn engine(criterion: &mut Criterion) {
+    let Recorded { floor, layout, datagrams, frames } = recorded();
+    let mut group = criterion.benchmark_group("6x6, two walkers");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(frames.len() as u64));
+    for method in [Method::Eq4, Method::Tracker] {
+        group.bench_function(format!("engine, {method:?}, per frame"), |bencher| {
+            bencher.iter_batched_ref(
+                || Engine::new(floor.geometry, layout.clone(), method),
+                |engine| frames.iter().for_each(|frame| drop(black_box(engine.step(frame)))),
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.bench_function("datagrams to events, per frame", |bencher| {
+        let decoder = Decoder::new(&floor);
+        bencher.iter_batched_ref(
+            || {
+                let engine = Engine::new(floor.geometry, layout.clone(), Method::Tracker);
+                (Assembler::new(&floor), engine, Batch::default())
+            },
+            |(assembler, engine, batch)| {
+                for (now, sent) in &datagrams {
+                    for datagram in sent {
+                        decoder.decode(datagram, *now, batch).unwrap();
+                        batch.packets.iter().for_each(|packet| assembler.take(packet));
+                    }
+                    while let Some(frame) = assembler.ready() {
+                        drop(black_box(engine.step(frame)));
+                    }
+                }
+            },
+            BatchSize::LargeInput,
+        );
+    });
+    group.finish();
+}
+
+criterion_group!(benches, engine);
+criterion_main!(benches);
