@@ -1,4 +1,4 @@
-use super::{Corner, Geometry, SensorId, TileId};
+use super::{Corner, Geometry, PositionMap, SensorId, TileId};
 use crate::units::Newtons;
 
 /// Everything underfoot knows of one floor: geometry, boards, calibration, actuators.
@@ -17,6 +17,8 @@ pub struct Floor {
     pub tare: Vec<[Newtons; 4]>,
     /// The actuator under each tile; `None` where there is none.
     pub actuators: Vec<Option<Actuator>>,
+    /// The position map of each tile; `None` where none was measured.
+    pub position_maps: Vec<Option<PositionMap>>,
 }
 
 impl Floor {
@@ -31,6 +33,7 @@ impl Floor {
             calibration: vec![[Calibration::NOMINAL; 4]; tiles],
             tare: vec![[Newtons::ZERO; 4]; tiles],
             actuators: (0..tiles).map(|channel| Some(Actuator::nominal(channel as u16))).collect(),
+            position_maps: vec![None; tiles],
             geometry,
         }
     }
@@ -76,6 +79,9 @@ impl Calibration {
 
     /// Voltage at the converter's full scale.
     pub const FULL_SCALE_VOLTS: f32 = 5.0;
+
+    /// Counts from which on a sensor is near the end of its range (98 %) and reads "at least".
+    pub const SATURATED: u16 = 64_225;
 
     /// The voltage behind a raw 16-bit reading: 0 to 5 V.
     #[must_use]

@@ -6,8 +6,10 @@
 
 mod geometry;
 mod hardware;
+mod position_map;
 mod rect;
 
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
 pub use hardware::{Actuator, Board, Calibration, Floor};
+pub use position_map::PositionMap;
 pub use rect::Rect;

@@ -90,7 +90,7 @@ fn on_the_bench(
 }
 
 /// One noisy reading of an output in volts.
-fn read(volts: f32, noise_v: f32, rng: &mut Pcg64Mcg) -> u16 {
+pub(super) fn read(volts: f32, noise_v: f32, rng: &mut Pcg64Mcg) -> u16 {
     counts(volts + noise_v * normal(rng))
 }
 
