@@ -33,6 +33,9 @@ impl PositionMap {
     /// The greatest trim: a part that misses its law by more should be replaced (our choice).
     pub const MOST_TRIM: f32 = 0.6;
 
+    /// The greatest number of a bend that files may hold.
+    pub const MOST_BEND: f32 = 2.0;
+
     /// The farthest shift, in half pitches: 3.8 cm on the paper's tiles (our choice).
     pub const MOST_SHIFT: f32 = 0.25;
 

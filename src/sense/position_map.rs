@@ -311,7 +311,7 @@ fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 
     std::array::from_fn(|sensor| {
         std::array::from_fn(|trim| {
             let trim = solved[sensor * PositionMap::TRIMS + trim] as f32;
-            trim.clamp(-PositionMap::MOST_TRIM, PositionMap::MOST_TRIM)
+            rounded(trim.clamp(-PositionMap::MOST_TRIM, PositionMap::MOST_TRIM))
         })
     })
 }
@@ -320,8 +320,8 @@ fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 
 const FULL_N: f32 = 30.0;
 
 /// How strongly trims are held near zero, and near straight lines over the loads (our choice, by trying).
-const TRIM_SIZE: f64 = 0.01;
-const TRIM_BEND: f64 = 0.02;
+const TRIM_SIZE: f64 = 0.05;
+const TRIM_BEND: f64 = 0.005;
 
 /// The bends that bring all sightings closest to where they belong.
 fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BENDS]; 2] {
@@ -336,14 +336,20 @@ fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BEN
             sums.hold(&[(term, 1.0)], BEND_SIZE);
         }
         let solved = sums.solve();
-        std::array::from_fn(|term| (solved[term] as f32).clamp(-MOST_BEND, MOST_BEND))
+        std::array::from_fn(|term| {
+            rounded((solved[term] as f32).clamp(-PositionMap::MOST_BEND, PositionMap::MOST_BEND))
+        })
     };
     [of_axis(|shift| shift.x), of_axis(|shift| shift.y)]
 }
 
-/// How strongly bends are held near zero (our choice), and the greatest that a file may hold.
+/// How strongly bends are held near zero (our choice).
 const BEND_SIZE: f64 = 0.1;
-const MOST_BEND: f32 = 2.0;
+
+/// To four decimals: files stay short, and a hundredth of a per cent is nothing.
+fn rounded(number: f32) -> f32 {
+    (f64::from(number * 1e4).round() / 1e4) as f32
+}
 
 /// The normal equations of a linear least-squares problem.
 struct Normal {
