@@ -1,5 +1,7 @@
 //! Mapping a simulated floor the way people on site do: pressing points whose places are known.
 
+use std::fmt::Write;
+
 use glam::Vec2;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
@@ -67,6 +69,27 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
         }
     }
     Ok(floor)
+}
+
+/// The table of pressed points that [`mapped`] makes its maps from, as [`crate::sense::PressTable`] reads it.
+///
+/// Empty but for its header for a floor whose boards send newtons.
+#[must_use]
+pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
+    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n");
+    if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
+        return table;
+    }
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    for (index, tile) in sim.geometry().tiles().enumerate() {
+        for Press { at, forces: [sw, se, nw, ne], .. } in press(floor, sim, index, &mut rng) {
+            let Vec2 { x, y } = sim.geometry().centre(tile) + at;
+            let (column, row) = (tile.column, tile.row);
+            // Writing to a String cannot fail.
+            let _ = writeln!(table, "{x:.5},{y:.5},{column},{row},{sw:.3},{se:.3},{nw:.3},{ne:.3}");
+        }
+    }
+    table
 }
 
 /// What the sensors of one tile read as its points are pressed.
