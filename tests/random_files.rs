@@ -7,7 +7,12 @@ use std::fs;
 use proptest::collection::vec;
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
-use underfoot::floor::{Actuator, Board, Calibration, Corner, Floor, Geometry, SensorId};
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use underfoot::floor::{
+    Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, MapRecord, PositionMap,
+    SensorId,
+};
 use underfoot::layout::Layout;
 use underfoot::schema::{
     Diagnostics, Kinds, Severity, builtin_layout, builtin_layouts, load_floor, load_layout, parse_floor,
@@ -184,6 +189,7 @@ proptest! {
                 prop_assert_eq!(floor.calibration.len(), floor.geometry.tile_count());
                 prop_assert_eq!(floor.tare.len(), floor.geometry.tile_count());
                 prop_assert_eq!(floor.actuators.len(), floor.geometry.tile_count());
+                prop_assert_eq!(floor.position_maps.len(), floor.geometry.tile_count());
             }
             Err(problems) => check_problems(&bytes, &problems),
         }
@@ -229,6 +235,28 @@ fn floors() -> impl Strategy<Value = Floor> {
     )
 }
 
+/// Calibrated and mapped on some days, in places that follow from `seed`.
+fn record(floor: &mut Floor, seed: u64) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let day = |rng: &mut Pcg64Mcg| Day::of_unix_seconds(rng.random_range(0..200_000_000_000));
+    floor.tared = rng.random_bool(0.5).then(|| day(&mut rng));
+    for tile in 0..floor.geometry.tile_count() {
+        for record in &mut floor.calibration_records[tile] {
+            *record = rng
+                .random_bool(0.5)
+                .then(|| CalibrationRecord { day: day(&mut rng), residual: rng.random_range(0.0..0.3) });
+        }
+        if rng.random_bool(0.3) {
+            let trims = [(); 4].map(|()| std::array::from_fn(|_| rng.random_range(-0.6f32..0.6)));
+            let bends = [(); 2].map(|()| std::array::from_fn(|_| rng.random_range(-2.0f32..2.0)));
+            floor.position_maps[tile] = Some(PositionMap { trims, bends });
+            floor.map_records[tile] = rng
+                .random_bool(0.8)
+                .then(|| MapRecord { day: day(&mut rng), residual_m: rng.random_range(0.0..0.05) });
+        }
+    }
+}
+
 type Parts = (Geometry, Vec<(Calibration, f32)>, Option<Vec<Option<(u16, f32)>>>, bool, u64);
 
 fn build((geometry, sensors, actuators, rewired, seed): Parts) -> Floor {
@@ -241,6 +269,7 @@ fn build((geometry, sensors, actuators, rewired, seed): Parts) -> Floor {
         let actuator = |(channel, full_scale)| Actuator { channel, full_scale: Newtons(full_scale) };
         floor.actuators = actuators.into_iter().map(|parts| parts.map(actuator)).collect();
     }
+    record(&mut floor, seed);
     if rewired {
         // Every sensor somewhere, in an order of its own, with unused channels between.
         let mut sensors: Vec<SensorId> =

@@ -2,7 +2,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use underfoot::picture::PictureError;
-use underfoot::schema::Diagnostics;
+use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sim::ScenarioError;
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
@@ -23,6 +23,8 @@ pub(crate) enum Failure {
     /// There can be no window.
     #[cfg(feature = "preview")]
     NoWindow(String),
+    /// A floor can't be kept.
+    Save(SaveError),
     /// A picture can't be made.
     Picture(PictureError),
     /// Anything else, said in full.
@@ -36,6 +38,7 @@ impl fmt::Display for Failure {
             Self::Scenario(error) => write!(f, "error: {error}"),
             Self::Source(error) => write!(f, "error: {error}"),
             Self::Sink(error) => write!(f, "error: {error}"),
+            Self::Save(error) => write!(f, "error: {error}"),
             Self::Picture(error) => write!(f, "error: {error}"),
             Self::File(path, error) => write!(f, "error: {}: {error}", path.display()),
             #[cfg(feature = "preview")]
@@ -69,6 +72,12 @@ impl From<SourceError> for Failure {
 impl From<SinkError> for Failure {
     fn from(error: SinkError) -> Self {
         Self::Sink(error)
+    }
+}
+
+impl From<SaveError> for Failure {
+    fn from(error: SaveError) -> Self {
+        Self::Save(error)
     }
 }
 

@@ -1,8 +1,8 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::Args;
 use underfoot::floor::{Floor, Geometry};
-use underfoot::schema;
+use underfoot::schema::{self, Saved};
 
 use super::failure::Failure;
 
@@ -32,4 +32,30 @@ pub(crate) fn grid(text: &str) -> Result<Geometry, String> {
     let (columns, rows) = text.split_once(['x', 'X']).ok_or("write it like 6x6: columns x rows")?;
     let number = |digits: &str| digits.trim().parse::<u16>().map_err(|error| format!("{digits:?}: {error}"));
     Geometry::of_paper_tiles(number(columns)?, number(rows)?).map_err(|error| error.to_string())
+}
+
+/// Writes the floor file, keeps what it held before, and says both on standard error.
+pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
+    let saved = schema::save_floor(floor, path)?;
+    match &saved {
+        Saved::New => anstream::eprintln!("Written to {}.", path.display()),
+        Saved::Unchanged => anstream::eprintln!("{} holds all this already.", path.display()),
+        Saved::Replaced { backup } => {
+            anstream::eprintln!(
+                "Written to {}; what it held before is in {}.",
+                path.display(),
+                backup.display()
+            );
+        }
+    }
+    Ok(saved)
+}
+
+/// Where a floor was kept, for programs.
+pub(crate) fn saved_json(path: &Path, saved: &Saved) -> serde_json::Value {
+    let backup = match saved {
+        Saved::Replaced { backup } => Some(backup),
+        Saved::New | Saved::Unchanged => None,
+    };
+    serde_json::json!({ "floor": path, "backup": backup })
 }

@@ -3,10 +3,12 @@
 //! Exit status 0: done; 1: the work failed (standard error says what to do next); 2: wrong usage.
 
 mod actuate;
+mod calibrate;
 mod check;
 mod failure;
 mod floor_args;
 mod layout_args;
+mod measure;
 mod outputs;
 mod play;
 #[cfg(feature = "preview")]
@@ -57,6 +59,10 @@ enum Command {
     Render(render::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
+    /// Calibrate a floor: sensor curves, tare, position maps.
+    Calibrate(calibrate::Args),
+    /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
+    Measure(measure::Args),
     /// Print completions for a shell.
     Completions {
         /// Which shell.
@@ -88,6 +94,8 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),
+        Some(Command::Calibrate(args)) => calibrate::run(&args),
+        Some(Command::Measure(args)) => measure::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
             Ok(())

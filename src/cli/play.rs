@@ -15,11 +15,14 @@ pub(crate) struct SimArgs {
     /// Perfect sensors: alike, exact, without noise, sending newtons.
     #[arg(long)]
     pub(crate) ideal: bool,
+    /// Also press known points on every tile and use the position maps that come of it.
+    #[arg(long, conflicts_with = "ideal")]
+    pub(crate) mapped: bool,
 }
 
 impl Default for SimArgs {
     fn default() -> Self {
-        Self { seed: 1, ideal: false }
+        Self { seed: 1, ideal: false, mapped: false }
     }
 }
 
@@ -29,11 +32,16 @@ impl SimArgs {
         if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
     }
 
-    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated and tared.
+    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated, tared and perhaps mapped.
     pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
         let sim = SimFloor::new(floor, self.config(), self.seed);
         let floor = sim::calibrated(floor, &sim, self.seed)
             .map_err(|error| Failure::Other(format!("the simulated floor can't be calibrated: {error}")))?;
+        if !self.mapped {
+            return Ok((sim, floor));
+        }
+        let floor = sim::mapped(&floor, &sim, self.seed)
+            .map_err(|error| Failure::Other(format!("the simulated floor can't be mapped: {error}")))?;
         Ok((sim, floor))
     }
 }

@@ -1,17 +1,17 @@
 use std::net::{SocketAddr, UdpSocket};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema;
-use underfoot::sim::{Sensing, SimConfig, SimFloor};
+use underfoot::sim::{self, Sensing, SimConfig, SimFloor};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use super::failure::Failure;
-use super::floor_args::FloorArgs;
+use super::floor_args::{FloorArgs, save_floor};
 use super::layout_args::LayoutArgs;
 use super::play::{self, SimArgs};
 use super::stop::stop_flag;
@@ -37,6 +37,12 @@ pub(crate) struct Args {
     /// Also write the floor file that a lab would: this floor, calibrated sensor by sensor and tared.
     #[arg(long, value_name = "FILE")]
     write_floor: Option<PathBuf>,
+    /// Also write what a load cell shows of every sensor, for `underfoot calibrate curves`.
+    #[arg(long, value_name = "FILE.csv")]
+    write_loads: Option<PathBuf>,
+    /// Also write what the calibrated sensors read under known points, for `underfoot calibrate map`.
+    #[arg(long, value_name = "FILE.csv")]
+    write_presses: Option<PathBuf>,
     /// Stop after so many seconds, although the scenario goes on.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
@@ -62,12 +68,23 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (sim, encoder) = args.simulated(&floor)?;
     if let Some(path) = &args.write_floor {
         let (_, calibrated) = args.sim.calibrated(&floor)?;
-        std::fs::write(path, schema::write_floor(&calibrated))
-            .map_err(|error| Failure::File(path.clone(), error))?;
-        anstream::eprintln!("The calibrated floor is described in {}.", path.display());
+        save_floor(&calibrated, path)?;
+    }
+    if let Some(path) = &args.write_loads {
+        write(path, &sim::load_table(&sim, args.sim.seed))?;
+    }
+    if let Some(path) = &args.write_presses {
+        let (sim, calibrated) = args.sim.calibrated(&floor)?;
+        write(path, &sim::press_table(&calibrated, &sim, args.sim.seed))?;
     }
     let sent = args.send_all(&floor, &layout, &sim, encoder)?;
     anstream::eprintln!("{sent} packets sent to {}.", args.send);
+    Ok(())
+}
+
+fn write(path: &Path, table: &str) -> Result<(), Failure> {
+    schema::save_text(table, path)?;
+    anstream::eprintln!("Written to {}.", path.display());
     Ok(())
 }
 

@@ -1,5 +1,5 @@
 use crate::feel::{Cue, Rubs};
-use crate::floor::Geometry;
+use crate::floor::{Geometry, PositionMap};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
@@ -67,6 +67,13 @@ impl Engine {
             cues: Vec::new(),
             rubs: Rubs::new(),
         }
+    }
+
+    /// The same, each tile corrected by its position map; in tile-index order.
+    #[must_use]
+    pub fn with_maps(mut self, maps: &[Option<PositionMap>]) -> Self {
+        self.sensing = self.sensing.with_maps(maps);
+        self
     }
 
     /// Takes in one frame; frames must come in time order and be of this floor's size.

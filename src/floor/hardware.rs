@@ -1,4 +1,4 @@
-use super::{Corner, Geometry, SensorId, TileId};
+use super::{CalibrationRecord, Corner, Day, Geometry, MapRecord, PositionMap, SensorId, TileId};
 use crate::units::Newtons;
 
 /// Everything underfoot knows of one floor: geometry, boards, calibration, actuators.
@@ -17,6 +17,14 @@ pub struct Floor {
     pub tare: Vec<[Newtons; 4]>,
     /// The actuator under each tile; `None` where there is none.
     pub actuators: Vec<Option<Actuator>>,
+    /// The position map of each tile; `None` where none was measured.
+    pub position_maps: Vec<Option<PositionMap>>,
+    /// When each law in `calibration` was measured and how well it fits; `None` where nobody said.
+    pub calibration_records: Vec<[Option<CalibrationRecord>; 4]>,
+    /// When each of `position_maps` was measured and how well it fits; `None` where nobody said.
+    pub map_records: Vec<Option<MapRecord>>,
+    /// When `tare` was measured; `None` where nobody said.
+    pub tared: Option<Day>,
 }
 
 impl Floor {
@@ -31,8 +39,55 @@ impl Floor {
             calibration: vec![[Calibration::NOMINAL; 4]; tiles],
             tare: vec![[Newtons::ZERO; 4]; tiles],
             actuators: (0..tiles).map(|channel| Some(Actuator::nominal(channel as u16))).collect(),
+            position_maps: vec![None; tiles],
+            calibration_records: vec![[None; 4]; tiles],
+            map_records: vec![None; tiles],
+            tared: None,
             geometry,
         }
+    }
+
+    /// Gives a sensor another law; false if the floor has no such sensor.
+    ///
+    /// What was measured through the old law goes: the tare becomes the force that the new law
+    /// sees in the same voltage, and a position map of the tile is taken away.
+    pub fn recalibrate(
+        &mut self,
+        sensor: SensorId,
+        law: Calibration,
+        record: Option<CalibrationRecord>,
+    ) -> bool {
+        let Some(tile) = self.geometry.index(sensor.tile) else { return false };
+        let corner = sensor.corner.index();
+        let (Some(laws), Some(tares)) = (self.calibration.get_mut(tile), self.tare.get_mut(tile)) else {
+            return false;
+        };
+        let old = std::mem::replace(&mut laws[corner], law);
+        if let Some(records) = self.calibration_records.get_mut(tile) {
+            records[corner] = record;
+        }
+        if old != law {
+            let tare = tares[corner].0;
+            if tare > 0.0 {
+                let volts = (tare / old.a_n).ln() / old.b_per_volt;
+                let tare = law.a_n * (law.b_per_volt * volts).exp();
+                tares[corner] = Newtons(if tare.is_finite() { tare } else { 0.0 });
+            }
+            if let Some(map) = self.position_maps.get_mut(tile) {
+                *map = None;
+            }
+            if let Some(record) = self.map_records.get_mut(tile) {
+                *record = None;
+            }
+        }
+        true
+    }
+
+    /// The law of a sensor; the nominal one for a sensor the floor doesn't have.
+    #[must_use]
+    pub fn law(&self, sensor: SensorId) -> Calibration {
+        let tile = self.geometry.index(sensor.tile).and_then(|tile| self.calibration.get(tile));
+        tile.map_or(Calibration::NOMINAL, |laws| laws[sensor.corner.index()])
     }
 
     /// Number of actuator channels a device must have for this floor: the highest channel used plus one.
@@ -76,6 +131,9 @@ impl Calibration {
 
     /// Voltage at the converter's full scale.
     pub const FULL_SCALE_VOLTS: f32 = 5.0;
+
+    /// Counts from which on a sensor is near the end of its range (98 %) and reads "at least".
+    pub const SATURATED: u16 = 64_225;
 
     /// The voltage behind a raw 16-bit reading: 0 to 5 V.
     #[must_use]
@@ -140,6 +198,22 @@ mod tests {
         let second_tile_nw = floor.boards[2].channels[6].unwrap();
         assert_eq!(second_tile_nw, SensorId { tile: TileId::new(1, 2), corner: Corner::NorthWest });
         assert_eq!(floor.channel_count(), 36);
+    }
+
+    #[test]
+    fn a_new_law_keeps_the_tare_s_voltage_and_drops_the_map_made_through_the_old_one() {
+        let mut floor = Floor::of(Geometry::of_paper_tiles(2, 1).unwrap());
+        let sensor = SensorId { tile: TileId::new(1, 0), corner: Corner::NorthWest };
+        let counts = 30_000;
+        floor.tare[1][2] = Calibration::NOMINAL.force(counts);
+        floor.position_maps = vec![Some(PositionMap::NONE); 2];
+        let law = Calibration { a_n: 0.6, b_per_volt: 1.3 };
+        let record = CalibrationRecord { day: Day::of_unix_seconds(0), residual: 0.05 };
+        assert!(floor.recalibrate(sensor, law, Some(record)));
+        assert_eq!((floor.law(sensor), floor.calibration_records[1][2]), (law, Some(record)));
+        assert!((floor.tare[1][2] - law.force(counts)).abs().0 < 1e-3, "{:?}", floor.tare[1][2]);
+        assert_eq!(floor.position_maps, [Some(PositionMap::NONE), None]);
+        assert!(!floor.recalibrate(SensorId { tile: TileId::new(2, 0), ..sensor }, law, None));
     }
 
     #[test]

@@ -6,8 +6,12 @@
 
 mod geometry;
 mod hardware;
+mod position_map;
+mod record;
 mod rect;
 
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
 pub use hardware::{Actuator, Board, Calibration, Floor};
+pub use position_map::PositionMap;
+pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;

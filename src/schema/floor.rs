@@ -3,15 +3,20 @@ use std::ops::Range;
 use std::path::Path;
 
 use super::behaviour::single;
+use super::day;
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
+use super::floor_maps::maps;
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
-use crate::floor::{Actuator, Board, Calibration, Corner, Floor, Geometry, GeometryError, SensorId, TileId};
+use crate::floor::{
+    Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, GeometryError, SensorId,
+    TileId,
+};
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
 
@@ -52,10 +57,14 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     let grid = Grid { known: geometry };
     let boards = fields.read("boards", Some(None), |node| boards(node, grid).map(Some));
     let sensors = fields.read("sensors", Some(()), |node| sensors(node, grid, &mut floor));
+    let tared = fields.read("tared", Some(None), |node| day::read(node).map(Some));
+    let maps = fields.read("maps", Some(()), |node| maps(node, grid, &mut floor));
     let actuators = fields.read("actuators", Some(None), |node| actuators(node, grid).map(Some));
     fields.finish();
     geometry?;
     sensors?;
+    maps?;
+    floor.tared = tared?;
     if let Some(boards) = boards? {
         floor.boards = boards;
     }
@@ -92,13 +101,13 @@ fn geometry(fields: &mut Fields<'_>) -> Option<Geometry> {
 
 /// The tiles that a file may speak of; any if its geometry could not be read.
 #[derive(Clone, Copy)]
-struct Grid {
-    known: Option<Geometry>,
+pub(super) struct Grid {
+    pub(super) known: Option<Geometry>,
 }
 
 impl Grid {
     /// The tile written as `(column, row)`.
-    fn tile(self, node: Node<'_>) -> Option<TileId> {
+    pub(super) fn tile(self, node: Node<'_>) -> Option<TileId> {
         let [column, row] = node.tuple("(column, row)")?;
         self.tile_of(column, row)
     }
@@ -114,17 +123,23 @@ impl Grid {
 }
 
 /// Where each of some things is first written.
-struct Seen<T> {
+pub(super) struct Seen<T> {
     first: HashMap<T, Range<usize>>,
 }
 
 impl<T: std::hash::Hash + Eq> Seen<T> {
-    fn new() -> Self {
+    pub(super) fn new() -> Self {
         Self { first: HashMap::new() }
     }
 
     /// Reports that `thing`, which messages call `name`, has been written before.
-    fn check(&mut self, reader: &Reader<'_>, thing: T, name: impl FnOnce() -> String, span: Range<usize>) {
+    pub(super) fn check(
+        &mut self,
+        reader: &Reader<'_>,
+        thing: T,
+        name: impl FnOnce() -> String,
+        span: Range<usize>,
+    ) {
         match self.first.get(&thing) {
             Some(first) => {
                 let problem = Problem::error(span, format!("{} comes twice", name()));
@@ -246,21 +261,39 @@ fn sensors(node: Node<'_>, grid: Grid, floor: &mut Floor) -> Option<()> {
         let a_n = fields.read("a_n", Some(nominal.a_n), |node| single(node, 1e-6..=1000.0));
         let b = fields.read("b_per_volt", Some(nominal.b_per_volt), |node| single(node, 1e-3..=20.0));
         let tare = fields.read("tare_n", Some(0.0), |node| single(node, -5000.0..=5000.0));
+        let record = calibration_record(&mut fields);
         let span = fields.span("tile");
         fields.finish();
         let (Some(tile), Some(corner)) = (tile, corner) else { continue };
         let sensor = SensorId { tile, corner };
         seen.check(node.reader, sensor, || format!("the sensor of {sensor}"), span);
-        let (Some(a_n), Some(b_per_volt), Some(tare)) = (a_n, b, tare) else { continue };
+        let (Some(a_n), Some(b_per_volt), Some(tare), Some(record)) = (a_n, b, tare, record) else {
+            continue;
+        };
         let index = floor.geometry.index(tile).unwrap_or(usize::MAX);
         if let (Some(calibration), Some(tares)) =
             (floor.calibration.get_mut(index), floor.tare.get_mut(index))
         {
             calibration[corner.index()] = Calibration { a_n, b_per_volt };
             tares[corner.index()] = Newtons(tare);
+            floor.calibration_records[index][corner.index()] = record;
         }
     }
     Some(())
+}
+
+/// When a sensor's law was measured: `calibrated` and `residual`, both or neither.
+fn calibration_record(fields: &mut Fields<'_>) -> Option<Option<CalibrationRecord>> {
+    let day: Option<Option<Day>> = fields.read("calibrated", Some(None), |node| day::read(node).map(Some));
+    let residual = fields.read("residual", Some(None), |node| single(node, 0.0..=1e6).map(Some));
+    match (day?, residual?) {
+        (Some(day), Some(residual)) => Some(Some(CalibrationRecord { day, residual })),
+        (None, None) => Some(None),
+        (day, _) => {
+            day::report_half(fields, ("calibrated", "residual"), day.is_some());
+            None
+        }
+    }
 }
 
 /// The actuators that are listed; tiles that are not have none.

@@ -2,14 +2,15 @@ use std::fmt::Write;
 
 use super::floor::usual_address;
 use super::version::FORMAT_VERSION;
-use crate::floor::{Actuator, Board, Calibration, Corner, Floor, SensorId, TileId};
+use crate::floor::{Actuator, Board, Calibration, Corner, Floor, MapRecord, SensorId, TileId};
 use crate::units::Newtons;
 
 /// The file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
 ///
-/// What is as on [`Floor::of`] its geometry is left out. A sensor list of more
-/// than about 55,000 sensors is longer than the 4 MB that are read back, and so
-/// are numbers outside of the ranges that files may hold; both are refused on reading.
+/// What is as on [`Floor::of`] its geometry is left out. A list of more than
+/// about 40,000 sensors, or 4,000 mapped tiles, is longer than the 4 MB that are read
+/// back; that and numbers outside of the ranges that files may hold are refused on
+/// reading ([`super::save_floor`] refuses them on writing).
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
     let mut text = String::new();
@@ -42,6 +43,7 @@ fn write(floor: &Floor, text: &mut String) -> std::fmt::Result {
         writeln!(text, "    ],")?;
     }
     write_sensors(floor, text)?;
+    write_maps(floor, text)?;
     if floor.actuators == usual.actuators {
         writeln!(text, "    // Each tile has an actuator, channel by channel in tile order.")?;
     } else {
@@ -96,12 +98,23 @@ fn channel(sensor: &Option<SensorId>) -> String {
 }
 
 fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
-    let tiles = floor.geometry.tiles().zip(floor.calibration.iter().zip(&floor.tare));
-    let measured: Vec<_> = tiles
-        .flat_map(|(tile, (calibration, tare))| {
-            Corner::ALL.map(|corner| (tile, corner, calibration[corner.index()], tare[corner.index()]))
+    if let Some(day) = floor.tared {
+        writeln!(text, "    tared: \"{day}\",")?;
+    }
+    let tiles = floor.calibration.iter().zip(&floor.tare).zip(&floor.calibration_records);
+    let measured: Vec<_> = floor
+        .geometry
+        .tiles()
+        .zip(tiles)
+        .flat_map(|(tile, ((laws, tares), records))| {
+            Corner::ALL.map(|corner| {
+                let index = corner.index();
+                (tile, corner, laws[index], tares[index], records[index])
+            })
         })
-        .filter(|(.., calibration, tare)| *calibration != Calibration::NOMINAL || *tare != Newtons::ZERO)
+        .filter(|(.., law, tare, record)| {
+            *law != Calibration::NOMINAL || *tare != Newtons::ZERO || record.is_some()
+        })
         .collect();
     if measured.is_empty() {
         return writeln!(text, "    // No sensor has been calibrated: all are taken as nominal parts.");
@@ -111,12 +124,38 @@ fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
         "    // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal."
     )?;
     writeln!(text, "    sensors: [")?;
-    for (tile, corner, Calibration { a_n, b_per_volt }, Newtons(tare)) in measured {
+    for (tile, corner, Calibration { a_n, b_per_volt }, Newtons(tare), record) in measured {
         let (tile, corner) = (place(tile), variant(corner));
-        writeln!(
+        write!(
             text,
-            "        (tile: {tile}, corner: {corner}, a_n: {a_n:?}, b_per_volt: {b_per_volt:?}, tare_n: {tare:?}),"
+            "        (tile: {tile}, corner: {corner}, a_n: {a_n:?}, b_per_volt: {b_per_volt:?}, tare_n: {tare:?}"
         )?;
+        if let Some(record) = record {
+            write!(text, ", calibrated: \"{}\", residual: {:?}", record.day, record.residual)?;
+        }
+        writeln!(text, "),")?;
+    }
+    writeln!(text, "    ],")
+}
+
+fn write_maps(floor: &Floor, text: &mut String) -> std::fmt::Result {
+    let maps = floor.geometry.tiles().zip(floor.position_maps.iter().zip(&floor.map_records));
+    let mut mapped = maps.filter_map(|(tile, (map, record))| Some((tile, map.as_ref()?, record))).peekable();
+    if mapped.peek().is_none() {
+        return Ok(());
+    }
+    writeln!(
+        text,
+        "    // What pressed points taught of each tile: a factor per sensor that follows its load,"
+    )?;
+    writeln!(text, "    // and a shift of the position. Measure them anew rather than edit them.")?;
+    writeln!(text, "    maps: [")?;
+    for (tile, map, record) in mapped {
+        write!(text, "        (tile: {}, ", place(tile))?;
+        if let Some(MapRecord { day, residual_m }) = record {
+            write!(text, "mapped: \"{day}\", residual_m: {residual_m:?}, ")?;
+        }
+        writeln!(text, "trims: {:?}, bends: {:?}),", map.trims, map.bends)?;
     }
     writeln!(text, "    ],")
 }

@@ -1,6 +1,6 @@
 use super::tile::{LoadedTile, TileReading, known_corners};
 use super::{ForceFrame, Quality};
-use crate::floor::Geometry;
+use crate::floor::{Geometry, PositionMap};
 use crate::units::Newtons;
 
 /// Marks a tile without load in the map from tile to list position.
@@ -34,6 +34,8 @@ impl Default for LoadThreshold {
 pub(super) struct LoadedTiles {
     geometry: Geometry,
     threshold: LoadThreshold,
+    /// Per tile of the floor; none for the tiles past the end.
+    maps: Vec<Option<PositionMap>>,
     sums: Vec<f32>,
     /// Position in `list` per tile of the floor, or `NONE`.
     place: Vec<u32>,
@@ -48,11 +50,17 @@ impl LoadedTiles {
         Self {
             geometry,
             threshold,
+            maps: Vec::new(),
             sums: vec![0.0; tiles],
             place: vec![NONE; tiles],
             list: Vec::with_capacity(tiles.min(4096)),
             candidates: Vec::with_capacity(tiles),
         }
+    }
+
+    /// Corrects each tile by its map from now on.
+    pub(super) fn set_maps(&mut self, maps: &[Option<PositionMap>]) {
+        self.maps = maps.to_vec();
     }
 
     pub(super) fn geometry(&self) -> &Geometry {
@@ -129,9 +137,10 @@ impl LoadedTiles {
             let index = index as usize;
             let was_loaded = self.place[index] != NONE;
             let least = if was_loaded { self.threshold.off } else { self.threshold.on };
+            let map = self.maps.get(index).and_then(Option::as_ref);
             list.extend(
                 known_corners(frame.forces[index], frame.quality[index])
-                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least)),
+                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map)),
             );
         }
         for old in list.drain(..previous) {

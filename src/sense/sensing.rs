@@ -6,7 +6,7 @@ use super::pool::ContactPool;
 use super::tile::TileReading;
 use super::track::Tracker;
 use super::{Contact, ForceFrame};
-use crate::floor::Geometry;
+use crate::floor::{Geometry, PositionMap};
 use crate::units::Instant;
 
 /// How contacts are made from tile forces.
@@ -66,6 +66,13 @@ impl Sensing {
             pool: ContactPool::with_capacity(64),
             last: None,
         }
+    }
+
+    /// The same, each tile corrected by its map; in tile-index order, tiles past the end have none.
+    #[must_use]
+    pub fn with_maps(mut self, maps: &[Option<PositionMap>]) -> Self {
+        self.tiles.set_maps(maps);
+        self
     }
 
     /// The contacts after `frame`, ordered by id.

@@ -1,7 +1,7 @@
 use glam::Vec2;
 
 use super::Quality;
-use crate::floor::{Geometry, TileId};
+use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::Newtons;
 
 /// What one tile feels as a whole.
@@ -117,20 +117,28 @@ impl LoadedTile {
     }
 
     /// The tile at `index` of the floor, with sensors that read `corners`; `None` unless
-    /// they add up to at least `least` and more than nothing.
+    /// they add up to at least `least` and more than nothing. `map` corrects them and the place.
     pub(super) fn new(
         geometry: &Geometry,
         index: usize,
         (corners, quality): ([f32; 4], Quality),
         least: Newtons,
+        map: Option<&PositionMap>,
     ) -> Option<Self> {
-        let wrench = Wrench::of_corners(corners, geometry.sensor_reach_m());
+        let corners = map.map_or(corners, |map| map.trimmed(corners));
+        let mut wrench = Wrench::of_corners(corners, geometry.sensor_reach_m());
         if wrench.force < least.0.max(f32::MIN_POSITIVE) {
             return None;
         }
         let tile = geometry.tile_at_index(index);
         let centre = geometry.centre(tile);
-        let centroid = centre + wrench.arm(0.5 * geometry.pitch_m());
+        let mut arm = wrench.arm(0.5 * geometry.pitch_m());
+        if let Some(map) = map {
+            let unbent = map.unbent(arm, geometry);
+            wrench.moment += (unbent - arm) * wrench.force;
+            arm = unbent;
+        }
+        let centroid = centre + arm;
         Some(Self { tile, index: index as u32, centre, corners, wrench, centroid, quality })
     }
 }

@@ -4,6 +4,10 @@
 //! and hands out what comes of it. Nothing it waits for depends on a window,
 //! a disk or another program.
 
+mod measure;
 mod server;
+mod tare;
 
+pub use measure::{ForceRange, ForceWatch, TileRange};
 pub use server::{Command, Ended, Server};
+pub use tare::{TareFailure, take_tare};

@@ -73,7 +73,7 @@ impl Server {
         Self {
             source,
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
-            engine: Engine::new(floor.geometry, layout, method),
+            engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
             feel: None,
             actuators: None,
             events: None,

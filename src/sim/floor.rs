@@ -220,6 +220,11 @@ impl SimFloor {
         (&self.parts[tile][corner.index()], self.rest[tile][corner.index()])
     }
 
+    /// The support forces of one tile under `force` at `at` from its centre, weight and mounting included.
+    pub(super) fn pressed(&self, tile: usize, at: Vec2, force: f32) -> [f32; 4] {
+        self.plates[tile].supports(force, at)
+    }
+
     /// Standard deviation of the noise, in volts.
     pub(super) fn noise_v(&self) -> f32 {
         match self.sensing {

@@ -1,5 +1,7 @@
 //! Calibrating a simulated floor the way a laboratory does: against a load cell.
 
+use std::fmt::Write;
+
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
@@ -78,19 +80,45 @@ fn on_the_bench(
     corner: Corner,
     rng: &mut Pcg64Mcg,
 ) -> Result<Calibration, FitError> {
+    Fit::of(&loaded(sim, tile, corner, rng)).map(|fit| fit.calibration)
+}
+
+/// What a sensor's output and the load cell read, load by load.
+fn loaded(sim: &SimFloor, tile: usize, corner: Corner, rng: &mut Pcg64Mcg) -> [LoadPoint; LOADS] {
     let (part, _) = sim.bench(tile, corner);
     let range = RANGE * part.capacity();
-    let points: [LoadPoint; LOADS] = std::array::from_fn(|step| {
+    std::array::from_fn(|step| {
         let force = range * (step + 1) as f32 / LOADS as f32;
         let output = part.volts(force);
         let volts: f32 = (0..READINGS).map(|_| Calibration::volts(read(output, sim.noise_v(), rng))).sum();
         LoadPoint::new(volts / READINGS as f32, Newtons(force * (1.0 + CELL_ERROR * normal(rng))))
-    });
-    Fit::of(&points).map(|fit| fit.calibration)
+    })
+}
+
+/// The table of load-cell measurements that [`calibrated`] fits, as [`crate::sense::LoadTable`] reads it.
+///
+/// Empty but for its header for a floor whose boards send newtons.
+#[must_use]
+pub fn load_table(sim: &SimFloor, seed: u64) -> String {
+    let mut table = String::from("col,row,corner,volts,newtons\n");
+    if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
+        return table;
+    }
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    for (index, tile) in sim.geometry().tiles().enumerate() {
+        for corner in Corner::ALL {
+            for LoadPoint { volts, force } in loaded(sim, index, corner, &mut rng) {
+                let (column, row) = (tile.column, tile.row);
+                // Writing to a String cannot fail.
+                let _ = writeln!(table, "{column},{row},{corner},{volts:.5},{:.3}", force.0);
+            }
+        }
+    }
+    table
 }
 
 /// One noisy reading of an output in volts.
-fn read(volts: f32, noise_v: f32, rng: &mut Pcg64Mcg) -> u16 {
+pub(super) fn read(volts: f32, noise_v: f32, rng: &mut Pcg64Mcg) -> u16 {
     counts(volts + noise_v * normal(rng))
 }
 

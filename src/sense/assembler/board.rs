@@ -8,9 +8,6 @@ use crate::wire::{LinkCounters, Readings};
 /// How many slots may wait for their boards at once.
 pub(super) const BUFFERS: usize = 4;
 
-/// Counts from which on a sensor is near the end of its range (98 %) and reads "at least".
-const SATURATED: u16 = 64225;
-
 /// One board: its stream, its wiring, and what it read in the slots that wait.
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
@@ -167,7 +164,7 @@ impl BoardTrack {
                 for (channel, &count) in self.channels.iter().zip(counts) {
                     let Some(channel) = channel else { continue };
                     let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
-                    put(channel, force, count.is_some_and(|count| count >= SATURATED));
+                    put(channel, force, count.is_some_and(|count| count >= Calibration::SATURATED));
                 }
             }
             Readings::Newtons(forces) => {

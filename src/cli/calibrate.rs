@@ -1,0 +1,70 @@
+//! `underfoot calibrate`: sensor curves, tare and position maps, kept in the floor file.
+
+mod curves;
+mod map;
+mod plot;
+mod tare;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use clap::Subcommand;
+use underfoot::floor::Day;
+
+use super::failure::Failure;
+
+pub(crate) use tare::seconds;
+
+/// What `underfoot calibrate` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Fit each sensor's law f = a exp(b v) to load-cell measurements.
+    Curves(curves::Args),
+    /// Measure what the sensors read on the empty floor.
+    Tare(tare::Args),
+    /// Learn from known points pressed how each tile distorts positions.
+    Map(map::Args),
+}
+
+/// Calibrates.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.what {
+        What::Curves(args) => curves::run(args),
+        What::Tare(args) => tare::run(args),
+        What::Map(args) => map::run(args),
+    }
+}
+
+/// The largest table that is read: an hour of one sensor at 1 kHz.
+const MOST_BYTES: u64 = 256 << 20;
+
+/// The text of a table.
+fn read_table(path: &Path) -> Result<String, Failure> {
+    let failed = |error| Failure::File(PathBuf::from(path), error);
+    let mut text = String::new();
+    File::open(path).map_err(failed)?.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(failed)?;
+    if text.len() as u64 > MOST_BYTES {
+        let most = MOST_BYTES >> 20;
+        return Err(Failure::Other(format!("{}: larger than {most} MB; thin the table out", path.display())));
+    }
+    Ok(text)
+}
+
+/// Today, in UTC.
+fn today() -> Day {
+    let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+    Day::of_unix_seconds(since.as_secs())
+}
+
+/// `1 sensor`, `2 sensors`.
+fn count(number: usize, what: &str) -> String {
+    if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
+}

@@ -1,0 +1,122 @@
+use std::path::PathBuf;
+
+use serde_json::json;
+use underfoot::floor::{Floor, MapRecord, TileId};
+use underfoot::sense::{Errors, MapError, MapFit, PressTable};
+
+use super::{count, read_table, today};
+use crate::cli::failure::Failure;
+use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
+
+/// What `underfoot calibrate map` is asked to do.
+///
+/// Press at least 16 known points on a tile, up to its edges, each with several forces from a light foot's to a
+/// person's weight. `underfoot measure --json` gives what the sensors read meanwhile. Errors with the map are
+/// those of points that it was not made from.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// CSV with the header `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if it is known),
+    /// or `true_x_m,true_y_m,est_x_m,est_y_m`.
+    table: PathBuf,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// Where to keep the floor with its maps; without it, in the file given with --floor.
+    #[arg(long, value_name = "FLOOR.ron")]
+    out: Option<PathBuf>,
+    /// Print the result as JSON on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Fits, reports, keeps.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let mut floor = args.floor.load()?;
+    let text = read_table(&args.table)?;
+    let name = args.table.display();
+    let table = PressTable::parse(&text, &floor).map_err(|problems| {
+        Failure::Other(format!("{name} is no table of points on this floor:\n{problems}"))
+    })?;
+    if table.tiles.is_empty() {
+        return Err(Failure::Other(format!("{name} holds no points that can be used")));
+    }
+    let fits: Vec<_> = table.tiles.iter().map(|points| (points.tile, points.fit(&floor))).collect();
+    keep(&mut floor, &fits);
+    let saved = match args.out.as_ref().or(args.floor.floor.as_ref()) {
+        Some(path) => Some((path, save_floor(&floor, path)?)),
+        None => None,
+    };
+    if args.json {
+        let tiles: Vec<_> = fits.iter().map(|(tile, fit)| as_json(*tile, fit)).collect();
+        let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
+        anstream::println!("{}", json!({ "tiles": tiles, "saturated": table.saturated, "saved": saved }));
+    } else {
+        print(&fits);
+        if table.saturated > 0 {
+            let presses = count(table.saturated, "press");
+            anstream::println!("{presses} with a sensor at 98 % of its range or above left out.");
+        }
+        if saved.is_none() {
+            anstream::eprintln!("Nothing is kept: say where with --out FLOOR.ron.");
+        }
+    }
+    outcome(&fits)
+}
+
+type Fits = [(TileId, Result<MapFit, MapError>)];
+
+/// Takes the maps into the floor.
+fn keep(floor: &mut Floor, fits: &Fits) {
+    let day = today();
+    for (tile, fit) in fits {
+        let Some(index) = floor.geometry.index(*tile) else { continue };
+        if let (Ok(fit), Some(map), Some(record)) =
+            (fit, floor.position_maps.get_mut(index), floor.map_records.get_mut(index))
+        {
+            *map = Some(fit.map);
+            *record = Some(MapRecord { day, residual_m: fit.after.p95_m });
+        }
+    }
+}
+
+fn print(fits: &Fits) {
+    anstream::println!("                   without map, cm         with map, cm");
+    anstream::println!("tile      points   median   95 %  worst    median   95 %  worst");
+    let shown = |Errors { median_m, p95_m, worst_m }: Errors| {
+        format!("{:>6.2} {:>6.2} {:>6.2}", 100.0 * median_m, 100.0 * p95_m, 100.0 * worst_m)
+    };
+    for (tile, fit) in fits {
+        let tile = tile.to_string();
+        match fit {
+            Ok(fit) => {
+                let (before, after) = (shown(fit.before), shown(fit.after));
+                anstream::println!("{tile:<9} {:>6}   {before}    {after}", fit.points);
+            }
+            Err(error) => anstream::println!("{tile:<9} {error}"),
+        }
+    }
+}
+
+fn as_json(tile: TileId, fit: &Result<MapFit, MapError>) -> serde_json::Value {
+    let errors = |errors: Errors| json!({ "median_m": errors.median_m, "p95_m": errors.p95_m, "worst_m": errors.worst_m });
+    json!({
+        "col": tile.column,
+        "row": tile.row,
+        "points": fit.as_ref().ok().map(|fit| fit.points),
+        "before": fit.as_ref().ok().map(|fit| errors(fit.before)),
+        "after": fit.as_ref().ok().map(|fit| errors(fit.after)),
+        "problem": fit.as_ref().err().map(ToString::to_string),
+    })
+}
+
+/// A failure that names the tiles that must be pressed again.
+fn outcome(fits: &Fits) -> Result<(), Failure> {
+    let lines: Vec<_> = fits
+        .iter()
+        .filter_map(|(tile, fit)| match fit {
+            // A tile that is as good as it gets is no failure.
+            Ok(_) | Err(MapError::NoBetter { .. }) => None,
+            Err(error) => Some(format!("tile {tile}: {error}; it keeps what it had")),
+        })
+        .collect();
+    if lines.is_empty() { Ok(()) } else { Err(Failure::Other(lines.join("\nerror: "))) }
+}

@@ -1,0 +1,72 @@
+use std::net::SocketAddr;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use serde_json::json;
+use underfoot::schema;
+use underfoot::serve::{TareFailure, take_tare};
+use underfoot::source::UdpSource;
+
+use super::today;
+use crate::cli::failure::Failure;
+use crate::cli::floor_args::{save_floor, saved_json};
+
+/// What `underfoot calibrate tare` is asked to do.
+///
+/// Nobody and nothing may be on the floor: the tare is only taken if every sensor is quiet (0.5 N of
+/// scatter over half a second), carries no more than a plate weighs (60 N), and no tile weighs otherwise than
+/// at the last tare.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// Floor file, into which the tare is written.
+    #[arg(long, value_name = "FILE")]
+    floor: PathBuf,
+    /// Where the boards' packets arrive.
+    #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
+    listen: SocketAddr,
+    /// How long to wait for the floor to be quiet.
+    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = seconds)]
+    seconds: f64,
+    /// Take the tare although a tile weighs otherwise than at the last one, because the floor was changed.
+    #[arg(long)]
+    accept_change: bool,
+    /// Print the result as JSON on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Reads a time in seconds that a person would wait.
+pub(crate) fn seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
+    seconds.ok_or_else(|| "expected 0.1 to 86400 seconds".into())
+}
+
+/// Takes the tare and keeps it, or says why not.
+pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let mut floor = schema::load_floor(&args.floor)?;
+    let mut source = UdpSource::bind(args.listen, &floor)?;
+    anstream::eprintln!("Listening on {}; keep off the floor.", args.listen);
+    let patience = Duration::from_secs_f64(args.seconds);
+    floor.tare =
+        take_tare(&mut source, &floor, patience, args.accept_change).map_err(|failure| match failure {
+            TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
+            failure => Failure::Other(failure.to_string()),
+        })?;
+    floor.tared = Some(today());
+    let saved = save_floor(&floor, &args.floor)?;
+    let weights = floor.tare.iter().map(|tare| tare.iter().map(|tare| tare.0).sum::<f32>());
+    let (least, most) = weights.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, m), w| (l.min(w), m.max(w)));
+    if args.json {
+        let tiles: Vec<_> = floor
+            .geometry
+            .tiles()
+            .zip(&floor.tare)
+            .map(|(tile, tare)| json!({ "col": tile.column, "row": tile.row, "tare_n": tare }))
+            .collect();
+        anstream::println!("{}", json!({ "tiles": tiles, "saved": saved_json(&args.floor, &saved) }));
+    } else {
+        let sensors = 4 * floor.tare.len();
+        anstream::println!("Tared {sensors} sensors; the tiles weigh {least:.1} to {most:.1} N.");
+    }
+    Ok(())
+}

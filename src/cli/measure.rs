@@ -1,0 +1,201 @@
+use std::io::IsTerminal;
+use std::net::SocketAddr;
+use std::sync::atomic::Ordering;
+use std::time::Duration;
+
+use serde_json::json;
+use underfoot::floor::Corner;
+use underfoot::layout::{Layout, Widget};
+use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
+use underfoot::serve::{ForceRange, ForceWatch, TileRange};
+use underfoot::source::{SensorSource, UdpSource};
+use underfoot::units::Instant;
+
+use super::calibrate::seconds;
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
+use super::layout_args::LayoutArgs;
+use super::stop::stop_flag;
+
+/// What `underfoot measure` is asked to do.
+///
+/// Stand, step and press as people will, and see what the tiles feel. With a layout, the
+/// forces on each control's tiles are set beside its thresholds. Ctrl-C ends it early with what was seen so far.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    /// Where the boards' packets arrive.
+    #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
+    listen: SocketAddr,
+    /// How long to watch.
+    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
+    seconds: f64,
+    /// Print the result as JSON on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Watches the floor and prints what it felt.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let layout = match &args.layout.layout {
+        Some(_) => Some(args.layout.load(&floor.geometry)?),
+        None => None,
+    };
+    let mut source = UdpSource::bind(args.listen, &floor)?;
+    let tare = Tare::suited_to(&floor);
+    anstream::eprintln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds);
+    if tare != Tare::FromFloor {
+        anstream::eprintln!("The floor has no tare: keep off it for the first second.");
+    }
+    let mut assembler = Assembler::with_tare(&floor, tare);
+    let mut watch = ForceWatch::new(&floor);
+    watch_floor(args, &mut source, &mut assembler, &mut watch)?;
+    if let TareOutcome::Refused { sensor, mean, .. } = assembler.tare_outcome() {
+        anstream::eprintln!(
+            "The floor was never empty: {sensor} read {:.0} N. Forces are not tared.",
+            mean.0
+        );
+    }
+    if watch.frames() == 0 {
+        return Err(Failure::Other(format!(
+            "no packets of this floor came to {} within {} s; is it switched on, and does it send here?",
+            args.listen, args.seconds
+        )));
+    }
+    let ranges: Vec<TileRange> = watch.ranges().collect();
+    let controls: Vec<_> =
+        layout.iter().flat_map(|layout| controls(layout, &floor.geometry, &ranges)).collect();
+    if args.json {
+        let tiles: Vec<_> = ranges.iter().map(tile_json).collect();
+        let controls: Vec<_> = controls.iter().map(|(widget, range)| control_json(widget, range)).collect();
+        anstream::println!("{}", json!({ "frames": watch.frames(), "tiles": tiles, "controls": controls }));
+    } else {
+        print(&ranges);
+        print_controls(&controls);
+    }
+    Ok(())
+}
+
+fn watch_floor(
+    args: &Args,
+    source: &mut UdpSource,
+    assembler: &mut Assembler,
+    watch: &mut ForceWatch,
+) -> Result<(), Failure> {
+    let stop = stop_flag()?;
+    let span = Duration::from_secs_f64(args.seconds);
+    let until = source.now() + span;
+    let live = std::io::stderr().is_terminal();
+    let mut shown = Instant::START;
+    while !stop.load(Ordering::Relaxed) && source.now() < until {
+        match source.next(Duration::from_millis(5))? {
+            Some(packet) => assembler.take(&packet),
+            None => assembler.poll(source.now()),
+        }
+        while let Some(frame) = assembler.ready() {
+            watch.take(frame);
+        }
+        if live && source.now().since(shown) >= Duration::from_millis(200) {
+            shown = source.now();
+            if let Some((tile, force)) = watch.heaviest() {
+                let left = until.since(shown).as_secs_f32();
+                anstream::eprint!("\r{left:5.1} s left, most on tile {tile}: {:6.1} N   ", force.0);
+            }
+        }
+    }
+    if live {
+        anstream::eprintln!();
+    }
+    Ok(())
+}
+
+/// Each control, and the forces on the tile under it that felt most.
+fn controls<'a>(
+    layout: &'a Layout,
+    geometry: &underfoot::floor::Geometry,
+    ranges: &[TileRange],
+) -> Vec<(&'a Widget, ForceRange)> {
+    let felt = |widget: &Widget| {
+        let under = ranges.iter().filter(|range| geometry.plate(range.tile).overlaps(widget.area));
+        under
+            .map(|range| range.force)
+            .max_by(|a, b| a.greatest_n.total_cmp(&b.greatest_n))
+            .unwrap_or_default()
+    };
+    layout.widgets.iter().map(|widget| (widget, felt(widget))).collect()
+}
+
+fn print(ranges: &[TileRange]) {
+    let columns = ["whole tile", "sw", "se", "nw", "ne"];
+    let heads: String = columns.iter().map(|name| format!("  {name:^20}")).collect();
+    let units: String =
+        columns.iter().map(|_| format!("  {:>6} {:>6} {:>6}", "least", "median", "most")).collect();
+    anstream::println!("newtons   {}", heads.trim_end());
+    anstream::println!("tile      {units}");
+    for range in ranges {
+        let tile = range.tile.to_string();
+        let forces: String = std::iter::once(&range.force).chain(&range.sensors).map(shown).collect();
+        let note = match range.quality {
+            Quality::Live => String::new(),
+            quality => format!("  {}", quality_name(quality)),
+        };
+        anstream::println!("{tile:<10}{forces}{note}");
+    }
+}
+
+fn shown(range: &ForceRange) -> String {
+    format!("  {:>6.1} {:>6.1} {:>6.1}", range.least_n, range.median_n, range.greatest_n)
+}
+
+fn quality_name(quality: Quality) -> &'static str {
+    match quality {
+        Quality::Live => "live",
+        Quality::Degraded => "degraded at times",
+        Quality::Stale => "missing at times",
+        Quality::Faulty => "faulty at times",
+    }
+}
+
+fn print_controls(controls: &[(&Widget, ForceRange)]) {
+    if controls.is_empty() {
+        return;
+    }
+    anstream::println!();
+    anstream::println!(
+        "control            presses at  lets go at   least median   most on its heaviest tile"
+    );
+    for (widget, range) in controls {
+        let at = widget.behaviour.thresholds();
+        let note = if range.greatest_n < at.press.0 { "  never pressed" } else { "" };
+        anstream::println!(
+            "{:<18} {:>8.0} N  {:>8.0} N{}{note}",
+            widget.id.as_str(),
+            at.press.0,
+            at.release.0,
+            shown(range)
+        );
+    }
+}
+
+fn tile_json(range: &TileRange) -> serde_json::Value {
+    let sensors: serde_json::Map<String, serde_json::Value> = Corner::ALL
+        .into_iter()
+        .map(|corner| (corner.name().to_owned(), json!(range.sensors[corner.index()])))
+        .collect();
+    json!({
+        "col": range.tile.column,
+        "row": range.tile.row,
+        "quality": range.quality,
+        "force": range.force,
+        "sensors": sensors,
+    })
+}
+
+fn control_json(widget: &Widget, range: &ForceRange) -> serde_json::Value {
+    let at = widget.behaviour.thresholds();
+    json!({ "id": widget.id.as_str(), "press_n": at.press, "release_n": at.release, "force": range })
+}

@@ -1,0 +1,222 @@
+//! Saving: the old file or the new one, never a mix, and never a loss.
+
+use std::ffi::OsString;
+use std::fs::{self, File};
+use std::io::{self, ErrorKind, Write};
+use std::path::{Path, PathBuf};
+
+use tempfile::NamedTempFile;
+use thiserror::Error;
+
+use super::{Diagnostics, parse_floor, write_floor};
+use crate::floor::Floor;
+
+/// What saving did.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Saved {
+    /// There was no such file.
+    New,
+    /// The file held the same already and was left alone.
+    Unchanged,
+    /// The file was replaced; what it held before is in this one.
+    Replaced {
+        /// The copy of what it held.
+        backup: PathBuf,
+    },
+}
+
+/// Why a file could not be saved. Whatever was there before is still there.
+#[derive(Debug, Error)]
+pub enum SaveError {
+    /// The floor has numbers that no floor file may hold, or is too large for one.
+    #[error("this floor can't be kept in a file:\n{0}")]
+    Unreadable(Diagnostics),
+    /// The system refused.
+    #[error("{} could not be saved while {doing}: {source}; what it held before is untouched", path.display())]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What was under way.
+        doing: &'static str,
+        /// What the system said.
+        #[source]
+        source: io::Error,
+    },
+}
+
+/// Writes the floor to `path` as [`write_floor`] does, once it has been seen to read back as the same floor.
+///
+/// As [`save_text`], of which it has the promises.
+///
+/// # Errors
+/// [`SaveError`]; the old file, if there was one, is then as it was.
+pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
+    let text = write_floor(floor);
+    match parse_floor(&text, &path.display().to_string()) {
+        Ok(_) => save_text(&text, path),
+        Err(diagnostics) => Err(SaveError::Unreadable(diagnostics)),
+    }
+}
+
+/// Writes `text` to `path`; after a crash or power loss at any moment it is the old file or the new one.
+///
+/// The text goes to a new file beside it, which takes its place when it is
+/// safely on the disk. What the file held before is kept as `name.bak`, or
+/// `name.bak2` and so on if there are such already. A symbolic link stays one:
+/// the file it points to is replaced.
+///
+/// # Errors
+/// [`SaveError::File`]; the old file, if there was one, is then as it was.
+pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
+    let failed = |doing| move |source| SaveError::File { path: path.to_path_buf(), doing, source };
+    let target = match fs::canonicalize(path) {
+        Ok(target) => target,
+        Err(error) if error.kind() == ErrorKind::NotFound => path.to_path_buf(),
+        Err(error) => return Err(failed("looking for it")(error)),
+    };
+    let old = match fs::read(&target) {
+        Ok(old) if old == text.as_bytes() => return Ok(Saved::Unchanged),
+        Ok(_) => Some(fs::metadata(&target).map_err(failed("looking at the old one"))?),
+        Err(error) if error.kind() == ErrorKind::NotFound => None,
+        Err(error) => return Err(failed("reading the old one")(error)),
+    };
+    let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
+    let folder = folder.unwrap_or(Path::new("."));
+    // Removed by itself if anything below fails.
+    let mut file = fresh(folder).map_err(failed("making a file beside it"))?;
+    file.write_all(text.as_bytes()).map_err(failed("writing"))?;
+    if let Some(old) = &old {
+        file.as_file().set_permissions(old.permissions()).map_err(failed("setting its permissions"))?;
+    }
+    file.as_file().sync_all().map_err(failed("bringing it to the disk"))?;
+    let backup = old.map(|_| back_up(&target)).transpose().map_err(failed("keeping the old one"))?;
+    file.persist(&target).map_err(|error| failed("putting it in its place")(error.error))?;
+    sync_folder(folder).map_err(failed("bringing its folder to the disk"))?;
+    Ok(backup.map_or(Saved::New, |backup| Saved::Replaced { backup }))
+}
+
+/// An empty file in `folder` with the permissions that any new file gets.
+fn fresh(folder: &Path) -> io::Result<NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".underfoot-").suffix(".tmp");
+    #[cfg(unix)]
+    builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+    builder.tempfile_in(folder)
+}
+
+/// Keeps what `target` holds under a name that nothing has yet, and gives that name.
+fn back_up(target: &Path) -> io::Result<PathBuf> {
+    for number in 1_u32.. {
+        let mut name = OsString::from(target.as_os_str());
+        name.push(".bak");
+        if number > 1 {
+            name.push(number.to_string());
+        }
+        let backup = PathBuf::from(name);
+        let kept = match fs::hard_link(target, &backup) {
+            // Some file systems know no links.
+            Err(error) if error.kind() != ErrorKind::AlreadyExists => copied(target, &backup),
+            linked => linked,
+        };
+        match kept {
+            Err(error) if error.kind() == ErrorKind::AlreadyExists => {}
+            kept => return kept.map(|()| backup),
+        }
+    }
+    Err(ErrorKind::AlreadyExists.into())
+}
+
+fn copied(target: &Path, backup: &Path) -> io::Result<()> {
+    let mut copy = File::create_new(backup)?;
+    let copied = File::open(target).and_then(|mut old| io::copy(&mut old, &mut copy));
+    match copied.and_then(|_| copy.sync_all()) {
+        Ok(()) => Ok(()),
+        Err(error) => {
+            // Half a backup is none.
+            let _ = fs::remove_file(backup);
+            Err(error)
+        }
+    }
+}
+
+#[cfg(unix)]
+fn sync_folder(folder: &Path) -> io::Result<()> {
+    File::open(folder)?.sync_all()
+}
+
+/// Other systems don't open folders; they bring them to the disk by themselves.
+#[cfg(not(unix))]
+fn sync_folder(_folder: &Path) -> io::Result<()> {
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+            .collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn every_older_file_is_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.ron");
+        assert_eq!(save_text("one", &path).unwrap(), Saved::New);
+        assert_eq!(save_text("one", &path).unwrap(), Saved::Unchanged);
+        let Saved::Replaced { backup } = save_text("two", &path).unwrap() else { panic!("a backup") };
+        assert_eq!(fs::read_to_string(backup).unwrap(), "one");
+        save_text("three", &path).unwrap();
+        assert_eq!(names(folder.path()), ["floor.ron", "floor.ron.bak", "floor.ron.bak2"]);
+        let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
+        assert_eq!(
+            [read("floor.ron"), read("floor.ron.bak"), read("floor.ron.bak2")],
+            ["three", "one", "two"]
+        );
+    }
+
+    #[test]
+    fn a_save_that_fails_leaves_everything_as_it_was() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("nowhere").join("floor.ron");
+        assert!(matches!(save_text("one", &missing), Err(SaveError::File { .. })));
+        // A folder is in the way.
+        let path = folder.path().join("floor.ron");
+        fs::create_dir(&path).unwrap();
+        assert!(matches!(save_text("one", &path), Err(SaveError::File { .. })));
+        assert_eq!(names(folder.path()), ["floor.ron"]);
+    }
+
+    #[test]
+    fn a_floor_that_could_not_be_read_back_is_not_saved() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.ron");
+        let mut floor = Floor::default();
+        assert_eq!(save_floor(&floor, &path).unwrap(), Saved::New);
+        floor.calibration[3][0].a_n = -1.0;
+        assert!(matches!(save_floor(&floor, &path), Err(SaveError::Unreadable(_))));
+        assert_eq!(super::super::load_floor(&path).unwrap(), Floor::default());
+        assert_eq!(names(folder.path()), ["floor.ron"]);
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn a_link_stays_a_link_and_permissions_stay() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let (path, link) = (folder.path().join("lab.ron"), folder.path().join("floor.ron"));
+        fs::write(&path, "one").unwrap();
+        fs::set_permissions(&path, fs::Permissions::from_mode(0o640)).unwrap();
+        std::os::unix::fs::symlink(&path, &link).unwrap();
+        save_text("two", &link).unwrap();
+        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
+        assert_eq!(fs::read_to_string(&path).unwrap(), "two");
+        assert_eq!(fs::metadata(&path).unwrap().permissions().mode() & 0o777, 0o640);
+        assert_eq!(names(folder.path()), ["floor.ron", "lab.ron", "lab.ron.bak"]);
+    }
+}

@@ -1,0 +1,252 @@
+//! Tables of load-cell measurements, and what they say of each sensor.
+
+use super::calibration::{Fit, FitError, LoadPoint};
+use super::table::{Table, TableProblems, shown};
+use crate::floor::{Calibration, Corner, Geometry, SensorId, TileId};
+use crate::units::Newtons;
+
+/// The measurements of each sensor in a table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LoadTable {
+    /// The sensors measured, by tile index and corner.
+    pub sensors: Vec<SensorLoads>,
+}
+
+/// One sensor's measurements.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SensorLoads {
+    /// Which sensor.
+    pub sensor: SensorId,
+    /// What was measured, in the order of the table, saturated readings left out.
+    pub points: Vec<LoadPoint>,
+    /// Readings left out because they are at 98 % of the converter's range or above.
+    pub saturated: usize,
+}
+
+/// What to make of a sensor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Verdict {
+    /// It follows its law as parts do.
+    Good,
+    /// It can be used, but places positions badly.
+    Poor,
+    /// Nothing can be said: measure it again.
+    Unmeasured,
+    /// It is beyond repair.
+    Replace,
+}
+
+/// A sensor judged by its measurements.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Judgement {
+    /// What to make of it.
+    pub verdict: Verdict,
+    /// Its law and what that leaves over, or why it has none.
+    pub fit: Result<Fit, FitError>,
+}
+
+impl Verdict {
+    /// Up to this residual a sensor is good: real parts miss their law by about 8 % of full scale (our choice).
+    pub const GOOD: f32 = 0.08;
+
+    /// Up to this residual a sensor is usable (our choice).
+    pub const POOR: f32 = 0.15;
+
+    /// The word for it: `good`, `poor`, `unmeasured` or `replace`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Good => "good",
+            Self::Poor => "poor",
+            Self::Unmeasured => "unmeasured",
+            Self::Replace => "replace",
+        }
+    }
+}
+
+const COLUMNS: [&[&str]; 2] =
+    [&["col", "row", "corner", "volts", "newtons"], &["col", "row", "corner", "counts", "newtons"]];
+
+impl LoadTable {
+    /// Reads a CSV table with the header `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
+    ///
+    /// One line per measurement, in any order: the sensor's tile and corner
+    /// (`sw`, `se`, `nw`, `ne`), its output (0 to 5 volts, or 0 to 65535
+    /// counts) and what the load cell read (-100 to 10000 newtons, the plate's
+    /// weight included if it rests on the sensor).
+    ///
+    /// # Errors
+    /// Everything wrong with the table, by line and column.
+    pub fn parse(text: &str, geometry: &Geometry) -> Result<Self, TableProblems> {
+        let (mut table, header) = Table::new(text, &COLUMNS)?;
+        let mut sensors: Vec<Option<SensorLoads>> = vec![None; geometry.tile_count() * 4];
+        while let Some(row) = table.next_row() {
+            let column = table.whole(&row, 0, geometry.columns());
+            let line = table.whole(&row, 1, geometry.rows());
+            let corner = corner(row.text(2));
+            if corner.is_none() {
+                table.report(&row, 2, format!("expected sw, se, nw or ne, found {}", shown(row.text(2))));
+            }
+            let output = if header == 0 {
+                table
+                    .number(&row, 3, 0.0..=f64::from(Calibration::FULL_SCALE_VOLTS))
+                    .map(|volts| volts as f32)
+            } else {
+                table.number(&row, 3, 0.0..=65_535.0).map(|counts| volts_of(counts as f32))
+            };
+            let force = table.number(&row, 4, -100.0..=10_000.0);
+            let (Some(column), Some(line), Some(corner), Some(volts), Some(force)) =
+                (column, line, corner, output, force)
+            else {
+                continue;
+            };
+            let sensor = SensorId { tile: TileId::new(column, line), corner };
+            let index = geometry.index(sensor.tile).map(|tile| tile * 4 + corner.index());
+            let Some(slot) = index.and_then(|index| sensors.get_mut(index)) else { continue };
+            let loads = slot.get_or_insert_with(|| SensorLoads { sensor, points: Vec::new(), saturated: 0 });
+            if volts >= Calibration::volts(Calibration::SATURATED) {
+                loads.saturated += 1;
+            } else {
+                loads.points.push(LoadPoint::new(volts, Newtons(force as f32)));
+            }
+        }
+        table.conclude(Self { sensors: sensors.into_iter().flatten().collect() })
+    }
+}
+
+/// A mean of several readings need not be whole.
+fn volts_of(counts: f32) -> f32 {
+    counts * (Calibration::FULL_SCALE_VOLTS / f32::from(u16::MAX))
+}
+
+fn corner(name: &str) -> Option<Corner> {
+    Corner::ALL.into_iter().find(|corner| corner.name().eq_ignore_ascii_case(name))
+}
+
+impl SensorLoads {
+    /// Fits the sensor's law and says what to make of the sensor.
+    #[must_use]
+    pub fn judge(&self) -> Judgement {
+        let fit = Fit::of(&self.points).and_then(|fit| {
+            let Calibration { a_n, b_per_volt } = fit.calibration;
+            // What floor files hold: beyond it is no part's law.
+            let has_place = (1e-6..=1000.0).contains(&a_n) && (1e-3..=20.0).contains(&b_per_volt);
+            if has_place { Ok(fit) } else { Err(FitError::Unphysical { a_n, b_per_volt }) }
+        });
+        let verdict = match fit {
+            Ok(fit) if fit.residual <= Verdict::GOOD => Verdict::Good,
+            Ok(fit) if fit.residual <= Verdict::POOR => Verdict::Poor,
+            Ok(_) => Verdict::Replace,
+            // A sensor at its end stops under every load; so does one that always reads full scale.
+            Err(FitError::TooFewPoints { .. }) if self.saturated >= Fit::MIN_POINTS => Verdict::Replace,
+            Err(FitError::TooFewPoints { .. } | FitError::NotFinite { .. }) => Verdict::Unmeasured,
+            Err(FitError::NoSpread { .. }) if !self.was_loaded() => Verdict::Unmeasured,
+            Err(FitError::NoSpread { .. } | FitError::NoConvergence | FitError::Unphysical { .. }) => {
+                Verdict::Replace
+            }
+        };
+        Judgement { verdict, fit }
+    }
+
+    /// Whether the loads differed enough for a sound sensor to show it.
+    fn was_loaded(&self) -> bool {
+        let loads = self.points.iter().map(|point| point.force.0);
+        let (least, most) =
+            loads.fold((f32::INFINITY, 0.0f32), |(least, most), f| (least.min(f), most.max(f)));
+        most > 2.0 * least.max(1.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const HEADER: &str = "col,row,corner,volts,newtons\n";
+
+    fn read(text: &str) -> Result<LoadTable, TableProblems> {
+        LoadTable::parse(text, &Geometry::of_paper_tiles(2, 2).unwrap())
+    }
+
+    fn loads(points: impl IntoIterator<Item = (f32, f32)>) -> SensorLoads {
+        let points = points.into_iter().map(|(volts, force)| LoadPoint::new(volts, Newtons(force))).collect();
+        let sensor = SensorId { tile: TileId::new(0, 0), corner: Corner::SouthWest };
+        SensorLoads { sensor, points, saturated: 0 }
+    }
+
+    fn nominal(volts: f32) -> f32 {
+        0.5 * (1.34 * volts).exp()
+    }
+
+    #[test]
+    fn volts_and_counts_say_the_same_and_saturated_readings_are_counted() {
+        let volts = read(&format!("{HEADER}1,0,ne,2.5,10\n1,0,NE,5,300\r\n\n0,1,sw,0,0\n")).unwrap();
+        let counts =
+            read("col,row,corner,counts,newtons\n1,0,ne,32767.5,10\n1,0,ne,65535,300\n0,1,sw,0,0").unwrap();
+        assert_eq!(volts, counts);
+        assert_eq!(volts.sensors.len(), 2);
+        assert_eq!(volts.sensors[0].sensor, SensorId { tile: TileId::new(1, 0), corner: Corner::NorthEast });
+        assert_eq!((volts.sensors[0].points.len(), volts.sensors[0].saturated), (1, 1));
+    }
+
+    #[test]
+    fn every_problem_has_its_line_and_column() {
+        let problems =
+            read(&format!("{HEADER}2,0,ne,1,1\n0,0,up,6,NaN\n0,0,ne,1\n0,-1,ne,,1\n")).unwrap_err();
+        let shown: Vec<String> = problems.shown().iter().map(ToString::to_string).collect();
+        assert_eq!(
+            shown,
+            [
+                "line 2, column col: expected a whole number from 0 to 1, found \"2\"",
+                "line 3, column corner: expected sw, se, nw or ne, found \"up\"",
+                "line 3, column volts: expected a number from 0 to 5, found \"6\"",
+                "line 3, column newtons: expected a number from -100 to 10000, found \"NaN\"",
+                "line 4: expected 5 fields, found 4",
+                "line 5, column row: expected a whole number from 0 to 1, found \"-1\"",
+                "line 5, column volts: expected a number from 0 to 5, found \"\"",
+            ]
+        );
+        let problems = read(&format!("{HEADER}{}", "0,0,ne,x,1\n".repeat(100))).unwrap_err();
+        assert_eq!((problems.shown().len(), problems.more()), (20, 80));
+        assert!(problems.to_string().ends_with("and 80 more like these"));
+        assert!(read("").unwrap_err().to_string().contains("expected the header"));
+    }
+
+    #[test]
+    fn verdicts_follow_the_residual() {
+        let ramp = |error: f32| {
+            loads((1..=40).map(|step| {
+                let volts = 0.12 * step as f32;
+                let off = if step % 2 == 0 { error } else { -error };
+                (volts, nominal(volts) + off * nominal(4.8))
+            }))
+        };
+        for (error, verdict) in
+            [(0.0, Verdict::Good), (0.07, Verdict::Good), (0.11, Verdict::Poor), (0.2, Verdict::Replace)]
+        {
+            assert_eq!(ramp(error).judge().verdict, verdict, "{error}");
+        }
+    }
+
+    #[test]
+    fn broken_parts_are_told_from_parts_that_were_hardly_measured() {
+        let steps = || (1..=20).map(|step| step as f32);
+        // Open, shorted to a middle voltage, wired the wrong way round.
+        assert_eq!(loads(steps().map(|k| (0.0, 10.0 * k))).judge().verdict, Verdict::Replace);
+        assert_eq!(loads(steps().map(|k| (2.0, 10.0 * k))).judge().verdict, Verdict::Replace);
+        assert_eq!(loads(steps().map(|k| (5.0 - 0.2 * k, 10.0 * k))).judge().verdict, Verdict::Replace);
+        // Shorted to the supply: nothing but saturated readings.
+        let shorted = SensorLoads { saturated: 20, ..loads([]) };
+        assert_eq!(shorted.judge().verdict, Verdict::Replace);
+        // One load only, two points only, none.
+        assert_eq!(loads(steps().map(|_| (2.0, 10.0))).judge().verdict, Verdict::Unmeasured);
+        assert_eq!(loads([(1.0, 2.0), (2.0, 7.0)]).judge().verdict, Verdict::Unmeasured);
+        assert_eq!(loads([]).judge().verdict, Verdict::Unmeasured);
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInfswne]{0,16},?\n?){0,40}") {
+            let _ = read(&format!("{HEADER}{rows}"));
+        }
+    }
+}

@@ -1,0 +1,390 @@
+//! Fitting a tile's position map to known points pressed on it.
+
+use glam::Vec2;
+use nalgebra::{DMatrix, DVector};
+use thiserror::Error;
+
+use super::tile::Wrench;
+use crate::floor::{Corner, Geometry, PositionMap};
+
+/// One known point, pressed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Press {
+    /// Where it was pressed, in metres from the tile's centre.
+    pub at: Vec2,
+    /// What the tile's sensors read, calibrated and tared, in newtons ([`Corner::ALL`] order).
+    pub forces: [f32; 4],
+    /// With which force, in newtons, if that is known.
+    pub force: Option<f32>,
+}
+
+impl Press {
+    /// Where Eq. 3 alone puts it, in metres from the tile's centre.
+    fn estimate(&self, geometry: &Geometry) -> Vec2 {
+        Wrench::of_corners(self.forces, geometry.sensor_reach_m()).arm(0.5 * geometry.pitch_m())
+    }
+}
+
+/// A known point and where the floor put it, when nothing is known of the single sensors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sighting {
+    /// Where it was pressed, in metres from the tile's centre.
+    pub at: Vec2,
+    /// Where the floor put it, in metres from the tile's centre.
+    pub estimate: Vec2,
+}
+
+/// A fitted map and what it does to the points it was fitted to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MapFit {
+    /// The map.
+    pub map: PositionMap,
+    /// Points used.
+    pub points: usize,
+    /// Errors without the map.
+    pub before: Errors,
+    /// Errors with it, each point by a map that was fitted without it and its neighbours.
+    pub after: Errors,
+}
+
+/// How far points are found from where they were pressed, in metres.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Errors {
+    /// Half of them are off by no more.
+    pub median_m: f32,
+    /// All but 5 % are off by no more.
+    pub p95_m: f32,
+    /// The worst.
+    pub worst_m: f32,
+}
+
+/// Why no map was fitted to a tile.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+pub enum MapError {
+    /// Too few points.
+    #[error("a map needs at least {min} points, not {points}", min = MapFit::MIN_POINTS)]
+    TooFewPoints {
+        /// Points that could be used.
+        points: usize,
+    },
+    /// The points leave a part of the tile out.
+    #[error("the points leave the {side} of the tile out: press nearer to that edge")]
+    NoSpread {
+        /// Which part.
+        side: &'static str,
+    },
+    /// A point is not a number.
+    #[error("point {index} is not a finite number")]
+    NotFinite {
+        /// Which, from 0.
+        index: usize,
+    },
+    /// No correction brings points that it hasn't seen closer to where they were pressed.
+    #[error("no map improves on none: {rms_mm:.1} mm are left of {before_mm:.1} mm")]
+    NoBetter {
+        /// Root mean square of what the best map leaves.
+        rms_mm: f32,
+        /// Root mean square without a map.
+        before_mm: f32,
+    },
+}
+
+impl MapFit {
+    /// Fewest points a map is made from: as many as a bend has numbers, and some to check.
+    pub const MIN_POINTS: usize = 16;
+
+    /// How near to each edge points must come, as a share of half the plate (our choice).
+    const REACH: f32 = 0.6;
+
+    /// Parts into which the places are divided, each tried on the map of the others.
+    const FOLDS: usize = 5;
+
+    /// The map of a tile by the points pressed on it, in any order, with any forces.
+    ///
+    /// Points pressed with several forces each, from a light foot's to a
+    /// person's weight, teach most. Leave out saturated readings. The known
+    /// force, where given, also corrects what the tile weighs.
+    ///
+    /// # Errors
+    /// [`MapError`]; all but [`MapError::NoBetter`] ask for more points.
+    ///
+    /// # Source
+    /// Balance of moments of each point, `Σ gᵢ(fᵢ) (xᵢ − x) = 0`, linear in the trims of `gᵢ`,
+    /// and a cubic polynomial for what is left, both by ridge regression; whether trims, bends
+    /// or both are used is decided by five-fold cross-validation.
+    pub fn of_presses(presses: &[Press], geometry: &Geometry) -> Result<Self, MapError> {
+        let usable = |press: &Press| {
+            press.at.is_finite() && press.forces.iter().chain(&press.force).all(|force| force.is_finite())
+        };
+        if let Some(index) = presses.iter().position(|press| !usable(press)) {
+            return Err(MapError::NotFinite { index });
+        }
+        let pressed: Vec<Press> =
+            presses.iter().copied().filter(|press| press.forces.iter().sum::<f32>() > LEAST_N).collect();
+        let found = |map: &PositionMap, press: &Press| placed(map, press, geometry);
+        let fit = |presses: &[Press], parts: Parts| {
+            let mut map = PositionMap::NONE;
+            if parts.trims {
+                map.trims = trims(presses, geometry);
+            }
+            if parts.bends {
+                let sightings: Vec<_> = presses
+                    .iter()
+                    .map(|press| Sighting { at: press.at, estimate: found(&map, press) })
+                    .collect();
+                map.bends = bends(&sightings, geometry);
+            }
+            map
+        };
+        best(&pressed, |press| press.at, geometry, &Parts::ALL, fit, found)
+    }
+
+    /// The map of a tile by points seen through the whole floor; only bends can be learnt from them.
+    ///
+    /// # Errors
+    /// As [`MapFit::of_presses`].
+    pub fn of_sightings(sightings: &[Sighting], geometry: &Geometry) -> Result<Self, MapError> {
+        let usable = |sighting: &Sighting| sighting.at.is_finite() && sighting.estimate.is_finite();
+        if let Some(index) = sightings.iter().position(|sighting| !usable(sighting)) {
+            return Err(MapError::NotFinite { index });
+        }
+        let found = |map: &PositionMap, sighting: &Sighting| map.unbent(sighting.estimate, geometry);
+        let fit = |sightings: &[Sighting], _| PositionMap {
+            bends: bends(sightings, geometry),
+            ..PositionMap::NONE
+        };
+        best(sightings, |sighting| sighting.at, geometry, &[Parts { trims: false, bends: true }], fit, found)
+    }
+}
+
+impl Errors {
+    /// The errors of these distances; zero for none.
+    fn of(mut distances: Vec<f32>) -> Self {
+        distances.sort_by(f32::total_cmp);
+        let at = |share: f32| {
+            let last = distances.len().saturating_sub(1) as f32;
+            distances.get((last * share).round() as usize).copied().unwrap_or_default()
+        };
+        Self { median_m: at(0.5), p95_m: at(0.95), worst_m: at(1.0) }
+    }
+}
+
+/// Which corrections a map makes.
+#[derive(Clone, Copy, Debug)]
+struct Parts {
+    trims: bool,
+    bends: bool,
+}
+
+impl Parts {
+    const ALL: [Self; 3] = [
+        Self { trims: true, bends: true },
+        Self { trims: true, bends: false },
+        Self { trims: false, bends: true },
+    ];
+}
+
+/// Lighter presses say nothing of a place, in newtons.
+const LEAST_N: f32 = 10.0;
+
+/// Where a map puts a press.
+fn placed(map: &PositionMap, press: &Press, geometry: &Geometry) -> Vec2 {
+    let forces = map.trimmed(press.forces);
+    map.unbent(Press { forces, ..*press }.estimate(geometry), geometry)
+}
+
+/// The best of the maps made of these parts, judged by points each has not seen.
+fn best<T: Copy>(
+    points: &[T],
+    at: impl Fn(&T) -> Vec2,
+    geometry: &Geometry,
+    parts: &[Parts],
+    fit: impl Fn(&[T], Parts) -> PositionMap,
+    found: impl Fn(&PositionMap, &T) -> Vec2,
+) -> Result<MapFit, MapError> {
+    if points.len() < MapFit::MIN_POINTS {
+        return Err(MapError::TooFewPoints { points: points.len() });
+    }
+    spread(points.iter().map(&at), geometry)?;
+    let folds = folds(points.iter().map(&at));
+    let distance = |map: &PositionMap, point: &T| found(map, point).distance(at(point));
+    let before: Vec<f32> = points.iter().map(|point| distance(&PositionMap::NONE, point)).collect();
+    let judged = parts.iter().map(|&parts| {
+        let mut left = Vec::with_capacity(points.len());
+        for fold in 0..MapFit::FOLDS {
+            let chosen = |inside: bool| {
+                let pairs = points.iter().zip(&folds);
+                pairs.filter(move |(_, own)| (**own == fold) == inside).map(|(point, _)| *point)
+            };
+            let map = fit(&chosen(false).collect::<Vec<_>>(), parts);
+            left.extend(chosen(true).map(|point| distance(&map, &point)));
+        }
+        (parts, left)
+    });
+    let least = judged.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1)));
+    match least {
+        Some((parts, left)) if rms(&left) < rms(&before) => Ok(MapFit {
+            map: fit(points, parts),
+            points: points.len(),
+            before: Errors::of(before),
+            after: Errors::of(left),
+        }),
+        least => Err(MapError::NoBetter {
+            rms_mm: 1e3 * least.map_or(0.0, |(_, left)| rms(&left)),
+            before_mm: 1e3 * rms(&before),
+        }),
+    }
+}
+
+fn rms(distances: &[f32]) -> f32 {
+    (distances.iter().map(|distance| distance * distance).sum::<f32>() / distances.len().max(1) as f32).sqrt()
+}
+
+/// Which fold each point belongs to; points of one place share one.
+fn folds(places: impl Iterator<Item = Vec2>) -> Vec<usize> {
+    let mut seen: Vec<(i32, i32)> = Vec::new();
+    places
+        .map(|place| {
+            // Places closer than a centimetre are one.
+            let key = ((place.x * 100.0).round() as i32, (place.y * 100.0).round() as i32);
+            let number = seen.iter().position(|&other| other == key).unwrap_or_else(|| {
+                seen.push(key);
+                seen.len() - 1
+            });
+            number % MapFit::FOLDS
+        })
+        .collect()
+}
+
+/// Whether points reach to all four sides.
+fn spread(places: impl Iterator<Item = Vec2>, geometry: &Geometry) -> Result<(), MapError> {
+    let least = MapFit::REACH * 0.5 * geometry.tile_m();
+    let (low, high) =
+        places.fold((Vec2::MAX, Vec2::MIN), |(low, high), place| (low.min(place), high.max(place)));
+    let reached = [("east", high.x), ("west", -low.x), ("north", high.y), ("south", -low.y)];
+    match reached.into_iter().find(|&(_, reached)| reached < least) {
+        Some((side, _)) => Err(MapError::NoSpread { side }),
+        None => Ok(()),
+    }
+}
+
+/// The trims that balance the moments of all presses best.
+fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 4] {
+    const COUNT: usize = 4 * PositionMap::TRIMS;
+    let reach = geometry.sensor_reach_m();
+    let mut sums = Normal::new(COUNT);
+    for press in presses {
+        let total: f32 = press.forces.iter().sum();
+        // Each newton metre off balance moves the centroid by one part of the force.
+        let weight = f64::from(1.0 / (reach * total.max(FULL_N)));
+        let mut rows = [[0.0; COUNT]; 3];
+        let mut left = [0.0; 3];
+        for (corner, &force) in Corner::ALL.iter().zip(&press.forces) {
+            let lever = corner.direction() * reach - press.at;
+            let (below, share) = PositionMap::between(force);
+            let column = corner.index() * PositionMap::TRIMS + below;
+            for (row, lever) in [lever.x, lever.y, reach].into_iter().enumerate() {
+                let moment = f64::from(force * lever) * weight;
+                rows[row][column] = moment * f64::from(1.0 - share);
+                rows[row][column + 1] = moment * f64::from(share);
+                left[row] -= moment;
+            }
+        }
+        if let Some(force) = press.force {
+            left[2] += f64::from(force * reach) * weight;
+        }
+        let known = if press.force.is_some() { 3 } else { 2 };
+        for (row, left) in rows.iter().zip(left).take(known) {
+            sums.add(row, left);
+        }
+    }
+    for sensor in 0..4 {
+        let first = sensor * PositionMap::TRIMS;
+        for trim in first..first + PositionMap::TRIMS {
+            sums.hold(&[(trim, 1.0)], TRIM_SIZE);
+        }
+        for trim in first + 1..first + PositionMap::TRIMS - 1 {
+            sums.hold(&[(trim - 1, 1.0), (trim, -2.0), (trim + 1, 1.0)], TRIM_BEND);
+        }
+    }
+    let solved = sums.solve();
+    std::array::from_fn(|sensor| {
+        std::array::from_fn(|trim| {
+            let trim = solved[sensor * PositionMap::TRIMS + trim] as f32;
+            rounded(trim.clamp(-PositionMap::MOST_TRIM, PositionMap::MOST_TRIM))
+        })
+    })
+}
+
+/// Presses below this force count less, for their errors are the sensors' zeros, in newtons.
+const FULL_N: f32 = 30.0;
+
+/// How strongly trims are held near zero, and near straight lines over the loads (our choice, by trying).
+const TRIM_SIZE: f64 = 0.05;
+const TRIM_BEND: f64 = 0.005;
+
+/// The bends that bring all sightings closest to where they belong.
+fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BENDS]; 2] {
+    let half = 0.5 * geometry.pitch_m();
+    let of_axis = |along: fn(Vec2) -> f32| {
+        let mut sums = Normal::new(PositionMap::BENDS);
+        for sighting in sightings {
+            let terms = PositionMap::terms(sighting.estimate / half).map(f64::from);
+            sums.add(&terms, f64::from(along(sighting.at - sighting.estimate) / half));
+        }
+        for term in 0..PositionMap::BENDS {
+            sums.hold(&[(term, 1.0)], BEND_SIZE);
+        }
+        let solved = sums.solve();
+        std::array::from_fn(|term| {
+            rounded((solved[term] as f32).clamp(-PositionMap::MOST_BEND, PositionMap::MOST_BEND))
+        })
+    };
+    [of_axis(|shift| shift.x), of_axis(|shift| shift.y)]
+}
+
+/// How strongly bends are held near zero (our choice).
+const BEND_SIZE: f64 = 0.1;
+
+/// To four decimals: files stay short, and a hundredth of a per cent is nothing.
+fn rounded(number: f32) -> f32 {
+    (f64::from(number * 1e4).round() / 1e4) as f32
+}
+
+/// The normal equations of a linear least-squares problem.
+struct Normal {
+    matrix: DMatrix<f64>,
+    right: DVector<f64>,
+}
+
+impl Normal {
+    fn new(unknowns: usize) -> Self {
+        Self { matrix: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns) }
+    }
+
+    /// Asks for `row · x = value`.
+    fn add(&mut self, row: &[f64], value: f64) {
+        for (i, &a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+            self.right[i] += a * value;
+            for (j, &b) in row.iter().enumerate().filter(|(_, b)| **b != 0.0) {
+                self.matrix[(i, j)] += a * b;
+            }
+        }
+    }
+
+    /// Asks for the sum of these unknowns, each times its factor, to be near zero.
+    fn hold(&mut self, factors: &[(usize, f64)], strength: f64) {
+        for &(i, a) in factors {
+            for &(j, b) in factors {
+                self.matrix[(i, j)] += strength * a * b;
+            }
+        }
+    }
+
+    /// The unknowns; zero if the equations have no solution, which what holds them rules out.
+    fn solve(self) -> DVector<f64> {
+        let unknowns = self.right.len();
+        let solved = self.matrix.cholesky().map(|cholesky| cholesky.solve(&self.right));
+        solved.filter(|x| x.iter().all(|x| x.is_finite())).unwrap_or_else(|| DVector::zeros(unknowns))
+    }
+}

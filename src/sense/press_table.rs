@@ -1,0 +1,201 @@
+//! Tables of known points pressed, for position maps.
+
+use glam::Vec2;
+
+use super::position_map::{MapError, MapFit, Press, Sighting};
+use super::table::{Table, TableProblems};
+use crate::floor::{Calibration, Corner, Floor, SensorId, TileId};
+
+/// The points pressed on each tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PressTable {
+    /// The tiles pressed, in tile-index order.
+    pub tiles: Vec<TilePoints>,
+    /// Presses left out because a sensor was at 98 % of its converter's range or above.
+    pub saturated: usize,
+}
+
+/// The points pressed on one tile.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TilePoints {
+    /// Which tile.
+    pub tile: TileId,
+    /// With what each sensor read; empty if the table has places only.
+    pub presses: Vec<Press>,
+    /// With where the floor put them; empty if the table has the sensors' forces.
+    pub sightings: Vec<Sighting>,
+}
+
+const COLUMNS: [&[&str]; 3] = [
+    &["x_m", "y_m", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"],
+    &["x_m", "y_m", "col", "row", "f_sw", "f_se", "f_nw", "f_ne", "force_n"],
+    &["true_x_m", "true_y_m", "est_x_m", "est_y_m"],
+];
+
+impl PressTable {
+    /// Reads a CSV table of points pressed on `floor`, all lengths in floor metres.
+    ///
+    /// With the header `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is
+    /// known): the point, its tile, and what the tile's sensors read, calibrated and tared. With
+    /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and where the floor put it without a map.
+    ///
+    /// # Errors
+    /// Everything wrong with the table, by line and column.
+    pub fn parse(text: &str, floor: &Floor) -> Result<Self, TableProblems> {
+        let (mut table, header) = Table::new(text, &COLUMNS)?;
+        let geometry = &floor.geometry;
+        let mut tiles: Vec<Option<TilePoints>> = vec![None; geometry.tile_count()];
+        let mut saturated = 0;
+        while let Some(row) = table.next_row() {
+            let mut number = |field, least: f64, most: f64| {
+                table.number(&row, field, least..=most).map(|number| number as f32)
+            };
+            let point = (number(0, -1e4, 1e4), number(1, -1e4, 1e4));
+            if header == 2 {
+                let estimate = (number(2, -1e4, 1e4), number(3, -1e4, 1e4));
+                let ((Some(x), Some(y)), (Some(est_x), Some(est_y))) = (point, estimate) else { continue };
+                let (at, estimate) = (Vec2::new(x, y), Vec2::new(est_x, est_y));
+                let Some(tile) = geometry.tile_under(at) else {
+                    table.report(&row, 0, "this point is not on the floor".into());
+                    continue;
+                };
+                if at.distance(estimate) > geometry.pitch_m() {
+                    let off = at.distance(estimate);
+                    table.report(&row, 2, format!("{off:.2} m from where it was pressed: more than a tile"));
+                    continue;
+                }
+                let centre = geometry.centre(tile);
+                let points = points(&mut tiles, geometry.index(tile), tile);
+                points.sightings.push(Sighting { at: at - centre, estimate: estimate - centre });
+                continue;
+            }
+            let forces: [Option<f32>; 4] = std::array::from_fn(|corner| number(4 + corner, -1e4, 1e5));
+            let force = if header == 1 { number(8, 1.0, 1e5).map(Some) } else { Some(None) };
+            let column = table.whole(&row, 2, geometry.columns());
+            let line = table.whole(&row, 3, geometry.rows());
+            let ((Some(x), Some(y)), [Some(sw), Some(se), Some(nw), Some(ne)]) = (point, forces) else {
+                continue;
+            };
+            let (Some(column), Some(line), Some(force)) = (column, line, force) else { continue };
+            let tile = TileId::new(column, line);
+            let at = Vec2::new(x, y) - geometry.centre(tile);
+            let half = 0.5 * geometry.pitch_m();
+            for (field, along) in [(0, at.x), (1, at.y)] {
+                if along.abs() > half + 1e-4 {
+                    let middle = if field == 0 { x } else { y } - along;
+                    let (least, most) = (middle - half, middle + half);
+                    let problem = format!("expected a point of tile {tile}, {least:.3} to {most:.3}");
+                    table.report(&row, field, problem);
+                }
+            }
+            let forces = [sw, se, nw, ne];
+            if is_saturated(floor, tile, forces) {
+                saturated += 1;
+            } else {
+                let points = points(&mut tiles, geometry.index(tile), tile);
+                points.presses.push(Press { at, forces, force });
+            }
+        }
+        table.conclude(Self { tiles: tiles.into_iter().flatten().collect(), saturated })
+    }
+}
+
+fn points(tiles: &mut Vec<Option<TilePoints>>, index: Option<usize>, tile: TileId) -> &mut TilePoints {
+    let index = index.unwrap_or(tiles.len());
+    if index >= tiles.len() {
+        tiles.resize(index + 1, None);
+    }
+    tiles[index].get_or_insert_with(|| TilePoints { tile, presses: Vec::new(), sightings: Vec::new() })
+}
+
+/// Whether a sensor reads as much as its converter can.
+fn is_saturated(floor: &Floor, tile: TileId, forces: [f32; 4]) -> bool {
+    let tares = floor.geometry.index(tile).and_then(|tile| floor.tare.get(tile));
+    Corner::ALL.into_iter().zip(forces).any(|(corner, force)| {
+        let law = floor.law(SensorId { tile, corner });
+        let tare = tares.map_or(0.0, |tares| tares[corner.index()].0);
+        // Boards that calibrate themselves leave no law here to judge by.
+        law != Calibration::NOMINAL && force + tare >= law.force(Calibration::SATURATED).0
+    })
+}
+
+impl TilePoints {
+    /// The tile's map by these points.
+    ///
+    /// # Errors
+    /// What [`MapFit::of_presses`] and [`MapFit::of_sightings`] give.
+    pub fn fit(&self, floor: &Floor) -> Result<MapFit, MapError> {
+        if self.presses.is_empty() {
+            MapFit::of_sightings(&self.sightings, &floor.geometry)
+        } else {
+            MapFit::of_presses(&self.presses, &floor.geometry)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+
+    fn floor() -> Floor {
+        Floor::of(Geometry::of_paper_tiles(2, 1).unwrap())
+    }
+
+    #[test]
+    fn points_are_taken_from_their_tile_s_centre() {
+        let text = "x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n0.5,0.1,1,0,10,20,30,40\n";
+        let table = PressTable::parse(text, &floor()).unwrap();
+        let [points] = &table.tiles[..] else { panic!("one tile") };
+        assert_eq!(points.tile, TileId::new(1, 0));
+        assert!(points.presses[0].at.distance(Vec2::new(0.044, -0.052)) < 1e-6);
+        assert_eq!((points.presses[0].forces, points.presses[0].force), ([10.0, 20.0, 30.0, 40.0], None));
+
+        let text = "true_x_m,true_y_m,est_x_m,est_y_m\n0.5,0.1,0.51,0.12\n";
+        let table = PressTable::parse(text, &floor()).unwrap();
+        assert!(table.tiles[0].sightings[0].estimate.distance(Vec2::new(0.054, -0.032)) < 1e-6);
+    }
+
+    #[test]
+    fn places_off_the_tile_are_named() {
+        let text =
+            "x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n0.1,0.1,1,0,1,2,3,4,10\n0.4,0.1,1,0,1,2,3,4,0\n";
+        let problems = PressTable::parse(text, &floor()).unwrap_err();
+        assert_eq!(
+            problems.to_string(),
+            "line 2, column x_m: expected a point of tile (1, 0), 0.304 to 0.608\n\
+             line 3, column force_n: expected a number from 1 to 100000, found \"0\""
+        );
+        let text = "true_x_m,true_y_m,est_x_m,est_y_m\n0.1,0.9,0.1,0.9\n0.1,0.1,0.5,0.1\n";
+        let problems = PressTable::parse(text, &floor()).unwrap_err();
+        assert_eq!(
+            problems.to_string(),
+            "line 2, column true_x_m: this point is not on the floor\n\
+             line 3, column est_x_m: 0.40 m from where it was pressed: more than a tile"
+        );
+    }
+
+    #[test]
+    fn saturated_presses_are_left_out_and_counted() {
+        let mut floor = floor();
+        floor.calibration[0][3] = Calibration { a_n: 0.4, b_per_volt: 1.3 };
+        let most = floor.calibration[0][3].force(Calibration::SATURATED).0;
+        floor.tare[0][3].0 = 20.0;
+        let text = format!(
+            "x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n0.2,0.2,0,0,1,2,3,{}\n0.2,0.2,0,0,1,2,3,{}\n",
+            most - 21.0,
+            most - 19.0
+        );
+        let table = PressTable::parse(&text, &floor).unwrap();
+        assert_eq!((table.saturated, table.tiles[0].presses.len()), (1, 1));
+    }
+
+    proptest::proptest! {
+        #[test]
+        fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf]{0,12},?\n?){0,40}") {
+            for columns in COLUMNS {
+                let _ = PressTable::parse(&format!("{}\n{rows}", columns.join(",")), &floor());
+            }
+        }
+    }
+}

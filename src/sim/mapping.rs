@@ -1,0 +1,127 @@
+//! Mapping a simulated floor the way people on site do: pressing points whose places are known.
+
+use std::fmt::Write;
+
+use glam::Vec2;
+use rand::SeedableRng;
+use rand_pcg::Pcg64Mcg;
+use thiserror::Error;
+
+use super::floor::SimFloor;
+use super::loadcell::read;
+use super::sensor::normal;
+use crate::floor::{Calibration, Corner, Floor, TileId};
+use crate::sense::{MapError, MapFit, Press};
+use crate::wire::Readings;
+
+/// Points along each side of a tile.
+const POINTS: usize = 9;
+
+/// The forces each point is pressed with, in newtons: from a light foot to more than half a person.
+const FORCES: [f32; 3] = [45.0, 150.0, 380.0];
+
+/// How far inside the plate's edge the outermost points lie, in metres.
+const MARGIN_M: f32 = 0.008;
+
+/// How well a point is hit, in metres (one standard deviation along each axis).
+const AIM_M: f32 = 0.0005;
+
+/// Readings averaged at each point and force.
+const READINGS: usize = 32;
+
+/// A tile that no map could be fitted to.
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
+#[error("tile {tile}: {source}")]
+pub struct MappingError {
+    /// Which tile.
+    pub tile: TileId,
+    /// Why.
+    #[source]
+    pub source: MapError,
+}
+
+/// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
+///
+/// 9 x 9 points of each tile are pressed with 45, 150 and 380 N each, hit within
+/// half a millimetre, and [`MapFit::of_presses`] makes the map; the force
+/// counts as unknown. Saturated presses are left out. The same `seed` gives the
+/// same maps. A floor whose boards send newtons keeps the maps it had, and so
+/// does a tile that no map improves.
+///
+/// # Errors
+/// [`MappingError`] names the first tile that can't be mapped.
+pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, MappingError> {
+    let mut floor = floor.clone();
+    if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
+        return Ok(floor);
+    }
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    for (index, tile) in sim.geometry().tiles().enumerate() {
+        let presses = press(&floor, sim, index, &mut rng);
+        match MapFit::of_presses(&presses, sim.geometry()) {
+            Ok(fit) => {
+                if let Some(map) = floor.position_maps.get_mut(index) {
+                    *map = Some(fit.map);
+                }
+            }
+            Err(MapError::NoBetter { .. }) => {}
+            Err(source) => return Err(MappingError { tile, source }),
+        }
+    }
+    Ok(floor)
+}
+
+/// The table of pressed points that [`mapped`] makes its maps from, as [`crate::sense::PressTable`] reads it.
+///
+/// Empty but for its header for a floor whose boards send newtons.
+#[must_use]
+pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
+    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n");
+    if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
+        return table;
+    }
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    for (index, tile) in sim.geometry().tiles().enumerate() {
+        for Press { at, forces: [sw, se, nw, ne], .. } in press(floor, sim, index, &mut rng) {
+            let Vec2 { x, y } = sim.geometry().centre(tile) + at;
+            let (column, row) = (tile.column, tile.row);
+            // Writing to a String cannot fail.
+            let _ = writeln!(table, "{x:.5},{y:.5},{column},{row},{sw:.3},{se:.3},{nw:.3},{ne:.3}");
+        }
+    }
+    table
+}
+
+/// What the sensors of one tile read as its points are pressed.
+fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<Press> {
+    let (Some(laws), Some(tares)) = (floor.calibration.get(tile), floor.tare.get(tile)) else {
+        return Vec::new();
+    };
+    let side = 0.5 * sim.geometry().tile_m() - MARGIN_M;
+    let step = |number: usize| side * (2.0 * number as f32 / (POINTS - 1) as f32 - 1.0);
+    let points = (0..POINTS).flat_map(|row| (0..POINTS).map(move |column| (column, row)));
+    let mut presses = Vec::with_capacity(POINTS * POINTS * FORCES.len());
+    for (column, row) in points {
+        let at = Vec2::new(step(column), step(row));
+        for force in FORCES {
+            let hit = at + Vec2::new(normal(rng), normal(rng)) * AIM_M;
+            let supports = sim.pressed(tile, hit, force);
+            let mut saturated = false;
+            let forces = Corner::ALL.map(|corner| {
+                let volts = sim.bench(tile, corner).0.volts(supports[corner.index()]);
+                let law: Calibration = laws[corner.index()];
+                let mut sum = 0.0;
+                for _ in 0..READINGS {
+                    let counts = read(volts, sim.noise_v(), rng);
+                    saturated |= counts >= Calibration::SATURATED;
+                    sum += law.force(counts).0;
+                }
+                sum / READINGS as f32 - tares[corner.index()].0
+            });
+            if !saturated {
+                presses.push(Press { at, forces, force: None });
+            }
+        }
+    }
+    presses
+}
