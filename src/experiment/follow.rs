@@ -1,0 +1,296 @@
+//! Contacts compared with the feet that made them.
+
+use glam::Vec2;
+use smallvec::SmallVec;
+
+use super::errors::Errors;
+use crate::floor::Geometry;
+use crate::sense::{Contact, ContactId};
+use crate::sim::Foot;
+
+/// From which force on a foot counts as down, in newtons.
+pub const DOWN_N: f32 = 10.0;
+
+/// What one foot truly does to the floor.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Truth {
+    /// Where the shoe is: a foot that stands stays there.
+    position: Vec2,
+    /// Where the force that the floor carries acts.
+    pub(super) centre: Vec2,
+    /// How much of it the floor carries, in newtons.
+    pub(super) force: f32,
+}
+
+impl Truth {
+    /// What the floor carries of `foot`; `None` if nothing.
+    ///
+    /// For a foot that is wholly on the floor this is its centre of pressure; of one that
+    /// hangs over the floor's edge, only what is on the floor can be known.
+    pub(super) fn of(foot: &Foot, geometry: &Geometry) -> Option<Self> {
+        let loads = foot.on_tiles(geometry);
+        let force: f32 = loads.iter().map(|load| load.force.0).sum();
+        let moment: Vec2 = loads.iter().map(|load| load.centroid * load.force.0).sum();
+        (force > 0.0).then(|| Self { position: foot.position, centre: moment / force, force })
+    }
+
+    fn is_down(&self) -> bool {
+        self.force > DOWN_N
+    }
+}
+
+/// How well contacts have followed feet.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Followed {
+    /// Error of each foot that is down at the same time as another one, where it was found.
+    pub two_feet: Errors,
+    /// Error of each foot that is down alone.
+    pub one_foot: Errors,
+    /// Feet looked for, one per foot that was down and sample.
+    pub feet: usize,
+    /// Those of them for which there was no contact.
+    pub missed: usize,
+    /// Feet looked for while two were down, and those of them found within 5 cm.
+    pub of_two: usize,
+    /// Feet found within 5 cm while two were down.
+    pub of_two_within_5cm: usize,
+    /// Contacts that no foot had made.
+    pub extra: usize,
+    /// Times that a foot was put down.
+    pub steps: usize,
+    /// Times that a foot went on under another name while it was down.
+    pub swaps: usize,
+}
+
+impl Followed {
+    /// Adds all of another comparison.
+    pub fn append(&mut self, other: Self) {
+        let Self { two_feet, one_foot, feet, missed, of_two, of_two_within_5cm, extra, steps, swaps } = other;
+        self.two_feet.append(two_feet);
+        self.one_foot.append(one_foot);
+        self.feet += feet;
+        self.missed += missed;
+        self.of_two += of_two;
+        self.of_two_within_5cm += of_two_within_5cm;
+        self.extra += extra;
+        self.steps += steps;
+        self.swaps += swaps;
+    }
+
+    /// Share (0 to 1) of the feet that were found within 5 cm while two were down; a missed foot is none.
+    #[must_use]
+    pub fn share_within_5cm(&self) -> f32 {
+        share(self.of_two_within_5cm, self.of_two)
+    }
+
+    /// Share (0 to 1) of the feet for which there was no contact.
+    #[must_use]
+    pub fn share_missed(&self) -> f32 {
+        share(self.missed, self.feet)
+    }
+
+    /// Contacts that no foot had made, as a share of the feet.
+    #[must_use]
+    pub fn share_extra(&self) -> f32 {
+        share(self.extra, self.feet)
+    }
+
+    /// Changes of name per 1000 steps; `None` without a step.
+    #[must_use]
+    pub fn swaps_per_1000_steps(&self) -> Option<f32> {
+        (self.steps > 0).then(|| 1000.0 * share(self.swaps, self.steps))
+    }
+}
+
+fn share(part: usize, whole: usize) -> f32 {
+    part as f32 / whole.max(1) as f32
+}
+
+/// Follows feet and their contacts from frame to frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Follower {
+    /// The feet that were down in the last frame, with the name each had.
+    down: SmallVec<[(Truth, Option<ContactId>); 4]>,
+}
+
+/// No foot that is down moves further in a millisecond, in metres.
+const SAME_FOOT_M: f32 = 0.02;
+
+impl Follower {
+    /// Compares one frame's contacts with its feet. Names are compared in every frame; errors
+    /// and missing feet are counted where `sampled`.
+    pub(super) fn compare(
+        &mut self,
+        feet: &[Truth],
+        contacts: &[Contact],
+        sampled: bool,
+        score: &mut Followed,
+    ) {
+        let down: SmallVec<[Truth; 4]> = feet.iter().copied().filter(Truth::is_down).collect();
+        let found = pair(&down, contacts);
+        if sampled {
+            count(feet, &down, contacts, &found, score);
+        }
+        let now = down.iter().zip(&found).map(|(foot, found)| {
+            let before = self.down.iter().find(|(old, _)| old.position.distance(foot.position) < SAME_FOOT_M);
+            let name = found.map(|found| contacts[found].id);
+            let named = before.and_then(|(_, name)| *name);
+            score.steps += usize::from(before.is_none());
+            score.swaps += usize::from(named.is_some() && name.is_some() && named != name);
+            // A foot lost for a moment is remembered by its last name.
+            (*foot, name.or(named))
+        });
+        self.down = now.collect();
+    }
+}
+
+fn count(
+    feet: &[Truth],
+    down: &[Truth],
+    contacts: &[Contact],
+    found: &[Option<usize>],
+    score: &mut Followed,
+) {
+    let heavy = contacts.iter().filter(|contact| contact.force.0 > DOWN_N).count();
+    // A foot that is just landing or leaving is looked for no more, but its contact is no extra one.
+    score.extra += heavy.saturating_sub(feet.len());
+    score.feet += down.len();
+    for (foot, found) in down.iter().zip(found) {
+        let error = found.map(|found| contacts[found].centroid.distance(foot.centre));
+        score.missed += usize::from(error.is_none());
+        let errors = if down.len() == 1 { &mut score.one_foot } else { &mut score.two_feet };
+        error.into_iter().for_each(|error| errors.push(error));
+        if down.len() > 1 {
+            score.of_two += 1;
+            score.of_two_within_5cm += usize::from(error.is_some_and(|error| error <= 0.05));
+        }
+    }
+}
+
+/// Most contacts that feet are looked for among, heaviest first: beyond it the search grows out of hand.
+const MOST_CONTACTS: usize = 6;
+
+/// For each foot the place of its contact: as many pairs as there can be, with the least total distance.
+fn pair(feet: &[Truth], contacts: &[Contact]) -> SmallVec<[Option<usize>; 4]> {
+    let mut places: SmallVec<[usize; 8]> = (0..contacts.len()).collect();
+    places.sort_by(|&a, &b| contacts[b].force.0.total_cmp(&contacts[a].force.0));
+    places.truncate(MOST_CONTACTS.max(feet.len()));
+    let mut search = Search {
+        feet,
+        contacts,
+        spare: feet.len().saturating_sub(places.len()),
+        chosen: SmallVec::new(),
+        best: smallvec::smallvec![None; feet.len()],
+        least: f32::INFINITY,
+    };
+    search.go_on(&mut places, 0.0, 0);
+    search.best
+}
+
+struct Search<'a> {
+    feet: &'a [Truth],
+    contacts: &'a [Contact],
+    /// How many feet must go without a contact.
+    spare: usize,
+    chosen: SmallVec<[Option<usize>; 4]>,
+    best: SmallVec<[Option<usize>; 4]>,
+    least: f32,
+}
+
+impl Search<'_> {
+    fn go_on(&mut self, free: &mut SmallVec<[usize; 8]>, distance: f32, without: usize) {
+        let Some(foot) = self.feet.get(self.chosen.len()) else {
+            (self.least, self.best) = (distance, self.chosen.clone());
+            return;
+        };
+        for place in 0..free.len() {
+            let contact = free[place];
+            let further = distance + self.contacts[contact].centroid.distance(foot.centre);
+            if further < self.least {
+                free.swap_remove(place);
+                self.chosen.push(Some(contact));
+                self.go_on(free, further, without);
+                self.chosen.pop();
+                free.push(contact);
+                let last = free.len() - 1;
+                free.swap(place, last);
+            }
+        }
+        if without < self.spare {
+            self.chosen.push(None);
+            self.go_on(free, distance, without + 1);
+            self.chosen.pop();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::units::Newtons;
+
+    fn foot(x: f32, force: f32) -> Truth {
+        Truth { position: Vec2::new(x, 0.0), centre: Vec2::new(x, 0.0), force }
+    }
+
+    fn contact(id: u32, x: f32, force: f32) -> Contact {
+        Contact {
+            id: ContactId(id),
+            centroid: Vec2::new(x, 0.0),
+            force: Newtons(force),
+            ..Contact::default()
+        }
+    }
+
+    fn compared(frames: &[(&[Truth], &[Contact])]) -> Followed {
+        let (mut follower, mut score) = (Follower::default(), Followed::default());
+        for (feet, contacts) in frames {
+            follower.compare(feet, contacts, true, &mut score);
+        }
+        score
+    }
+
+    #[test]
+    fn feet_get_the_contacts_that_make_the_least_total_distance() {
+        // The contact at 0.3 is nearest to both feet; the total decides.
+        let feet = [foot(0.2, 300.0), foot(0.35, 300.0)];
+        let contacts = [contact(7, 0.3, 300.0), contact(8, 0.9, 300.0), contact(9, 0.1, 300.0)];
+        let found = pair(&feet, &contacts);
+        assert_eq!(found[..], [Some(2), Some(0)]);
+        assert_eq!(pair(&feet, &contacts[1..2])[..], [None, Some(0)], "one contact goes to the nearer foot");
+        assert_eq!(pair(&feet, &[])[..], [None, None]);
+        assert!(pair(&[], &contacts).is_empty());
+    }
+
+    #[test]
+    fn one_contact_between_two_feet_is_one_found_and_one_missed() {
+        let score = compared(&[(&[foot(0.0, 300.0), foot(0.2, 310.0)], &[contact(1, 0.1, 610.0)])]);
+        assert_eq!((score.feet, score.missed, score.extra), (2, 1, 0));
+        assert_eq!((score.of_two, score.of_two_within_5cm, score.two_feet.count()), (2, 0, 1));
+    }
+
+    #[test]
+    fn a_foot_that_just_lands_is_neither_missed_nor_extra() {
+        let score = compared(&[
+            (&[foot(0.0, 300.0), foot(0.4, 5.0)], &[contact(1, 0.0, 300.0), contact(2, 0.4, 11.0)]),
+            (&[foot(0.0, 300.0), foot(0.4, 5.0)], &[contact(1, 0.0, 300.0)]),
+        ]);
+        assert_eq!((score.feet, score.missed, score.extra), (2, 0, 0));
+        let ghost = compared(&[(&[foot(0.0, 300.0)], &[contact(1, 0.0, 300.0), contact(2, 0.4, 11.0)])]);
+        assert_eq!(ghost.extra, 1);
+    }
+
+    #[test]
+    fn changes_of_name_count_while_a_foot_is_down_and_not_between_steps() {
+        let down = [foot(0.0, 300.0)];
+        let score = compared(&[
+            (&down, &[contact(1, 0.0, 300.0)]),
+            (&down, &[]),
+            (&down, &[contact(2, 0.0, 300.0)]),
+            (&[], &[]),
+            (&down, &[contact(3, 0.0, 300.0)]),
+        ]);
+        assert_eq!((score.steps, score.swaps, score.missed), (2, 1, 1));
+        assert_eq!(score.swaps_per_1000_steps(), Some(500.0));
+    }
+}

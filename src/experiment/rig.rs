@@ -1,0 +1,146 @@
+use std::time::Duration;
+
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+use thiserror::Error;
+
+use crate::floor::{Floor, Geometry};
+use crate::sense::{Assembler, ForceFrame};
+use crate::sim::{self, CalibrationError, Load, MoveError, SimConfig, SimFloor};
+use crate::units::{Instant, Newtons};
+use crate::wire::SensorPacket;
+
+/// Standard deviation of a sensor's zero since it was tared, in newtons.
+pub const OFFSET_N: f32 = 0.5;
+
+/// Why an experiment could not be made.
+#[derive(Debug, Error)]
+pub enum ExperimentError {
+    /// A sensor of the simulated floor cannot be calibrated.
+    #[error(transparent)]
+    Calibration(#[from] CalibrationError),
+    /// A simulated person cannot do what the experiment asks.
+    #[error("a simulated person cannot move so: {0}")]
+    Move(#[from] MoveError),
+    /// The experiment's own layout is refused.
+    #[error("the experiment's layout is refused: {0}")]
+    Layout(String),
+}
+
+/// A simulated floor with everything behind it up to the force frames: packets, calibration, tare.
+#[derive(Debug)]
+pub struct Rig {
+    sim: SimFloor,
+    geometry: Geometry,
+    assembler: Assembler,
+    now: Instant,
+    sequence: u32,
+}
+
+impl Rig {
+    /// A floor of the paper's parts, calibrated in the laboratory from `seed`; since then each
+    /// sensor's zero has drifted by [`OFFSET_N`].
+    ///
+    /// # Errors
+    /// [`ExperimentError::Calibration`] if a part follows no law.
+    pub fn of_calibrated_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
+        let wired = Floor::of(geometry);
+        let sim = SimFloor::new(&wired, SimConfig::default(), seed);
+        let mut floor = sim::calibrated(&wired, &sim, seed)?;
+        drift(&mut floor, seed);
+        Ok(Self::over(sim, &floor))
+    }
+
+    /// A floor without error.
+    #[must_use]
+    pub fn ideal(geometry: Geometry) -> Self {
+        let floor = Floor::of(geometry);
+        Self::over(SimFloor::new(&floor, SimConfig::ideal(), 0), &floor)
+    }
+
+    /// The simulated floor `sim`, heard with the calibration and tare of `floor`.
+    #[must_use]
+    pub fn over(sim: SimFloor, floor: &Floor) -> Self {
+        let geometry = floor.geometry;
+        Self { sim, geometry, assembler: Assembler::new(floor), now: Instant::START, sequence: 0 }
+    }
+
+    /// Where the tiles are.
+    #[must_use]
+    pub const fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
+    /// The millisecond that was stepped last.
+    #[must_use]
+    pub const fn now(&self) -> Instant {
+        self.now
+    }
+
+    /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.
+    pub fn step(&mut self, loads: impl IntoIterator<Item = Load>, mut sensed: impl FnMut(&ForceFrame)) {
+        self.now = self.now + Duration::from_millis(1);
+        self.sequence = self.sequence.wrapping_add(1);
+        let (sequence, received) = (self.sequence, self.now);
+        for (board, readings) in (0..).zip(self.sim.step_under(loads)) {
+            self.assembler.take(&SensorPacket { board, sequence, received, readings: readings.clone() });
+        }
+        while let Some(frame) = self.assembler.ready() {
+            sensed(frame);
+        }
+    }
+
+    /// Lets milliseconds pass under the same loads.
+    pub fn hold(&mut self, millis: u32, loads: &[Load], mut sensed: impl FnMut(&ForceFrame)) {
+        for _ in 0..millis {
+            self.step(loads.iter().copied(), &mut sensed);
+        }
+    }
+}
+
+/// Moves each sensor's zero by some half a newton.
+fn drift(floor: &mut Floor, seed: u64) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x00ff_5e75);
+    for tare in floor.tare.iter_mut().flatten() {
+        let normal: f32 = StandardNormal.sample(&mut rng);
+        *tare += Newtons(OFFSET_N * normal);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::sim::Print;
+
+    fn load(force: f32) -> Load {
+        Load { print: Print::Point, position: Vec2::splat(0.2), heading: 0.0, force: Newtons(force) }
+    }
+
+    fn sum(frame: &ForceFrame) -> f32 {
+        frame.forces.iter().flatten().sum()
+    }
+
+    #[test]
+    fn every_millisecond_gives_its_own_frame() {
+        let mut rig = Rig::ideal(Geometry::of_paper_tiles(2, 3).unwrap());
+        for step in 1..=50_u16 {
+            let mut frames = Vec::new();
+            rig.step([load(f32::from(step))], |frame| frames.push((frame.at, sum(frame).round() as u16)));
+            assert_eq!(frames, [(Instant::from_millis(step.into()), step)]);
+            assert_eq!(rig.now(), Instant::from_millis(step.into()));
+        }
+    }
+
+    #[test]
+    fn an_empty_floor_of_calibrated_parts_is_half_a_newton_off_per_sensor() {
+        let geometry = Geometry::default();
+        let mut rig = Rig::of_calibrated_parts(geometry, 3).unwrap();
+        let mut squares = 0.0;
+        rig.hold(1, &[], |frame| squares = frame.forces.iter().flatten().map(|force| force * force).sum());
+        let deviation = (squares / 144.0_f32).sqrt();
+        assert!((0.4..0.6).contains(&deviation), "{deviation} N over 144 sensors");
+    }
+}

@@ -1,0 +1,359 @@
+//! How well one contact is found: over a whole tile, and at its seams.
+
+use std::fmt;
+
+use glam::Vec2;
+use serde::Serialize;
+
+use super::METHODS;
+use super::errors::{Errors, Summary};
+use super::rig::{ExperimentError, Rig};
+use crate::floor::{Geometry, TileId};
+use crate::sense::{Method, Sensing};
+use crate::sim::{Load, Print};
+use crate::units::Newtons;
+
+/// Forces at which single contacts are tried, in newtons.
+pub const FORCES_N: [f32; 4] = [50.0, 100.0, 200.0, 400.0];
+
+/// How long a contact lies still before it is measured, in milliseconds.
+const SETTLE_MS: u32 = 60;
+
+/// How long the floor is empty between two contacts, in milliseconds.
+const PAUSE_MS: u32 = 15;
+
+/// How far inside the plate's edges contacts are tried, in metres.
+const MARGIN_M: f32 = 0.005;
+
+/// What is put on the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Thing {
+    /// A single point, as in the paper's figure 8.
+    Point,
+    /// A shoe on a 26 cm foot, standing flat, turned another way at each place.
+    Foot,
+}
+
+impl Thing {
+    /// Both, in the order of the tables.
+    pub const ALL: [Self; 2] = [Self::Point, Self::Foot];
+
+    /// The thing with its centre of pressure at `at`; `turn` makes the places differ in direction.
+    fn load(self, at: Vec2, force: Newtons, turn: usize) -> Load {
+        let (print, heading) = match self {
+            Self::Point => (Print::Point, 0.0),
+            // Steps by the golden angle never line up with the raster.
+            Self::Foot => (Print::Shoe { length_m: 0.26, roll: 0.4 }, turn as f32 * 2.399_963),
+        };
+        let load = Load { print, position: Vec2::ZERO, heading, force };
+        Load { position: at - load.centre_of_pressure(), ..load }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Point => "point",
+            Self::Foot => "foot",
+        }
+    }
+}
+
+/// A floor of three by three tiles, of which the middle one is tried.
+struct Bench {
+    rig: Rig,
+    sensing: [Sensing; 2],
+    tried: usize,
+}
+
+impl Bench {
+    fn new(seed: u64) -> Result<Self, ExperimentError> {
+        Ok(Self::over(Rig::of_calibrated_parts(geometry(), seed)?))
+    }
+
+    fn over(rig: Rig) -> Self {
+        let sensing = METHODS.map(|(method, _)| Sensing::new(*rig.geometry(), method));
+        Self { rig, sensing, tried: 0 }
+    }
+
+    /// Where each method finds the thing: its heaviest contact; `None` if it finds none.
+    fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; 2] {
+        self.tried += 1;
+        let load = thing.load(at, force, self.tried);
+        let Self { rig, sensing, .. } = self;
+        let mut sense = |frame: &_| {
+            for sensing in sensing.iter_mut() {
+                sensing.update(frame);
+            }
+        };
+        rig.hold(PAUSE_MS, &[], &mut sense);
+        rig.hold(SETTLE_MS, &[load], &mut sense);
+        self.sensing.each_ref().map(|sensing| {
+            let heaviest = sensing.contacts().iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0));
+            heaviest.map(|contact| contact.centroid)
+        })
+    }
+}
+
+fn geometry() -> Geometry {
+    Geometry::of_paper_tiles(3, 3).unwrap_or_default()
+}
+
+/// `side` by `side` places over the middle tile, row by row from the south-west.
+fn raster(geometry: &Geometry, side: u16) -> impl Iterator<Item = Vec2> + use<> {
+    let plate = geometry.plate(TileId::new(1, 1)).grown(-MARGIN_M);
+    let share = move |step: u16| f32::from(step) / f32::from(side.max(2) - 1);
+    (0..side)
+        .flat_map(move |row| (0..side).map(move |column| Vec2::new(share(column), share(row))))
+        .map(move |share| plate.min + plate.size() * share)
+}
+
+/// One line of a [`SpotTable`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpotRow {
+    /// What was put on the tile.
+    pub thing: Thing,
+    /// Its force.
+    pub force: Newtons,
+    /// How contacts were made.
+    pub method: Method,
+    /// Distance from the true centre of pressure.
+    pub errors: Errors,
+    /// Places at which nothing was found.
+    pub missed: usize,
+}
+
+/// How well a single contact is found over one whole tile, up to half a centimetre from its edges.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SpotTable {
+    /// One line per thing, force and method.
+    pub rows: Vec<SpotRow>,
+    side: u16,
+    floors: usize,
+}
+
+impl SpotTable {
+    /// An empty table of `side` x `side` places per tile.
+    #[must_use]
+    pub fn new(side: u16) -> Self {
+        let row = |thing, force, method| SpotRow {
+            thing,
+            force: Newtons(force),
+            method,
+            errors: Errors::default(),
+            missed: 0,
+        };
+        let rows = Thing::ALL
+            .into_iter()
+            .flat_map(|thing| FORCES_N.map(|force| METHODS.map(|(method, _)| row(thing, force, method))))
+            .flatten()
+            .collect();
+        Self { rows, side, floors: 0 }
+    }
+
+    /// Tries the middle tile of another floor, whose parts follow from `seed`.
+    ///
+    /// # Errors
+    /// Those of [`Rig::of_calibrated_parts`].
+    pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
+        let mut bench = Bench::new(seed)?;
+        self.floors += 1;
+        for pair in self.rows.chunks_exact_mut(METHODS.len()) {
+            let (thing, force) = (pair[0].thing, pair[0].force);
+            for at in raster(&geometry(), self.side) {
+                for (row, found) in pair.iter_mut().zip(bench.find(thing, at, force)) {
+                    match found {
+                        Some(found) => row.errors.push(found.distance(at)),
+                        None => row.missed += 1,
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+}
+
+impl fmt::Display for SpotTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { side, floors, .. } = self;
+        writeln!(f, "error of one contact over a whole tile, {side} x {side} places on {floors} floors, cm")?;
+        writeln!(f, "thing  force_n  method    median     p95   worst  missed")?;
+        for row in &self.rows {
+            let method = name(row.method);
+            let SpotRow { thing, force, errors, missed, .. } = row;
+            writeln!(f, "{:5}  {:7.0}  {method:8}{errors}  {missed:6}", thing.name(), force.0)?;
+        }
+        Ok(())
+    }
+}
+
+/// One line of a [`SeamTable`].
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeamRow {
+    /// Errors in the middle of a tile: centre of pressure within 5 cm of the tile's centre.
+    pub middle: Errors,
+    /// Errors at a seam: centre of pressure within 2 cm of it, and not near a corner.
+    pub seam: Errors,
+}
+
+impl SeamRow {
+    /// Median error at a seam over that in the middle; `None` without both.
+    #[must_use]
+    pub fn ratio(&self) -> Option<f32> {
+        Some(self.seam.quantile(0.5)? / self.middle.quantile(0.5)?)
+    }
+}
+
+/// How much worse a contact is found while it crosses a seam than in the middle of a tile, at 120 N.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SeamTable {
+    rows: [[SeamRow; 2]; 2],
+    floors: usize,
+}
+
+impl SeamTable {
+    /// Tries another floor, whose parts follow from `seed`.
+    ///
+    /// # Errors
+    /// Those of [`Rig::of_calibrated_parts`].
+    pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
+        let mut bench = Bench::new(seed)?;
+        self.floors += 1;
+        let force = Newtons(120.0);
+        for (thing, rows) in Thing::ALL.into_iter().zip(&mut self.rows) {
+            for step in 0..PLACES {
+                let (middle, seam) = (place_in_the_middle(step), place_at_a_seam(step));
+                for (row, found) in rows.iter_mut().zip(bench.find(thing, middle, force)) {
+                    found.into_iter().for_each(|found| row.middle.push(found.distance(middle)));
+                }
+                for (row, found) in rows.iter_mut().zip(bench.find(thing, seam, force)) {
+                    found.into_iter().for_each(|found| row.seam.push(found.distance(seam)));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The line of one thing and method.
+    #[must_use]
+    pub fn row(&self, thing: Thing, method: Method) -> &SeamRow {
+        &self.rows[usize::from(thing == Thing::Foot)][usize::from(method == Method::Tracker)]
+    }
+}
+
+/// Places tried per floor, in the middle and at a seam each.
+const PLACES: u16 = 48;
+
+/// A low-discrepancy sequence over the unit square.
+fn spread(step: u16) -> Vec2 {
+    // Powers of the plastic number's inverse.
+    let index = f32::from(step) + 0.5;
+    Vec2::new((index * 0.754_877_7).fract(), (index * 0.569_840_3).fract())
+}
+
+fn place_in_the_middle(step: u16) -> Vec2 {
+    geometry().centre(TileId::new(1, 1)) + (spread(step) - 0.5) * 0.10
+}
+
+/// Within 2 cm of one of the middle tile's four seams, in the middle half of that seam.
+fn place_at_a_seam(step: u16) -> Vec2 {
+    let geometry = geometry();
+    let half = 0.5 * geometry.pitch_m();
+    let spread = spread(step) - 0.5;
+    let across = half + spread.x * 0.04;
+    let way = [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y][usize::from(step % 4)];
+    geometry.centre(TileId::new(1, 1)) + way * across + way.perp() * spread.y * half
+}
+
+impl fmt::Display for SeamTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(f, "error of one contact of 120 N at a seam and in mid-tile, {} floors, cm", self.floors)?;
+        writeln!(f, "               mid-tile                at a seam               ratio of")?;
+        writeln!(f, "thing  method    median     p95   worst  median     p95   worst  medians")?;
+        for (thing, rows) in Thing::ALL.into_iter().zip(&self.rows) {
+            for ((_, method), row) in METHODS.into_iter().zip(rows) {
+                let SeamRow { middle, seam } = row;
+                let ratio = row.ratio().unwrap_or(f32::NAN);
+                writeln!(f, "{:5}  {method:8}{middle}{seam}  {ratio:7.2}", thing.name())?;
+            }
+        }
+        Ok(())
+    }
+}
+
+/// One line of a [`SpotTable`] or [`SeamTable`] as a program reads it.
+#[derive(Debug, Serialize)]
+pub struct SpotLine {
+    thing: Thing,
+    force_n: f32,
+    method: &'static str,
+    place: &'static str,
+    #[serde(flatten)]
+    errors: Option<Summary>,
+}
+
+impl SpotTable {
+    /// All lines, for programs.
+    pub fn lines(&self) -> impl Iterator<Item = SpotLine> + '_ {
+        self.rows.iter().map(|row| SpotLine {
+            thing: row.thing,
+            force_n: row.force.0,
+            method: name(row.method),
+            place: "tile",
+            errors: row.errors.summary(),
+        })
+    }
+}
+
+impl SeamTable {
+    /// All lines, for programs.
+    pub fn lines(&self) -> impl Iterator<Item = SpotLine> + '_ {
+        Thing::ALL.into_iter().zip(&self.rows).flat_map(|(thing, rows)| {
+            METHODS.into_iter().zip(rows).flat_map(move |((_, method), row)| {
+                [("middle", &row.middle), ("seam", &row.seam)].map(|(place, errors)| SpotLine {
+                    thing,
+                    force_n: 120.0,
+                    method,
+                    place,
+                    errors: errors.summary(),
+                })
+            })
+        })
+    }
+}
+
+/// What a method is called in tables.
+pub(super) fn name(method: Method) -> &'static str {
+    METHODS.into_iter().find(|(known, _)| *known == method).map_or("", |(_, name)| name)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_ideal_floor_finds_points_and_feet_where_they_are() {
+        let mut bench = Bench::over(Rig::ideal(geometry()));
+        for thing in Thing::ALL {
+            for at in raster(&geometry(), 4).chain((0..8).map(place_at_a_seam)) {
+                for found in bench.find(thing, at, Newtons(100.0)) {
+                    let error = found.unwrap().distance(at);
+                    // A tile that carries less than 6 of the 100 N does not count, up to 10 cm away.
+                    assert!(error < 0.01, "{thing:?} at {at}: {error} m");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn places_are_where_their_names_say() {
+        let geometry = geometry();
+        let plate = geometry.plate(TileId::new(1, 1));
+        for step in 0..PLACES {
+            assert!(place_in_the_middle(step).distance(plate.centre()) <= 0.0708);
+            let seam = place_at_a_seam(step);
+            let off = (seam - plate.centre()).abs();
+            assert!((off.max_element() - 0.152).abs() <= 0.0201, "{seam}");
+            assert!(off.min_element() <= 0.0761, "{seam} is near a corner");
+        }
+    }
+}

@@ -1,0 +1,388 @@
+//! Whether a heavy foot beside a region disturbs the light one that works in it.
+
+use std::f32::consts::{FRAC_PI_2, TAU};
+use std::fmt;
+
+use glam::Vec2;
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use serde::Serialize;
+
+use super::METHODS;
+use super::errors::{Errors, Summary};
+use super::follow::DOWN_N;
+use super::rig::{ExperimentError, Rig};
+use crate::engine::{Engine, Snapshot};
+use crate::floor::{Geometry, Rect};
+use crate::layout::Layout;
+use crate::schema::{Kinds, parse_layout};
+use crate::sense::ForceFrame;
+use crate::sim::{Foot, shoe_size};
+use crate::units::Newtons;
+use crate::widget::EventKind;
+
+/// How the heavy foot stands.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Stance {
+    /// Its toes point at the region, as somebody stands who looks at it.
+    Facing,
+    /// It stands alongside the region's edge.
+    Beside,
+}
+
+impl Stance {
+    /// Both, in the order of the table.
+    pub const ALL: [Self; 2] = [Self::Facing, Self::Beside];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Facing => "facing",
+            Self::Beside => "beside",
+        }
+    }
+}
+
+/// One thing the working foot does in the region.
+#[derive(Clone, Copy, Debug)]
+struct Touch {
+    from: Vec2,
+    to: Vec2,
+    start_ms: u32,
+    end_ms: u32,
+}
+
+/// Somebody on one leg beside a region of 1.2 x 0.6 m, tapping and sliding in it with the other foot.
+#[derive(Clone, Debug)]
+struct Scene {
+    stance: Foot,
+    touching: Foot,
+    press: Newtons,
+    touches: Vec<Touch>,
+    sway: [f32; 2],
+}
+
+/// The region in tiles: its south edge lies in the middle of a row of tiles or on a seam.
+const REGION_TILES: [(f32, f32); 2] = [(1.0, 3.0), (1.0, 2.5)];
+const REGION_SIZE_TILES: (f32, f32) = (4.0, 2.0);
+
+/// Force from which on the region's control is pressed, in newtons: below every tap.
+const PRESS_N: f32 = 24.0;
+
+/// When the first touch begins: the foot has stood for a while.
+const FIRST_MS: u32 = 1200;
+const TAP_MS: u32 = 250;
+const SLIDE_MS: u32 = 1000;
+const PAUSE_MS: u32 = 700;
+const TOUCHES: u32 = 6;
+
+/// How long a foot takes to put its force on or off, in milliseconds.
+const RAMP_MS: f32 = 50.0;
+
+impl Scene {
+    fn of(seed: u64, stance: Stance, region: Rect) -> Self {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x7a95);
+        let length_m = rng.random_range(0.22..0.30);
+        let heavy = Newtons(rng.random_range(350.0..700.0));
+        let press = Newtons(rng.random_range(30.0..150.0));
+        let gap = rng.random_range(0.0..0.15);
+        let along = region.min.x + region.size().x * rng.random_range(0.35..0.65);
+        let shoe = shoe_size(length_m);
+        let (heading, reach) = match stance {
+            Stance::Facing => (rng.random_range(-0.2..0.2_f32), 0.5 * shoe.y),
+            Stance::Beside => (FRAC_PI_2, 0.5 * shoe.x),
+        };
+        let position = Vec2::new(along, region.min.y - gap - reach);
+        let standing = Foot { position, heading, length_m, force: heavy, roll: 0.4 };
+        // The other foot works to its right or left, not on top of where the first one stands.
+        let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
+        let touching = Foot { roll: 0.6, force: Newtons::ZERO, heading: 0.15 * side, ..standing };
+        let room = region.grown(-0.06);
+        let mut place = || {
+            let offset = Vec2::new(side * rng.random_range(0.05..0.40), rng.random_range(0.10..0.40));
+            Vec2::new(along + offset.x, region.min.y + offset.y).clamp(room.min, room.max)
+        };
+        let mut touches = Vec::new();
+        let mut start_ms = FIRST_MS;
+        for touch in 0..TOUCHES {
+            let from = clear_of(&standing, place());
+            let slides = touch % 2 == 1;
+            let to = if slides { clear_of(&standing, place()) } else { from };
+            // Nobody slides faster than 0.3 m/s with a foot that means something.
+            let to = from + (to - from).clamp_length_max(0.25);
+            let end_ms = start_ms + if slides { SLIDE_MS } else { TAP_MS };
+            touches.push(Touch { from, to, start_ms, end_ms });
+            start_ms = end_ms + PAUSE_MS;
+        }
+        let sway = [(); 2].map(|()| rng.random_range(0.0..TAU));
+        Self { stance: standing, touching, press, touches, sway }
+    }
+
+    fn length_ms(&self) -> u32 {
+        self.touches.last().map_or(0, |last| last.end_ms) + 300
+    }
+
+    /// The two feet at a moment; the working one without force while it is in the air.
+    fn feet(&self, milli: u32) -> [Foot; 2] {
+        let time = milli as f32;
+        let now = self.touches.iter().find(|touch| (touch.start_ms..touch.end_ms).contains(&milli));
+        let mut working = self.touching;
+        if let Some(touch) = now {
+            let (start, end) = (touch.start_ms as f32, touch.end_ms as f32);
+            let there = ease((time - start) / RAMP_MS) * ease((end - time) / RAMP_MS);
+            working.force = self.press * there;
+            // It slides while it presses fully, and rests a little at both ends.
+            let at = touch.from.lerp(touch.to, ease((time - start - 150.0) / (end - start - 300.0).max(1.0)));
+            working.position = Vec2::ZERO;
+            working.position = at - working.centre_of_pressure();
+        }
+        // The standing foot comes down first, carries what the other does not, and sways a little.
+        let sway = |hertz: f32, phase: usize| (TAU * hertz * time * 1e-3 + self.sway[phase]).sin();
+        let mut stance = self.stance;
+        stance.force = (self.stance.force + self.press) * ease(time / 200.0) - working.force;
+        stance.force = stance.force * (1.0 + 0.01 * sway(1.1, 0));
+        stance.roll += 0.03 * sway(0.4, 1);
+        [stance, working]
+    }
+}
+
+/// `point`, moved north until a foot that presses there does not stand on the other one's shoe.
+fn clear_of(standing: &Foot, point: Vec2) -> Vec2 {
+    let reach = shoe_size(standing.length_m).y * 0.5;
+    let front = standing.position.y
+        + if standing.heading.abs() > 1.0 { 0.5 * shoe_size(standing.length_m).x } else { reach };
+    let beside = (point.x - standing.position.x).abs() > 0.15 && standing.heading.abs() < 1.0;
+    // The ball lies some 6 cm before the middle of the shoe, whose heel reaches back.
+    let lowest = if beside { point.y } else { front + reach + 0.07 };
+    Vec2::new(point.x, point.y.max(lowest))
+}
+
+/// From 0 to 1, smoothly.
+fn ease(share: f32) -> f32 {
+    let share = share.clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// How one stance and method did.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TapScore {
+    /// Distance of the cursor from the centre of pressure of the foot that works in the region.
+    pub cursor: Errors,
+    /// Samples in which the foot pressed with more than 10 N, and those in which there was no cursor.
+    pub samples: usize,
+    /// Samples in which the foot pressed and there was no cursor.
+    pub without_cursor: usize,
+    /// Times that the foot touched the region.
+    pub touches: usize,
+    /// Touches that the control took for a press.
+    pub pressed: usize,
+    /// Further presses during a touch.
+    pub repeated: usize,
+    /// Presses while nothing touched the region.
+    pub out_of_nothing: usize,
+}
+
+/// The cursor and the events of a region, while a foot of 350 to 700 N stands 0 to 15 cm from it
+/// and the other one taps and slides in it with 30 to 150 N.
+///
+/// The whole region is one button, so that whatever presses anywhere in it counts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct TapTable {
+    /// One entry per method ([`METHODS`]) and stance ([`Stance::ALL`]).
+    pub scores: [[TapScore; 2]; 2],
+    people: usize,
+}
+
+/// How long after a touch its press may still be told: the foot has only just left.
+const AFTER_MS: u32 = 60;
+
+impl TapTable {
+    /// Lets the person that follows from `seed` use a region on a floor whose parts follow from it
+    /// too, in both stances.
+    ///
+    /// # Errors
+    /// Those of [`Rig::of_calibrated_parts`].
+    pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
+        for (which, stance) in Stance::ALL.into_iter().enumerate() {
+            let geometry = Geometry::default();
+            let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], &geometry)?;
+            let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
+            let scene = Scene::of(seed, stance, region);
+            let mut rig = Rig::of_calibrated_parts(geometry, seed)?;
+            let scores = &mut self.scores;
+            let mut engines = METHODS.map(|(method, _)| Watched {
+                engine: Engine::new(geometry, layout.clone(), method),
+                snapshot: Snapshot::default(),
+                presses: vec![0; scene.touches.len()],
+            });
+            for milli in 1..=scene.length_ms() {
+                let feet = scene.feet(milli);
+                rig.step(feet.iter().map(Foot::as_load), |frame| {
+                    for (watched, scores) in engines.iter_mut().zip(scores.iter_mut()) {
+                        watched.step(frame, &scene, milli, &feet[1], &mut scores[which]);
+                    }
+                });
+            }
+            for (watched, scores) in engines.iter().zip(scores.iter_mut()) {
+                let score = &mut scores[which];
+                score.touches += watched.presses.len();
+                score.pressed += watched.presses.iter().filter(|&&presses| presses > 0).count();
+                score.repeated +=
+                    watched.presses.iter().map(|presses| presses.saturating_sub(1)).sum::<usize>();
+            }
+        }
+        self.people += 1;
+        Ok(())
+    }
+
+    fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, &TapScore)> + '_ {
+        METHODS.into_iter().zip(&self.scores).flat_map(|((_, method), scores)| {
+            Stance::ALL.into_iter().zip(scores).map(move |(stance, score)| (method, stance.name(), score))
+        })
+    }
+
+    /// All lines, for programs.
+    pub fn lines(&self) -> impl Iterator<Item = TapLine> + '_ {
+        self.named().map(|(method, stance, score)| TapLine {
+            method,
+            stance,
+            cursor: score.cursor.summary(),
+            without_cursor: score.without_cursor as f32 / score.samples.max(1) as f32,
+            touches: score.touches,
+            pressed: score.pressed,
+            repeated: score.repeated,
+            out_of_nothing: score.out_of_nothing,
+        })
+    }
+}
+
+/// An engine and what it made of each touch.
+struct Watched {
+    engine: Engine,
+    snapshot: Snapshot,
+    presses: Vec<usize>,
+}
+
+impl Watched {
+    fn step(&mut self, frame: &ForceFrame, scene: &Scene, milli: u32, working: &Foot, score: &mut TapScore) {
+        let pressed = self.engine.step(frame).events.iter().filter(|event| event.kind == EventKind::Pressed);
+        let pressed = pressed.count();
+        let touched = |touch: &Touch| (touch.start_ms..touch.end_ms + AFTER_MS).contains(&milli);
+        match scene.touches.iter().position(touched) {
+            Some(touch) => self.presses[touch] += pressed,
+            None => score.out_of_nothing += pressed,
+        }
+        if working.force.0 > DOWN_N {
+            self.engine.snapshot(&mut self.snapshot);
+            score.samples += 1;
+            match self.snapshot.cursors.first().copied().flatten() {
+                Some(cursor) => score.cursor.push(cursor.position.distance(working.centre_of_pressure())),
+                None => score.without_cursor += 1,
+            }
+        }
+    }
+}
+
+/// One region, all of it a button.
+fn layout(at: (f32, f32), geometry: &Geometry) -> Result<Layout, ExperimentError> {
+    let (size, release) = (REGION_SIZE_TILES, 0.6 * PRESS_N);
+    let text = format!(
+        "Layout(version: 1, title: \"Taps\", regions: [(id: \"all\", at: {at:?}, size: {size:?})],
+         widgets: [(id: \"all\", kind: \"button\", at: {at:?}, size: {size:?},
+                    press_n: {PRESS_N:?}, release_n: {release:?})])"
+    );
+    let loaded = parse_layout(&text, "taps", &Kinds::builtin(), geometry);
+    loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
+}
+
+/// One line of a [`TapTable`] as a program reads it.
+#[derive(Debug, Serialize)]
+pub struct TapLine {
+    method: &'static str,
+    stance: &'static str,
+    cursor: Option<Summary>,
+    without_cursor: f32,
+    touches: usize,
+    pressed: usize,
+    repeated: usize,
+    out_of_nothing: usize,
+}
+
+impl fmt::Display for TapTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "error of the cursor, {} people standing 0 to 15 cm from its region with 350 to 700 N,\n\
+             tapping and sliding in it with 30 to 150 N, cm",
+            self.people
+        )?;
+        writeln!(
+            f,
+            "                                          no cursor  touches           again in  presses out"
+        )?;
+        writeln!(
+            f,
+            "method  stance    median     p95   worst          %           pressed  a touch   of nothing"
+        )?;
+        for (method, stance, score) in self.named() {
+            let TapScore { cursor, touches, pressed, repeated, out_of_nothing, .. } = score;
+            let without = 100.0 * score.without_cursor as f32 / score.samples.max(1) as f32;
+            writeln!(
+                f,
+                "{method:8}{stance:8}{cursor}{without:11.2}{touches:9}{pressed:9}{repeated:9}{out_of_nothing:13}"
+            )?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn scenes() -> impl Iterator<Item = (Rect, Scene)> {
+        let geometry = Geometry::default();
+        (0..60_u64).flat_map(move |seed| {
+            let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], &geometry).unwrap();
+            let region = layout.regions[0].area;
+            Stance::ALL.map(|stance| (region, Scene::of(seed, stance, region)))
+        })
+    }
+
+    #[test]
+    fn one_foot_stands_beside_the_region_and_the_other_one_works_in_it() {
+        for (region, scene) in scenes() {
+            let half = shoe_size(scene.stance.length_m) * 0.5;
+            let reach = if scene.stance.heading > 1.0 { half.x } else { half.y };
+            let gap = region.min.y - scene.stance.position.y - reach;
+            assert!((-1e-4..0.1501).contains(&gap), "{gap} m between shoe and region");
+            let mut greatest = 0.0_f32;
+            for milli in 1..=scene.length_ms() {
+                let [stance, working] = scene.feet(milli);
+                if milli > 200 {
+                    assert!((340.0..870.0).contains(&stance.force.0), "{:?}", stance.force);
+                }
+                greatest = greatest.max(working.force.0);
+                if working.force.0 > 0.0 {
+                    assert!(region.contains(working.centre_of_pressure()), "{working:?}");
+                    let apart = working.position.distance(stance.position);
+                    assert!(apart > 0.095, "{apart} m between two shoes");
+                }
+            }
+            assert!((29.0..151.0).contains(&greatest), "{greatest} N");
+        }
+    }
+
+    #[test]
+    fn feet_neither_jump_nor_leap_while_they_press() {
+        for (_, scene) in scenes().take(20) {
+            for milli in 201..scene.length_ms() {
+                let ([stance, working], [next, later]) = (scene.feet(milli), scene.feet(milli + 1));
+                assert!((stance.force - next.force).0.abs() < 15.0);
+                if working.force.0 > 0.0 && later.force.0 > 0.0 {
+                    assert!(working.position.distance(later.position) < 0.002);
+                }
+            }
+        }
+    }
+}
