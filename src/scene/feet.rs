@@ -78,12 +78,17 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     // A larger floor is seen from further away, a single tile from nearby.
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
     let (ground, size_m) = (Paint::fill(Ink::faint(theme.plate, 0.92)), 0.026 * by);
-    // Beside the circle, to the north-east, but never off the drawing.
+    // Beside the circle, to the north-east, but never off the drawing; on a control to the
+    // south-west, for names and values stand in the control's north.
     let floor = view.geometry.bounds();
-    let away = Vec2::new(0.72 * radius + 0.085 * by, 0.72 * radius + 0.030 * by);
-    let x = if at.x + away.x + 0.08 * by > floor.max.x { at.x - away.x } else { at.x + away.x };
+    let mut away = Vec2::new(0.72 * radius + 0.085 * by, 0.72 * radius + 0.030 * by);
+    if view.layout.widget_at(at).is_some() {
+        away = -away;
+    } else if at.x + away.x + 0.08 * by > floor.max.x {
+        away.x = -away.x;
+    }
     let inside = Vec2::new(0.08, 0.03) * by;
-    let middle = Vec2::new(x, at.y + away.y).min(floor.max - inside).max(floor.min + inside);
+    let middle = (at + away).min(floor.max - inside).max(floor.min + inside);
     let edged = ground.with_stroke(Stroke::new(0.0018, Ink::faint(colour, 0.7)));
     let number = contact.id.0;
     scene.add_badge(
