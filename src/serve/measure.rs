@@ -165,7 +165,8 @@ mod tests {
             assert_eq!(range.force.greatest_n, 100.0);
             assert_eq!(range.force.least_n, 100.0 / f32::from(frames));
             let off = (range.force.median_n - 50.0).abs();
-            assert!(off <= 60.0 / f32::from(frames.min(500)), "{off} after {frames}");
+            // The upper of the two middle steps of the ramp, at worst a step of the kept ones further.
+            assert!(off <= 110.0 / f32::from(frames.min(500)), "{off} after {frames}");
             assert!(watch.tiles[1][0].kept.len() <= MOMENTS);
         }
     }
