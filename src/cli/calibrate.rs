@@ -68,3 +68,8 @@ fn today() -> Day {
 fn count(number: usize, what: &str) -> String {
     if number == 1 { format!("1 {what}") } else { format!("{number} {what}s") }
 }
+
+/// As many decimals as a residual deserves in a file.
+fn rounded(residual: f32) -> f32 {
+    (f64::from(residual * 1e4).round() / 1e4) as f32
+}

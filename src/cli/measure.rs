@@ -148,7 +148,10 @@ fn print(ranges: &[TileRange]) {
 }
 
 fn shown(range: &ForceRange) -> String {
-    format!("  {:>6.1} {:>6.1} {:>6.1}", range.least_n, range.median_n, range.greatest_n)
+    // Adding zero takes the sign off a zero.
+    let tenths = |force: f32| (10.0 * force).round() / 10.0 + 0.0;
+    let [least, median, most] = [range.least_n, range.median_n, range.greatest_n].map(tenths);
+    format!("  {least:>6.1} {median:>6.1} {most:>6.1}")
 }
 
 fn quality_name(quality: Quality) -> &'static str {

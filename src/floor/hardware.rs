@@ -90,6 +90,13 @@ impl Floor {
         tile.map_or(Calibration::NOMINAL, |laws| laws[sensor.corner.index()])
     }
 
+    /// How many of the sensors that boards read have no law of their own, and how many sensors boards read.
+    #[must_use]
+    pub fn uncalibrated(&self) -> (usize, usize) {
+        let wired = || self.boards.iter().flat_map(|board| board.channels.iter().flatten());
+        (wired().filter(|sensor| self.law(**sensor) == Calibration::NOMINAL).count(), wired().count())
+    }
+
     /// Number of actuator channels a device must have for this floor: the highest channel used plus one.
     #[must_use]
     pub fn channel_count(&self) -> usize {

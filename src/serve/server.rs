@@ -14,7 +14,7 @@ use crate::sink::{ActuatorSink, EventSink};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::widget::Value;
-use crate::wire::{ControlMessage, LinkCounters};
+use crate::wire::{ControlMessage, LinkCounters, Readings};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -62,6 +62,8 @@ pub struct Server {
     link: LinkState,
     tare: TareOutcome,
     shown: Instant,
+    /// Sensors without a law of their own, until the person at the floor has been told.
+    uncalibrated: Option<(usize, usize)>,
 }
 
 impl Server {
@@ -82,6 +84,7 @@ impl Server {
             link: LinkState::Waiting,
             tare: TareOutcome::FromFloor,
             shown: Instant::START,
+            uncalibrated: Some(floor.uncalibrated()),
         }
     }
 
@@ -162,7 +165,12 @@ impl Server {
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.obey();
         match self.source.next(PATIENCE) {
-            Ok(Some(packet)) => self.assembler.take(&packet),
+            Ok(Some(packet)) => {
+                if let Readings::Counts(_) = packet.readings {
+                    self.tell_uncalibrated();
+                }
+                self.assembler.take(&packet);
+            }
             Ok(None) => {
                 let now = self.source.now();
                 self.assembler.poll(now);
@@ -259,6 +267,18 @@ impl Server {
                 TareOutcome::FromFloor => {}
             }
             self.tare = tare;
+        }
+    }
+
+    /// Says once that counts are read through laws nobody measured.
+    fn tell_uncalibrated(&mut self) {
+        if let Some((uncalibrated, sensors)) = self.uncalibrated.take()
+            && uncalibrated > 0
+        {
+            warn!(
+                "{uncalibrated} of {sensors} sensors were never calibrated and count as nominal parts: their forces \
+                 may be off by a third; `underfoot calibrate curves` measures them"
+            );
         }
     }
 

@@ -5,7 +5,7 @@ use underfoot::floor::{Calibration, CalibrationRecord, Floor};
 use underfoot::picture;
 use underfoot::sense::{Judgement, LoadTable, SensorLoads, Verdict};
 
-use super::{count, plot, read_table, today};
+use super::{count, plot, read_table, rounded, today};
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
 
@@ -84,7 +84,7 @@ fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     for (loads, judgement) in judged {
         match (judgement.verdict, judgement.fit) {
             (Verdict::Good | Verdict::Poor, Ok(fit)) => {
-                let record = CalibrationRecord { day, residual: fit.residual };
+                let record = CalibrationRecord { day, residual: rounded(fit.residual) };
                 floor.recalibrate(loads.sensor, fit.calibration, Some(record));
             }
             (Verdict::Replace, _) => {

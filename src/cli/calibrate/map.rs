@@ -4,7 +4,7 @@ use serde_json::json;
 use underfoot::floor::{Floor, MapRecord, TileId};
 use underfoot::sense::{Errors, MapError, MapFit, PressTable};
 
-use super::{count, read_table, today};
+use super::{count, read_table, rounded, today};
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
 
@@ -52,8 +52,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     } else {
         print(&fits);
         if table.saturated > 0 {
-            let presses = count(table.saturated, "press");
-            anstream::println!("{presses} with a sensor at 98 % of its range or above left out.");
+            let points = count(table.saturated, "point");
+            anstream::println!("{points} with a sensor at 98 % of its range or above left out.");
         }
         if saved.is_none() {
             anstream::eprintln!("Nothing is kept: say where with --out FLOOR.ron.");
@@ -73,7 +73,7 @@ fn keep(floor: &mut Floor, fits: &Fits) {
             (fit, floor.position_maps.get_mut(index), floor.map_records.get_mut(index))
         {
             *map = Some(fit.map);
-            *record = Some(MapRecord { day, residual_m: fit.after.p95_m });
+            *record = Some(MapRecord { day, residual_m: rounded(fit.after.p95_m) });
         }
     }
 }

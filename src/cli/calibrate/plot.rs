@@ -46,8 +46,8 @@ pub(super) fn draw(judged: &[(&SensorLoads, Judgement)]) -> Scene {
     let high = tiles.len().div_ceil(wide);
     let axes = Axes::of(judged);
     let pitch = PANEL + GAP;
-    let width = (2.0 * EDGE_M + wide as f32 * pitch.x).max(2.0 * EDGE_M + LEGEND_M);
-    let size = Vec2::new(width, 2.0 * EDGE_M + HEADER_M + high as f32 * pitch.y);
+    let width = (1.5 * EDGE_M + wide as f32 * pitch.x).max(2.0 * EDGE_M + LEGEND_M);
+    let size = Vec2::new(width, 1.2 * EDGE_M + HEADER_M + high as f32 * pitch.y);
     let mut scene = Scene::new();
     scene.clear(Rect::from_min_size(Vec2::ZERO, size), THEME.canvas);
     header(&mut scene, size);
