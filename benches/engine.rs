@@ -80,7 +80,7 @@ fn engine(criterion: &mut Criterion) {
                 |engine| {
                     frames.iter().for_each(|frame| {
                         black_box(engine.step(frame));
-                    })
+                    });
                 },
                 BatchSize::LargeInput,
             );
