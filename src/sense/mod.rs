@@ -1,13 +1,16 @@
 //! From calibrated forces to feet: frames, contacts and the cursor.
 //!
 //! ```text
-//! ForceFrame -loaded-> loaded tiles (F, M per tile; Eq. 2-3)
+//! ForceFrame -loaded, position maps-> loaded tiles (F, M per tile; Eq. 2-3)
 //!   -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
 //!   -cursor-> the contact that operates a region
 //! ```
 //!
 //! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
 //! among them, one picker per region.
+//!
+//! Calibration comes before all that: [`LoadTable`] and [`Fit`] give each sensor
+//! its law, [`PressTable`] and [`MapFit`] each tile its position map.
 
 mod assembler;
 mod calibration;
