@@ -193,8 +193,8 @@ impl Assembler {
             let (slot, buffer, received) = if due {
                 let first = self.waiting.remove(0);
                 (first.slot, Some(first.buffer), first.received)
-            } else if self.waiting.is_empty() && self.has_news() {
-                // Nobody delivers: only the news that boards fell silent.
+            } else if self.started && self.waiting.is_empty() && self.has_news() {
+                // Nobody delivers: only the news that boards fell silent. Before the first frame it is news to nobody.
                 let clock = self.clock.as_ref()?;
                 let slot = clock.slot_before(self.now_ns).max(self.done.saturating_add(1));
                 (slot, None, instant(self.now_ns))

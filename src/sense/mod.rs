@@ -1,7 +1,7 @@
 //! From calibrated forces to feet: frames, contacts and the cursor.
 //!
 //! ```text
-//! ForceFrame -loaded-> loaded tiles (F, M per tile; Eq. 2-3)
+//! ForceFrame -loaded, position maps-> loaded tiles (F, M per tile; Eq. 2-3)
 //!   -track-> feet, followed through time, several on one group of tiles
 //!   or -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
 //!   -cursor-> the contact that operates a region
@@ -9,6 +9,9 @@
 //!
 //! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
 //! among them, one picker per region.
+//!
+//! Calibration comes before all that: [`LoadTable`] and [`Fit`] give each sensor
+//! its law, [`PressTable`] and [`MapFit`] each tile its position map.
 
 mod assembler;
 mod calibration;
