@@ -79,14 +79,16 @@ impl EventSink for Notes {
     }
 }
 
-fn server(acts: &[(u32, Option<f32>)], requests: &[ControlMessage]) -> (Server, mpsc::Receiver<(u64, String)>) {
+fn server(
+    acts: &[(u32, Option<f32>)],
+    requests: &[ControlMessage],
+) -> (Server, mpsc::Receiver<(u64, String)>) {
     let wired = Floor::default();
     let sim = SimFloor::new(&wired, SimConfig::default(), 9);
     let floor = sim::calibrated(&wired, &sim, 9).unwrap();
     let page = layout("map");
     let home = page.widgets[page.widget_index("home").unwrap()].area.centre();
-    let mut foot =
-        Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6 };
+    let mut foot = Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6 };
     foot.position += home - foot.centre_of_pressure();
     let visit = Visit {
         sim,
@@ -97,7 +99,8 @@ fn server(acts: &[(u32, Option<f32>)], requests: &[ControlMessage]) -> (Server, 
         requests: requests.iter().cloned().collect(),
     };
     let (tell, told) = mpsc::channel();
-    let server = Server::new(&floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
+    let server =
+        Server::new(&floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
     (server, told)
 }
 
@@ -207,7 +210,8 @@ fn a_click_starts_with_the_sample_of_its_press() {
     let mut server = server.with_feel(feel, Box::new(sink));
     play(&mut server);
     drop(server);
-    let pressed = told.iter().find(|(_, what)| *what == format!("home {}", EventKind::Pressed.name())).unwrap().0;
+    let pressed =
+        told.iter().find(|(_, what)| *what == format!("home {}", EventKind::Pressed.name())).unwrap().0;
     let first = onsets.iter().next().unwrap().0;
     assert_eq!(first, pressed * 48, "48 samples a millisecond");
 }

@@ -31,6 +31,9 @@ const IDLE_LAG: Duration = Duration::from_millis(20);
 /// What is played after the last frame, so that the last click can ring out.
 const TAIL: Duration = Duration::from_millis(300);
 
+/// How long only some boards must have been heard for this to be news; controls on the others are long released.
+const SETTLING: Duration = Duration::from_millis(100);
+
 /// Something an app or a window asks of a floor at work.
 #[derive(Clone, Debug)]
 pub enum Command {
@@ -60,6 +63,8 @@ pub struct Server {
     snapshots: Option<Input<Snapshot>>,
     commands: Option<Receiver<Command>>,
     link: LinkState,
+    /// Since when only some boards have been heard.
+    partial_since: Option<Instant>,
     tare: TareOutcome,
     shown: Instant,
     /// Sensors without a law of their own, until the person at the floor has been told.
@@ -82,6 +87,7 @@ impl Server {
             snapshots: None,
             commands: None,
             link: LinkState::Waiting,
+            partial_since: None,
             tare: TareOutcome::FromFloor,
             shown: Instant::START,
             uncalibrated: Some(floor.uncalibrated()),
@@ -232,7 +238,7 @@ impl Server {
 
     /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
     fn note_link(&mut self) {
-        let link = self.assembler.link_state();
+        let link = self.settled_link();
         if link != self.link {
             let lost = link == LinkState::Lost;
             match &mut self.feel {
@@ -280,6 +286,18 @@ impl Server {
                  may be off by a third; `underfoot calibrate curves` measures them"
             );
         }
+    }
+
+    /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
+    fn settled_link(&mut self) -> LinkState {
+        let link = self.assembler.link_state();
+        if link != LinkState::Partial {
+            self.partial_since = None;
+            return link;
+        }
+        let now = self.source.now();
+        let since = *self.partial_since.get_or_insert(now);
+        if now.since(since) < SETTLING { self.link } else { link }
     }
 
     fn obey(&mut self) {

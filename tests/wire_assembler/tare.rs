@@ -1,5 +1,6 @@
 //! The tare measured at the start.
 
+use underfoot::engine::LinkState;
 use underfoot::sense::{Tare, TareOutcome, TareRules};
 use underfoot::units::Newtons;
 
@@ -56,4 +57,28 @@ fn a_board_that_boots_late_is_stale_until_it_is_tared() {
     assert!(frames.iter().all(|frame| frame.samples == [0.0; 3]));
     assert_eq!(frames[0].quality, [Quality::Live, Quality::Stale, Quality::Live]);
     assert!(frames[0].at_us <= 502_000);
+}
+
+#[test]
+fn a_floor_that_falls_silent_while_it_is_tared_gives_no_frame_and_is_tared_when_it_returns() {
+    let mut assembler = at_start();
+    assert_eq!(feed(&mut assembler, loaded(0, 200, |_, _| 7.0)), []);
+    // Every board falls silent: there is nothing to show yet, and asking for frames must come to an end.
+    for now_ms in [250, 350, 500, 2000] {
+        assert_eq!(poll(&mut assembler, now_ms), []);
+    }
+    assert_eq!(assembler.link_state(), LinkState::Lost);
+    let frames = feed(&mut assembler, loaded(3000, 4000, |_, _| 7.0));
+    assert_eq!(assembler.tare_outcome(), TareOutcome::Taken);
+    assert_eq!(frames.last().map(|frame| (frame.samples, frame.quality)), Some(([0.0; 3], LIVE)));
+}
+
+#[test]
+fn one_board_that_falls_silent_while_it_is_tared_does_not_hold_up_the_others() {
+    let mut assembler = at_start();
+    let mut packets = loaded(0, 2000, |_, _| 7.0);
+    packets.retain(|p| p.board != 1 || p.sequence < 200);
+    let frames = feed(&mut assembler, packets);
+    assert!(frames[0].at_us < 700_000, "{:?}", frames.first());
+    assert_eq!(frames[0].quality, [Quality::Live, Quality::Stale, Quality::Live]);
 }
