@@ -75,3 +75,55 @@ fn exactly<T, const COUNT: usize>(node: Node<'_>, entries: Vec<Option<T>>) -> Op
     let entries: Option<Vec<T>> = entries.into_iter().collect();
     entries?.try_into().ok()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::parse_floor;
+    use crate::floor::PositionMap;
+
+    fn complaints(fields: &str) -> String {
+        let text = format!("Floor(columns: 2, rows: 1,\n{fields}\n)");
+        parse_floor(&text, "floor.ron").unwrap_err().to_string()
+    }
+
+    #[test]
+    fn maps_belong_to_the_tiles_that_are_listed() {
+        let zeros = "0, 0, 0, 0, 0, 0, 0, 0, 0, 0";
+        let text = format!(
+            "Floor(columns: 2, rows: 1, tared: \"2026-11-20\", maps: [
+                (tile: (1, 0), bends: [[0.1, {}], [{zeros}]], mapped: \"2026-11-19\", residual_m: 0.004),
+            ])",
+            &zeros[3..]
+        );
+        let floor = parse_floor(&text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"));
+        assert_eq!(floor.position_maps[0], None);
+        let map = floor.position_maps[1].unwrap();
+        assert_eq!((map.bends[0][0], map.trims), (0.1, PositionMap::NONE.trims));
+        assert_eq!(floor.map_records[1].unwrap().residual_m, 0.004);
+        assert_eq!(floor.tared.unwrap().to_string(), "2026-11-20");
+    }
+
+    #[test]
+    fn wrong_maps_and_days_are_all_named() {
+        let told = complaints(
+            "tared: \"20.11.2026\",
+            sensors: [(tile: (0, 0), corner: Sw, calibrated: \"2026-11-20\")],
+            maps: [
+                (tile: (0, 0), trims: [[0, 0], [0], [0]], bends: [[7]]),
+                (tile: (1, 0), residual_m: 0.1),
+                (tile: (1, 0)),
+            ],",
+        );
+        for said in [
+            "`tared` is no day",
+            "`calibrated` needs `residual` beside it",
+            "expected 4",
+            "expected 11",
+            "`bends` is out of range",
+            "`residual_m` needs `mapped` beside it",
+            "the map of tile (1, 0) comes twice",
+        ] {
+            assert!(told.contains(said), "{said}: {told}");
+        }
+    }
+}
