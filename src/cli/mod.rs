@@ -4,6 +4,7 @@
 
 mod actuate;
 mod check;
+mod experiment;
 mod failure;
 mod floor_args;
 mod layout_args;
@@ -57,6 +58,8 @@ enum Command {
     Render(render::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
+    /// Make the paper's figures and the accuracy tables on a simulated floor.
+    Experiment(experiment::Args),
     /// Print completions for a shell.
     Completions {
         /// Which shell.
@@ -88,6 +91,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),
+        Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
             Ok(())
