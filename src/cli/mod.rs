@@ -5,6 +5,7 @@
 mod actuate;
 mod calibrate;
 mod check;
+mod experiment;
 mod failure;
 mod floor_args;
 mod layout_args;
@@ -63,6 +64,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
+    /// Make the paper's figures and the accuracy tables on a simulated floor.
+    Experiment(experiment::Args),
     /// Print completions for a shell.
     Completions {
         /// Which shell.
@@ -96,6 +99,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
+        Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
             Ok(())

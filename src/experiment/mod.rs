@@ -6,6 +6,10 @@
 //!
 //! | experiment | asks | source |
 //! |---|---|---|
+//! | [`Orientation`] | what two tiles' centroids say about a contact's direction | paper, figure 7 |
+//! | [`TileScan`] | where a point load is found on one tile | paper, figure 8 |
+//! | [`SeamObject`] | what one tile makes of an object over its edge | paper, figure 9 |
+//! | [`TwoFeet`] | what two feet on four tiles look like, before and after they are told apart | paper, figure 11 |
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
@@ -19,19 +23,30 @@
 //! # Ok::<(), underfoot::experiment::ExperimentError>(())
 //! ```
 
+mod chart;
 mod errors;
+mod figure;
 mod follow;
+mod orientation;
 mod people;
 mod rig;
+mod scan;
+mod seam_object;
 mod spot;
 mod taps;
+mod two_feet;
 
 pub use errors::{Errors, Summary};
+pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
+pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
+pub use scan::{Scan, ScanPoint, TileScan};
+pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing};
 pub use taps::{Stance, TapLine, TapScore, TapTable};
+pub use two_feet::TwoFeet;
 
 use crate::sense::Method;
 

@@ -14,7 +14,6 @@ use super::errors::Summary;
 use super::follow::{Followed, Follower, Truth};
 use super::rig::{ExperimentError, Rig};
 use crate::floor::Geometry;
-use crate::sense::Sensing;
 use crate::sim::{Foot, Load, MoveError, Performance, Person, Script};
 use crate::units::Instant;
 
@@ -163,7 +162,7 @@ impl PeopleTable {
         let mut rig = Rig::of_calibrated_parts(Geometry::default(), seed)?;
         let visit = Visit::of(seed, rig.geometry())?;
         let geometry = *rig.geometry();
-        let mut methods = METHODS.map(|(method, _)| (Sensing::new(geometry, method), Follower::default()));
+        let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
         let mut feet: Vec<Foot> = Vec::new();
         let mut truth: Vec<Truth> = Vec::new();
         let scores = &mut self.scores;

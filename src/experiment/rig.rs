@@ -5,8 +5,10 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
+use crate::engine::Engine;
 use crate::floor::{Floor, Geometry};
-use crate::sense::{Assembler, ForceFrame};
+use crate::layout::Layout;
+use crate::sense::{Assembler, ForceFrame, Method, Sensing};
 use crate::sim::{self, CalibrationError, Load, MoveError, SimConfig, SimFloor};
 use crate::units::{Instant, Newtons};
 use crate::wire::SensorPacket;
@@ -70,6 +72,18 @@ impl Rig {
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {
         &self.geometry
+    }
+
+    /// Sensing as this floor's calibration allows, with nobody on it yet.
+    #[must_use]
+    pub fn sensing(&self, method: Method) -> Sensing {
+        Sensing::new(self.geometry, method)
+    }
+
+    /// The controls of `layout` on this floor.
+    #[must_use]
+    pub fn engine(&self, layout: Layout, method: Method) -> Engine {
+        Engine::new(self.geometry, layout, method)
     }
 
     /// The millisecond that was stepped last.

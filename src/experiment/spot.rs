@@ -71,7 +71,7 @@ impl Bench {
     }
 
     fn over(rig: Rig) -> Self {
-        let sensing = METHODS.map(|(method, _)| Sensing::new(*rig.geometry(), method));
+        let sensing = METHODS.map(|(method, _)| rig.sensing(method));
         Self { rig, sensing, tried: 0 }
     }
 

@@ -211,7 +211,7 @@ impl TapTable {
             let mut rig = Rig::of_calibrated_parts(geometry, seed)?;
             let scores = &mut self.scores;
             let mut engines = METHODS.map(|(method, _)| Watched {
-                engine: Engine::new(geometry, layout.clone(), method),
+                engine: rig.engine(layout.clone(), method),
                 snapshot: Snapshot::default(),
                 presses: vec![0; scene.touches.len()],
             });

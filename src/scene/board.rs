@@ -161,7 +161,7 @@ impl Scene {
     }
 
     /// Adds `text` on a small rounded plate around `middle` and gives back the plate.
-    pub(super) fn add_badge(
+    pub(crate) fn add_badge(
         &mut self,
         middle: Vec2,
         size_m: f32,

@@ -1,0 +1,168 @@
+use std::path::{Path, PathBuf};
+
+use clap::Subcommand;
+use serde::Serialize;
+use underfoot::experiment::{
+    ExperimentError, Figure, Orientation, PeopleTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan,
+    TwoFeet,
+};
+use underfoot::picture;
+
+use super::failure::Failure;
+
+/// What `underfoot experiment` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Which way lines, ellipses and a disc across a seam seem to point (the paper's figure 7).
+    Figure7(FigureArgs),
+    /// Estimated against true positions of a point load over one tile (the paper's figure 8).
+    Figure8(FigureArgs),
+    /// An object of 51 N over the seam of two tiles at several angles (the paper's figure 9).
+    Figure9(FigureArgs),
+    /// Two feet on 2 x 2 tiles, before and after they are told apart (the paper's figure 11).
+    Figure11(FigureArgs),
+    /// How well one contact is found, over a whole tile and at its seams.
+    Spot(SpotArgs),
+    /// How well both feet of people are found, and the cursor of a foot that works beside a heavy one.
+    Feet(FeetArgs),
+}
+
+#[derive(clap::Args, Debug)]
+struct FigureArgs {
+    /// Folder for the PNG, SVG and CSV files; made if it is missing.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Which parts the simulated floor is made of.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Width of the PNG, in pixels.
+    #[arg(long, value_name = "PX", default_value_t = 1800)]
+    width: u32,
+}
+
+#[derive(clap::Args, Debug)]
+struct SpotArgs {
+    /// How many floors, each of other parts.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    floors: u64,
+    /// The first floor's parts; the next ones follow.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// One JSON object instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args, Debug)]
+struct FeetArgs {
+    /// How many people, each on a floor of other parts.
+    #[arg(long, value_name = "N", default_value_t = 20)]
+    people: u64,
+    /// The first person; the next ones follow.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// One JSON object instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Makes the experiment.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    match &args.what {
+        What::Figure7(args) => args.make("figure7", &Orientation::measure(args.seed)?),
+        What::Figure8(args) => args.make("figure8", &TileScan::measure(args.seed)?),
+        What::Figure9(args) => args.make("figure9", &SeamObject::measure(args.seed)?),
+        What::Figure11(args) => args.make("figure11", &TwoFeet::measure(args.seed)?),
+        What::Spot(args) => spot(args),
+        What::Feet(args) => feet(args),
+    }
+}
+
+impl FigureArgs {
+    /// Writes the picture twice and its data, and says what came out and where.
+    fn make(&self, name: &str, figure: &dyn Figure) -> Result<(), Failure> {
+        let failed = |path: &Path| {
+            let path = path.to_path_buf();
+            move |error| Failure::File(path, error)
+        };
+        std::fs::create_dir_all(&self.out).map_err(failed(&self.out))?;
+        let scene = figure.draw();
+        anstream::print!("{}", figure.summary());
+        for ending in ["png", "svg"] {
+            let path = self.out.join(name).with_extension(ending);
+            picture::write(&scene, &path, self.width)?;
+            anstream::println!("{}", path.display());
+        }
+        let path = self.out.join(name).with_extension("csv");
+        std::fs::write(&path, figure.csv()).map_err(failed(&path))?;
+        anstream::println!("{}", path.display());
+        Ok(())
+    }
+}
+
+fn spot(args: &SpotArgs) -> Result<(), Failure> {
+    let (mut tile, mut seam) = (SpotTable::new(15), SeamTable::default());
+    counted("floor", args.floors, |step| {
+        tile.add_floor(args.seed.wrapping_add(step))?;
+        seam.add_floor(args.seed.wrapping_add(step))
+    })?;
+    if args.json {
+        #[derive(Serialize)]
+        struct Tables<L> {
+            lines: Vec<L>,
+        }
+        return print_json(&Tables { lines: tile.lines().chain(seam.lines()).collect() });
+    }
+    anstream::println!("{tile}\n{seam}");
+    Ok(())
+}
+
+fn feet(args: &FeetArgs) -> Result<(), Failure> {
+    let (mut people, mut taps) = (PeopleTable::default(), TapTable::default());
+    counted("person", args.people, |step| {
+        people.add_person(args.seed.wrapping_add(step))?;
+        taps.add_person(args.seed.wrapping_add(step))
+    })?;
+    if args.json {
+        #[derive(Serialize)]
+        struct Tables<P, T> {
+            people: Vec<P>,
+            taps: Vec<T>,
+        }
+        return print_json(&Tables { people: people.lines().collect(), taps: taps.lines().collect() });
+    }
+    anstream::println!("{people}\n{taps}");
+    Ok(())
+}
+
+/// Does something so many times, telling on standard error how far it has come.
+fn counted(
+    what: &str,
+    times: u64,
+    mut act: impl FnMut(u64) -> Result<(), ExperimentError>,
+) -> Result<(), Failure> {
+    for step in 0..times {
+        anstream::eprint!("\r{what} {} of {times} ", step + 1);
+        act(step)?;
+    }
+    anstream::eprint!("\r                              \r");
+    Ok(())
+}
+
+fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    let text = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
+    anstream::println!("{text}");
+    Ok(())
+}
+
+impl From<ExperimentError> for Failure {
+    fn from(error: ExperimentError) -> Self {
+        Self::Other(error.to_string())
+    }
+}
