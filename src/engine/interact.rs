@@ -20,6 +20,7 @@ const LANDING: Duration = Duration::from_millis(300);
 /// The controls of one layout at work.
 #[derive(Debug)]
 pub(super) struct Interaction {
+    geometry: Geometry,
     regions: Vec<RegionState>,
     controls: Vec<Control>,
     /// Tiles under each control, by index.
@@ -65,7 +66,7 @@ impl Interaction {
         let tiles = layout.widgets.iter().map(|widget| tiles_under(widget, geometry)).collect();
         let awake = (0..controls.len()).collect();
         let unsensed = vec![false; controls.len()];
-        Self { regions, controls, tiles, unsensed, awake, landed: Vec::new() }
+        Self { geometry: *geometry, regions, controls, tiles, unsensed, awake, landed: Vec::new() }
     }
 
     pub(super) fn controls(&self) -> &[Control] {
@@ -222,7 +223,11 @@ impl Interaction {
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 if off && !control.captures() { Input::SlidOff } else { foot(contact, spec, frame) }
             }
-            None => Input::Foot { force: Newtons::ZERO, trusted: true, place: place(held.position, spec) },
+            // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
+            None if is_sensed_at(held.position, &self.geometry, frame) => {
+                Input::Foot { force: Newtons::ZERO, trusted: true, place: place(held.position, spec) }
+            }
+            None => Input::Lost,
         };
         let emitted = control.step(frame.at, input);
         region.held = control.is_engaged().then_some(held);
@@ -307,6 +312,11 @@ impl RegionState {
 fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame) -> Input {
     let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed));
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget) }
+}
+
+fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {
+    let tile = geometry.tile_under(point).and_then(|tile| geometry.index(tile));
+    tile.and_then(|tile| frame.quality.get(tile)).is_none_or(is_sensed)
 }
 
 /// A tile goes on with three sensors.

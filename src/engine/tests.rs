@@ -228,6 +228,30 @@ fn losing_the_floor_cancels_and_a_loaded_control_must_be_lifted_afterwards() {
 }
 
 #[test]
+fn a_captured_foot_lost_with_its_tile_cancels_and_commits_nothing() {
+    let mut floor = Floor::with_page();
+    let (west, east) = (Vec2::new(0.6, 1.5), Vec2::new(1.2, 1.5));
+    floor.stand(&[(west, 80.0)], 60);
+    floor.slide(west, east, 80.0, 0.3);
+    // On to tiles south of the slider, whose board then fails.
+    let beyond = Vec2::new(1.2, 1.1);
+    floor.slide(east, beyond, 80.0, 0.3);
+    let row = floor.geometry.tile_under(beyond).unwrap().row;
+    for _ in 0..30 {
+        let mut frame = floor.frame(&[]);
+        for (tile, quality) in floor.geometry.tiles().zip(&mut frame.quality) {
+            if tile.row == row {
+                *quality = [Quality::Stale; 4];
+            }
+        }
+        floor.give(&frame);
+    }
+    let events = floor.events_of("zoom");
+    assert_eq!(events.last(), Some(&EventKind::Cancelled));
+    assert_eq!(floor.engine.value("zoom"), Some(Value::Number(0.0)), "back where it was");
+}
+
+#[test]
 fn one_dead_sensor_leaves_its_tile_at_work() {
     let mut floor = Floor::with_page();
     let tile = floor.geometry.index(floor.geometry.tile_under(HOME).unwrap()).unwrap();
