@@ -1,6 +1,7 @@
 //! From calibrated forces to feet: frames, contacts and the cursor.
 //!
 //! ```text
+//! counts -assembler, health-> ForceFrame
 //! ForceFrame -loaded-> loaded tiles (F, M per tile; Eq. 2-3)
 //!   -track-> feet, followed through time, several on one group of tiles
 //!   or -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
@@ -19,6 +20,7 @@ mod doubt;
 mod eq4;
 mod force_table;
 mod frame;
+mod health;
 mod loaded;
 mod pool;
 mod quality;
@@ -33,6 +35,7 @@ pub use cursor::{Cursor, CursorPicker, Stickiness};
 pub use doubt::SensorDoubt;
 pub use force_table::{ForceTable, ForceTableError};
 pub use frame::ForceFrame;
+pub use health::Trouble;
 pub use loaded::LoadThreshold;
 pub use quality::Quality;
 pub use sensing::{Method, Sensing, SensingConfig};
