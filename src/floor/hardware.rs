@@ -35,6 +35,16 @@ impl Floor {
         }
     }
 
+    /// The sensors whose calibration is the nominal part's, to the digit: nobody has measured them.
+    ///
+    /// On a floor whose boards send newtons that is as it should be.
+    pub fn uncalibrated(&self) -> impl Iterator<Item = SensorId> + '_ {
+        self.geometry.tiles().zip(&self.calibration).flat_map(|(tile, laws)| {
+            let nominal = |corner: &Corner| laws[corner.index()] == Calibration::NOMINAL;
+            Corner::ALL.into_iter().filter(nominal).map(move |corner| SensorId { tile, corner })
+        })
+    }
+
     /// Number of actuator channels a device must have for this floor: the highest channel used plus one.
     #[must_use]
     pub fn channel_count(&self) -> usize {

@@ -64,7 +64,8 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// [`Quality::Stale`], and so does one that rebooted, for at least one frame.
 /// It returns with its next sample, but only after a clean second if outages
 /// follow each other within two seconds. More than 10 % of lost packets within
-/// a second, or a sensor at 98 % of its range, means [`Quality::Degraded`]; a
+/// a second, or a sensor at 98 % of its range, or one that sends counts and was never
+/// calibrated ([`Floor::uncalibrated`]), means [`Quality::Degraded`]; a
 /// reading that is not a number [`Quality::Faulty`].
 ///
 /// **Health.** Each sensor is compared with the other three of its plate, and its

@@ -7,9 +7,9 @@ use triple_buffer::Input;
 
 use crate::engine::{Engine, LinkState, Snapshot};
 use crate::feel::CueSender;
-use crate::floor::Floor;
+use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::sense::{Assembler, Method, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
@@ -61,6 +61,9 @@ pub struct Server {
     commands: Option<Receiver<Command>>,
     link: LinkState,
     tare: TareOutcome,
+    /// Sensors known to be in trouble, and how often that had changed.
+    troubles: Vec<(SensorId, Trouble)>,
+    trouble_changes: u64,
     shown: Instant,
 }
 
@@ -81,6 +84,8 @@ impl Server {
             commands: None,
             link: LinkState::Waiting,
             tare: TareOutcome::FromFloor,
+            troubles: Vec::new(),
+            trouble_changes: 0,
             shown: Instant::START,
         }
     }
@@ -176,6 +181,7 @@ impl Server {
         }
         self.note_link();
         while self.step() {}
+        self.note_troubles();
         Ok(Ended::No)
     }
 
@@ -260,6 +266,25 @@ impl Server {
             }
             self.tare = tare;
         }
+    }
+
+    /// Says which sensors have fallen into trouble or got out of it.
+    fn note_troubles(&mut self) {
+        let changes = self.assembler.trouble_changes();
+        if changes == self.trouble_changes {
+            return;
+        }
+        self.trouble_changes = changes;
+        let now: Vec<_> = self.assembler.troubles().collect();
+        for (sensor, trouble) in now.iter().filter(|found| !self.troubles.contains(found)) {
+            warn!("{sensor}: {trouble}");
+        }
+        for (sensor, trouble) in &self.troubles {
+            if !now.iter().any(|(still, _)| still == sensor) {
+                info!("{sensor}: well again (was: {trouble})");
+            }
+        }
+        self.troubles = now;
     }
 
     fn obey(&mut self) {

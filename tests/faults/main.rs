@@ -6,5 +6,10 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod bench;
 mod broken;
+mod creeping;
 mod desk;
+mod doubtful;
+mod long_run;
+mod loop_gain;

@@ -176,7 +176,7 @@ impl BoardTrack {
         health: &mut Health,
     ) -> u64 {
         let mut bad = 0;
-        let mut put = |channel: &Channel, force: f32, end: End| {
+        let mut put = |channel: &Channel, force: f32, end: End, guessed: bool| {
             let (tile, corner) = (channel.tile as usize, channel.corner.index());
             let force = force - channel.tare - health.zero(tile, corner);
             let own = if !force.is_finite() {
@@ -185,7 +185,7 @@ impl BoardTrack {
             } else {
                 frame.forces[tile][corner] = force;
                 health.note(channel.tile, corner, force, end);
-                if end == End::High { Quality::Degraded } else { Quality::Live }
+                if end == End::High || guessed { Quality::Degraded } else { Quality::Live }
             };
             frame.quality[tile][corner] = own.max(quality);
         };
@@ -194,13 +194,14 @@ impl BoardTrack {
                 for (channel, &count) in self.channels.iter().zip(counts) {
                     let Some(channel) = channel else { continue };
                     let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
-                    put(channel, force, count.map_or(End::Within, |count| channel.end(count)));
+                    let end = count.map_or(End::Within, |count| channel.end(count));
+                    put(channel, force, end, channel.calibration == Calibration::NOMINAL);
                 }
             }
             Readings::Newtons(forces) => {
                 for (channel, &force) in self.channels.iter().zip(forces) {
                     let Some(channel) = channel else { continue };
-                    put(channel, force, End::Within);
+                    put(channel, force, End::Within, false);
                 }
             }
         }
