@@ -9,8 +9,9 @@ use crate::units::{Instant, Newtons};
 /// four: longer than a control may want it to dwell (2 s).
 const BUCKET_US: u64 = 1_000_000;
 
-/// How much a foot must have gained to have pressed, besides a share of its force.
-const GAIN_N: f32 = 1.0;
+/// How much a foot must have gained to have pressed, besides a share of its force: more than
+/// noise, and what zeros that drift by 10 N a minute put on a tile (our choice).
+const GAIN_N: f32 = 2.0;
 
 /// Part of its force that a foot must have gained.
 ///

