@@ -273,6 +273,14 @@ impl Assembler {
         tare
     }
 
+    /// Number of sensors whose counts are taken for those of a nominal part, since the floor says
+    /// nothing of them; [`Floor::uncalibrated`] names them. Their forces may be off by a quarter
+    /// and more, and are [`Quality::Degraded`].
+    #[must_use]
+    pub fn uncalibrated(&self) -> usize {
+        self.boards.iter().map(BoardTrack::uncalibrated).sum()
+    }
+
     /// The sensors that are in trouble, as of the last frame.
     pub fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
         self.health.troubles()

@@ -64,6 +64,8 @@ pub struct Server {
     /// Sensors known to be in trouble, and how often that had changed.
     troubles: Vec<(SensorId, Trouble)>,
     trouble_changes: u64,
+    /// Sensors without calibration, as far as that has been said.
+    uncalibrated: usize,
     shown: Instant,
 }
 
@@ -86,6 +88,7 @@ impl Server {
             tare: TareOutcome::FromFloor,
             troubles: Vec::new(),
             trouble_changes: 0,
+            uncalibrated: 0,
             shown: Instant::START,
         }
     }
@@ -245,6 +248,7 @@ impl Server {
                 LinkState::Waiting => {}
             }
             self.link = link;
+            self.note_uncalibrated();
             if let Some(events) = &mut self.events {
                 events.link(self.source.now(), link);
             }
@@ -265,6 +269,18 @@ impl Server {
                 TareOutcome::FromFloor => {}
             }
             self.tare = tare;
+        }
+    }
+
+    /// Says once how many sensors go by nominal gains.
+    fn note_uncalibrated(&mut self) {
+        let uncalibrated = self.assembler.uncalibrated();
+        if uncalibrated > self.uncalibrated {
+            self.uncalibrated = uncalibrated;
+            warn!(
+                "{uncalibrated} sensors are not calibrated: their forces may be off by a quarter \
+                 (give a floor file with their calibration)"
+            );
         }
     }
 

@@ -57,6 +57,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_works_all_the_same() {
         let quality = bench.quality(SensorId { tile: TileId::new(1, 0), corner });
         assert_eq!(quality, Quality::Degraded);
     }
+    assert_eq!(bench.assembler.uncalibrated(), 16);
     bench.press(BUTTON, 150.0);
     bench.run(100);
     bench.lift(BUTTON);
@@ -66,6 +67,7 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_works_all_the_same() {
     let measured = underfoot::sim::calibrated(&floor, &sim, 3).unwrap();
     assert_eq!(measured.uncalibrated().count(), 0);
     let bench = Bench::with_floor(&measured, sim);
+    assert_eq!(bench.assembler.uncalibrated(), 0);
     assert_eq!(bench.quality(SensorId { tile: TileId::new(1, 0), corner: Corner::SouthEast }), Quality::Live);
 }
 

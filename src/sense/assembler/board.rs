@@ -25,6 +25,8 @@ pub(super) struct BoardTrack {
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
     waiting: [Option<Readings>; BUFFERS],
+    /// Whether it sends counts, whose meaning only the floor's calibration tells.
+    sends_counts: bool,
     tare: TareState,
 }
 
@@ -82,6 +84,7 @@ impl BoardTrack {
             geometry: floor.geometry,
             channels,
             waiting: Default::default(),
+            sends_counts: false,
             tare,
         }
     }
@@ -96,12 +99,19 @@ impl BoardTrack {
 
     /// Keeps `readings` until the frame of `buffer`'s slot is made.
     pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
+        self.sends_counts = matches!(readings, Readings::Counts(_));
         self.waiting[buffer] = Some(readings.clone());
     }
 
     /// Forgets what waits in `buffer`; true if there was something.
     pub(super) fn clear(&mut self, buffer: usize) -> bool {
         self.waiting[buffer].take().is_some()
+    }
+
+    /// Number of its sensors that send counts which nobody has calibrated.
+    pub(super) fn uncalibrated(&self) -> usize {
+        let nominal = |channel: &&Channel| channel.calibration == Calibration::NOMINAL;
+        if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
     /// How far all of its values can be trusted.
