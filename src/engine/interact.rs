@@ -4,6 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
+use super::rise::Rises;
 use crate::floor::Geometry;
 use crate::layout::{Layout, Widget};
 use crate::sense::{Contact, ContactId, Cursor, CursorPicker, ForceFrame, Quality};
@@ -30,6 +31,7 @@ pub(super) struct Interaction {
     /// Controls for which even an empty floor changes something.
     awake: Vec<usize>,
     landed: Vec<(ContactId, Instant)>,
+    rises: Rises,
 }
 
 #[derive(Debug)]
@@ -66,7 +68,8 @@ impl Interaction {
         let tiles = layout.widgets.iter().map(|widget| tiles_under(widget, geometry)).collect();
         let awake = (0..controls.len()).collect();
         let unsensed = vec![false; controls.len()];
-        Self { geometry: *geometry, regions, controls, tiles, unsensed, awake, landed: Vec::new() }
+        let rises = Rises::default();
+        Self { geometry: *geometry, regions, controls, tiles, unsensed, awake, landed: Vec::new(), rises }
     }
 
     pub(super) fn controls(&self) -> &[Control] {
@@ -145,6 +148,7 @@ impl Interaction {
     ) {
         let now = frame.at;
         self.note_landings(contacts, now);
+        self.rises.update(contacts, now);
         self.lose_unsensed(frame, layout, events);
         for index in 0..self.regions.len() {
             self.step_region(index, frame, contacts, layout, events);
@@ -186,7 +190,13 @@ impl Interaction {
         let slid_on = is_new
             && contact.force >= spec.behaviour.thresholds().release
             && self.landed.iter().any(|&(id, at)| id == contact.id && now.since(at) > LANDING);
-        let input = if slid_on { Input::SlidOn { force: contact.force } } else { foot(contact, spec, frame) };
+        // A foot whose force could not be believed when it pressed is not believed once it lightens.
+        let unbelieved = contact.force >= spec.behaviour.thresholds().press && !may_start(contact, frame);
+        let input = if slid_on || unbelieved {
+            Input::SlidOn { force: contact.force }
+        } else {
+            foot(contact, spec, frame, self.rises.has_risen(contact))
+        };
         let emitted = control.step(now, input);
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
         if control.is_engaged()
@@ -221,7 +231,7 @@ impl Interaction {
                 held.force = contact.force;
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
-                if off && !control.captures() { Input::SlidOff } else { foot(contact, spec, frame) }
+                if off && !control.captures() { Input::SlidOff } else { foot(contact, spec, frame, true) }
             }
             // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
             None if is_sensed_at(held.position, &self.geometry, frame) => {
@@ -309,14 +319,28 @@ impl RegionState {
     }
 }
 
-fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame) -> Input {
-    let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed));
+/// What `widget` senses of a foot; `risen` says whether that foot has pressed harder of late.
+///
+/// A force that has crept past the threshold starts nothing.
+fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, risen: bool) -> Input {
+    let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
+        && may_start(contact, frame)
+        && (risen || contact.force < widget.behaviour.thresholds().press);
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget) }
 }
 
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {
     let tile = geometry.tile_under(point).and_then(|tile| geometry.index(tile));
     tile.and_then(|tile| frame.quality.get(tile)).is_none_or(is_sensed)
+}
+
+/// Whether `contact` may start an engagement as far as the forces are to be believed.
+///
+/// `Degraded` tiles may: one with a dead sensor, whose force the other three tell, and one
+/// that loses packets. A tile with a saturated sensor, or one that reads what its plate
+/// does not bear, may not; see [`ForceFrame::may_start`].
+fn may_start(contact: &Contact, frame: &ForceFrame) -> bool {
+    contact.tiles.iter().all(|load| frame.may_start.get(load.index).is_some_and(|&may| may))
 }
 
 /// A tile goes on with three sensors.

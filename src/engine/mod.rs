@@ -5,6 +5,7 @@
 mod floor_engine;
 mod interact;
 mod response;
+mod rise;
 mod snapshot;
 
 pub use floor_engine::{Engine, Step};

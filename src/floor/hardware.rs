@@ -90,11 +90,14 @@ impl Floor {
         tile.map_or(Calibration::NOMINAL, |laws| laws[sensor.corner.index()])
     }
 
-    /// How many of the sensors that boards read have no law of their own, and how many sensors boards read.
-    #[must_use]
-    pub fn uncalibrated(&self) -> (usize, usize) {
-        let wired = || self.boards.iter().flat_map(|board| board.channels.iter().flatten());
-        (wired().filter(|sensor| self.law(**sensor) == Calibration::NOMINAL).count(), wired().count())
+    /// The sensors whose calibration is the nominal part's, to the digit: nobody has measured them.
+    ///
+    /// On a floor whose boards send newtons that is as it should be.
+    pub fn uncalibrated(&self) -> impl Iterator<Item = SensorId> + '_ {
+        self.geometry.tiles().zip(&self.calibration).flat_map(|(tile, laws)| {
+            let nominal = |corner: &Corner| laws[corner.index()] == Calibration::NOMINAL;
+            Corner::ALL.into_iter().filter(nominal).map(move |corner| SensorId { tile, corner })
+        })
     }
 
     /// Number of actuator channels a device must have for this floor: the highest channel used plus one.

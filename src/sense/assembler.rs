@@ -13,9 +13,10 @@ pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
+use super::health::{Health, Trouble};
 use super::{ForceFrame, Quality};
 use crate::engine::LinkState;
-use crate::floor::Floor;
+use crate::floor::{Floor, SensorId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, SensorPacket};
 
@@ -63,8 +64,12 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// [`Quality::Stale`], and so does one that rebooted, for at least one frame.
 /// It returns with its next sample, but only after a clean second if outages
 /// follow each other within two seconds. More than 10 % of lost packets within
-/// a second, or a sensor at 98 % of its range, means [`Quality::Degraded`]; a
+/// a second, or a sensor at 98 % of its range, or one that sends counts and was never
+/// calibrated ([`Floor::uncalibrated`]), means [`Quality::Degraded`]; a
 /// reading that is not a number [`Quality::Faulty`].
+///
+/// **Health.** Each sensor is compared with the other three of its plate, and its
+/// zero is followed while its tile is empty and quiet; [`Trouble`] says what can be found.
 ///
 /// It has no clock of its own: `received` and `now` are on the source's clock;
 /// one that is earlier than the last counts as the last.
@@ -90,6 +95,7 @@ pub struct Assembler {
     /// Whether frames are passed on: not before the tare is known.
     started: bool,
     frame: ForceFrame,
+    health: Health,
     counters: LinkCounters,
     /// Space for sorting the boards' delays.
     delays: Vec<(i64, usize)>,
@@ -152,6 +158,7 @@ impl Assembler {
             flush: false,
             started: false,
             frame,
+            health: Health::new(floor),
             counters: LinkCounters::default(),
         }
     }
@@ -264,6 +271,32 @@ impl Assembler {
             tare[tile][corner.index()] = force;
         }
         tare
+    }
+
+    /// Number of sensors whose counts are taken for those of a nominal part, since the floor says
+    /// nothing of them; [`Floor::uncalibrated`] names them. Their forces may be off by a quarter
+    /// and more, and are [`Quality::Degraded`].
+    #[must_use]
+    pub fn uncalibrated(&self) -> usize {
+        self.boards.iter().map(BoardTrack::uncalibrated).sum()
+    }
+
+    /// The sensors that are in trouble, as of the last frame.
+    pub fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
+        self.health.troubles()
+    }
+
+    /// How often a sensor fell into trouble or got out of it; unchanged if [`Assembler::troubles`] is.
+    #[must_use]
+    pub const fn trouble_changes(&self) -> u64 {
+        self.health.changes()
+    }
+
+    /// How far each sensor's zero has drifted from its tare and was followed, per tile and corner as in
+    /// [`Floor::tare`]; at most 20 % of the sensor's range.
+    #[must_use]
+    pub fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
+        self.health.drift()
     }
 
     /// What came in and what was dropped; datagrams and refusals are counted by the source.
@@ -406,13 +439,14 @@ impl Assembler {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
         self.done = slot;
         for board in &mut self.boards {
-            board.apply(buffer, at_ns, &mut self.frame, &mut self.counters);
+            board.apply(buffer, at_ns, &mut self.frame, &mut self.health, &mut self.counters);
         }
         self.started |= !self.boards.iter().any(|board| board.stream.awaited && board.is_taring());
         if self.started {
             let next = self.frame.at + Duration::from_micros(u64::from(self.counters.frames > 0));
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
+            self.health.inspect(&mut self.frame);
             self.boards.iter_mut().for_each(|board| board.stream.presence.show());
         }
         self.started

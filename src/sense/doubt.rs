@@ -28,7 +28,8 @@ impl SensorDoubt {
     ///
     /// # Source
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
-    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)².
+    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + vague², the
+    /// last for a sensor that is estimated or at the end of its range.
     #[must_use]
     pub fn covariance(
         &self,
@@ -44,7 +45,8 @@ impl SensorDoubt {
         for corner in Corner::ALL {
             let arm = tile.centre + corner.direction() * reach - point;
             let gained = self.gain * share * tile.corners[corner.index()];
-            let variance = (self.offset_n * self.offset_n + gained * gained) * scale;
+            let vague = share * tile.vague[corner.index()];
+            let variance = (self.offset_n * self.offset_n + gained * gained + vague * vague) * scale;
             sum.xx += arm.x * arm.x * variance;
             sum.xy += arm.x * arm.y * variance;
             sum.yy += arm.y * arm.y * variance;

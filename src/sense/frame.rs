@@ -18,6 +18,10 @@ pub struct ForceFrame {
     pub forces: Vec<[f32; 4]>,
     /// How far each of `forces` can be trusted.
     pub quality: Vec<[Quality; 4]>,
+    /// Per tile, whether its forces may start an engagement. They may not with a sensor at
+    /// the end of its range, where the force is "at least", or with one that reads a load to
+    /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
+    pub may_start: Vec<bool>,
 }
 
 impl ForceFrame {
@@ -30,6 +34,7 @@ impl ForceFrame {
             received: Instant::START,
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
+            may_start: vec![true; tiles],
         }
     }
 

@@ -6,6 +6,9 @@ use crate::units::Newtons;
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
 
+/// The bit that tells [`Quality::Stale`] and [`Quality::Faulty`], of which one is estimated, from the better two.
+const LOST: u8 = 2;
+
 /// Tiles looked at together.
 const BLOCK: usize = 16;
 
@@ -116,11 +119,11 @@ impl LoadedTiles {
                 loaded |= *sum >= off;
                 doubt |= quality.iter().fold(0, |worst, &quality| worst | quality as u8);
             }
-            if !loaded && doubt == Quality::Live as u8 {
+            if !loaded && doubt & LOST == 0 {
                 continue;
             }
             for (at, (sum, quality)) in sums.iter().zip(quality).enumerate() {
-                if *sum >= off || *quality != [Quality::Live; 4] {
+                if *sum >= off || quality.iter().any(|&quality| quality >= Quality::Stale) {
                     self.candidates.push((block * BLOCK + at) as u32);
                 }
             }
@@ -140,7 +143,11 @@ impl LoadedTiles {
             let map = self.maps.get(index).and_then(Option::as_ref);
             list.extend(
                 known_corners(frame.forces[index], frame.quality[index])
-                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map)),
+                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map))
+                    .map(|tile| match tile.quality {
+                        Quality::Live => tile,
+                        _ => tile.judged(frame.quality[index], frame.may_start.get(index) == Some(&true)),
+                    }),
             );
         }
         for old in list.drain(..previous) {

@@ -1,6 +1,7 @@
 //! From calibrated forces to feet: frames, contacts and the cursor.
 //!
 //! ```text
+//! counts -assembler, health-> ForceFrame
 //! ForceFrame -loaded, position maps-> loaded tiles (F, M per tile; Eq. 2-3)
 //!   -track-> feet, followed through time, several on one group of tiles
 //!   or -cluster-> groups of touching tiles -eq4-> one contact each (Eq. 4)
@@ -22,6 +23,7 @@ mod doubt;
 mod eq4;
 mod force_table;
 mod frame;
+mod health;
 mod load_table;
 mod loaded;
 mod pool;
@@ -40,6 +42,7 @@ pub use cursor::{Cursor, CursorPicker, Stickiness};
 pub use doubt::SensorDoubt;
 pub use force_table::{ForceTable, ForceTableError};
 pub use frame::ForceFrame;
+pub use health::Trouble;
 pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
 pub use loaded::LoadThreshold;
 pub use position_map::{Errors, MapError, MapFit, Press, Sighting};

@@ -99,6 +99,9 @@ pub struct LoadedTile {
     pub corners: [f32; 4],
     /// Its force and moment; the force is positive.
     pub wrench: Wrench,
+    /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
+    /// zero but for one that is estimated from the others, or at the end of its range.
+    pub vague: [f32; 4],
     /// Where the load acts, in floor metres, always on the tile's plate.
     pub centroid: Vec2,
     /// [`Quality::Live`], or [`Quality::Degraded`] with a sensor estimated or doubtful.
@@ -108,12 +111,36 @@ pub struct LoadedTile {
 /// Force from which on a tile has its full weight among others (our choice: three times the least that counts as load).
 const FULL_WEIGHT: f32 = 12.0;
 
+/// How far a corner's force estimated from the other three is off, as a share of the tile's force (one
+/// standard deviation; measured on simulated floors of parts and supports as the paper's).
+const ESTIMATED: f32 = 0.12;
+
+/// How far the force at a sensor that reads "at least" may be above its reading, as a share of it (our choice).
+const AT_LEAST: f32 = 0.5;
+
 impl LoadedTile {
     /// What the tile's force weighs in a centroid over several tiles: all of it from 12 N on, ever
     /// less below, so that a foot sliding over a seam gains its next tile gradually, not with a
     /// jump when that tile first counts as loaded.
     pub(super) fn weight(&self) -> f32 {
         self.wrench.force * (self.wrench.force / FULL_WEIGHT).min(1.0)
+    }
+
+    /// This tile, its vagueness judged by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
+    pub(super) fn judged(mut self, sensors: [Quality; 4], may_start: bool) -> Self {
+        for (vague, (corner, quality)) in self.vague.iter_mut().zip(sensors.into_iter().enumerate()) {
+            *vague = match quality {
+                Quality::Live => 0.0,
+                Quality::Degraded if may_start => 0.0,
+                Quality::Degraded => AT_LEAST * self.corners[corner].abs(),
+                Quality::Stale | Quality::Faulty => {
+                    // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
+                    let lifted = (-self.corners[corner ^ 3]).max(0.0);
+                    ESTIMATED * self.wrench.force + lifted
+                }
+            };
+        }
+        self
     }
 
     /// The tile at `index` of the floor, with sensors that read `corners`; `None` unless
@@ -139,7 +166,7 @@ impl LoadedTile {
             arm = unbent;
         }
         let centroid = centre + arm;
-        Some(Self { tile, index: index as u32, centre, corners, wrench, centroid, quality })
+        Some(Self { tile, index: index as u32, centre, corners, wrench, vague: [0.0; 4], centroid, quality })
     }
 }
 

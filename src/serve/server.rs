@@ -7,14 +7,14 @@ use triple_buffer::Input;
 
 use crate::engine::{Engine, LinkState, Snapshot};
 use crate::feel::CueSender;
-use crate::floor::Floor;
+use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::sense::{Assembler, Method, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::widget::Value;
-use crate::wire::{ControlMessage, LinkCounters, Readings};
+use crate::wire::{ControlMessage, LinkCounters};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -66,9 +66,12 @@ pub struct Server {
     /// Since when only some boards have been heard.
     partial_since: Option<Instant>,
     tare: TareOutcome,
+    /// Sensors known to be in trouble, and how often that had changed.
+    troubles: Vec<(SensorId, Trouble)>,
+    trouble_changes: u64,
+    /// Sensors without calibration, as far as that has been said.
+    uncalibrated: usize,
     shown: Instant,
-    /// Sensors without a law of their own, until the person at the floor has been told.
-    uncalibrated: Option<(usize, usize)>,
 }
 
 impl Server {
@@ -89,8 +92,10 @@ impl Server {
             link: LinkState::Waiting,
             partial_since: None,
             tare: TareOutcome::FromFloor,
+            troubles: Vec::new(),
+            trouble_changes: 0,
+            uncalibrated: 0,
             shown: Instant::START,
-            uncalibrated: Some(floor.uncalibrated()),
         }
     }
 
@@ -171,12 +176,7 @@ impl Server {
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.obey();
         match self.source.next(PATIENCE) {
-            Ok(Some(packet)) => {
-                if let Readings::Counts(_) = packet.readings {
-                    self.tell_uncalibrated();
-                }
-                self.assembler.take(&packet);
-            }
+            Ok(Some(packet)) => self.assembler.take(&packet),
             Ok(None) => {
                 let now = self.source.now();
                 self.assembler.poll(now);
@@ -190,6 +190,7 @@ impl Server {
         }
         self.note_link();
         while self.step() {}
+        self.note_troubles();
         Ok(Ended::No)
     }
 
@@ -253,6 +254,7 @@ impl Server {
                 LinkState::Waiting => {}
             }
             self.link = link;
+            self.note_uncalibrated();
             if let Some(events) = &mut self.events {
                 events.link(self.source.now(), link);
             }
@@ -276,14 +278,14 @@ impl Server {
         }
     }
 
-    /// Says once that counts are read through laws nobody measured.
-    fn tell_uncalibrated(&mut self) {
-        if let Some((uncalibrated, sensors)) = self.uncalibrated.take()
-            && uncalibrated > 0
-        {
+    /// Says once how many sensors go by nominal gains.
+    fn note_uncalibrated(&mut self) {
+        let uncalibrated = self.assembler.uncalibrated();
+        if uncalibrated > self.uncalibrated {
+            self.uncalibrated = uncalibrated;
             warn!(
-                "{uncalibrated} of {sensors} sensors were never calibrated and count as nominal parts: their forces \
-                 may be off by a third; `underfoot calibrate curves` measures them"
+                "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
+                 a third; `underfoot calibrate curves` measures them"
             );
         }
     }
@@ -298,6 +300,25 @@ impl Server {
         let now = self.source.now();
         let since = *self.partial_since.get_or_insert(now);
         if now.since(since) < SETTLING { self.link } else { link }
+    }
+
+    /// Says which sensors have fallen into trouble or got out of it.
+    fn note_troubles(&mut self) {
+        let changes = self.assembler.trouble_changes();
+        if changes == self.trouble_changes {
+            return;
+        }
+        self.trouble_changes = changes;
+        let now: Vec<_> = self.assembler.troubles().collect();
+        for (sensor, trouble) in now.iter().filter(|found| !self.troubles.contains(found)) {
+            warn!("{sensor}: {trouble}");
+        }
+        for (sensor, trouble) in &self.troubles {
+            if !now.iter().any(|(still, _)| still == sensor) {
+                info!("{sensor}: well again (was: {trouble})");
+            }
+        }
+        self.troubles = now;
     }
 
     fn obey(&mut self) {

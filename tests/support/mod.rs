@@ -6,11 +6,11 @@ use std::time::Duration;
 use glam::Vec2;
 use underfoot::engine::{Engine, Snapshot};
 use underfoot::feel::Cue;
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, Geometry};
 use underfoot::glam;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
-use underfoot::sense::{Assembler, Cursor, ForceFrame, Method};
+use underfoot::sense::{Assembler, Contact, Cursor, ForceFrame, Method};
 use underfoot::sim::{self, Foot, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent};
@@ -39,8 +39,9 @@ pub fn page(text: &str) -> Layout {
 /// A person's feet on a simulated floor with controls.
 pub struct Walker {
     pub engine: Engine,
-    assembler: Assembler,
-    sim: SimFloor,
+    pub assembler: Assembler,
+    /// The parts, to be broken.
+    pub sim: SimFloor,
     sequence: u32,
     now: Instant,
     stance: Option<Foot>,
@@ -59,9 +60,18 @@ impl Walker {
     }
 
     pub fn on_floor(layout: Layout, config: SimConfig, method: Method) -> Self {
+        Self::on_parts(layout, config, method, 7)
+    }
+
+    /// As [`Walker::on`], with other parts out of the box.
+    pub fn on_seed(layout: Layout, seed: u64) -> Self {
+        Self::on_parts(layout, SimConfig::default(), Method::default(), seed)
+    }
+
+    fn on_parts(layout: Layout, config: SimConfig, method: Method, seed: u64) -> Self {
         let wired = Floor::default();
-        let sim = SimFloor::new(&wired, config, 7);
-        let floor = sim::calibrated(&wired, &sim, 7).unwrap();
+        let sim = SimFloor::new(&wired, config, seed);
+        let floor = sim::calibrated(&wired, &sim, seed).unwrap();
         let mut walker = Self {
             engine: Engine::new(floor.geometry, layout, method),
             assembler: Assembler::new(&floor),
@@ -149,6 +159,23 @@ impl Walker {
     /// The first region's cursor, frame by frame since the last call.
     pub fn take_cursors(&mut self) -> Vec<Option<Cursor>> {
         std::mem::take(&mut self.cursors)
+    }
+
+    pub fn geometry(&self) -> &Geometry {
+        self.sim.geometry()
+    }
+
+    pub fn working_foot(&self) -> Option<Foot> {
+        self.foot
+    }
+
+    /// The contact nearest to `point`, within a shoe's length.
+    pub fn contact_at(&self, point: Vec2) -> Option<Contact> {
+        let mut snapshot = Snapshot::default();
+        self.engine.snapshot(&mut snapshot);
+        let distance = |contact: &Contact| contact.centroid.distance(point);
+        let near = snapshot.contacts.into_iter().filter(|contact| distance(contact) < 0.3);
+        near.min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 
     pub fn now(&self) -> Instant {

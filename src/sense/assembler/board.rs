@@ -1,12 +1,19 @@
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
+use crate::sense::health::{End, Health};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
 
 /// How many slots may wait for their boards at once.
 pub(super) const BUFFERS: usize = 4;
+
+/// Counts up to which a sensor reads nothing (0.5 %: the converter's offset and noise).
+const NOTHING: u16 = 327;
+
+/// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
+const RESTS_N: f32 = 1.0;
 
 /// One board: its stream, its wiring, and what it read in the slots that wait.
 #[derive(Clone, Debug)]
@@ -15,6 +22,8 @@ pub(super) struct BoardTrack {
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
     waiting: [Option<Readings>; BUFFERS],
+    /// Whether it sends counts, whose meaning only the floor's calibration tells.
+    sends_counts: bool,
     tare: TareState,
 }
 
@@ -25,6 +34,18 @@ struct Channel {
     corner: Corner,
     calibration: Calibration,
     tare: f32,
+}
+
+impl Channel {
+    /// Where in the converter's range `count` lies. A sensor on which next to nothing
+    /// rests while the floor is empty is never missed: it may well read nothing.
+    fn end(&self, count: u16) -> End {
+        match count {
+            Calibration::SATURATED.. => End::High,
+            ..=NOTHING if self.tare > self.calibration.a_n + RESTS_N => End::Low,
+            _ => End::Within,
+        }
+    }
 }
 
 #[derive(Clone, Debug)]
@@ -60,6 +81,7 @@ impl BoardTrack {
             geometry: floor.geometry,
             channels,
             waiting: Default::default(),
+            sends_counts: false,
             tare,
         }
     }
@@ -74,12 +96,19 @@ impl BoardTrack {
 
     /// Keeps `readings` until the frame of `buffer`'s slot is made.
     pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
+        self.sends_counts = matches!(readings, Readings::Counts(_));
         self.waiting[buffer] = Some(readings.clone());
     }
 
     /// Forgets what waits in `buffer`; true if there was something.
     pub(super) fn clear(&mut self, buffer: usize) -> bool {
         self.waiting[buffer].take().is_some()
+    }
+
+    /// Number of its sensors that send counts which nobody has calibrated.
+    pub(super) fn uncalibrated(&self) -> usize {
+        let nominal = |channel: &&Channel| channel.calibration == Calibration::NOMINAL;
+        if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
     /// How far all of its values can be trusted.
@@ -128,6 +157,7 @@ impl BoardTrack {
         buffer: Option<usize>,
         at_ns: i64,
         frame: &mut ForceFrame,
+        health: &mut Health,
         counters: &mut LinkCounters,
     ) {
         let readings = buffer.and_then(|buffer| self.waiting[buffer].take());
@@ -137,7 +167,7 @@ impl BoardTrack {
         let quality = self.quality();
         match readings {
             Some(readings) if !self.is_taring() => {
-                counters.bad_readings += self.write(&readings, quality, frame);
+                counters.bad_readings += self.write(&readings, quality, frame, health);
             }
             _ if quality == Quality::Stale => self.mark_stale(frame),
             _ => {}
@@ -145,17 +175,24 @@ impl BoardTrack {
     }
 
     /// Writes calibrated and tared forces; gives the number of bad readings.
-    fn write(&self, readings: &Readings, quality: Quality, frame: &mut ForceFrame) -> u64 {
+    fn write(
+        &self,
+        readings: &Readings,
+        quality: Quality,
+        frame: &mut ForceFrame,
+        health: &mut Health,
+    ) -> u64 {
         let mut bad = 0;
-        let mut put = |channel: &Channel, force: f32, saturated: bool| {
+        let mut put = |channel: &Channel, force: f32, end: End, guessed: bool| {
             let (tile, corner) = (channel.tile as usize, channel.corner.index());
-            let force = force - channel.tare;
+            let force = force - channel.tare - health.zero(tile, corner);
             let own = if !force.is_finite() {
                 bad += 1;
                 Quality::Faulty
             } else {
                 frame.forces[tile][corner] = force;
-                if saturated { Quality::Degraded } else { Quality::Live }
+                health.note(channel.tile, corner, force, end);
+                if end == End::High || guessed { Quality::Degraded } else { Quality::Live }
             };
             frame.quality[tile][corner] = own.max(quality);
         };
@@ -164,13 +201,14 @@ impl BoardTrack {
                 for (channel, &count) in self.channels.iter().zip(counts) {
                     let Some(channel) = channel else { continue };
                     let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
-                    put(channel, force, count.is_some_and(|count| count >= Calibration::SATURATED));
+                    let end = count.map_or(End::Within, |count| channel.end(count));
+                    put(channel, force, end, channel.calibration == Calibration::NOMINAL);
                 }
             }
             Readings::Newtons(forces) => {
                 for (channel, &force) in self.channels.iter().zip(forces) {
                     let Some(channel) = channel else { continue };
-                    put(channel, force, false);
+                    put(channel, force, End::Within, false);
                 }
             }
         }

@@ -1,0 +1,223 @@
+//! Watching the sensors: which readings can be a foot's, which sensor is broken, where zero has drifted to.
+//!
+//! ```text
+//! counts --calibration, tare, drift--> ForceFrame --Health--> ForceFrame with honest qualities
+//!              ^                                    |
+//!              +------------ zero -----------------+   (only on an empty, quiet tile)
+//! ```
+//!
+//! [`plate`] knows what a rigid plate allows, [`slow`] averages each tile over
+//! 64 ms and looks for what takes seconds, [`drift`] follows the zero. What must
+//! be known before a control could be pressed is decided here, in the same frame.
+
+mod drift;
+mod plate;
+mod slow;
+mod trouble;
+
+use crate::floor::{Corner, Floor, Geometry, SensorId};
+use crate::sense::{ForceFrame, Quality};
+use crate::units::{Instant, Newtons};
+
+pub use trouble::Trouble;
+
+use self::slow::{SHARES, Slow};
+use self::trouble::Sensor;
+
+/// Force beside zero from which on a tile is looked at in every frame: the least that counts as load.
+const LOUD_N: f32 = 6.0;
+
+/// Where in the converter's range a reading lies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum End {
+    /// Where readings should be.
+    #[default]
+    Within,
+    /// Below what the sensor reads on the empty floor, and next to zero volts.
+    Low,
+    /// At 98 % or above: the force is this or more.
+    High,
+}
+
+/// The sensors' health on one floor.
+///
+/// Costs nothing per frame for tiles at rest but an eighth of a visit; allocates nothing.
+#[derive(Clone, Debug)]
+pub(super) struct Health {
+    geometry: Geometry,
+    /// What each sensor reads without load beyond its tare, as followed so far.
+    zeros: Vec<[f32; 4]>,
+    /// How far each may be followed: 20 % of the sensor's range.
+    limits: Vec<[f32; 4]>,
+    ends: Vec<[End; 4]>,
+    sensors: Vec<[Sensor; 4]>,
+    slow: Vec<Slow>,
+    /// Tiles with a reading to be looked at in this frame.
+    loud: Vec<u32>,
+    /// Tiles with a sensor in trouble, or that may start nothing.
+    watched: Vec<u32>,
+    /// For building the next `watched`.
+    spare: Vec<u32>,
+    /// Number of the frame in which each tile was last looked at.
+    looked: Vec<u32>,
+    number: u32,
+    changes: u64,
+}
+
+impl Health {
+    pub(super) fn new(floor: &Floor) -> Self {
+        let tiles = floor.geometry.tile_count();
+        let limits = |tile: usize| match floor.calibration.get(tile) {
+            Some(laws) => laws.map(|law| drift::LIMIT * law.force(u16::MAX).0),
+            None => [drift::LIMIT * crate::floor::Calibration::NOMINAL.force(u16::MAX).0; 4],
+        };
+        Self {
+            geometry: floor.geometry,
+            zeros: vec![[0.0; 4]; tiles],
+            limits: (0..tiles).map(limits).collect(),
+            ends: vec![[End::Within; 4]; tiles],
+            sensors: vec![[Sensor::default(); 4]; tiles],
+            slow: vec![Slow::default(); tiles],
+            loud: Vec::with_capacity(4 * tiles),
+            watched: Vec::with_capacity(tiles),
+            spare: Vec::with_capacity(tiles),
+            looked: vec![0; tiles],
+            number: 0,
+            changes: 0,
+        }
+    }
+
+    /// What to take off a reading of this sensor besides its tare.
+    pub(super) fn zero(&self, tile: usize, corner: usize) -> f32 {
+        self.zeros[tile][corner]
+    }
+
+    /// Notes that a sensor has read `force` newtons (tared, zero taken off), at this end of its converter.
+    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End) {
+        self.ends[tile as usize][corner] = end;
+        let is_loud = force.abs() > LOUD_N || end != End::Within;
+        // A tile may come four times if its sensors are on boards of their own, never more often.
+        if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
+            self.loud.push(tile);
+        }
+    }
+
+    /// Marks in `frame`, whose forces have all been noted, what cannot be trusted.
+    pub(super) fn inspect(&mut self, frame: &mut ForceFrame) {
+        self.number = self.number.wrapping_add(1);
+        let mut loud = std::mem::take(&mut self.loud);
+        let mut watched = std::mem::take(&mut self.watched);
+        self.spare.clear();
+        for tile in loud.drain(..).chain(watched.drain(..)) {
+            if std::mem::replace(&mut self.looked[tile as usize], self.number) != self.number
+                && self.look(tile as usize, frame)
+            {
+                self.spare.push(tile);
+            }
+        }
+        self.loud = loud;
+        self.watched = std::mem::replace(&mut self.spare, watched);
+        self.visit_share(frame);
+    }
+
+    /// Looks at one tile; true if it must be looked at again in the next frame.
+    fn look(&mut self, tile: usize, frame: &mut ForceFrame) -> bool {
+        let (forces, ends, sensors) = (frame.forces[tile], self.ends[tile], &mut self.sensors[tile]);
+        let quality = &mut frame.quality[tile];
+        if is_heard(quality, sensors) {
+            let out = sensors.map(|sensor| sensor.is_out());
+            let alone = plate::unanswered(forces, out);
+            for (corner, sensor) in sensors.iter_mut().enumerate() {
+                let found = match ends[corner] {
+                    End::High if alone == Some(corner) => Some(Trouble::Short),
+                    End::Low if plate::should_bear_more(forces, out, corner) => Some(Trouble::Open),
+                    _ if alone == Some(corner) => Some(Trouble::Offset),
+                    _ => None,
+                };
+                if let Some(found) = found {
+                    self.changes += u64::from(sensor.find(found, forces[corner]));
+                }
+            }
+        }
+        let mut may_start = true;
+        let mut in_trouble = false;
+        for corner in 0..4 {
+            let sensor = &sensors[corner];
+            quality[corner] = quality[corner].max(sensor.quality());
+            may_start &= !sensor.forbids_start() && (ends[corner] != End::High || sensor.is_out());
+            in_trouble |= sensor.trouble().is_some();
+        }
+        frame.may_start[tile] = may_start;
+        in_trouble || !may_start
+    }
+
+    /// Adds this frame to the averages of every [`SHARES`]th part of the floor in turn.
+    fn visit_share(&mut self, frame: &ForceFrame) {
+        let tiles = self.slow.len();
+        let share = self.number as usize % SHARES;
+        for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
+            let heard = is_heard(&frame.quality[tile], &self.sensors[tile]);
+            if self.slow[tile].add(frame.forces[tile], heard) {
+                self.finish_block(tile, frame.at);
+            }
+        }
+    }
+
+    fn finish_block(&mut self, tile: usize, at: Instant) {
+        let alone = !self.has_loaded_neighbour(tile);
+        let Self { zeros, limits, ends, sensors, slow, .. } = self;
+        let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
+        let had_trouble = sensors.map(|sensor| sensor.trouble());
+        if let Some(block) = slow.finish(at) {
+            slow.judge(&block, ends[tile], sensors);
+            slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
+        }
+        let has_trouble = sensors.map(|sensor| sensor.trouble());
+        if had_trouble != has_trouble {
+            self.changes += 1;
+            if !self.watched.contains(&(tile as u32)) {
+                self.watched.push(tile as u32);
+            }
+        }
+    }
+
+    /// Whether somebody may be standing with part of a foot on this tile, by what its neighbours carry.
+    fn has_loaded_neighbour(&self, tile: usize) -> bool {
+        let id = self.geometry.tile_at_index(tile);
+        let (columns, rows) = (self.geometry.columns(), self.geometry.rows());
+        let around = |at: u16, count: u16| at.saturating_sub(1)..(at + 2).min(count);
+        around(id.row, rows).any(|row| {
+            around(id.column, columns).any(|column| {
+                let other = usize::from(row) * usize::from(columns) + usize::from(column);
+                other != tile && self.slow[other].is_loaded()
+            })
+        })
+    }
+
+    /// How often a sensor has fallen ill or got well.
+    pub(super) const fn changes(&self) -> u64 {
+        self.changes
+    }
+
+    /// The sensors in trouble.
+    pub(super) fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
+        self.watched.iter().flat_map(move |&tile| {
+            let id = self.geometry.tile_at_index(tile as usize);
+            let sensors = &self.sensors[tile as usize];
+            Corner::ALL.into_iter().filter_map(move |corner| {
+                let trouble = sensors[corner.index()].trouble()?;
+                Some((SensorId { tile: id, corner }, trouble))
+            })
+        })
+    }
+
+    /// How far each sensor's zero has been followed, per tile and corner.
+    pub(super) fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
+        self.zeros.iter().map(|zeros| zeros.map(Newtons))
+    }
+}
+
+/// Whether all four sensors deliver, those known to be broken apart.
+fn is_heard(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
+    quality.iter().zip(sensors).all(|(quality, sensor)| *quality < Quality::Stale || sensor.is_out())
+}

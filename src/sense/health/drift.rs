@@ -1,0 +1,105 @@
+//! Following the zero of sensors that drift.
+//!
+//! Whether a tile is empty is not read off the drifting value alone:
+//!
+//! - every sensor must be near its zero (3 N), and so must their sum (4 N): less than
+//!   what counts as load, so whatever stands there operates nothing anyway;
+//! - none of the eight tiles around may carry anything, for a foot's edge may reach over;
+//! - all of this must have been so, and quiet, for two seconds on end: a person sways.
+//!
+//! A foot that stands is never near zero, so no standing foot is taken off, however long
+//! it stands and creeps. The worst that can be zeroed away is a resting touch of 4 N.
+
+use super::slow::Block;
+use super::trouble::{Sensor, Trouble};
+
+/// The fastest the zero follows, in newtons per second: one newton a minute.
+const RATE: f32 = 1.0 / 60.0;
+
+/// How far the zero is followed, as a share of the sensor's range.
+pub(super) const LIMIT: f32 = 0.2;
+
+/// How far from zero a sensor, and the sum of a tile's, may be on an empty tile.
+const EMPTY_N: f32 = 3.0;
+const EMPTY_SUM_N: f32 = 4.0;
+
+/// How much averages may differ while quiet, in newtons.
+const QUIET_N: f32 = 0.5;
+
+/// How far readings may scatter within a block on a sensor that is not noisy, in newtons.
+const SCATTER_N: f32 = 4.0;
+
+/// For how long a tile must be empty and quiet, in seconds.
+const PATIENCE_S: f32 = 2.0;
+
+/// One tile's state as far as drift is concerned.
+#[derive(Clone, Copy, Debug, Default)]
+pub(in crate::sense) struct Drift {
+    /// The averages when it became quiet.
+    since: [f32; 4],
+    quiet_for: f32,
+    /// Seconds for which each sensor has scattered on the empty tile, or has not.
+    noisy_for: [f32; 4],
+}
+
+impl Drift {
+    /// Adds a block, and moves the `zeros` if the tile is empty and quiet; `alone`
+    /// says that no tile around it carries anything.
+    pub(super) fn follow(
+        &mut self,
+        block: &Block,
+        alone: bool,
+        limits: &[f32; 4],
+        zeros: &mut [f32; 4],
+        sensors: &mut [Sensor; 4],
+    ) {
+        let sound = |corner: &usize| !sensors[*corner].is_out();
+        let known = || (0..4).filter(sound);
+        let sum: f32 = known().map(|corner| block.means[corner]).sum();
+        let near = known().all(|corner| block.means[corner].abs() <= EMPTY_N);
+        let empty = alone && near && sum.abs() <= EMPTY_SUM_N;
+        if empty {
+            self.note_noise(block, sensors);
+        }
+        let known = (0..4).filter(|&corner| !sensors[corner].is_out());
+        let quiet = known.clone().all(|corner| {
+            (block.means[corner] - self.since[corner]).abs() <= QUIET_N && block.spreads[corner] <= SCATTER_N
+        });
+        if !(empty && quiet) {
+            (self.since, self.quiet_for) = (block.means, 0.0);
+            return;
+        }
+        self.quiet_for += block.seconds;
+        if self.quiet_for < PATIENCE_S {
+            return;
+        }
+        // What it follows must not in the end look like unrest.
+        self.since = block.means;
+        let most = RATE * block.seconds;
+        for corner in known.collect::<arrayvec::ArrayVec<usize, 4>>() {
+            let (sensor, limit, zero) = (&mut sensors[corner], limits[corner], &mut zeros[corner]);
+            let moved = *zero + block.means[corner].clamp(-most, most);
+            *zero = moved.clamp(-limit, limit);
+            if moved.abs() > limit {
+                sensor.find(Trouble::Drifted, block.means[corner]);
+            } else if sensor.trouble() == Some(Trouble::Drifted) {
+                sensor.review(block.means[corner], zero.abs() < 0.95 * limit, block.seconds);
+            }
+        }
+    }
+
+    /// Finds sensors that scatter on an empty tile.
+    fn note_noise(&mut self, block: &Block, sensors: &mut [Sensor; 4]) {
+        for (corner, sensor) in sensors.iter_mut().enumerate() {
+            let scatters = block.spreads[corner] > SCATTER_N;
+            let for_s = &mut self.noisy_for[corner];
+            *for_s = if scatters { *for_s + block.seconds } else { 0.0 };
+            if *for_s >= PATIENCE_S {
+                sensor.find(Trouble::Noisy, block.means[corner]);
+            }
+            if sensor.trouble() == Some(Trouble::Noisy) {
+                sensor.review(block.means[corner], !scatters, block.seconds);
+            }
+        }
+    }
+}

@@ -1,0 +1,107 @@
+//! What a rigid plate on four supports allows its sensors to read.
+//!
+//! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ
+//! from it in one bit of its number, its diagonal in both.
+
+/// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
+const ALONE_N: f32 = 8.0;
+
+/// An answer must be larger than this share of the lone load, from the least to the most one expects.
+///
+/// A load right over a sensor puts a third of what that one reads on each of its
+/// neighbours, until the plate lifts off diagonally, where its own weight (6 N per
+/// corner and more) then is missing.
+const ANSWER: f32 = 0.1;
+const LEAST_ANSWER_N: f32 = 1.0;
+const MOST_ANSWER_N: f32 = 3.0;
+
+/// A corner that reads this little has lifted off, or is about to: what rests on it by weight is gone.
+pub(super) const LIFTED_N: f32 = -2.0;
+
+/// How much of a tile's load the rigid-plate estimate of a corner may be off: unequal
+/// supports (a tenth) and gains (a twentieth), three deviations (our choice).
+pub(super) const SLACK: f32 = 0.15;
+
+/// The same for a verdict from a single frame, which no later one confirms.
+const AT_ONCE_SLACK: f32 = 0.3;
+
+/// What the other three corners say this one carries, in newtons; below zero where it lifts off.
+///
+/// # Source
+/// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw.
+pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
+    forces[corner ^ 1] + forces[corner ^ 2] - forces[corner ^ 3]
+}
+
+/// The sensor that alone reads a load (or the lack of one), if no foot could press like that.
+///
+/// Sensors that are `out` say nothing; with fewer than two others left there is no telling.
+pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
+    let known = || (0..4).filter(|&corner| !out[corner]);
+    let loudest = known().max_by(|&a, &b| forces[a].abs().total_cmp(&forces[b].abs()))?;
+    let force = forces[loudest].abs();
+    let answer = (ANSWER * force).clamp(LEAST_ANSWER_N, MOST_ANSWER_N);
+    let others = known().filter(|&corner| corner != loudest);
+    let quiet = others.clone().all(|corner| forces[corner].abs() < answer);
+    (force > ALONE_N && others.count() >= 2 && quiet).then_some(loudest)
+}
+
+/// Whether a corner other than `corner` has lifted off, so that the plate tips and [`expected`] says nothing.
+pub(super) fn tips(forces: [f32; 4], corner: usize) -> bool {
+    (0..4).any(|other| other != corner && forces[other] < LIFTED_N)
+}
+
+/// Whether `corner`, which reads nothing at all, should read more: half of what it reads on
+/// the empty floor is there by what the others carry, all errors allowed for.
+///
+/// A corner that a foot on the far side has lifted off reads nothing as well, rightly; so
+/// where the plate may tip, or a sensor is out, only a tile that carries nothing tells.
+pub(super) fn should_bear_more(forces: [f32; 4], out: [bool; 4], corner: usize) -> bool {
+    let others = [corner ^ 1, corner ^ 2, corner ^ 3];
+    if others.iter().any(|&other| out[other]) || tips(forces, corner) {
+        let tells = |other: usize| !out[other] && forces[other] >= LIFTED_N;
+        return others.iter().all(|&other| !tells(other) || forces[other].abs() < LEAST_ANSWER_N);
+    }
+    let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
+    expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const NONE_OUT: [bool; 4] = [false; 4];
+
+    #[test]
+    fn a_foot_over_a_single_sensor_is_answered_by_the_others() {
+        // 20 N and 100 N right over sw of a plate that rests on each corner with 11 N.
+        assert_eq!(unanswered([15.0, 5.0, 5.0, -5.0], NONE_OUT), None);
+        assert_eq!(unanswered([88.6, 11.4, 11.4, -11.4], NONE_OUT), None);
+        // Three kilonewtons: the frame takes over, ne hangs free.
+        assert_eq!(unanswered([2900.0, -6.0, -6.0, -6.0], NONE_OUT), None);
+    }
+
+    #[test]
+    fn fifty_newtons_on_one_sensor_alone_are_no_foot() {
+        for corner in 0..4 {
+            let mut forces = [0.4, -0.7, 0.1, 0.3];
+            forces[corner] = 50.0;
+            assert_eq!(unanswered(forces, NONE_OUT), Some(corner));
+            forces[corner] = -11.0;
+            assert_eq!(unanswered(forces, NONE_OUT), Some(corner));
+        }
+        assert_eq!(unanswered([4.0, 0.0, 0.0, 0.0], NONE_OUT), None, "too light to tell");
+        assert_eq!(unanswered([50.0, 0.0, 0.0, 0.0], [true, false, false, false]), None, "known to be out");
+        assert_eq!(unanswered([f32::NAN; 4], NONE_OUT), None);
+    }
+
+    #[test]
+    fn a_lifted_corner_is_no_broken_one() {
+        // sw reads nothing, 11 N less than at rest.
+        assert!(should_bear_more([-11.0, 0.1, -0.2, 0.3], NONE_OUT, 0), "nobody there");
+        assert!(should_bear_more([-11.0, 150.0, 160.0, 140.0], NONE_OUT, 0), "a foot in the middle");
+        assert!(!should_bear_more([-11.0, 10.0, 10.0, 280.0], NONE_OUT, 0), "a foot on ne");
+        assert!(!should_bear_more([-11.0, 300.0, -11.0, -10.0], NONE_OUT, 0), "tipped over se");
+        assert!(should_bear_more([-11.0, -11.0, -11.0, -11.0], NONE_OUT, 0), "the whole tile unplugged");
+    }
+}

@@ -1,0 +1,163 @@
+use super::drift::Drift;
+use super::trouble::{Sensor, Trouble};
+use super::{End, plate};
+use crate::units::Instant;
+
+/// Every how many frames a tile is visited.
+pub(super) const SHARES: usize = 8;
+
+/// Visits averaged into one block: 64 ms.
+const VISITS: u8 = 8;
+
+/// Longest time between blocks that says something of change, in seconds; after a gap everything starts afresh.
+const GAP_S: f32 = 0.5;
+
+/// How long a sensor must stand still after the load around it has changed to be stuck.
+const STUCK_S: f32 = 2.0;
+
+/// A sensor is still if its averages stay within this much and this share of its reading:
+/// its converter's noise (2 mV are 0.3 % of the force) with room to spare.
+const STILL_N: f32 = 1.0;
+const STILL_SHARE: f32 = 0.02;
+
+/// How much a load must change at a corner, besides what the plate estimate may err, to expect it to move.
+const CHANGE_N: f32 = 10.0;
+
+/// How far a sensor in trouble may be from what its plate demands to be right again, in newtons.
+const RIGHT_N: f32 = 3.0;
+
+/// From which sum on a tile counts as loaded for its neighbours' sake, in newtons.
+const LOADED_N: f32 = 6.0;
+
+/// One tile's averages over the block that is under way, and what follows from those before.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Slow {
+    visits: u8,
+    /// Whether all sensors were heard at every visit.
+    broken: bool,
+    sums: [f32; 4],
+    lows: [f32; 4],
+    highs: [f32; 4],
+    ended: Option<Instant>,
+    loaded: bool,
+    tracks: [Track; 4],
+    pub(super) drift: Drift,
+}
+
+/// The averages of one block.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Block {
+    pub(super) means: [f32; 4],
+    /// Highest less lowest reading.
+    pub(super) spreads: [f32; 4],
+    /// Since the block before.
+    pub(super) seconds: f32,
+}
+
+/// A sensor's and its neighbours' extremes since the sensor last moved.
+#[derive(Clone, Copy, Debug, Default)]
+struct Track {
+    begun: bool,
+    own: (f32, f32),
+    expected: (f32, f32),
+    /// The largest load on the other corners.
+    load: f32,
+    /// Seconds since it should have moved.
+    overdue: f32,
+}
+
+impl Slow {
+    pub(super) const fn is_loaded(&self) -> bool {
+        self.loaded
+    }
+
+    /// Adds what the sensors read; true if the block is complete.
+    pub(super) fn add(&mut self, forces: [f32; 4], heard: bool) -> bool {
+        if self.visits == 0 {
+            (self.sums, self.lows, self.highs, self.broken) = ([0.0; 4], forces, forces, false);
+        }
+        self.visits += 1;
+        self.broken |= !heard;
+        for (corner, force) in forces.into_iter().enumerate() {
+            self.sums[corner] += force;
+            self.lows[corner] = self.lows[corner].min(force);
+            self.highs[corner] = self.highs[corner].max(force);
+        }
+        self.visits == VISITS
+    }
+
+    /// The block that is complete; `None` if it has gaps, after which nothing earlier counts either.
+    pub(super) fn finish(&mut self, at: Instant) -> Option<Block> {
+        self.visits = 0;
+        let seconds = self.ended.replace(at).map(|ended| at.since(ended).as_secs_f32());
+        let seconds = seconds.filter(|&seconds| !self.broken && seconds <= GAP_S);
+        let Some(seconds) = seconds else {
+            self.tracks = Default::default();
+            self.drift = Drift::default();
+            return None;
+        };
+        let means = self.sums.map(|sum| sum / f32::from(VISITS));
+        let spreads = std::array::from_fn(|corner| self.highs[corner] - self.lows[corner]);
+        self.loaded = means.iter().sum::<f32>().abs() > LOADED_N;
+        Some(Block { means, spreads, seconds })
+    }
+
+    /// Finds stuck sensors, and gives those in trouble the chance to be found right again.
+    pub(super) fn judge(&mut self, block: &Block, ends: [End; 4], sensors: &mut [Sensor; 4]) {
+        let out = sensors.map(|sensor| sensor.is_out());
+        let means = block.means;
+        for corner in 0..4 {
+            let others = [corner ^ 1, corner ^ 2, corner ^ 3];
+            let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
+            let (sensor, own) = (&mut sensors[corner], means[corner]);
+            if others.iter().any(|&other| out[other]) {
+                self.tracks[corner] = Track::default();
+                // No telling what it should read, but on an empty tile.
+                let empty = others.iter().all(|&other| out[other] || means[other].abs() <= RIGHT_N);
+                sensor.review(
+                    own,
+                    empty && own.abs() <= RIGHT_N && ends[corner] == End::Within,
+                    block.seconds,
+                );
+                continue;
+            }
+            let lifted = own < plate::LIFTED_N && sensor.trouble().is_none();
+            if lifted || plate::tips(means, corner) {
+                // Neither evidence for it nor against it.
+                continue;
+            }
+            let expected = plate::expected(means, corner).max(0.0);
+            let is_right = (own - expected).abs() <= RIGHT_N + plate::SLACK * load;
+            match sensor.trouble() {
+                None | Some(Trouble::Drifted | Trouble::Noisy) => {}
+                Some(_) => sensor.review(own, is_right && ends[corner] == End::Within, block.seconds),
+            }
+            // A reading at the end of the range stands still rightly under a heavy foot.
+            if ends[corner] == End::High || sensor.is_out() {
+                self.tracks[corner] = Track::default();
+            } else if self.tracks[corner].follow(own, expected, load, block.seconds) {
+                sensor.find(Trouble::Stuck, own);
+            }
+        }
+    }
+}
+
+impl Track {
+    /// Adds a block; true if the sensor is stuck.
+    fn follow(&mut self, own: f32, expected: f32, load: f32, seconds: f32) -> bool {
+        let widened = |range: (f32, f32), value: f32| (range.0.min(value), range.1.max(value));
+        let reach = widened(self.own, own);
+        if !self.begun || reach.1 - reach.0 > STILL_N + STILL_SHARE * own.abs() {
+            let here = |value: f32| (value, value);
+            *self = Self { begun: true, own: here(own), expected: here(expected), load, overdue: 0.0 };
+            return false;
+        }
+        self.own = reach;
+        self.expected = widened(self.expected, expected);
+        self.load = self.load.max(load);
+        if self.expected.1 - self.expected.0 > CHANGE_N + plate::SLACK * self.load {
+            self.overdue += seconds;
+        }
+        self.overdue >= STUCK_S
+    }
+}

@@ -1,0 +1,130 @@
+//! Four tiles with one button, for what takes long: ten minutes of floor in a few seconds.
+
+use std::time::Duration;
+
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::feel::Cue;
+use underfoot::floor::{Floor, Geometry, SensorId};
+use underfoot::glam::Vec2;
+use underfoot::sense::{Assembler, Contact, Method, Quality, Tare, TareRules};
+use underfoot::sim::{self, Foot, Sensing, SimConfig, SimFloor};
+use underfoot::units::{Instant, Newtons};
+use underfoot::widget::EventKind;
+use underfoot::wire::{Readings, SensorPacket};
+
+use crate::support::page;
+
+/// A button of the shipped kind (60 N, 40 N) over the south-west tile.
+const PAGE: &str = r#"Layout(version: 1, title: "bench", regions: [(id: "all", at: (0, 0), size: (2, 2))],
+    widgets: [(id: "it", kind: "button", at: (0.1, 0.1), size: (0.8, 0.8), label: "It")])"#;
+
+pub struct Bench {
+    pub engine: Engine,
+    pub assembler: Assembler,
+    pub sim: SimFloor,
+    pub feet: Vec<Foot>,
+    pub cues: Vec<Cue>,
+    pub events: Vec<EventKind>,
+    now: Instant,
+}
+
+impl Bench {
+    pub fn new(sensing: Sensing) -> Self {
+        let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
+        let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, 3);
+        let floor = sim::calibrated(&wired, &sim, 3).unwrap();
+        Self::with_floor(&floor, sim)
+    }
+
+    /// As [`Bench::new`], the tare measured by the assembler itself.
+    pub fn tared_at_start(sensing: Sensing) -> Self {
+        let mut bench = Self::new(sensing);
+        let mut floor = Floor::of(*bench.sim.geometry());
+        floor = sim::calibrated(&floor, &bench.sim, 3).unwrap();
+        bench.assembler = Assembler::with_tare(&floor, Tare::AtStart(TareRules::default()));
+        bench.run(1000);
+        bench
+    }
+
+    pub fn with_floor(floor: &Floor, sim: SimFloor) -> Self {
+        let mut bench = Self {
+            engine: Engine::new(floor.geometry, page(PAGE), Method::default()),
+            assembler: Assembler::new(floor),
+            sim,
+            feet: Vec::new(),
+            cues: Vec::new(),
+            events: Vec::new(),
+            now: Instant::START,
+        };
+        bench.run(100);
+        bench
+    }
+
+    pub fn now(&self) -> Instant {
+        self.now
+    }
+
+    pub fn run(&mut self, millis: u64) {
+        self.run_with(millis, |_, _, _| {});
+    }
+
+    /// Lets time pass; `disturb` may change what channel (board, number) sends, in newtons.
+    pub fn run_with(&mut self, millis: u64, mut disturb: impl FnMut(u64, (usize, usize), &mut f32)) {
+        for ms in 0..millis {
+            self.now = self.now + Duration::from_millis(1);
+            let sequence = (self.now.micros() / 1000) as u32;
+            for (board, readings) in self.sim.step(&self.feet).iter().enumerate() {
+                let mut readings = readings.clone();
+                if let Readings::Newtons(forces) = &mut readings {
+                    forces.iter_mut().enumerate().for_each(|(at, force)| disturb(ms, (board, at), force));
+                }
+                let board = board as u16;
+                self.assembler.take(&SensorPacket { board, sequence, received: self.now, readings });
+            }
+            while let Some(frame) = self.assembler.ready() {
+                let step = self.engine.step(frame);
+                self.events.extend(step.events.iter().map(|event| event.kind));
+                self.cues.extend_from_slice(step.cues);
+            }
+        }
+    }
+
+    /// Brings one foot, its pressure on `at`, to `force` within 40 ms.
+    pub fn press(&mut self, at: Vec2, force: f32) {
+        let before = self.feet.first().map_or(0.0, |foot| foot.force.0);
+        for step in 1..=40_u8 {
+            self.feet = vec![foot(at, before + (force - before) * f32::from(step) / 40.0)];
+            self.run(1);
+        }
+    }
+
+    pub fn lift(&mut self, at: Vec2) {
+        self.press(at, 0.0);
+        self.feet.clear();
+    }
+
+    pub fn snapshot(&self) -> Snapshot {
+        let mut snapshot = Snapshot::default();
+        self.engine.snapshot(&mut snapshot);
+        snapshot
+    }
+
+    pub fn quality(&self, sensor: SensorId) -> Quality {
+        let tile = self.sim.geometry().index(sensor.tile).unwrap();
+        self.snapshot().tiles[tile].quality[sensor.corner.index()]
+    }
+
+    pub fn contacts(&self) -> Vec<Contact> {
+        self.snapshot().contacts
+    }
+}
+
+/// The button's middle.
+pub const BUTTON: Vec2 = Vec2::splat(0.152);
+
+pub fn foot(at: Vec2, force: f32) -> Foot {
+    let mut foot =
+        Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.24, force: Newtons(force), roll: 0.5 };
+    foot.position = at - foot.centre_of_pressure();
+    foot
+}

@@ -1,0 +1,15 @@
+//! What goes wrong with sensors, and what becomes of the feet: one test per row of the fault table, named by its id.
+//!
+//! Simulated packets go through the assembler into an engine, as those of a real floor do.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod bench;
+mod broken;
+mod creeping;
+mod desk;
+mod doubtful;
+mod long_run;
+mod loop_gain;
