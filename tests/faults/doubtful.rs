@@ -33,6 +33,7 @@ fn s6_fifty_newtons_out_of_nowhere_are_doubted_at_once_and_press_nothing() {
 #[test]
 fn s6_without_a_dwell_to_wait_for_it_presses_nothing_either() {
     let mut bench = Bench::new(Sensing::default());
+    bench.hasten();
     let part = SensorId { tile: TileId::new(0, 0), corner: Corner::NorthEast };
     bench.sim.set_fault(part, Some(SensorFault::Offset(Newtons(90.0))));
     bench.run(2);

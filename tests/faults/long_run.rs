@@ -59,6 +59,7 @@ proptest! {
         ),
     ) {
         let mut bench = Bench::new(Sensing::Newtons(PartConfig::default()));
+        bench.hasten();
         let (mut nonsense_ms, mut clock_ms, mut worst) = (0, 0, Quality::Live);
         for (value, millis) in sent {
             for _ in 0..millis {
