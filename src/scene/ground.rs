@@ -186,6 +186,8 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
     if view.snapshot.link == LinkState::Waiting {
         return;
     }
+    // Where no sensor is better, as on a floor that nobody calibrated, a mark on each would tell nothing.
+    let none_live = super::strip::none_live(view);
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let tile = view.geometry.tile_at_index(index);
         // The hatching says it for a tile that is silent as a whole.
@@ -195,7 +197,9 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
         for corner in Corner::ALL {
             let at = view.geometry.sensor(tile, corner);
             let force = state.forces[corner.index()];
-            sensor(scene, view, at, force, state.quality[corner.index()]);
+            let quality = state.quality[corner.index()];
+            let told = if none_live && quality == Quality::Degraded { Quality::Live } else { quality };
+            sensor(scene, view, at, force, told);
         }
     }
 }

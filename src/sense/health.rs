@@ -50,6 +50,9 @@ pub(super) struct Health {
     /// How far each may be followed: 20 % of the sensor's range.
     limits: Vec<[f32; 4]>,
     ends: Vec<[End; 4]>,
+    /// Tiles with a sensor that goes by the nominal law: what a plate allows cannot be held against
+    /// forces that may be off by a third.
+    guessed: Vec<bool>,
     sensors: Vec<[Sensor; 4]>,
     slow: Vec<Slow>,
     /// Tiles with a reading to be looked at in this frame.
@@ -76,6 +79,7 @@ impl Health {
             zeros: vec![[0.0; 4]; tiles],
             limits: (0..tiles).map(limits).collect(),
             ends: vec![[End::Within; 4]; tiles],
+            guessed: vec![false; tiles],
             sensors: vec![[Sensor::default(); 4]; tiles],
             slow: vec![Slow::default(); tiles],
             loud: Vec::with_capacity(4 * tiles),
@@ -92,9 +96,11 @@ impl Health {
         self.zeros[tile][corner]
     }
 
-    /// Notes that a sensor has read `force` newtons (tared, zero taken off), at this end of its converter.
-    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End) {
+    /// Notes that a sensor has read `force` newtons (tared, zero taken off), at this end of its
+    /// converter; `guessed` if nobody has measured its law.
+    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, guessed: bool) {
         self.ends[tile as usize][corner] = end;
+        self.guessed[tile as usize] |= guessed;
         let is_loud = force.abs() > LOUD_N || end != End::Within;
         // A tile may come four times if its sensors are on boards of their own, never more often.
         if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
@@ -127,11 +133,14 @@ impl Health {
         if is_heard(quality, sensors) {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
+            let measured = !self.guessed[tile];
             for (corner, sensor) in sensors.iter_mut().enumerate() {
                 let found = match ends[corner] {
                     End::High if alone == Some(corner) => Some(Trouble::Short),
-                    End::Low if plate::should_bear_more(forces, out, corner) => Some(Trouble::Open),
-                    _ if alone == Some(corner) => Some(Trouble::Offset),
+                    End::Low if measured && plate::should_bear_more(forces, out, corner) => {
+                        Some(Trouble::Open)
+                    }
+                    _ if measured && alone == Some(corner) => Some(Trouble::Offset),
                     _ => None,
                 };
                 if let Some(found) = found {
@@ -165,11 +174,13 @@ impl Health {
 
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
-        let Self { zeros, limits, ends, sensors, slow, .. } = self;
+        let Self { zeros, limits, ends, guessed, sensors, slow, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
-            slow.judge(&block, ends[tile], sensors);
+            if !guessed[tile] {
+                slow.judge(&block, ends[tile], sensors);
+            }
             slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
         }
         let has_trouble = sensors.map(|sensor| sensor.trouble());

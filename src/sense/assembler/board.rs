@@ -191,7 +191,7 @@ impl BoardTrack {
                 Quality::Faulty
             } else {
                 frame.forces[tile][corner] = force;
-                health.note(channel.tile, corner, force, end);
+                health.note(channel.tile, corner, force, end, guessed);
                 if end == End::High || guessed { Quality::Degraded } else { Quality::Live }
             };
             frame.quality[tile][corner] = own.max(quality);
