@@ -1,3 +1,4 @@
+use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 
 use clap::Subcommand;
@@ -141,17 +142,23 @@ fn feet(args: &FeetArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Does something so many times, telling on standard error how far it has come.
+/// Does something so many times, telling a person at the terminal how far it has come.
 fn counted(
     what: &str,
     times: u64,
     mut act: impl FnMut(u64) -> Result<(), ExperimentError>,
 ) -> Result<(), Failure> {
+    let watched = std::io::stderr().is_terminal();
     for step in 0..times {
-        anstream::eprint!("\r{what} {} of {times} ", step + 1);
+        if watched {
+            anstream::eprint!("\r{what} {} of {times} ", step + 1);
+        }
         act(step)?;
     }
-    anstream::eprint!("\r                              \r");
+    if watched {
+        // Over what was written there, so that the tables begin on a clean line.
+        anstream::eprint!("\r{:40}\r", "");
+    }
     Ok(())
 }
 

@@ -197,14 +197,14 @@ impl TwoFeet {
         }
         self.draw_truth(page, map);
         for contact in &self.eq4 {
-            draw_contact(page, map, contact, THEME.warning);
+            draw_contact(page, map, contact, THEME.warning, BADGE_M);
         }
     }
 
     fn draw_after(&self, page: &mut Page, map: &Map) {
         self.draw_truth(page, map);
         for contact in &self.tracker {
-            draw_contact(page, map, contact, THEME.cursor);
+            draw_contact(page, map, contact, THEME.cursor, -BADGE_M);
         }
     }
 
@@ -215,16 +215,15 @@ impl TwoFeet {
     }
 }
 
-/// Its 95 % ellipse, a cross, and its force on a plate below.
-fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour) {
+/// Its 95 % ellipse, a cross, and its force on a plate `badge` page metres north of it.
+fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
     let edge = Stroke::new(0.0003, Ink::solid(colour));
     let paint = Paint::fill(Ink::faint(colour, 0.12)).with_stroke(edge);
     // A doubtful contact's ellipse may reach beyond the floor.
-    let (low, high) = (map.floor.min, map.floor.max);
-    let ellipse = ellipse_95(contact.centroid, contact.covariance).map(|point| point.clamp(low, high));
+    let ellipse = within(map.floor, ellipse_95(contact.centroid, contact.covariance).collect());
     map.outline(page, ellipse, paint);
     let at = map.at(contact.centroid);
-    let badge_at = at - Vec2::new(0.0, BADGE_BELOW_M);
+    let badge_at = at + Vec2::new(0.0, badge);
     page.line(at, badge_at, Stroke::new(0.0003, Ink::faint(colour, 0.7)));
     page.cross(at, colour);
     let plate =
@@ -238,8 +237,32 @@ fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour) {
     );
 }
 
-/// How far below a contact its force is written, in page metres: clear of the sensors along the seam.
-const BADGE_BELOW_M: f32 = 0.0110;
+/// How far from a contact its force is written, in page metres: clear of the sensors along the seam.
+const BADGE_M: f32 = 0.0110;
+
+/// The part of a convex outline that lies in `area`.
+fn within(area: Rect, outline: Vec<Vec2>) -> Vec<Vec2> {
+    // Cut by one side after the other; how far inside that side a point is.
+    let sides: [fn(Rect, Vec2) -> f32; 4] = [
+        |area, point| point.x - area.min.x,
+        |area, point| area.max.x - point.x,
+        |area, point| point.y - area.min.y,
+        |area, point| area.max.y - point.y,
+    ];
+    sides.into_iter().fold(outline, |outline, inside| {
+        let mut kept = Vec::with_capacity(outline.len() + 2);
+        for (&from, &to) in outline.iter().zip(outline.iter().cycle().skip(1)) {
+            let (start, end) = (inside(area, from), inside(area, to));
+            if start >= 0.0 {
+                kept.push(from);
+            }
+            if (start >= 0.0) != (end >= 0.0) {
+                kept.push(from.lerp(to, start / (start - end)));
+            }
+        }
+        kept
+    })
+}
 
 /// Points around the ellipse that holds the true point 95 times in 100.
 fn ellipse_95(middle: Vec2, covariance: Covariance) -> impl Iterator<Item = Vec2> {
@@ -267,6 +290,17 @@ mod tests {
             }
             assert!(figure.tiles.len() >= 3);
         }
+    }
+
+    #[test]
+    fn outlines_are_cut_at_the_floor_s_edge() {
+        let area = Rect::new(Vec2::ZERO, Vec2::ONE);
+        let diamond = [(0.5, -0.5), (1.5, 0.5), (0.5, 1.5), (-0.5, 0.5)].map(Vec2::from).to_vec();
+        let cut = within(area, diamond);
+        assert!(cut.iter().all(|point| area.grown(1e-6).contains(*point)), "{cut:?}");
+        let inner = [(0.2, 0.2), (0.8, 0.2), (0.5, 0.9)].map(Vec2::from).to_vec();
+        assert_eq!(within(area, inner.clone()), inner);
+        assert!(within(area, vec![Vec2::splat(2.0), Vec2::splat(3.0), Vec2::new(2.0, 3.0)]).is_empty());
     }
 
     #[test]
