@@ -44,7 +44,7 @@ pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};
-pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing};
+pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{Stance, TapLine, TapScore, TapTable};
 pub use two_feet::TwoFeet;
 

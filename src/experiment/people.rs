@@ -157,9 +157,9 @@ impl PeopleTable {
     /// Lets the person that follows from `seed` visit a floor whose parts follow from it too.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`] and [`Visit::of`].
+    /// Those of [`Rig::of_mapped_parts`] and [`Visit::of`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        let mut rig = Rig::of_calibrated_parts(Geometry::default(), seed)?;
+        let mut rig = Rig::of_mapped_parts(Geometry::default(), seed)?;
         let visit = Visit::of(seed, rig.geometry())?;
         let geometry = *rig.geometry();
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));

@@ -6,10 +6,10 @@ use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
 use crate::engine::Engine;
-use crate::floor::{Floor, Geometry};
+use crate::floor::{Floor, Geometry, PositionMap};
 use crate::layout::Layout;
 use crate::sense::{Assembler, ForceFrame, Method, Sensing};
-use crate::sim::{self, CalibrationError, Load, MoveError, SimConfig, SimFloor};
+use crate::sim::{self, CalibrationError, Load, MappingError, MoveError, SimConfig, SimFloor};
 use crate::units::{Instant, Newtons};
 use crate::wire::SensorPacket;
 
@@ -22,6 +22,9 @@ pub enum ExperimentError {
     /// A sensor of the simulated floor cannot be calibrated.
     #[error(transparent)]
     Calibration(#[from] CalibrationError),
+    /// A tile of the simulated floor cannot be mapped.
+    #[error(transparent)]
+    Mapping(#[from] MappingError),
     /// A simulated person cannot do what the experiment asks.
     #[error("a simulated person cannot move so: {0}")]
     Move(#[from] MoveError),
@@ -35,14 +38,29 @@ pub enum ExperimentError {
 pub struct Rig {
     sim: SimFloor,
     geometry: Geometry,
+    maps: Vec<Option<PositionMap>>,
     assembler: Assembler,
     now: Instant,
     sequence: u32,
 }
 
 impl Rig {
-    /// A floor of the paper's parts, calibrated in the laboratory from `seed`; since then each
-    /// sensor's zero has drifted by [`OFFSET_N`].
+    /// A floor of the paper's parts, calibrated in the laboratory from `seed`, each tile with its
+    /// position map; since then each sensor's zero has drifted by [`OFFSET_N`].
+    ///
+    /// # Errors
+    /// [`ExperimentError::Calibration`] if a part follows no law, [`ExperimentError::Mapping`] if a
+    /// tile's presses make no sense.
+    pub fn of_mapped_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
+        let wired = Floor::of(geometry);
+        let sim = SimFloor::new(&wired, SimConfig::default(), seed);
+        let floor = sim::calibrated(&wired, &sim, seed)?;
+        let mut floor = sim::mapped(&floor, &sim, seed)?;
+        drift(&mut floor, seed);
+        Ok(Self::over(sim, &floor))
+    }
+
+    /// As [`Rig::of_mapped_parts`], without position maps: the paper's floor.
     ///
     /// # Errors
     /// [`ExperimentError::Calibration`] if a part follows no law.
@@ -61,11 +79,18 @@ impl Rig {
         Self::over(SimFloor::new(&floor, SimConfig::ideal(), 0), &floor)
     }
 
-    /// The simulated floor `sim`, heard with the calibration and tare of `floor`.
+    /// The simulated floor `sim`, heard with the calibration, tare and position maps of `floor`.
     #[must_use]
     pub fn over(sim: SimFloor, floor: &Floor) -> Self {
         let geometry = floor.geometry;
-        Self { sim, geometry, assembler: Assembler::new(floor), now: Instant::START, sequence: 0 }
+        Self {
+            sim,
+            geometry,
+            maps: floor.position_maps.clone(),
+            assembler: Assembler::new(floor),
+            now: Instant::START,
+            sequence: 0,
+        }
     }
 
     /// Where the tiles are.
@@ -77,19 +102,25 @@ impl Rig {
     /// Sensing as this floor's calibration allows, with nobody on it yet.
     #[must_use]
     pub fn sensing(&self, method: Method) -> Sensing {
-        Sensing::new(self.geometry, method)
+        Sensing::new(self.geometry, method).with_maps(&self.maps)
     }
 
     /// The controls of `layout` on this floor.
     #[must_use]
     pub fn engine(&self, layout: Layout, method: Method) -> Engine {
-        Engine::new(self.geometry, layout, method)
+        Engine::new(self.geometry, layout, method).with_maps(&self.maps)
     }
 
     /// The millisecond that was stepped last.
     #[must_use]
     pub const fn now(&self) -> Instant {
         self.now
+    }
+
+    /// Sensing that knows the floor's calibration but none of its position maps.
+    #[must_use]
+    pub fn sensing_without_maps(&self, method: Method) -> Sensing {
+        Sensing::new(self.geometry, method)
     }
 
     /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.

@@ -71,10 +71,13 @@ impl TileScan {
     /// Tries a tile whose parts follow from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Those of [`Rig::of_mapped_parts`].
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = Geometry::of_paper_tiles(1, 1).unwrap_or_default();
-        let rigs = [("without position map", Rig::of_calibrated_parts(geometry, seed)?)];
+        let rigs = [
+            ("without position map", Rig::of_calibrated_parts(geometry, seed)?),
+            ("with position map", Rig::of_mapped_parts(geometry, seed)?),
+        ];
         let scans = rigs.into_iter().map(|(name, rig)| Scan { name, points: scan(rig) });
         Ok(Self { scans: scans.collect() })
     }
@@ -207,6 +210,8 @@ mod tests {
             assert!(found.median_cm < 2.0 && found.worst_cm < 5.0, "{}: {found:?}", scan.name);
             assert!(found.median_cm > 0.05, "real parts are not exact");
         }
+        let [without, with] = [0, 1].map(|which| figure.scans[which].errors().quantile(0.95).unwrap());
+        assert!(with < 0.5 * without, "the map takes most of the error away: {with} of {without} m");
         assert_eq!(figure.csv().lines().count(), 1 + 64 * figure.scans.len());
     }
 

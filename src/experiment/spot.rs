@@ -5,7 +5,6 @@ use std::fmt;
 use glam::Vec2;
 use serde::Serialize;
 
-use super::METHODS;
 use super::errors::{Errors, Summary};
 use super::rig::{ExperimentError, Rig};
 use crate::floor::{Geometry, TileId};
@@ -58,25 +57,50 @@ impl Thing {
     }
 }
 
+/// A way of finding contacts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Way {
+    /// How contacts are made.
+    pub method: Method,
+    /// Whether the tiles' position maps are used.
+    pub mapped: bool,
+    /// What it is called in tables.
+    pub name: &'static str,
+}
+
+impl Way {
+    /// All that are compared, in the order of the tables: the paper's own first.
+    pub const ALL: [Self; 3] = [
+        Self { method: Method::Eq4, mapped: false, name: "Eq. 4" },
+        Self { method: Method::Tracker, mapped: false, name: "tracker" },
+        Self { method: Method::Tracker, mapped: true, name: "with map" },
+    ];
+}
+
 /// A floor of three by three tiles, of which the middle one is tried.
 struct Bench {
     rig: Rig,
-    sensing: [Sensing; 2],
+    sensing: [Sensing; Way::ALL.len()],
     tried: usize,
 }
 
 impl Bench {
     fn new(seed: u64) -> Result<Self, ExperimentError> {
-        Ok(Self::over(Rig::of_calibrated_parts(geometry(), seed)?))
+        Ok(Self::over(Rig::of_mapped_parts(geometry(), seed)?))
     }
 
     fn over(rig: Rig) -> Self {
-        let sensing = METHODS.map(|(method, _)| rig.sensing(method));
+        let sensing =
+            Way::ALL.map(
+                |Way { method, mapped, .. }| {
+                    if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
+                },
+            );
         Self { rig, sensing, tried: 0 }
     }
 
-    /// Where each method finds the thing: its heaviest contact; `None` if it finds none.
-    fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; 2] {
+    /// Where each way finds the thing: its heaviest contact; `None` if it finds none.
+    fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
         let Self { rig, sensing, .. } = self;
@@ -114,8 +138,8 @@ pub struct SpotRow {
     pub thing: Thing,
     /// Its force.
     pub force: Newtons,
-    /// How contacts were made.
-    pub method: Method,
+    /// How it was looked for.
+    pub way: Way,
     /// Distance from the true centre of pressure.
     pub errors: Errors,
     /// Places at which nothing was found.
@@ -125,7 +149,7 @@ pub struct SpotRow {
 /// How well a single contact is found over one whole tile, up to half a centimetre from its edges.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpotTable {
-    /// One line per thing, force and method.
+    /// One line per thing, force and way.
     pub rows: Vec<SpotRow>,
     side: u16,
     floors: usize,
@@ -135,16 +159,16 @@ impl SpotTable {
     /// An empty table of `side` x `side` places per tile.
     #[must_use]
     pub fn new(side: u16) -> Self {
-        let row = |thing, force, method| SpotRow {
+        let row = |thing, force, way| SpotRow {
             thing,
             force: Newtons(force),
-            method,
+            way,
             errors: Errors::default(),
             missed: 0,
         };
         let rows = Thing::ALL
             .into_iter()
-            .flat_map(|thing| FORCES_N.map(|force| METHODS.map(|(method, _)| row(thing, force, method))))
+            .flat_map(|thing| FORCES_N.map(|force| Way::ALL.map(|way| row(thing, force, way))))
             .flatten()
             .collect();
         Self { rows, side, floors: 0 }
@@ -153,14 +177,14 @@ impl SpotTable {
     /// Tries the middle tile of another floor, whose parts follow from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Those of [`Rig::of_mapped_parts`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
-        for pair in self.rows.chunks_exact_mut(METHODS.len()) {
-            let (thing, force) = (pair[0].thing, pair[0].force);
+        for rows in self.rows.chunks_exact_mut(Way::ALL.len()) {
+            let (thing, force) = (rows[0].thing, rows[0].force);
             for at in raster(&geometry(), self.side) {
-                for (row, found) in pair.iter_mut().zip(bench.find(thing, at, force)) {
+                for (row, found) in rows.iter_mut().zip(bench.find(thing, at, force)) {
                     match found {
                         Some(found) => row.errors.push(found.distance(at)),
                         None => row.missed += 1,
@@ -176,11 +200,10 @@ impl fmt::Display for SpotTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { side, floors, .. } = self;
         writeln!(f, "error of one contact over a whole tile, {side} x {side} places on {floors} floors, cm")?;
-        writeln!(f, "thing  force_n  method    median     p95   worst  missed")?;
+        writeln!(f, "thing  force_n  found by    median     p95   worst  missed")?;
         for row in &self.rows {
-            let method = name(row.method);
-            let SpotRow { thing, force, errors, missed, .. } = row;
-            writeln!(f, "{:5}  {:7.0}  {method:8}{errors}  {missed:6}", thing.name(), force.0)?;
+            let SpotRow { thing, force, way, errors, missed } = row;
+            writeln!(f, "{:5}  {:7.0}  {:10}{errors}  {missed:6}", thing.name(), force.0, way.name)?;
         }
         Ok(())
     }
@@ -206,7 +229,7 @@ impl SeamRow {
 /// How much worse a contact is found while it crosses a seam than in the middle of a tile, at 120 N.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeamTable {
-    rows: [[SeamRow; 2]; 2],
+    rows: [[SeamRow; Way::ALL.len()]; 2],
     floors: usize,
 }
 
@@ -214,7 +237,7 @@ impl SeamTable {
     /// Tries another floor, whose parts follow from `seed`.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Those of [`Rig::of_mapped_parts`].
     pub fn add_floor(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut bench = Bench::new(seed)?;
         self.floors += 1;
@@ -233,10 +256,10 @@ impl SeamTable {
         Ok(())
     }
 
-    /// The line of one thing and method.
+    /// The lines of one thing, one per way ([`Way::ALL`]).
     #[must_use]
-    pub fn row(&self, thing: Thing, method: Method) -> &SeamRow {
-        &self.rows[usize::from(thing == Thing::Foot)][usize::from(method == Method::Tracker)]
+    pub const fn rows(&self, thing: Thing) -> &[SeamRow; Way::ALL.len()] {
+        &self.rows[thing as usize]
     }
 }
 
@@ -267,13 +290,13 @@ fn place_at_a_seam(step: u16) -> Vec2 {
 impl fmt::Display for SeamTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(f, "error of one contact of 120 N at a seam and in mid-tile, {} floors, cm", self.floors)?;
-        writeln!(f, "               mid-tile                at a seam               ratio of")?;
-        writeln!(f, "thing  method    median     p95   worst  median     p95   worst  medians")?;
+        writeln!(f, "                 mid-tile                at a seam               ratio of")?;
+        writeln!(f, "thing  found by    median     p95   worst  median     p95   worst  medians")?;
         for (thing, rows) in Thing::ALL.into_iter().zip(&self.rows) {
-            for ((_, method), row) in METHODS.into_iter().zip(rows) {
+            for (way, row) in Way::ALL.into_iter().zip(rows) {
                 let SeamRow { middle, seam } = row;
                 let ratio = row.ratio().unwrap_or(f32::NAN);
-                writeln!(f, "{:5}  {method:8}{middle}{seam}  {ratio:7.2}", thing.name())?;
+                writeln!(f, "{:5}  {:10}{middle}{seam}  {ratio:7.2}", thing.name(), way.name)?;
             }
         }
         Ok(())
@@ -285,7 +308,7 @@ impl fmt::Display for SeamTable {
 pub struct SpotLine {
     thing: Thing,
     force_n: f32,
-    method: &'static str,
+    found_by: &'static str,
     place: &'static str,
     #[serde(flatten)]
     errors: Option<Summary>,
@@ -297,7 +320,7 @@ impl SpotTable {
         self.rows.iter().map(|row| SpotLine {
             thing: row.thing,
             force_n: row.force.0,
-            method: name(row.method),
+            found_by: row.way.name,
             place: "tile",
             errors: row.errors.summary(),
         })
@@ -308,22 +331,17 @@ impl SeamTable {
     /// All lines, for programs.
     pub fn lines(&self) -> impl Iterator<Item = SpotLine> + '_ {
         Thing::ALL.into_iter().zip(&self.rows).flat_map(|(thing, rows)| {
-            METHODS.into_iter().zip(rows).flat_map(move |((_, method), row)| {
+            Way::ALL.into_iter().zip(rows).flat_map(move |(way, row)| {
                 [("middle", &row.middle), ("seam", &row.seam)].map(|(place, errors)| SpotLine {
                     thing,
                     force_n: 120.0,
-                    method,
+                    found_by: way.name,
                     place,
                     errors: errors.summary(),
                 })
             })
         })
     }
-}
-
-/// What a method is called in tables.
-pub(super) fn name(method: Method) -> &'static str {
-    METHODS.into_iter().find(|(known, _)| *known == method).map_or("", |(_, name)| name)
 }
 
 #[cfg(test)]

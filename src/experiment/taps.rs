@@ -201,14 +201,14 @@ impl TapTable {
     /// too, in both stances.
     ///
     /// # Errors
-    /// Those of [`Rig::of_calibrated_parts`].
+    /// Those of [`Rig::of_mapped_parts`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         for (which, stance) in Stance::ALL.into_iter().enumerate() {
             let geometry = Geometry::default();
             let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], &geometry)?;
             let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
             let scene = Scene::of(seed, stance, region);
-            let mut rig = Rig::of_calibrated_parts(geometry, seed)?;
+            let mut rig = Rig::of_mapped_parts(geometry, seed)?;
             let scores = &mut self.scores;
             let mut engines = METHODS.map(|(method, _)| Watched {
                 engine: rig.engine(layout.clone(), method),
