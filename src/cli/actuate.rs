@@ -161,7 +161,7 @@ impl ActuateArgs {
         let asked_for = self.device.is_some() || self.sound == Sound::Tiles;
         Err(match trouble {
             Some(error) if asked_for => NoSound::Refused(error),
-            Some(error) => NoSound::Silent(format!("No sound: {error}")),
+            Some(error) => NoSound::Silent(format!("No sound: {error}.")),
             None => NoSound::Silent("No sound.".into()),
         })
     }
