@@ -195,8 +195,9 @@ impl<'a> Face<'a> {
 
     /// The part of the face that letters may fill: inside the ring, and inside the round of a round face.
     pub(super) fn room(&self) -> Rect {
+        let line = if self.widget.behaviour.thresholds().guard == Guard::Free { 0.0 } else { 0.006 };
         let inside = match self.shape {
-            Shape::Box => self.area.grown(-(0.022_f32).min(0.12 * self.area.size().min_element())),
+            Shape::Box => self.area.grown(-(0.022_f32).min(0.12 * self.area.size().min_element()) - line),
             Shape::Round => Rect::from_centre_size(self.area.centre(), self.area.size() * 0.70),
         };
         match self.badge() {

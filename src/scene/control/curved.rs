@@ -17,20 +17,27 @@ const POINTS: usize = 48;
 pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Track, value: f32) {
     face.draw(scene);
     let size = face.area.size();
-    let broad = (0.22 * size.min_element()).clamp(0.02, 0.055);
-    let edge = 0.5 * broad + 0.012;
-    let area = face.area.grown(-edge);
-    // The same track a little smaller, so that it stays on the face; its angles are those the foot is measured by.
-    let at = |share: f32| area.min + track.place_at(share, area.size()) * area.size();
+    let broad = (0.18 * size.min_element()).clamp(0.016, 0.05);
+    // The handle is where the foot is; a line ends a little before the face does.
+    let whole = face.widget.area;
+    let at = |share: f32| whole.min + track.place_at(share, whole.size()) * whole.size();
     let line = |from: f32, to: f32| {
         (0..=POINTS).map(move |step| at(from + (to - from) * step as f32 / POINTS as f32))
     };
-    let share = scale.share(value);
+    let (low, high) = match track {
+        Track::Line { .. } => {
+            // Askew, it comes nearer to the side than to its end.
+            let edge = 1.5 * (0.5 * broad + 0.012) / at(0.0).distance(at(1.0));
+            (edge.min(0.4), 1.0 - edge.min(0.4))
+        }
+        Track::Arc { .. } => (0.0, 1.0),
+    };
+    let share = scale.share(value).clamp(low, high);
     let ground = face.colour.mix(face.theme.shadow, 0.13);
     let broadly = |colour| Paint::stroke(Stroke::new(broad, Ink::solid(colour)));
-    scene.add_path(line(0.0, 1.0), false, broadly(ground));
-    if share > 0.0 {
-        scene.add_path(line(0.0, share), false, broadly(face.lit()));
+    scene.add_path(line(low, high), false, broadly(ground));
+    if share > low {
+        scene.add_path(line(low, share), false, broadly(face.lit()));
     }
     for stop in stops(scale).into_iter().flatten() {
         let tick = Paint::fill(Ink::faint(face.ink, 0.35));
@@ -41,7 +48,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, scale: &Scale, track: Tra
     let edge = Stroke::new(if face.state.pressed { 0.006 } else { 0.0035 }, Ink::solid(outline));
     scene.add_circle(at(share), 0.5 * broad + 0.004, Paint::fill(Ink::solid(colour)).with_stroke(edge));
     scene.add_circle(at(share), 0.005, Paint::fill(Ink::faint(outline, 0.7)));
-    let (middle, room) = words(track, area, broad);
+    let (middle, room) = words(track, face.area.grown(-0.02), broad);
     write(scene, face, middle, room, &Reading::of(scale, value));
     face.draw_badge(scene);
 }
@@ -52,7 +59,7 @@ fn words(track: Track, area: Rect, broad: f32) -> (Vec2, f32) {
         (_, Some((centre, radius))) => {
             let hub = area.centre() + centre;
             let middle = hub.clamp(area.min + Vec2::splat(0.03), area.max - Vec2::splat(0.03));
-            (middle + Vec2::new(0.0, 0.014), (radius - broad) * 1.3)
+            (middle + Vec2::new(0.0, 0.014), (radius - 0.5 * broad) * 1.3)
         }
         (Track::Line { degrees }, None) => {
             let rising = degrees.to_radians().tan() >= 0.0;
