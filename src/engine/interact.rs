@@ -64,7 +64,8 @@ impl Interaction {
     /// All controls at their initial values; each must first be seen unloaded.
     pub(super) fn new(layout: &Layout, geometry: &Geometry) -> Self {
         let regions = layout.regions.iter().map(|_| RegionState::new()).collect();
-        let controls: Vec<_> = layout.widgets.iter().map(|widget| Control::new(widget.behaviour)).collect();
+        let controls: Vec<_> =
+            layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();
         let tiles = layout.widgets.iter().map(|widget| tiles_under(widget, geometry)).collect();
         let awake = (0..controls.len()).collect();
         let unsensed = vec![false; controls.len()];
@@ -107,17 +108,17 @@ impl Interaction {
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// Switches a control off or on.
-    pub(super) fn set_disabled(
+    /// Switches a control off or on, or locks it, which `change` does.
+    pub(super) fn change(
         &mut self,
         widget: usize,
-        disabled: bool,
+        change: impl FnOnce(&mut Control) -> Emitted,
         layout: &Layout,
         now: Instant,
         events: &mut Vec<WidgetEvent>,
     ) {
         let Some(control) = self.controls.get_mut(widget) else { return };
-        let emitted = control.set_disabled(disabled);
+        let emitted = change(control);
         let held = self.release_hold(widget);
         report(layout, now, widget, held, &emitted, events);
         self.wake(widget);
@@ -234,9 +235,12 @@ impl Interaction {
                 if off && !control.captures() { Input::SlidOff } else { foot(contact, spec, frame, true) }
             }
             // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
-            None if is_sensed_at(held.position, &self.geometry, frame) => {
-                Input::Foot { force: Newtons::ZERO, trusted: true, place: place(held.position, spec) }
-            }
+            None if is_sensed_at(held.position, &self.geometry, frame) => Input::Foot {
+                force: Newtons::ZERO,
+                trusted: true,
+                place: place(held.position, spec),
+                weight: None,
+            },
             None => Input::Lost,
         };
         let emitted = control.step(frame.at, input);
@@ -326,7 +330,7 @@ fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, risen: bool) -> 
     let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
         && may_start(contact, frame)
         && (risen || contact.force < widget.behaviour.thresholds().press);
-    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget) }
+    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight: None }
 }
 
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {

@@ -12,15 +12,10 @@ use crate::layout::{Colour, Layout, Look, Region, Shape, Widget};
 use crate::sense::{ForceFrame, Method, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{
-    Axis, Behaviour, ButtonSpec, EventKind, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
+    Behaviour, ButtonSpec, EventKind, Scale, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
 };
 
-const AT: Thresholds = Thresholds {
-    press: Newtons(60.0),
-    release: Newtons(40.0),
-    dwell: Duration::from_millis(20),
-    lockout: Duration::from_millis(20),
-};
+const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
 fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
     let click = |hz| Click {
@@ -41,7 +36,12 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
         area: Rect::from_min_size(min, size),
         label: String::new(),
         behaviour,
-        feel: Feel { press: Some(click(180.0)), release: Some(click(240.0)), drag: Some(friction) },
+        feel: Feel {
+            press: Some(click(180.0)),
+            release: Some(click(240.0)),
+            drag: Some(friction),
+            ..Feel::default()
+        },
         look: Look {
             shape: Shape::Box,
             face: Colour::default(),
@@ -54,9 +54,9 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
 /// A button `home`, a slider `zoom` and a switch `light` on the paper's floor, well apart.
 fn page() -> Layout {
     let size = Vec2::splat(0.2);
-    let home = Behaviour::Button(ButtonSpec { thresholds: AT });
+    let home = Behaviour::Button(ButtonSpec::new(AT));
     let light = Behaviour::Switch(SwitchSpec { thresholds: AT, initial: false });
-    let zoom = SliderSpec { thresholds: AT, axis: Axis::East, min: 0.0, max: 1.0, step: 0.0, initial: 0.0 };
+    let zoom = SliderSpec::new(AT, Scale::UNIT);
     Layout {
         title: "Test page".into(),
         regions: vec![Region {

@@ -1,52 +1,59 @@
 //! The behaviours of controls: pure state machines fed with one foot's force and place.
 //!
 //! Each step takes the time and one [`Input`] and gives back what happened.
-//! Nothing here knows of floors, layouts or feedback.
+//! Nothing here knows of floors, layouts or feedback. Three layers, the
+//! timeline of each written above it:
+//!
+//! ```text
+//! Input -press-> pressed, released, cancelled -guard-> may it act? -behaviour-> events
+//! ```
 
+mod behaviour;
 mod button;
 mod control;
+mod dial;
 mod event;
+mod guard;
+mod hold;
+mod input;
+mod lean;
+mod moment;
+mod number;
+mod pad;
+mod pedal;
 mod press;
+#[cfg(test)]
+mod random;
+mod scale;
+mod selector;
 mod slider;
+mod stepper;
 mod switch;
+#[cfg(test)]
+mod tests;
+mod thresholds;
+mod track;
 
-pub use control::{Control, Emitted, Input, SetError};
-pub use event::{EventKind, Value, WidgetEvent, WidgetId};
+pub use behaviour::Behaviour;
+pub use button::{ActsOn, ButtonSpec, Gestures, HardStage};
+pub use control::{Control, Emitted, SetError};
+pub use dial::DialSpec;
+pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
+pub use guard::Guard;
+pub use hold::HoldSpec;
+pub use input::{Indicator, Input};
+pub use lean::LeanSpec;
+pub use pad::PadSpec;
+pub use pedal::PedalSpec;
+pub use scale::Scale;
+pub use selector::SelectorSpec;
+pub use slider::{Mapping, SliderSpec};
+pub use stepper::{Repeat, StepperSpec};
+pub use switch::SwitchSpec;
+pub use thresholds::{Thresholds, WeightShare};
+pub use track::Track;
 
-use std::time::Duration;
-
-use crate::units::Newtons;
-
-/// When a foot's force counts as a press.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thresholds {
-    /// Force from which on the control engages.
-    pub press: Newtons,
-    /// Force below which it lets go; less than `press`.
-    pub release: Newtons,
-    /// How long the force must hold before the press counts.
-    pub dwell: Duration,
-    /// How long after a release no new press counts.
-    pub lockout: Duration,
-}
-
-/// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ButtonSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-}
-
-/// A switch: each completed press turns it over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SwitchSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-    /// Whether it is on to begin with.
-    pub initial: bool,
-}
-
-/// Which way a slider's value grows.
+/// Along which axis of the floor something lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axis {
     /// Eastwards (to the right).
@@ -54,54 +61,4 @@ pub enum Axis {
     East,
     /// Northwards (away from the user).
     North,
-}
-
-/// A slider: the foot's place along its axis is its value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SliderSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-    /// Which way the value grows.
-    pub axis: Axis,
-    /// Value at the low end.
-    pub min: f32,
-    /// Value at the high end; greater than `min`.
-    pub max: f32,
-    /// Distance between the values it may take; 0 for any value.
-    pub step: f32,
-    /// Value to begin with, within the range.
-    pub initial: f32,
-}
-
-/// What a control does, with its settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Behaviour {
-    /// A push button.
-    Button(ButtonSpec),
-    /// A switch.
-    Switch(SwitchSpec),
-    /// A slider.
-    Slider(SliderSpec),
-}
-
-impl Behaviour {
-    /// When it engages.
-    #[must_use]
-    pub const fn thresholds(&self) -> Thresholds {
-        match self {
-            Self::Button(spec) => spec.thresholds,
-            Self::Switch(spec) => spec.thresholds,
-            Self::Slider(spec) => spec.thresholds,
-        }
-    }
-
-    /// The word for it in messages: `button`, `switch` or `slider`.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Button(_) => "button",
-            Self::Switch(_) => "switch",
-            Self::Slider(_) => "slider",
-        }
-    }
 }

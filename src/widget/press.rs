@@ -14,7 +14,9 @@
 //!  8  above press within `lockout` of a release    -> waits until the lockout is over
 //!  9  already loaded at start, after a loss, or by a foot that slid on
 //!                                                  -> nothing until below release for UNLOAD_TIME
-//! 10  untrusted force while up                     -> nothing; while down it holds and may release
+//! 10  untrusted force while up                     -> nothing; while down it holds
+//! 11  below release while down, but untrusted      -> Cancelled: a doubtful lift commits nothing
+//! 12  the foot on it takes a step                  -> like 9, while down -> Cancelled
 //! ```
 
 use std::time::Duration;
@@ -58,6 +60,9 @@ const NEEDS_LIFT: State = State::NeedsLift { clear: None };
 /// One control's press.
 #[derive(Clone, Debug)]
 pub(super) struct Press {
+    /// As written.
+    written: Thresholds,
+    /// For the person whose foot was last on it.
     at: Thresholds,
     state: State,
     force: Newtons,
@@ -66,7 +71,12 @@ pub(super) struct Press {
 impl Press {
     /// A press that must first be seen unloaded.
     pub(super) fn new(at: Thresholds) -> Self {
-        Self { at, state: NEEDS_LIFT, force: Newtons::ZERO }
+        Self { written: at, at, state: NEEDS_LIFT, force: Newtons::ZERO }
+    }
+
+    /// The thresholds for the person whose foot was last on it.
+    pub(super) fn thresholds(&self) -> Thresholds {
+        self.at
     }
 
     pub(super) fn is_engaged(&self) -> bool {
@@ -103,9 +113,15 @@ impl Press {
         use State::{Arming, Down, Lifting, NeedsLift, Up};
         // A foot that is not there presses with nothing.
         let (force, trusted) = match input {
-            Input::Foot { force, trusted, .. } => (force, trusted),
+            Input::Foot { force, trusted, weight, .. } => {
+                // While it is pressed the thresholds stay: a better idea of the weight is no release.
+                if !self.is_engaged() {
+                    self.at = self.written.for_weight(weight);
+                }
+                (force, trusted)
+            }
             Input::Clear => (Newtons::ZERO, true),
-            Input::SlidOn { force } => {
+            Input::SlidOn { force } | Input::Stepping { force } => {
                 self.force = force;
                 return self.cancel();
             }
@@ -144,6 +160,9 @@ impl Press {
             Down => (Lifting { since: now }, None),
 
             Lifting { .. } if loaded => (Down, None),
+            Lifting { since } if now.since(since) >= LIFT_TIME && !trusted => {
+                (NEEDS_LIFT, Some(Outcome::Cancelled))
+            }
             Lifting { since } if now.since(since) >= LIFT_TIME => {
                 (Up { ready: now + self.at.lockout }, Some(Outcome::Released))
             }
@@ -160,12 +179,7 @@ mod tests {
 
     use super::*;
 
-    const AT: Thresholds = Thresholds {
-        press: Newtons(60.0),
-        release: Newtons(40.0),
-        dwell: Duration::from_millis(20),
-        lockout: Duration::from_millis(20),
-    };
+    const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
     /// Long enough unloaded, in milliseconds, for the press to work.
     const SETTLED: u64 = 25;
@@ -200,7 +214,7 @@ mod tests {
     }
 
     fn foot(newtons: f32) -> Input {
-        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::splat(0.5) }
+        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::splat(0.5), weight: None }
     }
 
     #[test]
@@ -274,15 +288,50 @@ mod tests {
     }
 
     #[test]
-    fn line_10_untrusted_force_starts_nothing_but_may_release() {
-        let doubtful = |newtons| Input::Foot { force: Newtons(newtons), trusted: false, place: Vec2::ZERO };
+    fn lines_10_and_11_untrusted_force_starts_nothing_and_commits_nothing() {
+        let doubtful =
+            |force| Input::Foot { force: Newtons(force), trusted: false, place: Vec2::ZERO, weight: None };
         let mut bench = Bench::ready();
         bench.give(doubtful(200.0), 100);
         assert_eq!(bench.outcomes, []);
         bench.force(80.0, 30);
         bench.give(doubtful(80.0), 100);
+        bench.force(80.0, 10);
+        assert_eq!(bench.outcomes.len(), 1, "held through the doubt");
         bench.give(doubtful(0.0), 10);
         let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
-        assert_eq!(kinds, [Outcome::Pressed, Outcome::Released]);
+        assert_eq!(kinds, [Outcome::Pressed, Outcome::Cancelled]);
+    }
+
+    #[test]
+    fn line_12_a_step_starts_nothing_and_ends_what_was_started() {
+        let stepping = Input::Stepping { force: Newtons(500.0) };
+        let mut bench = Bench::ready();
+        bench.give(stepping, 300);
+        bench.force(80.0, 300);
+        assert_eq!(bench.outcomes, [], "the same foot, no longer thought to step");
+        let mut bench = Bench::ready();
+        bench.force(80.0, 30);
+        bench.give(stepping, 1);
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (31, Outcome::Cancelled)]);
+    }
+
+    #[test]
+    fn the_weight_moves_the_thresholds_but_not_under_a_foot_that_presses() {
+        let share = Some(super::super::WeightShare { press: 0.1, release: 0.06 });
+        let mut bench = Bench::ready();
+        bench.press = Press::new(Thresholds { share, ..AT });
+        bench.give(Input::Clear, SETTLED);
+        let of = |force, weight| Input::Foot {
+            force: Newtons(force),
+            trusted: true,
+            place: Vec2::splat(0.5),
+            weight: Some(Newtons(weight)),
+        };
+        bench.give(of(80.0, 900.0), 50);
+        assert_eq!(bench.outcomes, [], "90 N for who weighs 900 N");
+        bench.give(of(80.0, 600.0), 50);
+        bench.give(of(80.0, 2000.0), 50);
+        assert!(bench.press.is_engaged());
     }
 }

@@ -249,7 +249,15 @@ fn control(message: &OscMessage) -> Result<ControlMessage, WireError> {
             let value = value(argument).ok_or_else(|| wrong("one finite number, true or false"))?;
             Ok(ControlMessage::Set { id: id(), value })
         }
-        ("set", _) => Err(wrong("one finite number, true or false")),
+        ("set", [x, y]) => {
+            let number = |argument| match value(argument) {
+                Some(Value::Number(number)) => Some(number),
+                _ => None,
+            };
+            let pair = number(x).zip(number(y)).ok_or_else(|| wrong("two finite numbers"))?;
+            Ok(ControlMessage::Set { id: id(), value: Value::Pair(pair.into()) })
+        }
+        ("set", _) => Err(wrong("one finite number, two of them, true or false")),
         ("enable", []) => Ok(ControlMessage::Enable { id: id() }),
         ("disable", []) => Ok(ControlMessage::Disable { id: id() }),
         ("enable" | "disable", _) => Err(wrong("no argument")),
@@ -427,6 +435,8 @@ mod tests {
         assert_eq!(control(address, vec![OscType::Float(0.5)]), set(Value::Number(0.5)));
         assert_eq!(control(address, vec![OscType::Int(1)]), set(Value::Number(1.0)));
         assert_eq!(control(address, vec![OscType::Bool(true)]), set(Value::Switch(true)));
+        let pair = vec![OscType::Float(0.5), OscType::Int(-1)];
+        assert_eq!(control(address, pair), set(Value::Pair(glam::Vec2::new(0.5, -1.0))));
         let enable = control("/underfoot/widget/zoom/enable", vec![]);
         assert_eq!(enable, Ok(ControlMessage::Enable { id: id.clone() }));
         let disable = control("/underfoot/widget/zoom/disable", vec![]);
