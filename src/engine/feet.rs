@@ -12,6 +12,7 @@ use super::still::Stillness;
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
 use crate::units::{Instant, Newtons};
+use crate::widget::Guard;
 
 /// Feet and people for which there is room from the start; more cost an allocation once.
 const ROOM: usize = 64;
@@ -24,6 +25,13 @@ const PLACES: usize = 20;
 /// last tenth of a second the foot that lands may have been taken for a part of it.
 const ROLL_PLACES: usize = 13;
 const SKIPPED_PLACES: usize = 5;
+
+/// How long a foot must have been down before it starts what must not start by accident (fault R8),
+/// and how steady: over the last tenth of a second, by this share of its force and this far in metres.
+const SETTLED: Duration = Duration::from_millis(300);
+const STEADY_PLACES: usize = 4;
+const STEADY_SHARE: f32 = 0.2;
+const STEADY_M: f32 = 0.015;
 
 /// A support carries at least this much, in newtons.
 const SUPPORT_N: f32 = 100.0;
@@ -48,13 +56,16 @@ pub(super) struct Foot {
     pub(super) force: f32,
     /// Whether a control has engaged it since it landed.
     pub(super) pressing: bool,
-    new_ground: bool,
+    /// Whether it came from elsewhere, and not from a control back to where it had stood.
+    stepped: bool,
+    /// Whether somebody stood on the other foot when it landed.
+    vouched: bool,
     in_stance: bool,
     step: bool,
     watch: StepWatch,
     still: Stillness,
-    /// Where it was, the latest at `next` - 1.
-    places: [Vec2; PLACES],
+    /// Where it was and with which force, the latest at `next` - 1.
+    places: [(Vec2, f32); PLACES],
     next: usize,
     kept: usize,
     kept_at: Instant,
@@ -71,12 +82,13 @@ impl Foot {
             place,
             force,
             pressing: false,
-            new_ground: person.is_new_ground(place),
+            stepped: person.steps_to(place, now),
+            vouched: false,
             in_stance: false,
             step: false,
             watch: StepWatch::default(),
             still: Stillness::new(force, place, now),
-            places: [place; PLACES],
+            places: [(place, force); PLACES],
             next: 0,
             kept: 0,
             kept_at: now,
@@ -108,7 +120,7 @@ impl Foot {
         self.still.update(self.force, self.place, now);
         if now.since(self.kept_at) >= PLACE_EVERY {
             self.kept_at = now;
-            self.places[self.next] = self.place;
+            self.places[self.next] = (self.place, self.force);
             self.next = (self.next + 1) % PLACES;
             self.kept = (self.kept + 1).min(PLACES);
         }
@@ -120,16 +132,40 @@ impl Foot {
         if known < ROLL_PLACES / 2 {
             return Vec2::ZERO;
         }
-        let place = |ago: usize| self.places[(self.next + 2 * PLACES - 1 - ago) % PLACES];
+        let place = |ago: usize| self.past(ago).0;
         let span = PLACE_EVERY.as_secs_f32() * known as f32;
         (place(SKIPPED_PLACES) - place(SKIPPED_PLACES + known)) / span
+    }
+
+    /// Place and force so many kept places ago.
+    fn past(&self, ago: usize) -> (Vec2, f32) {
+        self.places[(self.next + 2 * PLACES - 1 - ago) % PLACES]
+    }
+
+    /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
+    fn is_steady(&self) -> bool {
+        let (place, force) = self.past(STEADY_PLACES);
+        (self.force - force).abs() <= STEADY_SHARE * self.force && self.place.distance(place) <= STEADY_M
+    }
+
+    /// Whether it may start a press of a control with this `guard`, as far as its past tells.
+    ///
+    /// What must not start by accident waits until the foot has shown that it takes no step; unless
+    /// it only asks, and somebody stands there who can have meant it. What is free never waits.
+    pub(super) fn is_meant(&self, guard: Guard, now: Instant) -> bool {
+        let settled = || now.since(self.landed) >= SETTLED && self.is_steady();
+        match guard {
+            Guard::Free => true,
+            Guard::Confirm { .. } => self.vouched || settled(),
+            Guard::HoldToRun { .. } => settled(),
+        }
     }
 
     fn as_support(&self, now: Instant) -> Support {
         Support {
             at: self.place,
             age: now.since(self.landed),
-            new_ground: self.new_ground,
+            stepped: self.stepped,
             rolling: self.rolling(),
         }
     }
@@ -272,6 +308,7 @@ impl Feet {
             support: support.map(|support| support.as_support(now)),
             left: person.last_left(now),
         };
+        foot.vouched = landing.is_vouched();
         foot.step = landing.walks();
         foot
     }

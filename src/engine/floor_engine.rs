@@ -3,7 +3,7 @@ use crate::floor::{Geometry, PositionMap};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
-use crate::widget::{Behaviour, EventKind, SetError, Value, WidgetEvent};
+use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent};
 
 use super::interact::Interaction;
 use super::response::{self, LastSpots};
@@ -166,7 +166,7 @@ impl Engine {
     /// What the control named `id` holds; `None` for a button or an unknown name.
     #[must_use]
     pub fn value(&self, id: &str) -> Option<Value> {
-        self.interaction.controls().get(self.layout.widget_index(id)?)?.value()
+        self.control(id)?.value()
     }
 
     /// Gives the control named `id` a value; no event follows, for the caller knows.
@@ -185,8 +185,39 @@ impl Engine {
     pub fn set_enabled(&mut self, id: &str, enabled: bool) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
         let now = self.last_frame.at;
-        self.interaction.set_disabled(widget, !enabled, &self.layout, now, &mut self.pending);
+        let switch = |control: &mut Control| control.set_disabled(!enabled);
+        self.interaction.change(widget, switch, &self.layout, now, &mut self.pending);
         Ok(())
+    }
+
+    /// Locks or unlocks the control named `id`; locking cancels its press (reported by the next step).
+    ///
+    /// A locked control keeps its value, and says so when a foot presses it.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_locked(&mut self, id: &str, locked: bool) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        let now = self.last_frame.at;
+        let lock = |control: &mut Control| control.set_locked(locked);
+        self.interaction.change(widget, lock, &self.layout, now, &mut self.pending);
+        Ok(())
+    }
+
+    /// Switches the lamp of the control named `id`.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_indicator(&mut self, id: &str, indicator: Indicator) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        self.interaction.control_mut(widget).ok_or(SetError::Unknown)?.set_indicator(indicator);
+        Ok(())
+    }
+
+    /// The control named `id`, to read back what it holds and how it is; `None` for an unknown name.
+    #[must_use]
+    pub fn control(&self, id: &str) -> Option<&Control> {
+        self.interaction.controls().get(self.layout.widget_index(id)?)
     }
 
     /// Writes the present state into `snapshot`; link state and counters are the caller's to fill.
@@ -210,6 +241,11 @@ impl Engine {
             needs_lift: control.needs_lift(),
             disabled: control.is_disabled(),
             hidden: !widget.is_on(page),
+            locked: control.is_locked(),
+            armed: control.is_armed(),
+            warned: control.has_warned(),
+            indicator: control.indicator(),
+            pending: control.pending(),
         }));
         snapshot.tiles.clear();
         let frame = &self.last_frame;
@@ -279,6 +315,8 @@ impl Engine {
                 // A control that changed its behaviour starts from its own initial value.
                 let _ = old.value().map(|value| new.set_value(value));
                 new.set_disabled(old.is_disabled());
+                new.set_locked(old.is_locked());
+                new.set_indicator(old.indicator());
             }
         }
         interaction.inherit(&mut self.interaction);

@@ -12,7 +12,7 @@ use crate::floor::Geometry;
 use crate::layout::{CursorRule, HitIndex, Layout, Widget};
 use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Behaviour, Control, Emitted, Input, WidgetEvent};
+use crate::widget::{Behaviour, Control, Emitted, Guard, Input, WidgetEvent};
 
 /// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means to stay).
 const SLIDE_OFF_MARGIN_M: f32 = 0.03;
@@ -67,7 +67,8 @@ pub(super) struct Sliding {
 impl Interaction {
     /// All controls at their initial values; each must first be seen unloaded.
     pub(super) fn new(layout: &Layout, geometry: &Geometry, page: usize) -> Self {
-        let controls: Vec<_> = layout.widgets.iter().map(|widget| Control::new(widget.behaviour)).collect();
+        let controls: Vec<_> =
+            layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();
         Self {
             geometry: *geometry,
             hits: HitIndex::new(layout, geometry),
@@ -153,17 +154,17 @@ impl Interaction {
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// Switches a control off or on.
-    pub(super) fn set_disabled(
+    /// Switches a control off or on, or locks it, which `change` does.
+    pub(super) fn change(
         &mut self,
         widget: usize,
-        disabled: bool,
+        change: impl FnOnce(&mut Control) -> Emitted,
         layout: &Layout,
         now: Instant,
         events: &mut Vec<WidgetEvent>,
     ) {
         let Some(control) = self.controls.get_mut(widget) else { return };
-        let emitted = control.set_disabled(disabled);
+        let emitted = change(control);
         let held = self.release_hold(widget);
         report(layout, now, widget, held, &emitted, events);
         self.wake(widget);
@@ -282,16 +283,21 @@ impl Interaction {
         else {
             return;
         };
-        let foot = self.feet.of(contact.id);
+        let (foot, weight) = (self.feet.of(contact.id), self.feet.weight(contact.id));
         let slid_on = is_new
             && contact.force >= spec.behaviour.thresholds().release
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let unbelieved = contact.force >= spec.behaviour.thresholds().press && !may_start(contact, at.frame);
-        let input = if slid_on || unbelieved || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+        let thresholds = spec.behaviour.thresholds();
+        let input = if foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+            Input::Stepping { force: contact.force }
+        } else if slid_on || unbelieved {
             Input::SlidOn { force: contact.force }
         } else {
-            self::foot(contact, spec, at.frame, self.rises.has_risen(contact))
+            let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
+            let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, now));
+            self::foot(contact, spec, at.frame, weight, risen && meant)
         };
         let emitted = control.step(now, input);
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
@@ -318,21 +324,24 @@ impl Interaction {
                 held.force = contact.force;
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
-                let tapped = !matches!(spec.behaviour, Behaviour::Slider(_));
-                let is_step = foot
-                    .is_some_and(|foot| foot.is_step() || foot.is_object() || tapped && foot.rests(at.now()));
-                if is_step {
-                    Input::SlidOn { force: contact.force }
+                let guard = spec.behaviour.thresholds().guard;
+                let rests = is_tapped(spec) && foot.is_some_and(|foot| foot.rests(at.now()));
+                let falls = guard != Guard::Free && self.feet.falls(contact.id);
+                if rests || falls || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+                    Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
                     Input::SlidOff
                 } else {
-                    self::foot(contact, spec, at.frame, true)
+                    self::foot(contact, spec, at.frame, self.feet.weight(contact.id), true)
                 }
             }
             // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
-            None if is_sensed_at(held.position, &self.geometry, at.frame) => {
-                Input::Foot { force: Newtons::ZERO, trusted: true, place: place(held.position, spec) }
-            }
+            None if is_sensed_at(held.position, &self.geometry, at.frame) => Input::Foot {
+                force: Newtons::ZERO,
+                trusted: true,
+                place: place(held.position, spec),
+                weight: None,
+            },
             None => Input::Lost,
         };
         let emitted = control.step(at.now(), input);
@@ -408,14 +417,18 @@ impl Interaction {
     }
 }
 
-/// What `widget` senses of a foot; `risen` says whether that foot has pressed harder of late.
-///
-/// A force that has crept past the threshold starts nothing.
-fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, risen: bool) -> Input {
+/// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may start a press.
+fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<Newtons>, may: bool) -> Input {
     let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
         && may_start(contact, frame)
-        && (risen || contact.force < widget.behaviour.thresholds().press);
-    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget) }
+        && may;
+    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
+}
+
+/// Whether a press of it lasts no longer than a tap: what a foot at rest does to it is not meant.
+fn is_tapped(widget: &Widget) -> bool {
+    let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
+    matches!(widget.behaviour, Behaviour::Button(_) | Behaviour::Switch(_)) && !held
 }
 
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {

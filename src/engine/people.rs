@@ -20,6 +20,10 @@ const STRIDE_M: f32 = 1.1;
 /// What lands as near as this to a foot is part of the same foot, in metres.
 const SAME_FOOT_M: f32 = 0.12;
 
+/// A foot that comes back to where it had stood lands as near as this, in metres (our choice: a hand's breadth;
+/// those who turn on the spot put it further off).
+const BACK_M: f32 = 0.08;
+
 /// A foot that has left is remembered so long; a person without feet on the floor too.
 const REMEMBERED: Duration = Duration::from_secs(5);
 
@@ -40,18 +44,17 @@ const STOOD_N: f32 = 250.0;
 /// A foot that has left the floor.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Left {
-    pub(super) at: Instant,
-    pub(super) landed_at: Vec2,
+    at: Instant,
     place: Vec2,
     /// Whether a control was pressed with it.
-    pub(super) pressed: bool,
+    pressed: bool,
 }
 
 /// Somebody on the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Person {
     pub(super) id: u32,
-    pub(super) left: ArrayVec<Left, 8>,
+    left: ArrayVec<Left, 8>,
     scale: Scale,
     /// Sum of the person's contacts now.
     pub(super) sum: f32,
@@ -95,9 +98,12 @@ impl Person {
         (nearest <= STRIDE_M).then_some(nearest)
     }
 
-    /// Whether none of the person's feet that left of late had landed where this one does.
-    pub(super) fn is_new_ground(&self, place: Vec2) -> bool {
-        self.left.iter().all(|left| left.landed_at.distance(place) > SAME_FOOT_M)
+    /// Whether a foot that lands at `place` steps there, rather than coming back to where it had stood
+    /// after pressing a control.
+    pub(super) fn steps_to(&self, place: Vec2, now: Instant) -> bool {
+        let back = |left: &Left| left.place.distance(place) <= BACK_M;
+        let pressed = |left: &Left| left.pressed && now.since(left.at) <= SWINGING;
+        !self.left.iter().any(|left| back(left) || pressed(left))
     }
 
     /// How long ago a foot last left that had pressed no control.
@@ -110,12 +116,7 @@ impl Person {
         if self.left.is_full() {
             self.left.remove(0);
         }
-        self.left.push(Left {
-            at: now,
-            landed_at: foot.landed_at,
-            place: foot.place,
-            pressed: foot.pressing,
-        });
+        self.left.push(Left { at: now, place: foot.place, pressed: foot.pressing });
     }
 
     /// Takes in the sum of the person's contacts.

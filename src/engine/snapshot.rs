@@ -3,7 +3,7 @@ use glam::Vec2;
 use crate::feel::FeelCounters;
 use crate::sense::{Contact, ContactId, Cursor, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::Value;
+use crate::widget::{Indicator, Value};
 use crate::wire::LinkCounters;
 
 /// The state of the floor at one instant, for windows and pictures.
@@ -65,6 +65,16 @@ pub struct WidgetState {
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,
+    /// Whether an app has locked it.
+    pub locked: bool,
+    /// Whether a first press has armed it.
+    pub armed: bool,
+    /// Whether it will soon stop by itself although a foot holds it.
+    pub warned: bool,
+    /// What its lamp shows.
+    pub indicator: Indicator,
+    /// What its value would become if the foot let go now, where that is another one.
+    pub pending: Option<Value>,
     /// Whether it is on another page than the one that is shown.
     pub hidden: bool,
 }

@@ -2,8 +2,8 @@
 //!
 //! ```text
 //! 1  lands a step ahead of a foot that is rolling over       -> a step from the start
-//! 2  lands where another foot of somebody has just left, while the foot
-//!    that stands has itself just come to new ground          -> a step from the start
+//! 2  lands just after another foot has left that pressed nothing, while
+//!    the foot that stands has itself just stepped there       -> a step from the start
 //! 3  carries most of the body                                -> a step from then on
 //! 4  carries about half of the body for longer than a press  -> a step from then on
 //! 5  rolls over under a good part of the body                -> a step from then on
@@ -94,8 +94,8 @@ pub(super) struct Support {
     pub(super) at: Vec2,
     /// How long it has been down.
     pub(super) age: Duration,
-    /// Whether no foot of the person had been there before.
-    pub(super) new_ground: bool,
+    /// Whether it stepped there, rather than coming back from a control.
+    pub(super) stepped: bool,
     /// Velocity of its centre of pressure over the last quarter of a second before the landing.
     pub(super) rolling: Vec2,
 }
@@ -109,10 +109,14 @@ impl Landing {
         let rolls_over = speed >= ROLL_M_S
             && STEP_M.contains(&way.length())
             && support.rolling.dot(way) >= ALONG * speed * way.length();
-        let steps_on = support.new_ground
-            && support.age <= STEP_TIME
-            && self.left.is_some_and(|since| since <= SWING_TIME);
+        let steps_on =
+            support.stepped && support.age <= STEP_TIME && self.left.is_some_and(|since| since <= SWING_TIME);
         rolls_over || steps_on
+    }
+
+    /// Whether somebody stood there on the other foot, who has not just come.
+    pub(super) fn is_vouched(&self) -> bool {
+        self.support.as_ref().is_some_and(|support| !support.stepped || support.age > STEP_TIME)
     }
 }
 
@@ -173,7 +177,7 @@ mod tests {
     use super::*;
 
     const STANDING: Support =
-        Support { at: Vec2::ZERO, age: Duration::from_secs(5), new_ground: false, rolling: Vec2::ZERO };
+        Support { at: Vec2::ZERO, age: Duration::from_secs(5), stepped: false, rolling: Vec2::ZERO };
 
     fn landing(support: Option<Support>, left_ms: Option<u64>) -> Landing {
         Landing { at: Vec2::new(0.0, 0.6), support, left: left_ms.map(Duration::from_millis) }
@@ -189,7 +193,7 @@ mod tests {
 
     #[test]
     fn line_2_two_steps_in_a_row_are_a_walk() {
-        let arrived = Some(Support { age: Duration::from_millis(600), new_ground: true, ..STANDING });
+        let arrived = Some(Support { age: Duration::from_millis(600), stepped: true, ..STANDING });
         assert!(landing(arrived, Some(400)).walks());
         assert!(!landing(arrived, None).walks(), "somebody puts the second foot down");
         assert!(!landing(arrived, Some(2000)).walks());

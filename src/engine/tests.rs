@@ -15,12 +15,7 @@ use crate::widget::{
     Axis, Behaviour, ButtonSpec, EventKind, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
 };
 
-const AT: Thresholds = Thresholds {
-    press: Newtons(60.0),
-    release: Newtons(40.0),
-    dwell: Duration::from_millis(20),
-    lockout: Duration::from_millis(20),
-};
+const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
 fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
     let click = |hz| Click {
@@ -43,7 +38,12 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
         area: Rect::from_min_size(min, size),
         label: String::new(),
         behaviour,
-        feel: Feel { press: Some(click(180.0)), release: Some(click(240.0)), drag: Some(friction) },
+        feel: Feel {
+            press: Some(click(180.0)),
+            release: Some(click(240.0)),
+            drag: Some(friction),
+            ..Feel::default()
+        },
         look: Look {
             shape: Shape::Box,
             face: Colour::default(),

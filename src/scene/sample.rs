@@ -1,7 +1,5 @@
 //! A page of controls and a floor at work, for tests.
 
-use std::time::Duration;
-
 use glam::Vec2;
 use smallvec::smallvec;
 
@@ -13,12 +11,7 @@ use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
 
-pub(crate) const THRESHOLDS: Thresholds = Thresholds {
-    press: Newtons(60.0),
-    release: Newtons(40.0),
-    dwell: Duration::from_millis(20),
-    lockout: Duration::from_millis(20),
-};
+pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
 pub(crate) fn slider(axis: Axis, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
     Behaviour::Slider(SliderSpec { thresholds: THRESHOLDS, axis, min, max, step, initial })

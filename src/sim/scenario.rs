@@ -318,12 +318,7 @@ mod tests {
     use crate::widget::{ButtonSpec, SliderSpec, Thresholds, WidgetId};
 
     fn layout() -> Layout {
-        let thresholds = Thresholds {
-            press: Newtons(40.0),
-            release: Newtons(30.0),
-            dwell: Duration::from_millis(20),
-            lockout: Duration::from_millis(20),
-        };
+        let thresholds = Thresholds::new(Newtons(40.0), Newtons(30.0));
         let slider = SliderSpec { thresholds, axis: Axis::East, min: 0.0, max: 1.0, step: 0.0, initial: 0.0 };
         let widget = |id, kind: &str, area, behaviour| Widget {
             id: WidgetId::new(id),
