@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::feet::Feet;
+use super::feet::{Feet, Foot};
 use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
@@ -296,7 +296,8 @@ impl Interaction {
             Input::SlidOn { force: contact.force }
         } else {
             let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
-            let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, now));
+            let follows = control.captures();
+            let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, follows, now));
             self::foot(contact, spec, at.frame, weight, risen && meant)
         };
         let emitted = control.step(now, input);
@@ -326,7 +327,7 @@ impl Interaction {
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 let guard = spec.behaviour.thresholds().guard;
                 let rests = is_tapped(spec) && foot.is_some_and(|foot| foot.rests(at.now()));
-                let falls = guard != Guard::Free && self.feet.falls(contact.id);
+                let falls = guard != Guard::Free && foot.is_some_and(Foot::falls);
                 if rests || falls || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {

@@ -58,8 +58,8 @@ const CARRIES_FOR: Duration = Duration::from_millis(30);
 
 /// A foot that stands beside the other one carries half of the body, give and take some sway;
 /// and more than this many newtons, which hold a heavy pedal.
-const STANDS: f32 = 0.38;
-const STANDS_N: f32 = 200.0;
+pub(super) const STANDS: f32 = 0.38;
+pub(super) const STANDS_N: f32 = 200.0;
 
 /// How long a press of that force may last (our choice: twice a slow click).
 const STANDS_FOR: Duration = Duration::from_millis(800);
@@ -147,7 +147,8 @@ impl StepWatch {
         let Burden { force, share, age, travelled } = *burden;
         let above = |least: f32, newtons: f32| force >= newtons && share.is_none_or(|share| share >= least);
         let carries = share.map_or(force >= CARRIES_ALONE_N, |share| share >= CARRIES);
-        self.rests.note(above(RESTS, RESTS_N), now);
+        // Of a foot alone on the floor nobody knows whether it is at rest or held there.
+        self.rests.note(share.is_some() && above(RESTS, RESTS_N), now);
         let rolls = above(ROLLS, ROLLS_N) && travelled >= ROLLED_M && age <= ROLLED_WITHIN;
         self.carries.note(carries, now) >= Some(CARRIES_FOR)
             || self.stands.note(above(STANDS, STANDS_N), now) >= Some(STANDS_FOR)
