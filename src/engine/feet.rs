@@ -7,7 +7,7 @@ use glam::Vec2;
 
 use super::people::{Person, SAME_FOOT_M};
 use super::snapshot::{FootRole, FootState};
-use super::step::{Burden, Landing, STANDS, STANDS_N, StepWatch, Support};
+use super::step::{Burden, Landing, RESTS, RESTS_N, StepWatch, Support};
 use super::still::Stillness;
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
@@ -42,8 +42,8 @@ const FALL_PLACES: usize = 15;
 const STOOD_N: f32 = 150.0;
 
 /// A press has most of its force after so long; weight is shifted from foot to foot in no less than 0.3 s.
-const EARLY: Duration = Duration::from_millis(180);
-const AT_ONCE: f32 = 0.8;
+const EARLY: Duration = Duration::from_millis(150);
+const AT_ONCE: f32 = 0.85;
 
 /// A support carries at least this much, in newtons.
 const SUPPORT_N: f32 = 100.0;
@@ -180,6 +180,12 @@ impl Foot {
         others >= STOOD_N && self.others < FALLEN * others && self.others + self.force < FALLEN * sum
     }
 
+    /// Whether it is or was of late where another contact lands now: two feet don't stand in one place.
+    fn was_at(&self, place: Vec2) -> bool {
+        let near = |at: Vec2| at.distance(place) <= SAME_FOOT_M;
+        near(self.place) || (0..self.kept).any(|ago| near(self.past(ago).place))
+    }
+
     /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
     fn is_steady(&self) -> bool {
         let past = self.past(STEADY_PLACES);
@@ -190,22 +196,21 @@ impl Foot {
     /// Whether it may start a press of a control with this `guard`, as far as its past tells.
     ///
     /// What must not start by accident waits until the foot has shown that it takes no step. What only
-    /// asks, and what `follows` the foot at once, wait so only where nobody is known to stand there
-    /// who can have meant it. A free button never waits.
-    pub(super) fn is_meant(&self, guard: Guard, follows: bool, now: Instant) -> bool {
+    /// asks waits so where nobody is known to stand there who can have meant it. What is free never waits.
+    pub(super) fn is_meant(&self, guard: Guard, now: Instant) -> bool {
         let settled = || now.since(self.landed) >= SETTLED && self.is_steady() && !self.took_weight_over();
         match guard {
-            Guard::Free => !follows || self.vouched || settled(),
+            Guard::Free => true,
             Guard::Confirm { .. } => self.vouched || settled(),
             Guard::HoldToRun { .. } => settled(),
         }
     }
 
-    /// Whether it carries as much as a standing foot does and came to it slowly: a press is put on at
+    /// Whether it carries as much as a resting foot does and came to it slowly: a press is put on at
     /// once, a body is shifted over.
     fn took_weight_over(&self) -> bool {
-        let stands = self.force >= STANDS_N && self.share.is_none_or(|share| share >= STANDS);
-        stands && self.early.is_none_or(|early| early < AT_ONCE * self.force)
+        let rests = self.force >= RESTS_N && self.share.is_none_or(|share| share >= RESTS);
+        rests && self.early.is_none_or(|early| early < AT_ONCE * self.force)
     }
 
     fn as_support(&self, now: Instant) -> Support {
@@ -279,6 +284,7 @@ impl Feet {
     /// Allocates nothing while there are no more than 64 contacts.
     pub(super) fn update(&mut self, contacts: &[Contact], stances: &[Stance], now: Instant) {
         let Self { feet, people, .. } = self;
+        let before = feet.len();
         feet.retain(|foot| {
             let down = contacts.iter().any(|contact| contact.id == foot.id);
             if !down && let Some(person) = people.iter_mut().find(|person| person.id == foot.person) {
@@ -287,14 +293,19 @@ impl Feet {
             down
         });
         people.retain(|person| !person.is_forgotten(now));
+        let mut changed = feet.len() != before;
         for contact in contacts {
             match self.feet.binary_search_by_key(&contact.id, |foot| foot.id) {
                 Ok(at) => self.feet[at].update(contact, now),
                 Err(at) => {
                     let foot = self.land(contact, now);
+                    changed = true;
                     self.feet.insert(at, foot);
                 }
             }
+        }
+        if changed {
+            self.bring_together();
         }
         for person in &mut self.people {
             let mine = self.feet.iter().filter(|foot| foot.person == person.id && !foot.is_object());
@@ -350,13 +361,9 @@ impl Feet {
             .filter(|other| other.person == person.id && !other.is_object())
             .filter(|other| other.force >= SUPPORT_N && !other.pressing)
             .max_by(|a, b| a.force.total_cmp(&b.force));
-        let mate = self
-            .feet
-            .iter()
-            .filter(|other| other.person == person.id && !other.is_object())
-            .min_by(|a, b| a.place.distance(foot.place).total_cmp(&b.place.distance(foot.place)));
-        if let Some(mate) = mate.filter(|mate| mate.place.distance(foot.place) <= SAME_FOOT_M) {
-            // No second foot, but a part of the first that is told apart for a while.
+        let mut mates = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
+        if let Some(mate) = mates.find(|mate| mate.was_at(foot.place)) {
+            // No second foot, but the first one under another name, or a part of it told apart for a while.
             (foot.landed, foot.landed_at) = (mate.landed, mate.landed_at);
             (foot.step, foot.stepped, foot.vouched) = (mate.step, mate.stepped, mate.vouched);
             return foot;
@@ -369,6 +376,25 @@ impl Feet {
         foot.vouched = landing.is_vouched();
         foot.step = landing.walks();
         foot
+    }
+
+    /// Makes one person of two that had been taken for two while their feet were on the way.
+    fn bring_together(&mut self) {
+        let mut first = 0;
+        while first < self.people.len() {
+            let one = &self.people[first];
+            let second = (first + 1..self.people.len())
+                .find(|&second| one.is_one_with(&self.people[second], &self.feet));
+            match second {
+                Some(second) => {
+                    let (kept, gone) = (one.id, self.people.remove(second).id);
+                    for foot in self.feet.iter_mut().filter(|foot| foot.person == gone) {
+                        foot.person = kept;
+                    }
+                }
+                None => first += 1,
+            }
+        }
     }
 
     /// The position of the person to whom a foot that lands at `place` belongs; a new one if it is nobody's.

@@ -25,6 +25,9 @@ pub(super) const SAME_FOOT_M: f32 = 0.12;
 const ONE_FOOT_M: f32 = 0.2;
 const TRACE_N: f32 = 40.0;
 
+/// Two people do not stand on one leg each as near to each other as this, in metres.
+const STANCE_M: f32 = 0.45;
+
 /// A foot that comes back to where it had stood lands as near as this, in metres (our choice:
 /// those who turn on the spot put it further off).
 const BACK_M: f32 = 0.03;
@@ -69,17 +72,32 @@ impl Person {
     pub(super) fn reach_to(&self, place: Vec2, feet: &[Foot], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
         let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);
-        if nearest <= SAME_FOOT_M {
+        if nearest <= ONE_FOOT_M {
             return Some(nearest);
         }
-        let firm = || mine().filter(|foot| foot.force >= TRACE_N);
-        let both = firm().any(|one| firm().any(|other| one.place.distance(other.place) > ONE_FOOT_M));
-        if both {
+        if self.has_both_down(feet) {
             return None;
         }
         let left = self.left.iter().filter(|left| now.since(left.at) <= SWINGING);
         let nearest = left.map(|left| left.place.distance(place)).fold(nearest, f32::min);
         (nearest <= STRIDE_M).then_some(nearest)
+    }
+
+    /// Whether two feet of the person are on the floor.
+    fn has_both_down(&self, feet: &[Foot]) -> bool {
+        let firm = || {
+            feet.iter()
+                .filter(|foot| foot.person == self.id && !foot.is_object())
+                .filter(|foot| foot.force >= TRACE_N)
+        };
+        firm().any(|one| firm().any(|other| one.place.distance(other.place) > ONE_FOOT_M))
+    }
+
+    /// Whether this person and the `other` one, each with one foot down, stand as one person does.
+    pub(super) fn is_one_with(&self, other: &Self, feet: &[Foot]) -> bool {
+        let of = |id: u32| feet.iter().filter(move |foot| foot.person == id && !foot.is_object());
+        let near = |one: &Foot| of(other.id).any(|foot| foot.place.distance(one.place) <= STANCE_M);
+        of(self.id).any(near) && !self.has_both_down(feet) && !other.has_both_down(feet)
     }
 
     /// Whether a foot that lands at `place` steps there, rather than coming back to where it had stood

@@ -58,16 +58,16 @@ const CARRIES_FOR: Duration = Duration::from_millis(30);
 
 /// A foot that stands beside the other one carries half of the body, give and take some sway;
 /// and more than this many newtons, which hold a heavy pedal.
-pub(super) const STANDS: f32 = 0.38;
-pub(super) const STANDS_N: f32 = 200.0;
+const STANDS: f32 = 0.38;
+const STANDS_N: f32 = 200.0;
 
 /// How long a press of that force may last (our choice: twice a slow click).
 const STANDS_FOR: Duration = Duration::from_millis(800);
 
 /// A foot at rest on a control that is meant to be tapped: share of the body, newtons, and for how long.
-const RESTS: f32 = 0.25;
-const RESTS_N: f32 = 110.0;
-const RESTS_FOR: Duration = Duration::from_secs(2);
+pub(super) const RESTS: f32 = 0.25;
+pub(super) const RESTS_N: f32 = 110.0;
+const RESTS_FOR: Duration = Duration::from_secs(1);
 
 /// How far a foot rolls over before that is no wobble, in metres, and within which time of its landing.
 const ROLLED_M: f32 = 0.07;

@@ -25,6 +25,9 @@ pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
 
 fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
     let state = view.widget_state(index);
+    if state.hidden {
+        return;
+    }
     let pressed = f32::from(u8::from(state.pressed));
     match (widget.behaviour, state.value) {
         (Behaviour::Switch(_), Some(Value::Switch(on))) => {
