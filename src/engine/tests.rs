@@ -8,7 +8,7 @@ use glam::Vec2;
 use super::*;
 use crate::feel::{Click, Cue, Feel, Friction, Mode};
 use crate::floor::{Geometry, Rect};
-use crate::layout::{Colour, Layout, Look, Region, Shape, Widget};
+use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Widget};
 use crate::sense::{ForceFrame, Method, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{
@@ -33,6 +33,8 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
         id: WidgetId::new(id),
         kind: behaviour.name().into(),
         region: 0,
+        page: None,
+        goto: None,
         area: Rect::from_min_size(min, size),
         label: String::new(),
         behaviour,
@@ -62,8 +64,10 @@ fn page() -> Layout {
         regions: vec![Region {
             id: "page".into(),
             area: Rect::from_min_size(Vec2::new(0.0, 0.6), Vec2::new(1.824, 1.224)),
+            cursor: CursorRule::Largest,
         }],
         stances: Vec::new(),
+        pages: Vec::new(),
         widgets: vec![
             widget("home", Vec2::new(0.35, 0.95), size, home),
             widget("light", Vec2::new(1.25, 0.95), size, light),

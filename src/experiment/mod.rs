@@ -13,6 +13,7 @@
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
+//! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
 //!
 //! ```
 //! use underfoot::experiment::PeopleTable;
@@ -27,6 +28,9 @@ mod chart;
 mod errors;
 mod figure;
 mod follow;
+mod intent;
+mod intent_act;
+mod intent_sweep;
 mod orientation;
 mod people;
 mod rig;
@@ -35,10 +39,13 @@ mod seam_object;
 mod spot;
 mod taps;
 mod two_feet;
+mod wilson;
 
 pub use errors::{Errors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
+pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
+pub use intent_sweep::{IntentSweep, SweepCell};
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
@@ -47,6 +54,7 @@ pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{Stance, TapLine, TapScore, TapTable};
 pub use two_feet::TwoFeet;
+pub use wilson::Counted;
 
 use crate::sense::Method;
 

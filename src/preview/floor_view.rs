@@ -171,6 +171,9 @@ impl App {
         let snapshot = self.snapshots.output_buffer();
         for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
             let state = snapshot.widgets.get(index).copied().unwrap_or_default();
+            if state.hidden {
+                continue;
+            }
             let id = ui.scope_id().with(("floor control", index));
             let node = ui.interact(map.rect(widget.area), id, Sense::hover());
             node.widget_info(|| {

@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use super::area::{Area, Placed};
 use super::number::plain;
 use super::page::{Control, Page, Zone};
+use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::Geometry;
@@ -17,6 +18,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
     let floor = Area::of_floor(geometry);
     check_zones(reader, page, &floor);
     check_ids(reader, page);
+    pages::check(reader, page);
     if page.controls.is_empty() && reader.is_sound() {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));
@@ -28,7 +30,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
             check_region(reader, page, &name, place);
         }
         check_size(reader, &name, place, geometry);
-        check_overlap(reader, &page.controls[..index], &name, place, &floor);
+        check_overlap(reader, &page.controls[..index], control, &name, place, &floor);
     }
 }
 
@@ -149,8 +151,15 @@ fn check_size(reader: &Reader<'_>, name: &str, place: &Placed, geometry: &Geomet
 }
 
 /// Reports the first of the `earlier` controls that this one overlaps.
-fn check_overlap(reader: &Reader<'_>, earlier: &[Control<'_>], name: &str, place: &Placed, floor: &Area) {
-    let mut overlapped = earlier.iter().filter_map(|other| {
+fn check_overlap(
+    reader: &Reader<'_>,
+    earlier: &[Control<'_>],
+    control: &Control<'_>,
+    name: &str,
+    place: &Placed,
+    floor: &Area,
+) {
+    let mut overlapped = earlier.iter().filter(|other| pages::meet(control, other)).filter_map(|other| {
         let there = other.place.as_ref()?;
         Some((other, there, place.area.shared(&there.area)?))
     });

@@ -9,13 +9,15 @@ use super::fields::Fields;
 use super::kind::{Kind, Kinds};
 use super::look;
 use super::node::Node;
+use super::pages::{self, Goto, Sheet};
 use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
+use super::region;
 use super::source::{Source, read_text};
 use super::version;
 use crate::floor::Geometry;
-use crate::layout::{Layout, Region, Stance, Widget};
+use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
 
 /// Most controls, regions or stance zones of one layout.
@@ -70,6 +72,8 @@ pub(super) struct Page<'r> {
     title: Option<&'r str>,
     pub(super) regions: Vec<Zone<'r>>,
     pub(super) stances: Vec<Zone<'r>>,
+    pub(super) pages: Vec<Sheet<'r>>,
+    /// Those of all pages.
     pub(super) controls: Vec<Control<'r>>,
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
@@ -82,6 +86,7 @@ pub(super) struct Zone<'r> {
     pub(super) name: Option<&'r str>,
     pub(super) name_at: std::ops::Range<usize>,
     pub(super) place: Option<Placed>,
+    cursor: Option<CursorRule>,
 }
 
 /// One control.
@@ -89,9 +94,12 @@ pub(super) struct Control<'r> {
     pub(super) id: Option<&'r str>,
     pub(super) id_at: std::ops::Range<usize>,
     pub(super) place: Option<Placed>,
+    /// The number of its page; `None` if it is on all of them.
+    pub(super) page: Option<usize>,
+    pub(super) goto: Option<Goto<'r>>,
     label: Option<&'r str>,
     /// Its kind with everything that it overrides.
-    kind: Option<Kind>,
+    pub(super) kind: Option<Kind>,
 }
 
 impl<'r> Page<'r> {
@@ -102,11 +110,12 @@ impl<'r> Page<'r> {
         let (regions, regions_known) =
             list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
         let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
-        let (controls, _) = list(&mut fields, "widgets", "widget", |node| Control::read(node, kinds));
+        let (mut controls, _) = list(&mut fields, "widgets", "widget", |node| Control::read(node, kinds));
+        let pages = pages::read(&mut fields, kinds, &mut controls);
         let widgets_at = fields.span("widgets");
         fields.finish();
         let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
-        Some(Self { title, regions, stances, controls, regions_known, widgets_at })
+        Some(Self { title, regions, stances, pages, controls, regions_known, widgets_at })
     }
 
     /// The region whose area holds the middle of `area`.
@@ -119,7 +128,8 @@ impl<'r> Page<'r> {
     /// The checked layout; `None` if anything of it is missing.
     fn placed_on(&self, geometry: &Geometry) -> Option<Layout> {
         let regions = self.regions.iter().map(|zone| {
-            Some(Region { id: zone.name?.to_owned(), area: zone.place.as_ref()?.area.in_metres(geometry) })
+            let area = zone.place.as_ref()?.area.in_metres(geometry);
+            Some(Region { id: zone.name?.to_owned(), area, cursor: zone.cursor? })
         });
         let stances = self.stances.iter().map(|zone| {
             Some(Stance { label: zone.name?.to_owned(), area: zone.place.as_ref()?.area.in_metres(geometry) })
@@ -131,6 +141,8 @@ impl<'r> Page<'r> {
                 id: WidgetId::new(control.id?),
                 kind: kind.name,
                 region: self.region_of(area)?,
+                page: control.page,
+                goto: control.goto.as_ref().and_then(|goto| goto.number(&self.pages)),
                 area: area.in_metres(geometry),
                 label: control.label?.to_owned(),
                 behaviour: kind.behaviour,
@@ -142,6 +154,7 @@ impl<'r> Page<'r> {
             title: self.title?.to_owned(),
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
+            pages: self.pages.iter().map(Sheet::checked).collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
     }
@@ -156,18 +169,21 @@ impl<'r> Zone<'r> {
         };
         let place = Placed::read(&mut fields);
         let name_at = fields.span(field);
+        let cursor =
+            if field == "id" { region::read_cursor(&mut fields) } else { Some(CursorRule::default()) };
         fields.finish();
-        Some(Self { name, name_at, place })
+        Some(Self { name, name_at, place, cursor })
     }
 }
 
 impl<'r> Control<'r> {
-    fn read(node: Node<'r>, kinds: &Kinds) -> Option<Self> {
+    pub(super) fn read(node: Node<'r>, kinds: &Kinds) -> Option<Self> {
         let mut fields = node.fields("Widget")?;
         let id = fields.read("id", None, |node| node.id());
         let base = fields.read("kind", None, |node| named_kind(node, kinds));
         let place = Placed::read(&mut fields);
         let label = fields.read("label", Some(""), |node| node.text(64));
+        let goto = Goto::read(&mut fields);
         let id_at = fields.span("id");
         let kind = match base {
             Some(base) => {
@@ -182,7 +198,7 @@ impl<'r> Control<'r> {
                 None
             }
         };
-        Some(Self { id, id_at, place, label, kind })
+        Some(Self { id, id_at, place, page: None, goto, label, kind })
     }
 }
 
@@ -204,7 +220,7 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
 }
 
 /// What `read` makes of the entries of the list `name`, which may be left out, and whether that is all of them.
-fn list<'r, T>(
+pub(super) fn list<'r, T>(
     fields: &mut Fields<'r>,
     name: &'static str,
     entry: &'static str,

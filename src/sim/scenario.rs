@@ -308,7 +308,7 @@ fn along(widget: &Widget, share: f32) -> Result<Vec2, String> {
 mod tests {
     use super::*;
     use crate::feel::Feel;
-    use crate::layout::{Colour, Look, Region, Shape};
+    use crate::layout::{Colour, CursorRule, Look, Region, Shape};
     use crate::sim::{Foot, FootDriver};
     use crate::units::Instant;
     use crate::widget::{ButtonSpec, Scale, SliderSpec, Thresholds, WidgetId};
@@ -320,6 +320,8 @@ mod tests {
             id: WidgetId::new(id),
             kind: kind.into(),
             region: 0,
+            page: None,
+            goto: None,
             area,
             label: String::new(),
             behaviour,
@@ -337,8 +339,13 @@ mod tests {
         let button = Behaviour::Button(ButtonSpec::new(thresholds));
         Layout {
             title: "Test".into(),
-            regions: vec![Region { id: "all".into(), area: Geometry::default().bounds() }],
+            regions: vec![Region {
+                id: "all".into(),
+                area: Geometry::default().bounds(),
+                cursor: CursorRule::Largest,
+            }],
             stances: Vec::new(),
+            pages: Vec::new(),
             widgets: vec![
                 widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button.clone()),
                 widget("layers", "button", tiles(3.4, 1.6, 0.6, 0.6), button),
