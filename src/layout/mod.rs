@@ -4,8 +4,10 @@
 //! positive and numbers finite; [`crate::schema`] is where nonsense stops.
 
 mod hit;
+mod icon;
 mod look;
 
+pub use icon::Icon;
 pub use look::{Colour, Look, Shape};
 
 use glam::Vec2;
