@@ -3,11 +3,11 @@ use crate::floor::{Geometry, PositionMap};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
-use crate::widget::{Behaviour, SetError, Value, WidgetEvent};
+use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent};
 
 use super::interact::Interaction;
 use super::response::{self, LastSpots};
-use super::{Snapshot, TileState, WidgetState};
+use super::{PageShown, Snapshot, TileState, WidgetState};
 
 /// A floor with a page of controls on it: frames in, events and cues out.
 ///
@@ -22,6 +22,11 @@ pub struct Engine {
     /// Layouts given so far, the first one not counted.
     layouts_given: u64,
     layout_revision: u64,
+    /// A page that waits for feet to let go.
+    waiting_page: Option<usize>,
+    /// A page that has come since the last step, and in it.
+    page_shown: Option<PageShown>,
+    page_told: Option<PageShown>,
     sensing: Sensing,
     interaction: Interaction,
     last_spots: LastSpots,
@@ -38,6 +43,8 @@ pub struct Engine {
 pub struct Step<'a> {
     /// What the controls did, in order.
     pub events: &'a [WidgetEvent],
+    /// The page that has taken the place of another since the last frame.
+    pub page: Option<&'a PageShown>,
     /// Clicks to be felt.
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
@@ -53,7 +60,7 @@ impl Engine {
     #[must_use]
     pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
         Self {
-            interaction: Interaction::new(&layout, &geometry),
+            interaction: Interaction::new(&layout, &geometry, 0),
             sensing: Sensing::new(geometry, method),
             last_frame: ForceFrame::empty(&geometry),
             geometry,
@@ -61,6 +68,9 @@ impl Engine {
             waiting_layout: None,
             layouts_given: 0,
             layout_revision: 0,
+            waiting_page: None,
+            page_shown: None,
+            page_told: None,
             last_spots: LastSpots::default(),
             pending: Vec::new(),
             events: Vec::new(),
@@ -97,8 +107,17 @@ impl Engine {
         let interaction = &self.interaction;
         self.last_spots.update(contacts, |id| interaction.holds(id));
         self.last_frame.clone_from(frame);
+        self.follow_clicks();
         self.take_waiting_layout();
-        Step { events: &self.events, cues: &self.cues, rubs: &self.rubs, contacts: self.sensing.contacts() }
+        self.take_waiting_page();
+        self.page_told = self.page_shown.take();
+        Step {
+            events: &self.events,
+            page: self.page_told.as_ref(),
+            cues: &self.cues,
+            rubs: &self.rubs,
+            contacts: self.sensing.contacts(),
+        }
     }
 
     /// The layout in use.
@@ -118,6 +137,26 @@ impl Engine {
         self.take_waiting_layout();
     }
 
+    /// The name of the page that is shown; `None` in a layout without pages.
+    #[must_use]
+    pub fn page(&self) -> Option<&str> {
+        self.layout.pages.get(self.interaction.page()).map(|page| page.id.as_str())
+    }
+
+    /// Shows the page named `id`; [`Step::page`] tells when it has come.
+    ///
+    /// With a foot engaged it waits until every foot has let go; a page named
+    /// later takes the place of one that waits. Feet that stand where a control
+    /// appears must lift before it works.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such page.
+    pub fn set_page(&mut self, id: &str) -> Result<(), SetError> {
+        self.waiting_page = Some(self.layout.page_index(id).ok_or(SetError::Unknown)?);
+        self.take_waiting_page();
+        Ok(())
+    }
+
     /// The time of the last frame, on the floor's sample clock.
     #[must_use]
     pub fn now(&self) -> Instant {
@@ -127,7 +166,7 @@ impl Engine {
     /// What the control named `id` holds; `None` for a button or an unknown name.
     #[must_use]
     pub fn value(&self, id: &str) -> Option<Value> {
-        self.interaction.controls().get(self.layout.widget_index(id)?)?.value()
+        self.control(id)?.value()
     }
 
     /// Gives the control named `id` a value; no event follows, for the caller knows.
@@ -146,8 +185,39 @@ impl Engine {
     pub fn set_enabled(&mut self, id: &str, enabled: bool) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
         let now = self.last_frame.at;
-        self.interaction.set_disabled(widget, !enabled, &self.layout, now, &mut self.pending);
+        let switch = |control: &mut Control| control.set_disabled(!enabled);
+        self.interaction.change(widget, switch, &self.layout, now, &mut self.pending);
         Ok(())
+    }
+
+    /// Locks or unlocks the control named `id`; locking cancels its press (reported by the next step).
+    ///
+    /// A locked control keeps its value, and says so when a foot presses it.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_locked(&mut self, id: &str, locked: bool) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        let now = self.last_frame.at;
+        let lock = |control: &mut Control| control.set_locked(locked);
+        self.interaction.change(widget, lock, &self.layout, now, &mut self.pending);
+        Ok(())
+    }
+
+    /// Switches the lamp of the control named `id`.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_indicator(&mut self, id: &str, indicator: Indicator) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        self.interaction.control_mut(widget).ok_or(SetError::Unknown)?.set_indicator(indicator);
+        Ok(())
+    }
+
+    /// The control named `id`, to read back what it holds and how it is; `None` for an unknown name.
+    #[must_use]
+    pub fn control(&self, id: &str) -> Option<&Control> {
+        self.interaction.controls().get(self.layout.widget_index(id)?)
     }
 
     /// Writes the present state into `snapshot`; link state and counters are the caller's to fill.
@@ -156,15 +226,26 @@ impl Engine {
         snapshot.layout_revision = self.layout_revision;
         snapshot.contacts.clear();
         snapshot.contacts.extend_from_slice(self.sensing.contacts());
+        snapshot.feet.clear();
+        snapshot.feet.extend(self.interaction.feet());
+        snapshot.page = self.interaction.page();
         snapshot.cursors.clear();
         snapshot.cursors.extend(self.interaction.cursors());
         snapshot.widgets.clear();
-        snapshot.widgets.extend(self.interaction.controls().iter().map(|control| WidgetState {
+        let page = self.interaction.page();
+        let controls = self.interaction.controls().iter().zip(&self.layout.widgets);
+        snapshot.widgets.extend(controls.map(|(control, widget)| WidgetState {
             pressed: control.is_engaged(),
             value: control.value(),
             press_share: control.press_share(),
             needs_lift: control.needs_lift(),
             disabled: control.is_disabled(),
+            hidden: !widget.is_on(page),
+            locked: control.is_locked(),
+            armed: control.is_armed(),
+            warned: control.has_warned(),
+            indicator: control.indicator(),
+            pending: control.pending(),
         }));
         snapshot.tiles.clear();
         let frame = &self.last_frame;
@@ -176,6 +257,30 @@ impl Engine {
                 centroid: tile.centroid,
             },
         ));
+    }
+
+    /// Pages that clicks ask for.
+    fn follow_clicks(&mut self) {
+        let clicked = self.events.iter().filter(|event| event.kind == EventKind::Clicked);
+        let goto = clicked
+            .filter_map(|event| self.layout.widgets.get(self.layout.widget_index(event.id.as_str())?)?.goto)
+            .next_back();
+        self.waiting_page = goto.or(self.waiting_page);
+    }
+
+    fn take_waiting_page(&mut self) {
+        if self.waiting_page.is_none() || self.interaction.is_engaged() {
+            return;
+        }
+        let Some(page) = self.waiting_page.take().filter(|&page| page != self.interaction.page()) else {
+            return;
+        };
+        self.interaction.show(page, &self.layout);
+        self.page_shown = self
+            .layout
+            .pages
+            .get(page)
+            .map(|shown| PageShown { at: self.last_frame.at, page: shown.id.clone() });
     }
 
     fn take_waiting_layout(&mut self) {
@@ -198,7 +303,11 @@ impl Engine {
             return;
         }
         let Some((layout, revision)) = self.waiting_layout.take() else { return };
-        let mut interaction = Interaction::new(&layout, &self.geometry);
+        // The page stays if the new layout has it too, and so does one that waits.
+        let same_page = |page: usize| layout.page_index(self.layout.pages.get(page)?.id.as_str());
+        let page = same_page(self.interaction.page()).unwrap_or(0);
+        let waiting_page = self.waiting_page.and_then(same_page);
+        let mut interaction = Interaction::new(&layout, &self.geometry, page);
         for (index, widget) in layout.widgets.iter().enumerate() {
             let old = self.layout.widget_index(widget.id.as_str());
             let old = old.and_then(|old| self.interaction.controls().get(old));
@@ -206,8 +315,12 @@ impl Engine {
                 // A control that changed its behaviour starts from its own initial value.
                 let _ = old.value().map(|value| new.set_value(value));
                 new.set_disabled(old.is_disabled());
+                new.set_locked(old.is_locked());
+                new.set_indicator(old.indicator());
             }
         }
+        interaction.inherit(&mut self.interaction);
+        self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;
         self.layout_revision = revision;

@@ -4,12 +4,15 @@ use std::time::Duration;
 
 use glam::Vec2;
 
+use super::feet::Feet;
+use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
+use super::snapshot::FootState;
 use crate::floor::Geometry;
-use crate::layout::{Layout, Widget};
-use crate::sense::{Contact, ContactId, Cursor, CursorPicker, ForceFrame, Quality};
+use crate::layout::{CursorRule, HitIndex, Layout, Widget};
+use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Control, Emitted, Input, WidgetEvent};
+use crate::widget::{Behaviour, Control, Emitted, Guard, Input, WidgetEvent};
 
 /// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means to stay).
 const SLIDE_OFF_MARGIN_M: f32 = 0.03;
@@ -22,35 +25,36 @@ const LANDING: Duration = Duration::from_millis(300);
 #[derive(Debug)]
 pub(super) struct Interaction {
     geometry: Geometry,
+    hits: HitIndex,
+    /// The page that is shown.
+    page: usize,
     regions: Vec<RegionState>,
     controls: Vec<Control>,
-    /// Tiles under each control, by index.
-    tiles: Vec<Vec<usize>>,
-    /// Whether each control lies on a tile that can't be sensed.
+    /// Whether each control lies on a tile that can't be sensed, and which ones do.
     unsensed: Vec<bool>,
+    lost: Vec<usize>,
     /// Controls for which even an empty floor changes something.
     awake: Vec<usize>,
-    landed: Vec<(ContactId, Instant)>,
+    feet: Feet,
     rises: Rises,
 }
 
-#[derive(Debug)]
-struct RegionState {
-    picker: CursorPicker,
-    cursor: Option<Cursor>,
-    /// The control under the cursor and its foot, since the last frame.
-    over: Option<(usize, ContactId)>,
-    /// The control that keeps its foot.
-    held: Option<Held>,
+/// What happens in one frame.
+#[derive(Clone, Copy)]
+struct Moment<'a> {
+    frame: &'a ForceFrame,
+    contacts: &'a [Contact],
+    layout: &'a Layout,
 }
 
-/// A foot that a control has engaged.
-#[derive(Clone, Copy, Debug)]
-struct Held {
-    widget: usize,
-    contact: ContactId,
-    force: Newtons,
-    position: Vec2,
+impl Moment<'_> {
+    fn now(&self) -> Instant {
+        self.frame.at
+    }
+
+    fn contact(&self, id: ContactId) -> Option<&Contact> {
+        self.contacts.iter().find(|contact| contact.id == id)
+    }
 }
 
 /// A foot sliding on a control that keeps it.
@@ -62,14 +66,27 @@ pub(super) struct Sliding {
 
 impl Interaction {
     /// All controls at their initial values; each must first be seen unloaded.
-    pub(super) fn new(layout: &Layout, geometry: &Geometry) -> Self {
-        let regions = layout.regions.iter().map(|_| RegionState::new()).collect();
-        let controls: Vec<_> = layout.widgets.iter().map(|widget| Control::new(widget.behaviour)).collect();
-        let tiles = layout.widgets.iter().map(|widget| tiles_under(widget, geometry)).collect();
-        let awake = (0..controls.len()).collect();
-        let unsensed = vec![false; controls.len()];
-        let rises = Rises::default();
-        Self { geometry: *geometry, regions, controls, tiles, unsensed, awake, landed: Vec::new(), rises }
+    pub(super) fn new(layout: &Layout, geometry: &Geometry, page: usize) -> Self {
+        let controls: Vec<_> =
+            layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();
+        Self {
+            geometry: *geometry,
+            hits: HitIndex::new(layout, geometry),
+            page,
+            regions: layout.regions.iter().map(|_| RegionState::default()).collect(),
+            unsensed: vec![false; controls.len()],
+            lost: Vec::with_capacity(controls.len()),
+            awake: (0..controls.len()).collect(),
+            controls,
+            feet: Feet::default(),
+            rises: Rises::default(),
+        }
+    }
+
+    /// Goes on with the feet that `other` knew.
+    pub(super) fn inherit(&mut self, other: &mut Self) {
+        self.feet = std::mem::take(&mut other.feet);
+        self.rises = std::mem::take(&mut other.rises);
     }
 
     pub(super) fn controls(&self) -> &[Control] {
@@ -80,44 +97,74 @@ impl Interaction {
         self.controls.get_mut(widget)
     }
 
+    /// The page that is shown.
+    pub(super) fn page(&self) -> usize {
+        self.page
+    }
+
+    /// Shows another page. Values stay; a foot that stands where a control appears must lift first.
+    ///
+    /// No control may be engaged.
+    pub(super) fn show(&mut self, page: usize, layout: &Layout) {
+        let before = std::mem::replace(&mut self.page, page);
+        for (index, (widget, control)) in layout.widgets.iter().zip(&mut self.controls).enumerate() {
+            if widget.is_on(before) != widget.is_on(page) {
+                control.cancel();
+                if !self.awake.contains(&index) {
+                    self.awake.push(index);
+                }
+            }
+        }
+        self.regions.iter_mut().flat_map(|region| &mut region.fingers).for_each(|finger| finger.over = None);
+    }
+
+    /// One entry per region, then the further cursors of those where each contact is one.
     pub(super) fn cursors(&self) -> impl Iterator<Item = Option<Cursor>> + '_ {
-        self.regions.iter().map(|region| region.cursor)
+        let more = self.regions.iter().flat_map(|region| region.more_cursors().map(Some));
+        self.regions.iter().map(RegionState::cursor).chain(more)
+    }
+
+    /// What there is to show of each contact.
+    pub(super) fn feet(&self) -> impl Iterator<Item = FootState> + '_ {
+        self.feet.states()
+    }
+
+    fn held(&self) -> impl Iterator<Item = Held> + '_ {
+        self.regions.iter().flat_map(RegionState::held)
     }
 
     pub(super) fn is_engaged(&self) -> bool {
-        self.regions.iter().any(|region| region.held.is_some())
+        self.held().next().is_some()
     }
 
     /// The controls that are engaged, by index.
     pub(super) fn engaged(&self) -> impl Iterator<Item = usize> + '_ {
-        self.regions.iter().filter_map(|region| region.held).map(|held| held.widget)
+        self.held().map(|held| held.widget)
     }
 
     /// Whether a control keeps the foot `contact`.
     pub(super) fn holds(&self, contact: ContactId) -> bool {
-        self.regions.iter().filter_map(|region| region.held).any(|held| held.contact == contact)
+        self.held().any(|held| held.contact == contact)
     }
 
     /// Feet that slide on a control that keeps them.
     pub(super) fn sliding(&self) -> impl Iterator<Item = Sliding> + '_ {
-        self.regions
-            .iter()
-            .filter_map(|region| region.held)
+        self.held()
             .filter(|held| self.controls.get(held.widget).is_some_and(Control::captures))
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// Switches a control off or on.
-    pub(super) fn set_disabled(
+    /// Switches a control off or on, or locks it, which `change` does.
+    pub(super) fn change(
         &mut self,
         widget: usize,
-        disabled: bool,
+        change: impl FnOnce(&mut Control) -> Emitted,
         layout: &Layout,
         now: Instant,
         events: &mut Vec<WidgetEvent>,
     ) {
         let Some(control) = self.controls.get_mut(widget) else { return };
-        let emitted = control.set_disabled(disabled);
+        let emitted = change(control);
         let held = self.release_hold(widget);
         report(layout, now, widget, held, &emitted, events);
         self.wake(widget);
@@ -146,164 +193,221 @@ impl Interaction {
         layout: &Layout,
         events: &mut Vec<WidgetEvent>,
     ) {
-        let now = frame.at;
-        self.note_landings(contacts, now);
-        self.rises.update(contacts, now);
-        self.lose_unsensed(frame, layout, events);
+        let at = Moment { frame, contacts, layout };
+        self.feet.update(contacts, &layout.stances, at.now());
+        self.rises.update(contacts, at.now());
+        self.lose_unsensed(&at, events);
         for index in 0..self.regions.len() {
-            self.step_region(index, frame, contacts, layout, events);
+            self.step_region(index, &at, events);
         }
-        self.rest(layout, now, events);
+        self.rest(&at, events);
     }
 
-    fn step_region(
+    fn step_region(&mut self, index: usize, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+        let Some((state, region)) = self.regions.get_mut(index).zip(at.layout.regions.get(index)) else {
+            return;
+        };
+        let (feet, hits, page) = (&self.feet, &self.hits, self.page);
+        let works = |contact: &Contact| {
+            let widget = hits.widget_at(at.layout, page, contact.centroid);
+            widget.and_then(|widget| at.layout.widgets.get(widget)).is_some_and(|spec| spec.region == index)
+        };
+        let may = |contact: &Contact| {
+            feet.of(contact.id).is_none_or(|foot| {
+                foot.may_lead()
+                    && (region.cursor != CursorRule::Working || (!foot.is_step() && works(contact)))
+            })
+        };
+        state.point(region, at.contacts, may, at.now());
+        // Taken out while the rest of the interaction works with them.
+        let mut fingers = std::mem::take(&mut state.fingers);
+        let busy = fingers.iter().any(|finger| finger.held.is_some());
+        for finger in fingers.iter_mut().filter(|finger| finger.held.is_some()) {
+            finger.over = None;
+            self.step_held(finger, at, events);
+        }
+        if !busy || region.cursor == CursorRule::Each {
+            self.step_free(index, &mut fingers, at, events);
+        }
+        if let Some(state) = self.regions.get_mut(index) {
+            state.fingers = fingers;
+        }
+    }
+
+    /// Fingers that no control keeps feed the control they are on; of several the heaviest does.
+    fn step_free(
         &mut self,
         index: usize,
-        frame: &ForceFrame,
-        contacts: &[Contact],
-        layout: &Layout,
+        fingers: &mut [Finger],
+        at: &Moment<'_>,
         events: &mut Vec<WidgetEvent>,
     ) {
-        let Some((region, area)) =
-            self.regions.get_mut(index).zip(layout.regions.get(index).map(|region| region.area))
+        for this in 0..fingers.len() {
+            let Some(&finger) = fingers.get(this).filter(|finger| finger.held.is_none()) else { continue };
+            let on = |finger: &Finger| {
+                let widget = self.hits.widget_at(at.layout, self.page, finger.cursor.position)?;
+                (at.layout.widgets.get(widget)?.region == index).then_some(widget)
+            };
+            let over = on(&finger).filter(|&widget| {
+                let heavier = |other: &Finger| {
+                    let (ours, theirs) = (finger.cursor, other.cursor);
+                    theirs.force > ours.force || (theirs.force == ours.force && theirs.contact < ours.contact)
+                };
+                fingers.iter().all(|other| {
+                    other.cursor.contact == finger.cursor.contact
+                        || !(other.holds(widget)
+                            || other.held.is_none() && heavier(other) && on(other) == Some(widget))
+                })
+            });
+            let is_new = over != finger.over;
+            let Some(finger) = fingers.get_mut(this) else { continue };
+            finger.over = over;
+            if let Some(widget) = over {
+                self.step_over(widget, finger, is_new, at, events);
+            }
+        }
+    }
+
+    /// A foot is on a control that does not keep it yet.
+    fn step_over(
+        &mut self,
+        widget: usize,
+        finger: &mut Finger,
+        is_new: bool,
+        at: &Moment<'_>,
+        events: &mut Vec<WidgetEvent>,
+    ) {
+        let now = at.now();
+        let Some(contact) = at.contact(finger.cursor.contact) else { return };
+        let (Some(spec), Some(control)) = (at.layout.widgets.get(widget), self.controls.get_mut(widget))
         else {
             return;
         };
-        let now = frame.at;
-        region.cursor = region.picker.update(area, contacts, now);
-        if region.held.is_some() {
-            self.step_held(index, frame, contacts, layout, events);
-            return;
-        }
-        let over = region.cursor.and_then(|cursor| {
-            let widget = layout.widget_at(cursor.position)?;
-            (layout.widgets.get(widget)?.region == index).then_some((widget, cursor))
-        });
-        let entered = over.map(|(widget, cursor)| (widget, cursor.contact));
-        let is_new = entered != region.over;
-        region.over = entered;
-        let Some((widget, cursor)) = over else { return };
-        let Some(contact) = contacts.iter().find(|contact| contact.id == cursor.contact) else { return };
-        let (Some(spec), Some(control)) = (layout.widgets.get(widget), self.controls.get_mut(widget)) else {
-            return;
-        };
+        let (foot, weight) = (self.feet.of(contact.id), self.feet.weight(contact.id));
         let slid_on = is_new
             && contact.force >= spec.behaviour.thresholds().release
-            && self.landed.iter().any(|&(id, at)| id == contact.id && now.since(at) > LANDING);
+            && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
-        let unbelieved = contact.force >= spec.behaviour.thresholds().press && !may_start(contact, frame);
-        let input = if slid_on || unbelieved {
+        let unbelieved = contact.force >= spec.behaviour.thresholds().press && !may_start(contact, at.frame);
+        let thresholds = spec.behaviour.thresholds();
+        let input = if foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+            Input::Stepping { force: contact.force }
+        } else if slid_on || unbelieved {
             Input::SlidOn { force: contact.force }
         } else {
-            foot(contact, spec, frame, self.rises.has_risen(contact))
+            let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
+            let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, now));
+            self::foot(contact, spec, at.frame, weight, risen && meant)
         };
         let emitted = control.step(now, input);
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
-        if control.is_engaged()
-            && let Some(region) = self.regions.get_mut(index)
-        {
-            region.held = Some(held);
-            region.picker.hold(Some(contact.id));
+        if control.is_engaged() {
+            finger.held = Some(held);
+            self.feet.note_press(contact.id);
         }
-        report(layout, now, widget, Some(held), &emitted, events);
+        report(at.layout, now, widget, Some(held), &emitted, events);
         self.wake(widget);
     }
 
     /// A control that is engaged follows its own foot, whatever the cursor does.
-    fn step_held(
-        &mut self,
-        index: usize,
-        frame: &ForceFrame,
-        contacts: &[Contact],
-        layout: &Layout,
-        events: &mut Vec<WidgetEvent>,
-    ) {
-        let Some(region) = self.regions.get_mut(index) else { return };
-        let Some(mut held) = region.held else { return };
+    fn step_held(&mut self, finger: &mut Finger, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+        let Some(mut held) = finger.held else { return };
         let (Some(spec), Some(control)) =
-            (layout.widgets.get(held.widget), self.controls.get_mut(held.widget))
+            (at.layout.widgets.get(held.widget), self.controls.get_mut(held.widget))
         else {
-            region.held = None;
+            finger.held = None;
             return;
         };
-        let input = match contacts.iter().find(|contact| contact.id == held.contact) {
+        let foot = self.feet.of(held.contact);
+        let input = match at.contact(held.contact) {
             Some(contact) => {
                 held.force = contact.force;
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
-                if off && !control.captures() { Input::SlidOff } else { foot(contact, spec, frame, true) }
+                let guard = spec.behaviour.thresholds().guard;
+                let rests = is_tapped(spec) && foot.is_some_and(|foot| foot.rests(at.now()));
+                let falls = guard != Guard::Free && self.feet.falls(contact.id);
+                if rests || falls || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+                    Input::Stepping { force: contact.force }
+                } else if off && !control.captures() {
+                    Input::SlidOff
+                } else {
+                    self::foot(contact, spec, at.frame, self.feet.weight(contact.id), true)
+                }
             }
             // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
-            None if is_sensed_at(held.position, &self.geometry, frame) => {
-                Input::Foot { force: Newtons::ZERO, trusted: true, place: place(held.position, spec) }
-            }
+            None if is_sensed_at(held.position, &self.geometry, at.frame) => Input::Foot {
+                force: Newtons::ZERO,
+                trusted: true,
+                place: place(held.position, spec),
+                weight: None,
+            },
             None => Input::Lost,
         };
-        let emitted = control.step(frame.at, input);
-        region.held = control.is_engaged().then_some(held);
-        if region.held.is_none() {
-            region.picker.hold(None);
-            region.over = None;
-        }
-        report(layout, frame.at, held.widget, Some(held), &emitted, events);
+        let emitted = control.step(at.now(), input);
+        finger.held = control.is_engaged().then_some(held);
+        report(at.layout, at.now(), held.widget, Some(held), &emitted, events);
         self.wake(held.widget);
     }
 
     /// Controls with no foot on them come to rest.
-    fn rest(&mut self, layout: &Layout, now: Instant, events: &mut Vec<WidgetEvent>) {
+    fn rest(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
         let mut awake = std::mem::take(&mut self.awake);
         awake.retain(|&widget| {
-            let touched = self.regions.iter().any(|region| {
-                region.held.is_some_and(|held| held.widget == widget)
-                    || region.over.is_some_and(|(over, _)| over == widget)
-            });
+            let touched =
+                self.regions.iter().flat_map(|region| &region.fingers).any(|finger| finger.has(widget));
             let Some(control) = self.controls.get_mut(widget) else { return false };
             let unsensed = self.unsensed.get(widget).is_some_and(|unsensed| *unsensed);
             if touched || unsensed {
                 return true;
             }
-            let emitted = control.step(now, Input::Clear);
-            report(layout, now, widget, None, &emitted, events);
+            let emitted = control.step(at.now(), Input::Clear);
+            report(at.layout, at.now(), widget, None, &emitted, events);
             !control.is_at_rest()
         });
         self.awake = awake;
     }
 
     /// Controls on a tile that can't be sensed are lost.
-    fn lose_unsensed(&mut self, frame: &ForceFrame, layout: &Layout, events: &mut Vec<WidgetEvent>) {
-        if frame.quality.iter().flatten().all(|quality| *quality < Quality::Stale) {
-            self.unsensed.fill(false);
+    fn lose_unsensed(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+        for widget in self.lost.drain(..) {
+            if let Some(unsensed) = self.unsensed.get_mut(widget) {
+                *unsensed = false;
+            }
+        }
+        let quality = &at.frame.quality;
+        if quality.len() >= self.geometry.tile_count()
+            && quality.iter().flatten().all(|quality| *quality < Quality::Stale)
+        {
             return;
         }
-        let is_unsensed = |tile: &usize| frame.quality.get(*tile).is_none_or(|tile| !is_sensed(tile));
-        for widget in 0..self.controls.len() {
-            let lost = self.tiles.get(widget).is_some_and(|tiles| tiles.iter().any(is_unsensed));
-            if let Some(unsensed) = self.unsensed.get_mut(widget) {
-                *unsensed = lost;
+        for tile in 0..self.geometry.tile_count() {
+            if quality.get(tile).is_some_and(is_sensed) {
+                continue;
             }
-            let Some(control) = self.controls.get_mut(widget).filter(|_| lost) else { continue };
-            let emitted = control.step(frame.at, Input::Lost);
+            let plate = self.geometry.plate(self.geometry.tile_at_index(tile));
+            for &widget in self.hits.on_tile(tile) {
+                let lies_there = at.layout.widgets.get(widget).is_some_and(|spec| plate.overlaps(spec.area));
+                if let Some(unsensed) = self.unsensed.get_mut(widget).filter(|lost| lies_there && !**lost) {
+                    *unsensed = true;
+                    self.lost.push(widget);
+                }
+            }
+        }
+        // In the layout's order, whatever tile each lies on.
+        self.lost.sort_unstable();
+        for which in 0..self.lost.len() {
+            let widget = self.lost[which];
+            let Some(control) = self.controls.get_mut(widget) else { continue };
+            let emitted = control.step(at.now(), Input::Lost);
             let held = self.release_hold(widget);
-            report(layout, frame.at, widget, held, &emitted, events);
+            report(at.layout, at.now(), widget, held, &emitted, events);
             self.wake(widget);
         }
     }
 
     fn release_hold(&mut self, widget: usize) -> Option<Held> {
-        let region =
-            self.regions.iter_mut().find(|region| region.held.is_some_and(|held| held.widget == widget))?;
-        region.picker.hold(None);
-        region.over = None;
-        region.held.take()
-    }
-
-    fn note_landings(&mut self, contacts: &[Contact], now: Instant) {
-        self.landed.retain(|(id, _)| contacts.iter().any(|contact| contact.id == *id));
-        for contact in contacts {
-            if !self.landed.iter().any(|(id, _)| *id == contact.id) {
-                self.landed.push((contact.id, now));
-            }
-        }
+        self.regions.iter_mut().find_map(|region| region.let_go(widget))
     }
 
     fn wake(&mut self, widget: usize) {
@@ -313,20 +417,18 @@ impl Interaction {
     }
 }
 
-impl RegionState {
-    fn new() -> Self {
-        Self { picker: CursorPicker::default(), cursor: None, over: None, held: None }
-    }
-}
-
-/// What `widget` senses of a foot; `risen` says whether that foot has pressed harder of late.
-///
-/// A force that has crept past the threshold starts nothing.
-fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, risen: bool) -> Input {
+/// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may start a press.
+fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<Newtons>, may: bool) -> Input {
     let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
         && may_start(contact, frame)
-        && (risen || contact.force < widget.behaviour.thresholds().press);
-    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget) }
+        && may;
+    Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
+}
+
+/// Whether a press of it lasts no longer than a tap: what a foot at rest does to it is not meant.
+fn is_tapped(widget: &Widget) -> bool {
+    let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
+    matches!(widget.behaviour, Behaviour::Button(_) | Behaviour::Switch(_)) && !held
 }
 
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {
@@ -350,15 +452,6 @@ fn is_sensed(tile: &[Quality; 4]) -> bool {
 
 fn place(position: Vec2, widget: &Widget) -> Vec2 {
     (position - widget.area.min) / widget.area.size()
-}
-
-fn tiles_under(widget: &Widget, geometry: &Geometry) -> Vec<usize> {
-    geometry
-        .tiles()
-        .enumerate()
-        .filter(|(_, tile)| geometry.plate(*tile).overlaps(widget.area))
-        .map(|(index, _)| index)
-        .collect()
 }
 
 fn report(

@@ -1,15 +1,29 @@
 //! Frames in; events, cues and a snapshot out. No clocks, no threads, no I/O.
 //!
 //! The same frames give the same events and cues, to the bit.
+//!
+//! ```text
+//! Contacts -feet, people-> since when, whose, how heavy -step, still-> press, step or object
+//!   -region-> cursors, by the region's rule -interact-> the control under each
+//!   -control-> events -response-> cues; a click may show another page
+//! ```
 
+mod feet;
 mod floor_engine;
 mod interact;
+mod page;
+mod people;
+mod region;
 mod response;
 mod rise;
 mod snapshot;
+mod step;
+mod still;
+mod weight;
 
 pub use floor_engine::{Engine, Step};
-pub use snapshot::{LinkState, Snapshot, TileState, WidgetState};
+pub use page::PageShown;
+pub use snapshot::{FootRole, FootState, LinkState, Snapshot, TileState, WidgetState};
 
 #[cfg(test)]
 mod tests;

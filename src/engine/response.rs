@@ -19,10 +19,21 @@ pub(super) fn cue(
     last_spots: &LastSpots,
 ) -> Option<Cue> {
     let widget = &layout.widgets.get(layout.widget_index(event.id.as_str())?)?;
+    let feel = &widget.feel;
     let click = match event.kind {
-        EventKind::Pressed => widget.feel.press.as_ref(),
-        EventKind::Released => widget.feel.release.as_ref(),
-        EventKind::Clicked | EventKind::Cancelled | EventKind::Changed(_) => None,
+        EventKind::Pressed => feel.press.as_ref(),
+        EventKind::Released => feel.release.as_ref(),
+        EventKind::HardPressed | EventKind::LongPressed => feel.stage.as_ref().or(feel.press.as_ref()),
+        EventKind::HardReleased => feel.release.as_ref(),
+        EventKind::Ticked => feel.step.as_ref(),
+        EventKind::Armed => feel.arm.as_ref(),
+        EventKind::Warned | EventKind::Refused => feel.warn.as_ref(),
+        EventKind::Clicked
+        | EventKind::DoubleTapped
+        | EventKind::Swiped(_)
+        | EventKind::Cancelled
+        | EventKind::Changed(_)
+        | EventKind::Disarmed => None,
     }?;
     let id = event.contact?;
     let spots = match contacts.iter().find(|contact| contact.id == id) {

@@ -1,9 +1,9 @@
 use glam::Vec2;
 
 use crate::feel::FeelCounters;
-use crate::sense::{Contact, Cursor, Quality};
+use crate::sense::{Contact, ContactId, Cursor, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::Value;
+use crate::widget::{Indicator, Value};
 use crate::wire::LinkCounters;
 
 /// The state of the floor at one instant, for windows and pictures.
@@ -18,8 +18,13 @@ pub struct Snapshot {
     pub tiles: Vec<TileState>,
     /// The feet on the floor.
     pub contacts: Vec<Contact>,
-    /// The cursor of each of the layout's regions.
+    /// What each contact is to the controls, in their order.
+    pub feet: Vec<FootState>,
+    /// The cursor of each of the layout's regions; after these, in no order, the further cursors of
+    /// regions in which each contact is one (their own entry is the heaviest).
     pub cursors: Vec<Option<Cursor>>,
+    /// Which of the layout's pages is shown; 0 without pages.
+    pub page: usize,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
     /// Whether sensor packets arrive.
@@ -60,6 +65,45 @@ pub struct WidgetState {
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,
+    /// Whether an app has locked it.
+    pub locked: bool,
+    /// Whether a first press has armed it.
+    pub armed: bool,
+    /// Whether it will soon stop by itself although a foot holds it.
+    pub warned: bool,
+    /// What its lamp shows.
+    pub indicator: Indicator,
+    /// What its value would become if the foot let go now, where that is another one.
+    pub pending: Option<Value>,
+    /// Whether it is on another page than the one that is shown.
+    pub hidden: bool,
+}
+
+/// What one contact is to the controls.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct FootState {
+    /// Which contact.
+    pub contact: ContactId,
+    /// What it is taken for.
+    pub role: FootRole,
+    /// Contacts with the same number are taken for feet of one person; never used again.
+    pub person: u32,
+    /// That person's weight; `None` until they have stood quietly for two seconds.
+    pub weight: Option<Newtons>,
+}
+
+/// What a contact is taken for.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum FootRole {
+    /// A foot that may press controls.
+    #[default]
+    Free,
+    /// A foot in a stance zone, which is no cursor.
+    Stance,
+    /// A foot that walks or carries the body, and presses nothing until it has lifted.
+    Step,
+    /// Something left on the floor, ignored until it moves: it has kept still for a minute.
+    Object,
 }
 
 /// Whether sensor packets arrive.

@@ -8,19 +8,14 @@ use glam::Vec2;
 use super::*;
 use crate::feel::{Click, Cue, Feel, Friction, Mode};
 use crate::floor::{Geometry, Rect};
-use crate::layout::{Colour, Layout, Look, Region, Shape, Widget};
+use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Widget};
 use crate::sense::{ForceFrame, Method, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{
     Axis, Behaviour, ButtonSpec, EventKind, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
 };
 
-const AT: Thresholds = Thresholds {
-    press: Newtons(60.0),
-    release: Newtons(40.0),
-    dwell: Duration::from_millis(20),
-    lockout: Duration::from_millis(20),
-};
+const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
 fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
     let click = |hz| Click {
@@ -38,10 +33,17 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
         id: WidgetId::new(id),
         kind: behaviour.name().into(),
         region: 0,
+        page: None,
+        goto: None,
         area: Rect::from_min_size(min, size),
         label: String::new(),
         behaviour,
-        feel: Feel { press: Some(click(180.0)), release: Some(click(240.0)), drag: Some(friction) },
+        feel: Feel {
+            press: Some(click(180.0)),
+            release: Some(click(240.0)),
+            drag: Some(friction),
+            ..Feel::default()
+        },
         look: Look {
             shape: Shape::Box,
             face: Colour::default(),
@@ -63,8 +65,10 @@ fn page() -> Layout {
         regions: vec![Region {
             id: "page".into(),
             area: Rect::from_min_size(Vec2::new(0.0, 0.6), Vec2::new(1.824, 1.224)),
+            cursor: CursorRule::Largest,
         }],
         stances: Vec::new(),
+        pages: Vec::new(),
         widgets: vec![
             widget("home", Vec2::new(0.35, 0.95), size, home),
             widget("light", Vec2::new(1.25, 0.95), size, light),

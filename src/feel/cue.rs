@@ -56,6 +56,14 @@ pub struct Feel {
     pub press: Option<Click>,
     /// Felt when it lets go.
     pub release: Option<Click>,
+    /// Felt when a foot passes a step, a detent or a choice.
+    pub step: Option<Click>,
+    /// Felt when a press becomes long or reaches its second stage; the press once more where absent.
+    pub stage: Option<Click>,
+    /// Felt when a first press has armed it.
+    pub arm: Option<Click>,
+    /// Felt when it will soon stop by itself, or is locked.
+    pub warn: Option<Click>,
     /// Felt while the foot slides along it.
     pub drag: Option<Friction>,
 }

@@ -6,9 +6,14 @@
 mod hit;
 mod icon;
 mod look;
+mod page;
+mod region;
 
+pub use hit::HitIndex;
 pub use icon::Icon;
 pub use look::{Colour, Look, Shape};
+pub use page::Page;
+pub use region::{CursorRule, Region, Stance};
 
 use glam::Vec2;
 
@@ -16,35 +21,19 @@ use crate::feel::Feel;
 use crate::floor::Rect;
 use crate::widget::{Behaviour, WidgetId};
 
-/// A page of controls, placed on one floor.
+/// Controls placed on one floor, on one page or on several that take turns.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     /// What people call it.
     pub title: String,
     /// The active control areas, each with its own cursor.
     pub regions: Vec<Region>,
-    /// Places meant for the standing foot: drawn, never active.
+    /// Places meant for the standing foot: a foot there is never a cursor.
     pub stances: Vec<Stance>,
-    /// The controls, in drawing order.
+    /// The pages that take turns, the first one first; empty if there is only one.
+    pub pages: Vec<Page>,
+    /// The controls of all pages, in drawing order.
     pub widgets: Vec<Widget>,
-}
-
-/// An active control area: the contact with the largest force in it is its cursor.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Region {
-    /// Unique among the layout's regions.
-    pub id: String,
-    /// Where it is.
-    pub area: Rect,
-}
-
-/// A place to stand while using the controls.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Stance {
-    /// Where it is.
-    pub area: Rect,
-    /// What is written on it; may be empty.
-    pub label: String,
 }
 
 /// One control.
@@ -56,6 +45,10 @@ pub struct Widget {
     pub kind: String,
     /// Which of [`Layout::regions`] holds its middle.
     pub region: usize,
+    /// Which of [`Layout::pages`] it is on; `None` if it is on all of them.
+    pub page: Option<usize>,
+    /// Which of [`Layout::pages`] a click on it shows; `None` if it switches none.
+    pub goto: Option<usize>,
     /// Where it is.
     pub area: Rect,
     /// What is written on it; may be empty.
@@ -75,9 +68,26 @@ impl Layout {
         self.widgets.iter().position(|widget| widget.id == id)
     }
 
-    /// The position in [`Layout::widgets`] of the control at `point`; the one drawn last wins.
+    /// The position in [`Layout::pages`] of the page named `id`.
     #[must_use]
-    pub fn widget_at(&self, point: Vec2) -> Option<usize> {
-        self.widgets.iter().rposition(|widget| hit::hits(widget, point))
+    pub fn page_index(&self, id: &str) -> Option<usize> {
+        self.pages.iter().position(|page| page.id == id)
+    }
+
+    /// The position in [`Layout::widgets`] of the control at `point` of the page numbered `page`
+    /// (0 without pages); the one drawn last wins.
+    ///
+    /// Looks at every control; [`HitIndex`] finds the same one faster.
+    #[must_use]
+    pub fn widget_at(&self, page: usize, point: Vec2) -> Option<usize> {
+        self.widgets.iter().rposition(|widget| widget.is_on(page) && hit::hits(widget, point))
+    }
+}
+
+impl Widget {
+    /// Whether it is on the page numbered `page`.
+    #[must_use]
+    pub fn is_on(&self, page: usize) -> bool {
+        self.page.is_none_or(|own| own == page)
     }
 }

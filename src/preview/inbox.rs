@@ -102,7 +102,8 @@ impl Inbox {
 
 /// Whether `next` only says how far a slider has moved on since `last`.
 fn follows(last: &WidgetEvent, next: &WidgetEvent) -> bool {
-    let moves = |event: &WidgetEvent| matches!(event.kind, EventKind::Changed(Value::Number(_)));
+    let moves =
+        |event: &WidgetEvent| matches!(event.kind, EventKind::Changed(Value::Number(_) | Value::Pair(_)));
     last.id == next.id && moves(last) && moves(next)
 }
 

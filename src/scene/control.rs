@@ -295,12 +295,7 @@ mod tests {
     use crate::widget::Thresholds;
 
     fn reading(min: f32, max: f32, step: f32, value: f32) -> String {
-        let thresholds = Thresholds {
-            press: Newtons(30.0),
-            release: Newtons(20.0),
-            dwell: std::time::Duration::ZERO,
-            lockout: std::time::Duration::ZERO,
-        };
+        let thresholds = Thresholds::new(Newtons(30.0), Newtons(20.0));
         let slider = SliderSpec { thresholds, axis: Axis::East, min, max, step, initial: min };
         Reading { value, slider: &slider }.to_string()
     }

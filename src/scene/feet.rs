@@ -82,7 +82,7 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     // south-west, for names and values stand in the control's north.
     let floor = view.geometry.bounds();
     let mut away = Vec2::new(0.72 * radius + 0.085 * by, 0.72 * radius + 0.030 * by);
-    if view.layout.widget_at(at).is_some() {
+    if view.layout.widget_at(view.snapshot.page, at).is_some() {
         away = -away;
     } else if at.x + away.x + 0.08 * by > floor.max.x {
         away.x = -away.x;

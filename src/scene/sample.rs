@@ -1,24 +1,17 @@
 //! A page of controls and a floor at work, for tests.
 
-use std::time::Duration;
-
 use glam::Vec2;
 use smallvec::smallvec;
 
 use crate::engine::{LinkState, Snapshot, TileState, WidgetState};
 use crate::feel::Feel;
 use crate::floor::{Geometry, Rect};
-use crate::layout::{Colour, Layout, Look, Region, Shape, Stance, Widget};
+use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Widget};
 use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
 
-pub(crate) const THRESHOLDS: Thresholds = Thresholds {
-    press: Newtons(60.0),
-    release: Newtons(40.0),
-    dwell: Duration::from_millis(20),
-    lockout: Duration::from_millis(20),
-};
+pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
 pub(crate) fn slider(axis: Axis, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
     Behaviour::Slider(SliderSpec { thresholds: THRESHOLDS, axis, min, max, step, initial })
@@ -46,6 +39,8 @@ pub(crate) fn widget(
         id: WidgetId::new(id),
         kind: "sample".into(),
         region: 0,
+        page: None,
+        goto: None,
         area: Rect::from_min_size(Vec2::from(at) * pitch, Vec2::from(size) * pitch),
         label: label.into(),
         behaviour,
@@ -80,8 +75,13 @@ pub(crate) fn map() -> Layout {
     let round = blue(Shape::Round);
     Layout {
         title: "Map navigation".into(),
-        regions: vec![Region { id: "map".into(), area: tiles(0.0, 2.0, 6.0, 4.0) }],
+        regions: vec![Region {
+            id: "map".into(),
+            area: tiles(0.0, 2.0, 6.0, 4.0),
+            cursor: CursorRule::Largest,
+        }],
         stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
+        pages: vec![],
         widgets: vec![
             widget("zoom-in", "Zoom in", [0.25, 4.55], [1.0, 1.0], button(), blue(Shape::Box)),
             widget("zoom-out", "Zoom out", [0.25, 3.35], [1.0, 1.0], button(), blue(Shape::Box)),

@@ -16,21 +16,12 @@ use super::place::{Beside, Placing, Spot};
 use super::problem::Problem;
 use super::suggest::{did_you_mean, nearest};
 
-/// The controls that the list at `node` stands for, in its own coordinates, and whether these are all.
-pub(super) fn read(node: Node<'_>, kinds: &Choice<'_>) -> (Vec<Control>, bool) {
-    let mut room = MAX_WIDGETS;
-    list(node, kinds, &mut room)
-}
-
-fn list(node: Node<'_>, kinds: &Choice<'_>, room: &mut usize) -> (Vec<Control>, bool) {
-    let Some(nodes) = node.list("widget", MAX_WIDGETS) else { return (Vec::new(), false) };
-    let count = nodes.len();
+/// The controls that the list at `node` stands for, in its own coordinates; `room` is how many there may be.
+pub(super) fn read(node: Node<'_>, kinds: &Choice<'_>, room: &mut usize) -> Vec<Control> {
+    let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
     let entries: Vec<Entry<'_>> =
         nodes.into_iter().filter_map(|node| Entry::read(node, kinds, room)).collect();
-    let all = entries.len() == count
-        && entries.iter().all(|entry| entry.is_whole)
-        && !node.reader.is_broken(&node.span());
-    (arrange(entries), all)
+    arrange(entries)
 }
 
 /// One entry of a list: controls that keep together, and where they go.
@@ -39,7 +30,6 @@ struct Entry<'r> {
     /// What others of the list may stand beside.
     name: Option<&'r str>,
     body: Body<'r>,
-    is_whole: bool,
 }
 
 enum Body<'r> {
@@ -57,19 +47,19 @@ impl<'r> Entry<'r> {
         *room = room.saturating_sub(grid.controls.len());
         let placing =
             std::mem::replace(&mut grid.placing, Placing { spot: None, at: 0..0, is_relative: false });
-        Some(Self { placing, name: None, body: Body::Grid(grid), is_whole: true })
+        Some(Self { placing, name: None, body: Body::Grid(grid) })
     }
 
     fn group(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
         let mut fields = node.fields("Group")?;
         let name = fields.read("id", Some(None), |node| node.id().map(Some)).flatten();
         let placing = Placing::read(&mut fields);
-        let inside = fields.read("widgets", None, |node| Some(list(node, kinds, room)));
+        let inside = fields.read("widgets", None, |node| Some(read(node, kinds, room)));
         fields.finish();
-        let (controls, is_whole) = inside.unwrap_or((Vec::new(), false));
+        let controls = inside.unwrap_or_default();
         let areas = controls.iter().filter_map(|control| Some(control.place.as_ref()?.area));
         let bounds = areas.reduce(|all, one| all.around(&one));
-        Some(Self { placing, name, body: Body::Group(controls, bounds), is_whole })
+        Some(Self { placing, name, body: Body::Group(controls, bounds) })
     }
 
     /// What it covers before it has a place; `None` if that can't be known.

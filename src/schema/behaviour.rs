@@ -96,6 +96,7 @@ fn thresholds(fields: &mut Fields<'_>, base: Option<Thresholds>) -> Option<Thres
         release: Newtons(release),
         dwell: duration(dwell?),
         lockout: duration(lockout?),
+        ..Thresholds::new(Newtons(press), Newtons(release))
     })
 }
 

@@ -6,6 +6,7 @@ use super::area::{Area, Placed};
 use super::control::Control;
 use super::number::plain;
 use super::page::{Page, Zone};
+use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::Geometry;
@@ -15,6 +16,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
     let floor = Area::of_floor(geometry, page.units);
     check_zones(reader, page, &floor);
     check_ids(reader, page);
+    pages::check(reader, page);
     if page.controls.is_empty() && reader.is_sound() {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));
@@ -154,7 +156,9 @@ fn overlapping(
     place: &Placed,
     floor: &Area,
 ) -> Option<Problem> {
-    let mut overlapped = page.controls[..index].iter().filter_map(|other| {
+    let control = &page.controls[index];
+    let earlier = page.controls[..index].iter().filter(|other| pages::meet(control, other));
+    let mut overlapped = earlier.filter_map(|other| {
         let there = other.place.as_ref()?;
         Some((other, there, place.area.shared(&there.area)?))
     });

@@ -10,6 +10,7 @@ use super::inherit::Choice;
 use super::kind::Kind;
 use super::look;
 use super::node::{Node, is_id};
+use super::pages::Goto;
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
@@ -19,6 +20,9 @@ pub(super) struct Control {
     pub(super) id: Option<String>,
     pub(super) place: Option<Placed>,
     pub(super) label: Option<String>,
+    /// The number of its page; `None` if it is on all of them.
+    pub(super) page: Option<usize>,
+    pub(super) goto: Option<Goto>,
     /// Its kind with everything that it overrides.
     pub(super) kind: Option<Kind>,
     pub(super) written: Written,
@@ -68,6 +72,7 @@ impl<'r> Grid<'r> {
         let base = fields.read("kind", None, |node| kinds.named(node));
         let placing = Placing::read(&mut fields);
         let size = size(&mut fields, placing.is_relative);
+        let goto = Goto::read(&mut fields);
         let repeat_at = fields.written_span("repeat");
         // A grid that can't be read says nothing of its ids, which may well be patterns.
         let names = match &repeat {
@@ -110,7 +115,8 @@ impl<'r> Grid<'r> {
             }
         };
         let control = |(cell, id, label)| {
-            (cell, Control { id, label, place: None, kind: kind.clone(), written: written.clone() })
+            let (kind, goto, written) = (kind.clone(), goto.clone(), written.clone());
+            (cell, Control { id, label, place: None, page: None, goto, kind, written })
         };
         let controls = names.into_iter().map(control).collect();
         let repeat = repeat.flatten().flatten().unwrap_or_else(Repeat::single);

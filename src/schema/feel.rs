@@ -16,12 +16,25 @@ const LEVEL_N: std::ops::RangeInclusive<f64> = 0.0..=200.0;
 /// `base` with what is written; `None` in place of a part silences it.
 pub(super) fn read_over(node: Node<'_>, base: &Feel) -> Option<Feel> {
     let mut fields = node.fields("Feel")?;
-    let press = fields.read("press", Some(base.press.clone()), |node| click(node, base.press.as_ref()));
-    let release =
-        fields.read("release", Some(base.release.clone()), |node| click(node, base.release.as_ref()));
+    let mut clicked =
+        |name, base: &Option<Click>| fields.read(name, Some(base.clone()), |node| click(node, base.as_ref()));
+    let press = clicked("press", &base.press);
+    let release = clicked("release", &base.release);
+    let step = clicked("step", &base.step);
+    let stage = clicked("stage", &base.stage);
+    let arm = clicked("arm", &base.arm);
+    let warn = clicked("warn", &base.warn);
     let drag = fields.read("drag", Some(base.drag), |node| friction(node, base.drag.as_ref()));
     fields.finish();
-    Some(Feel { press: press?, release: release?, drag: drag? })
+    Some(Feel {
+        press: press?,
+        release: release?,
+        step: step?,
+        stage: stage?,
+        arm: arm?,
+        warn: warn?,
+        drag: drag?,
+    })
 }
 
 fn click(node: Node<'_>, base: Option<&Click>) -> Option<Option<Click>> {

@@ -9,14 +9,16 @@ use super::fields::Fields;
 use super::inherit::Choice;
 use super::kind::Kinds;
 use super::node::Node;
+use super::pages::{self, Sheet};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
+use super::region;
 use super::source::{Source, read_text};
 use super::units::Units;
 use super::version;
 use crate::floor::Geometry;
-use crate::layout::{Layout, Region, Stance, Widget};
+use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
 
 /// Most controls, regions or stance zones of one layout.
@@ -75,6 +77,8 @@ pub(super) struct Page<'r> {
     pub(super) units: Units,
     pub(super) regions: Vec<Zone<'r>>,
     pub(super) stances: Vec<Zone<'r>>,
+    pub(super) pages: Vec<Sheet<'r>>,
+    /// Those of all pages.
     pub(super) controls: Vec<Control>,
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
@@ -87,6 +91,7 @@ pub(super) struct Zone<'r> {
     pub(super) name: Option<&'r str>,
     pub(super) name_at: std::ops::Range<usize>,
     pub(super) place: Option<Placed>,
+    cursor: Option<CursorRule>,
 }
 
 impl<'r> Page<'r> {
@@ -101,13 +106,15 @@ impl<'r> Page<'r> {
             list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
         let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
         let kinds = Choice::new(kinds, fields.take("kinds"));
+        let mut room = MAX_WIDGETS;
         let widgets = fields.take("widgets");
-        let controls = widgets.map(|node| arrange::read(node, &kinds).0).unwrap_or_default();
+        let mut controls = widgets.map(|node| arrange::read(node, &kinds, &mut room)).unwrap_or_default();
+        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls);
         let widgets_at = fields.span("widgets");
         fields.finish();
         let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
         let units = node.reader.units();
-        Some(Self { title, units, regions, stances, controls, regions_known, widgets_at })
+        Some(Self { title, units, regions, stances, pages, controls, regions_known, widgets_at })
     }
 
     /// The region whose area holds the middle of `area`.
@@ -121,10 +128,8 @@ impl<'r> Page<'r> {
     fn placed_on(&self, geometry: &Geometry) -> Option<Layout> {
         let units = self.units;
         let regions = self.regions.iter().map(|zone| {
-            Some(Region {
-                id: zone.name?.to_owned(),
-                area: zone.place.as_ref()?.area.in_metres(geometry, units),
-            })
+            let area = zone.place.as_ref()?.area.in_metres(geometry, units);
+            Some(Region { id: zone.name?.to_owned(), area, cursor: zone.cursor? })
         });
         let stances = self.stances.iter().map(|zone| {
             Some(Stance {
@@ -139,6 +144,8 @@ impl<'r> Page<'r> {
                 id: WidgetId::new(control.id.as_deref()?),
                 kind: kind.name,
                 region: self.region_of(area)?,
+                page: control.page,
+                goto: control.goto.as_ref().and_then(|goto| goto.number(&self.pages)),
                 area: area.in_metres(geometry, units),
                 label: control.label.clone()?,
                 behaviour: kind.behaviour,
@@ -150,6 +157,7 @@ impl<'r> Page<'r> {
             title: self.title?.to_owned(),
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
+            pages: self.pages.iter().map(Sheet::checked).collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
     }
@@ -164,17 +172,19 @@ impl<'r> Zone<'r> {
         };
         let place = Placed::read(&mut fields);
         let name_at = fields.span(field);
+        let cursor =
+            if field == "id" { region::read_cursor(&mut fields) } else { Some(CursorRule::default()) };
         fields.finish();
-        Some(Self { name, name_at, place })
+        Some(Self { name, name_at, place, cursor })
     }
 }
 
 /// What `read` makes of the entries of the list `name`, which may be left out, and whether that is all of them.
-fn list<'r, T>(
+pub(super) fn list<'r, T>(
     fields: &mut Fields<'r>,
     name: &'static str,
     entry: &'static str,
-    read: impl Fn(Node<'r>) -> Option<T>,
+    read: impl FnMut(Node<'r>) -> Option<T>,
 ) -> (Vec<T>, bool) {
     let Some(node) = fields.take(name) else { return (Vec::new(), !fields.are_broken()) };
     let Some(nodes) = node.list(entry, MAX_WIDGETS) else { return (Vec::new(), false) };

@@ -18,7 +18,9 @@ pub struct Cursor {
 }
 
 impl Cursor {
-    fn of(contact: &Contact) -> Self {
+    /// `contact` as a cursor.
+    #[must_use]
+    pub fn of(contact: &Contact) -> Self {
         Self { contact: contact.id, position: contact.centroid, force: contact.force }
     }
 }
@@ -74,6 +76,19 @@ impl CursorPicker {
     ///
     /// A `now` earlier than the last one counts as no time passed.
     pub fn update(&mut self, area: Rect, contacts: &[Contact], now: Instant) -> Option<Cursor> {
+        self.choose(contacts, |contact| area.contains(contact.centroid), now)
+    }
+
+    /// The cursor among those `contacts` that `may` be it, at time `now`; `None` if none may.
+    ///
+    /// A held contact is the cursor whether or not it may. A `now` earlier than
+    /// the last one counts as no time passed.
+    pub fn choose(
+        &mut self,
+        contacts: &[Contact],
+        may: impl Fn(&Contact) -> bool,
+        now: Instant,
+    ) -> Option<Cursor> {
         if let Some(held) = self.held {
             if let Some(contact) = contacts.iter().find(|contact| contact.id == held) {
                 self.current = Some(held);
@@ -82,7 +97,7 @@ impl CursorPicker {
             }
             self.held = None;
         }
-        let inside = || contacts.iter().filter(|contact| area.contains(contact.centroid));
+        let inside = || contacts.iter().filter(|contact| may(contact));
         let heaviest = inside().max_by(|a, b| {
             // Of two equal ones the older, so that the order of the list never matters.
             a.force.0.total_cmp(&b.force.0).then(b.id.cmp(&a.id))

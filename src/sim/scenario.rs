@@ -312,23 +312,20 @@ fn along(widget: &Widget, share: f32) -> Result<Vec2, String> {
 mod tests {
     use super::*;
     use crate::feel::Feel;
-    use crate::layout::{Colour, Look, Region, Shape};
+    use crate::layout::{Colour, CursorRule, Look, Region, Shape};
     use crate::sim::{Foot, FootDriver};
     use crate::units::Instant;
     use crate::widget::{ButtonSpec, SliderSpec, Thresholds, WidgetId};
 
     fn layout() -> Layout {
-        let thresholds = Thresholds {
-            press: Newtons(40.0),
-            release: Newtons(30.0),
-            dwell: Duration::from_millis(20),
-            lockout: Duration::from_millis(20),
-        };
+        let thresholds = Thresholds::new(Newtons(40.0), Newtons(30.0));
         let slider = SliderSpec { thresholds, axis: Axis::East, min: 0.0, max: 1.0, step: 0.0, initial: 0.0 };
         let widget = |id, kind: &str, area, behaviour| Widget {
             id: WidgetId::new(id),
             kind: kind.into(),
             region: 0,
+            page: None,
+            goto: None,
             area,
             label: String::new(),
             behaviour,
@@ -347,8 +344,13 @@ mod tests {
         let button = Behaviour::Button(ButtonSpec { thresholds });
         Layout {
             title: "Test".into(),
-            regions: vec![Region { id: "all".into(), area: Geometry::default().bounds() }],
+            regions: vec![Region {
+                id: "all".into(),
+                area: Geometry::default().bounds(),
+                cursor: CursorRule::Largest,
+            }],
             stances: Vec::new(),
+            pages: Vec::new(),
             widgets: vec![
                 widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button),
                 widget("layers", "button", tiles(3.4, 1.6, 0.6, 0.6), button),

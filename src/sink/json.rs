@@ -18,7 +18,8 @@ use crate::wire::link_name;
 /// {"t_s":9.876,"event":"link","state":"lost"}
 /// ```
 ///
-/// `value` is a number, true or false, or null for what is no change of value;
+/// `value` is a number (of a choice: which, from 0), true or false, two numbers
+/// in a list, the direction of a swipe, or null for what is no change of value;
 /// `contact` is null if no foot did it. A number that JSON cannot express
 /// (which the engine never gives) is null. Contacts are not written.
 #[derive(Debug)]
@@ -119,14 +120,40 @@ struct LinkLine {
 enum JsonValue {
     Switch(bool),
     Number(f32),
+    Choice(u16),
+    Pair([f32; 2]),
+    Word(&'static str),
+}
+
+impl From<Value> for JsonValue {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Switch(on) => Self::Switch(on),
+            Value::Number(number) => Self::Number(number),
+            Value::Choice(choice) => Self::Choice(choice),
+            Value::Pair(pair) => Self::Pair(pair.into()),
+        }
+    }
 }
 
 impl<'a> EventLine<'a> {
     fn of(event: &'a WidgetEvent) -> Self {
         let value = match event.kind {
-            EventKind::Changed(Value::Switch(on)) => Some(JsonValue::Switch(on)),
-            EventKind::Changed(Value::Number(number)) => Some(JsonValue::Number(number)),
-            EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => None,
+            EventKind::Changed(value) => Some(value.into()),
+            EventKind::Swiped(direction) => Some(JsonValue::Word(direction.name())),
+            EventKind::Pressed
+            | EventKind::Released
+            | EventKind::Clicked
+            | EventKind::DoubleTapped
+            | EventKind::LongPressed
+            | EventKind::HardPressed
+            | EventKind::HardReleased
+            | EventKind::Cancelled
+            | EventKind::Ticked
+            | EventKind::Armed
+            | EventKind::Disarmed
+            | EventKind::Warned
+            | EventKind::Refused => None,
         };
         Self {
             t_s: seconds(event.at),
@@ -154,7 +181,7 @@ mod tests {
 
     use super::*;
     use crate::units::Newtons;
-    use crate::widget::WidgetId;
+    use crate::widget::{Direction, WidgetId};
 
     /// A writer whose other end tells what was flushed.
     struct Pipe {
@@ -191,6 +218,8 @@ mod tests {
         let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
         let changed = |value| event(EventKind::Changed(value), Some(ContactId(3)));
         sink.events(&[changed(Value::Number(0.5)), changed(Value::Switch(true))]);
+        let swiped = EventKind::Swiped(Direction::North);
+        sink.events(&[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
         sink.events(&[event(EventKind::Cancelled, None)]);
         sink.link(Instant::from_millis(9876), LinkState::Lost);
         drop(sink);
@@ -199,6 +228,8 @@ mod tests {
         let expected = [
             format!(r#"{{"t_s":1.234001,"event":"changed","id":"say \"hi\"","value":0.5,{rest}:3}}"#),
             format!(r#"{{"t_s":1.234001,"event":"changed","id":"say \"hi\"","value":true,{rest}:3}}"#),
+            format!(r#"{{"t_s":1.234001,"event":"changed","id":"say \"hi\"","value":[0.5,-1.0],{rest}:3}}"#),
+            format!(r#"{{"t_s":1.234001,"event":"swiped","id":"say \"hi\"","value":"north",{rest}:3}}"#),
             format!(r#"{{"t_s":1.234001,"event":"cancelled","id":"say \"hi\"","value":null,{rest}:null}}"#),
             r#"{"t_s":9.876,"event":"link","state":"lost"}"#.into(),
         ];

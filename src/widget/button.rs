@@ -1,6 +1,13 @@
-use super::press::{Outcome, Press};
-use super::{ButtonSpec, Emitted, EventKind, Input};
-use crate::units::Instant;
+use super::moment::{Acts, Moment};
+use super::press::Outcome;
+use super::{Emitted, EventKind, Thresholds};
+
+/// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ButtonSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+}
 
 /// A push button at work.
 ///
@@ -10,30 +17,15 @@ use crate::units::Instant;
 /// slide off, loss    -> Cancelled
 /// ```
 #[derive(Clone, Debug)]
-pub(super) struct Button {
-    pub(super) press: Press,
-}
+pub(super) struct Button;
 
-impl Button {
-    pub(super) fn new(spec: ButtonSpec) -> Self {
-        Self { press: Press::new(spec.thresholds) }
-    }
-
-    pub(super) fn step(&mut self, now: Instant, input: Input) -> Emitted {
-        let outcome = self.press.step(now, input);
-        Self::emit(outcome)
-    }
-
-    pub(super) fn cancel(&mut self) -> Emitted {
-        Self::emit(self.press.cancel())
-    }
-
-    fn emit(outcome: Option<Outcome>) -> Emitted {
-        match outcome {
-            Some(Outcome::Pressed) => Emitted::from_iter([EventKind::Pressed]),
-            Some(Outcome::Released) => Emitted::from_iter([EventKind::Released, EventKind::Clicked]),
-            Some(Outcome::Cancelled) => Emitted::from_iter([EventKind::Cancelled]),
-            None => Emitted::new(),
+impl Acts for Button {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        match moment.outcome {
+            Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
+            Some(Outcome::Released) => emitted.extend([EventKind::Released, EventKind::Clicked]),
+            Some(Outcome::Cancelled) => emitted.push(EventKind::Cancelled),
+            None => {}
         }
     }
 }

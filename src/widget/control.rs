@@ -3,46 +3,30 @@ use glam::Vec2;
 use thiserror::Error;
 
 use super::button::Button;
-use super::press::Press;
+use super::guard::Guarding;
+use super::moment::{Acts, Moment};
+use super::press::{Outcome, Press};
 use super::slider::Slider;
 use super::switch::Switch;
-use super::{Behaviour, EventKind, Value};
-use crate::units::{Instant, Newtons};
+use super::{Behaviour, EventKind, Indicator, Input, Value};
+use crate::units::Instant;
 
-/// What one control senses in one frame.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Input {
-    /// A foot is on it, or it keeps the foot that engaged it.
-    Foot {
-        /// The foot's force; zero for a foot that has just left the floor.
-        force: Newtons,
-        /// Whether the force is good enough to start an engagement.
-        trusted: bool,
-        /// Where the foot is: 0 to 1 across the control from west to east and from south to north, beyond that outside.
-        place: Vec2,
-    },
-    /// No foot is on it.
-    Clear,
-    /// A foot that was already loaded slid onto it; it must be seen unloaded before it works.
-    SlidOn {
-        /// The foot's force.
-        force: Newtons,
-    },
-    /// The foot that engaged it left it without lifting.
-    SlidOff,
-    /// The floor under it can't be sensed.
-    Lost,
-}
+/// What one step of a control gave, in order; at most eight events.
+pub type Emitted = ArrayVec<EventKind, 8>;
 
-/// What one step of a control gave, in order; at most three events.
-pub type Emitted = ArrayVec<EventKind, 3>;
-
-/// One control at work: its behaviour's state.
+/// One control at work: its press, its guard and its behaviour's state.
 #[derive(Clone, Debug)]
 pub struct Control {
-    behaviour: Behaviour,
+    press: Press,
+    guard: Guarding,
     machine: Machine,
+    /// Width and depth, in metres.
+    size: Vec2,
+    /// Time of the last step.
+    now: Instant,
     disabled: bool,
+    locked: bool,
+    indicator: Indicator,
 }
 
 #[derive(Clone, Debug)]
@@ -64,57 +48,85 @@ pub enum SetError {
     /// The number is NaN or infinite.
     #[error("the value is not a finite number")]
     NotFinite,
+    /// A selector has no option of that number.
+    #[error("the selector has no such option")]
+    NoSuchChoice,
+    /// The control acts only while a foot holds it.
+    #[error("only a foot can work this control, for as long as it holds it")]
+    Momentary,
+    /// The control is locked; whoever locked it can unlock it.
+    #[error("the control is locked")]
+    Locked,
     /// A foot is on the control; the foot has the say until it lets go.
     #[error("a foot is using the control; try again when it has let go")]
     InUse,
 }
 
 impl Control {
-    /// A control at rest with its initial value; a foot already on it must lift before it works.
+    /// A control of `size` metres at rest with its initial value; a foot already on it must lift before it works.
     #[must_use]
-    pub fn new(behaviour: Behaviour) -> Self {
-        let machine = match behaviour {
-            Behaviour::Button(spec) => Machine::Button(Button::new(spec)),
+    pub fn new(behaviour: &Behaviour, size: Vec2) -> Self {
+        let machine = match *behaviour {
+            Behaviour::Button(_) => Machine::Button(Button),
             Behaviour::Switch(spec) => Machine::Switch(Switch::new(spec)),
             Behaviour::Slider(spec) => Machine::Slider(Slider::new(spec)),
         };
-        Self { behaviour, machine, disabled: false }
-    }
-
-    /// The behaviour it was made with.
-    #[must_use]
-    pub fn behaviour(&self) -> &Behaviour {
-        &self.behaviour
+        let thresholds = behaviour.thresholds();
+        Self {
+            press: Press::new(thresholds),
+            guard: Guarding::new(thresholds.guard),
+            machine,
+            size,
+            now: Instant::START,
+            disabled: false,
+            locked: false,
+            indicator: Indicator::Off,
+        }
     }
 
     /// Takes in one frame and gives back what happened; `now` must not run backwards.
     ///
-    /// A disabled control senses nothing.
+    /// A disabled control senses nothing. A locked one senses, but all that
+    /// comes of a press is [`EventKind::Refused`].
     pub fn step(&mut self, now: Instant, input: Input) -> Emitted {
+        let last = std::mem::replace(&mut self.now, now);
         if self.disabled {
             return Emitted::new();
         }
-        match &mut self.machine {
-            Machine::Button(button) => button.step(now, input),
-            Machine::Switch(switch) => switch.step(now, input),
-            Machine::Slider(slider) => slider.step(now, input),
+        let outcome = self.press.step(now, input);
+        if self.locked {
+            return refusal(outcome);
         }
+        let mut emitted = Emitted::new();
+        let outcome = self.guard.doubt(now, input, &mut self.press, outcome, &mut emitted);
+        self.react(last, input, outcome, &mut emitted);
+        emitted
     }
 
-    /// Ends a press without committing it; nothing if there is none.
+    /// Ends a press without committing it, disarms the control and forgets gestures that are not complete.
     pub fn cancel(&mut self) -> Emitted {
-        match &mut self.machine {
-            Machine::Button(button) => button.cancel(),
-            Machine::Switch(switch) => switch.cancel(),
-            Machine::Slider(slider) => slider.cancel(),
+        let outcome = self.press.cancel();
+        let mut emitted = Emitted::new();
+        if !self.locked {
+            self.react(self.now, Input::Lost, outcome, &mut emitted);
+        }
+        emitted
+    }
+
+    fn react(&mut self, last: Instant, input: Input, outcome: Option<Outcome>, emitted: &mut Emitted) {
+        let moment = Moment::new((last, self.now), input, &self.press, outcome, self.size);
+        if self.guard.passes(self.now, outcome, moment.broken, emitted) {
+            self.machine.acts_mut().act(&moment, emitted);
+            self.guard.after(outcome, emitted);
         }
     }
 
     /// Switches the control off or on; switching off cancels its press.
     pub fn set_disabled(&mut self, disabled: bool) -> Emitted {
-        self.disabled = disabled;
         // Also on the way back: a foot that stands on it must lift first.
-        self.cancel()
+        let emitted = self.cancel();
+        self.disabled = disabled;
+        emitted
     }
 
     /// Whether an app has switched it off.
@@ -123,17 +135,45 @@ impl Control {
         self.disabled
     }
 
+    /// Locks or unlocks the control; locking cancels its press.
+    ///
+    /// A locked control keeps its value whatever feet and apps do, and says so when it is pressed.
+    pub fn set_locked(&mut self, locked: bool) -> Emitted {
+        let emitted = self.cancel();
+        self.locked = locked;
+        emitted
+    }
+
+    /// Whether an app has locked it.
+    #[must_use]
+    pub fn is_locked(&self) -> bool {
+        self.locked
+    }
+
+    /// Switches its lamp.
+    pub fn set_indicator(&mut self, indicator: Indicator) {
+        self.indicator = indicator;
+    }
+
+    /// What its lamp shows.
+    #[must_use]
+    pub fn indicator(&self) -> Indicator {
+        self.indicator
+    }
+
     /// What it holds; `None` for a button.
     #[must_use]
     pub fn value(&self) -> Option<Value> {
-        match &self.machine {
-            Machine::Button(_) => None,
-            Machine::Switch(switch) => Some(Value::Switch(switch.on)),
-            Machine::Slider(slider) => Some(Value::Number(slider.value)),
-        }
+        self.machine.acts().value()
     }
 
-    /// Gives it a value, without an event; a number is brought to the slider's range and steps.
+    /// What its value would become if the foot let go now, where that is another one.
+    #[must_use]
+    pub fn pending(&self) -> Option<Value> {
+        if self.is_engaged() { self.machine.acts().pending() } else { None }
+    }
+
+    /// Gives it a value, without an event; a number is brought to the control's range and steps.
     ///
     /// # Errors
     /// [`SetError`]; the value stays as it was.
@@ -141,54 +181,75 @@ impl Control {
         if self.is_engaged() {
             return Err(SetError::InUse);
         }
-        match (&mut self.machine, value) {
-            (Machine::Switch(switch), Value::Switch(on)) => switch.on = on,
-            (Machine::Slider(slider), Value::Number(number)) if number.is_finite() => {
-                slider.value = slider.settle(number);
-            }
-            (Machine::Slider(_), Value::Number(_)) => return Err(SetError::NotFinite),
-            (Machine::Button(_) | Machine::Switch(_) | Machine::Slider(_), _) => {
-                return Err(SetError::WrongType);
-            }
+        if self.locked {
+            return Err(SetError::Locked);
         }
-        Ok(())
+        self.machine.acts_mut().set(value)
     }
 
     /// Whether a foot has it pressed.
     #[must_use]
     pub fn is_engaged(&self) -> bool {
-        self.press().is_engaged()
+        !self.locked && self.press.is_engaged()
+    }
+
+    /// Whether a first press has armed it, so that the next one acts.
+    #[must_use]
+    pub fn is_armed(&self) -> bool {
+        self.guard.is_armed()
+    }
+
+    /// Whether it will soon stop by itself although a foot holds it.
+    #[must_use]
+    pub fn has_warned(&self) -> bool {
+        self.guard.has_warned()
     }
 
     /// Whether it keeps its foot wherever that slides.
     #[must_use]
     pub fn captures(&self) -> bool {
-        matches!(self.machine, Machine::Slider(_))
+        self.machine.acts().captures()
     }
 
     /// Whether a step with [`Input::Clear`] would change nothing.
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
-        self.disabled || self.press().is_at_rest()
+        self.disabled
+            || (self.press.is_at_rest() && self.guard.is_at_rest() && self.machine.acts().is_at_rest())
     }
 
     /// Whether a foot on it must lift before it works.
     #[must_use]
     pub fn needs_lift(&self) -> bool {
-        self.press().needs_lift()
+        self.press.needs_lift()
     }
 
     /// Force of the foot on it as a share of its press threshold; 0 with no foot on it.
     #[must_use]
     pub fn press_share(&self) -> f32 {
-        if self.disabled { 0.0 } else { self.press().share() }
+        if self.disabled { 0.0 } else { self.press.share() }
+    }
+}
+
+fn refusal(outcome: Option<Outcome>) -> Emitted {
+    let pressed = outcome == Some(Outcome::Pressed);
+    pressed.then_some(EventKind::Refused).into_iter().collect()
+}
+
+impl Machine {
+    fn acts(&self) -> &dyn Acts {
+        match self {
+            Self::Button(button) => button,
+            Self::Switch(switch) => switch,
+            Self::Slider(slider) => slider,
+        }
     }
 
-    fn press(&self) -> &Press {
-        match &self.machine {
-            Machine::Button(button) => &button.press,
-            Machine::Switch(switch) => &switch.press,
-            Machine::Slider(slider) => &slider.press,
+    fn acts_mut(&mut self) -> &mut dyn Acts {
+        match self {
+            Self::Button(button) => button,
+            Self::Switch(switch) => switch,
+            Self::Slider(slider) => slider,
         }
     }
 }
@@ -200,30 +261,31 @@ mod tests {
     use proptest::prelude::*;
 
     use super::*;
+    use crate::units::Newtons;
     use crate::widget::{Axis, ButtonSpec, SliderSpec, SwitchSpec, Thresholds};
 
-    const AT: Thresholds = Thresholds {
-        press: Newtons(60.0),
-        release: Newtons(40.0),
-        dwell: Duration::from_millis(5),
-        lockout: Duration::from_millis(20),
-    };
+    const AT: Thresholds =
+        Thresholds { dwell: Duration::from_millis(5), ..Thresholds::new(Newtons(60.0), Newtons(40.0)) };
+
+    fn control(behaviour: &Behaviour) -> Control {
+        Control::new(behaviour, Vec2::splat(0.3))
+    }
 
     fn button() -> Control {
-        Control::new(Behaviour::Button(ButtonSpec { thresholds: AT }))
+        control(&Behaviour::Button(ButtonSpec { thresholds: AT }))
     }
 
     fn switch() -> Control {
-        Control::new(Behaviour::Switch(SwitchSpec { thresholds: AT, initial: false }))
+        control(&Behaviour::Switch(SwitchSpec { thresholds: AT, initial: false }))
     }
 
     fn slider(step: f32) -> Control {
         let spec = SliderSpec { thresholds: AT, axis: Axis::East, min: 0.0, max: 10.0, step, initial: 5.0 };
-        Control::new(Behaviour::Slider(spec))
+        control(&Behaviour::Slider(spec))
     }
 
     fn foot(newtons: f32, share: f32) -> Input {
-        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::new(share, 0.5) }
+        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::new(share, 0.5), weight: None }
     }
 
     /// Gives each input for so many milliseconds, after the control has been seen unloaded.
@@ -319,12 +381,13 @@ mod tests {
     fn any_input() -> impl Strategy<Value = Input> {
         prop_oneof![
             6 => (0.0f32..200.0, -0.5f32..1.5, any::<bool>()).prop_map(|(newtons, share, trusted)| {
-                Input::Foot { force: Newtons(newtons), trusted, place: Vec2::new(share, 0.5) }
+                Input::Foot { force: Newtons(newtons), trusted, place: Vec2::new(share, 0.5), weight: None }
             }),
             1 => Just(Input::Clear),
             1 => Just(Input::SlidOff),
             1 => Just(Input::Lost),
             1 => (0.0f32..200.0).prop_map(|newtons| Input::SlidOn { force: Newtons(newtons) }),
+            1 => (0.0f32..200.0).prop_map(|newtons| Input::Stepping { force: Newtons(newtons) }),
         ]
     }
 
@@ -354,6 +417,7 @@ mod tests {
                     EventKind::Changed(Value::Number(value)) => {
                         prop_assert!(down && (0.0..=10.0).contains(value));
                     }
+                    other => prop_assert!(false, "{other:?}"),
                 }
             }
             prop_assert_eq!(down, control.is_engaged());

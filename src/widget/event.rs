@@ -45,41 +45,103 @@ impl PartialEq<&str> for WidgetId {
 /// What a control holds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Value {
-    /// A switch: on or off.
+    /// Something that is on or off: a switch, or a control that acts while it is held.
     Switch(bool),
-    /// A slider: a finite number in the slider's range.
+    /// A finite number in the control's range.
     Number(f32),
+    /// Which of a selector's options, from 0.
+    Choice(u16),
+    /// Two finite numbers, eastwards and northwards.
+    Pair(Vec2),
+}
+
+/// Where a foot went.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// Away from the user.
+    North,
+    /// To the right.
+    East,
+    /// Towards the user.
+    South,
+    /// To the left.
+    West,
+}
+
+impl Direction {
+    /// The word for it: `north`, `east`, `south` or `west`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::North => "north",
+            Self::East => "east",
+            Self::South => "south",
+            Self::West => "west",
+        }
+    }
 }
 
 /// What happened to a control.
 ///
-/// Every `Pressed` is followed by exactly one of `Released` and `Cancelled`.
-/// Only a release commits: `Clicked` and a switch's `Changed` never follow a
-/// `Cancelled`, and a cancelled slider changes back to where it was.
+/// Every `Pressed` is followed by exactly one of `Released` and `Cancelled`,
+/// every `Armed` by exactly one `Disarmed`. Only a release commits: `Clicked`
+/// (unless the button acts on press), a gesture and a switch's or selector's
+/// `Changed` never follow a `Cancelled`. What a foot had changed during a
+/// press that is cancelled changes back.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum EventKind {
     /// The foot engaged the control.
     Pressed,
     /// The foot let go; the press counts.
     Released,
-    /// A button was pressed and released on itself.
+    /// A button was pressed and released on itself: a tap.
     Clicked,
-    /// The press ended without counting: the foot slid off, sensing was lost, or an app disabled the control.
+    /// A button was tapped twice.
+    DoubleTapped,
+    /// A button has been held for long; its release is no click.
+    LongPressed,
+    /// A button was pressed, the foot went this way and let go.
+    Swiped(Direction),
+    /// The press of a button with two stages reached the second.
+    HardPressed,
+    /// The press came back from the second stage; its release is no click.
+    HardReleased,
+    /// The press ended without counting: the foot slid off or took a step, sensing was lost, or an app stopped it.
     Cancelled,
     /// The control holds a new value.
     Changed(Value),
+    /// The foot passed from one choice to the next; nothing has changed yet.
+    Ticked,
+    /// A first press armed a guarded control: the next one acts.
+    Armed,
+    /// It is armed no longer.
+    Disarmed,
+    /// A control that acts while it is held will soon stop by itself.
+    Warned,
+    /// A foot pressed a control that an app has locked.
+    Refused,
 }
 
 impl EventKind {
-    /// The word for it in OSC addresses and JSON: `pressed`, `released`, `clicked`, `cancelled` or `changed`.
+    /// The word for it in OSC addresses and JSON, such as `pressed` or `long_pressed`.
     #[must_use]
     pub const fn name(self) -> &'static str {
         match self {
             Self::Pressed => "pressed",
             Self::Released => "released",
             Self::Clicked => "clicked",
+            Self::DoubleTapped => "double_tapped",
+            Self::LongPressed => "long_pressed",
+            Self::Swiped(_) => "swiped",
+            Self::HardPressed => "hard_pressed",
+            Self::HardReleased => "hard_released",
             Self::Cancelled => "cancelled",
             Self::Changed(_) => "changed",
+            Self::Ticked => "ticked",
+            Self::Armed => "armed",
+            Self::Disarmed => "disarmed",
+            Self::Warned => "warned",
+            Self::Refused => "refused",
         }
     }
 }

@@ -6,45 +6,22 @@
 mod button;
 mod control;
 mod event;
+mod guard;
+mod input;
+mod moment;
 mod press;
 mod slider;
 mod switch;
+mod thresholds;
 
-pub use control::{Control, Emitted, Input, SetError};
-pub use event::{EventKind, Value, WidgetEvent, WidgetId};
-
-use std::time::Duration;
-
-use crate::units::Newtons;
-
-/// When a foot's force counts as a press.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thresholds {
-    /// Force from which on the control engages.
-    pub press: Newtons,
-    /// Force below which it lets go; less than `press`.
-    pub release: Newtons,
-    /// How long the force must hold before the press counts.
-    pub dwell: Duration,
-    /// How long after a release no new press counts.
-    pub lockout: Duration,
-}
-
-/// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ButtonSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-}
-
-/// A switch: each completed press turns it over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SwitchSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-    /// Whether it is on to begin with.
-    pub initial: bool,
-}
+pub use button::ButtonSpec;
+pub use control::{Control, Emitted, SetError};
+pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
+pub use guard::Guard;
+pub use input::{Indicator, Input};
+pub use slider::SliderSpec;
+pub use switch::SwitchSpec;
+pub use thresholds::{Thresholds, WeightShare};
 
 /// Which way a slider's value grows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,23 +31,6 @@ pub enum Axis {
     East,
     /// Northwards (away from the user).
     North,
-}
-
-/// A slider: the foot's place along its axis is its value.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SliderSpec {
-    /// When it engages.
-    pub thresholds: Thresholds,
-    /// Which way the value grows.
-    pub axis: Axis,
-    /// Value at the low end.
-    pub min: f32,
-    /// Value at the high end; greater than `min`.
-    pub max: f32,
-    /// Distance between the values it may take; 0 for any value.
-    pub step: f32,
-    /// Value to begin with, within the range.
-    pub initial: f32,
 }
 
 /// What a control does, with its settings.

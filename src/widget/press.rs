@@ -15,6 +15,7 @@
 //!  9  already loaded at start, after a loss, or by a foot that slid on
 //!                                                  -> nothing until below release for UNLOAD_TIME
 //! 10  untrusted force while up                     -> nothing; while down it holds and may release
+//! 11  the foot on it takes a step                  -> like 9, while down -> Cancelled
 //! ```
 
 use std::time::Duration;
@@ -58,6 +59,9 @@ const NEEDS_LIFT: State = State::NeedsLift { clear: None };
 /// One control's press.
 #[derive(Clone, Debug)]
 pub(super) struct Press {
+    /// As written.
+    written: Thresholds,
+    /// For the person whose foot was last on it.
     at: Thresholds,
     state: State,
     force: Newtons,
@@ -66,7 +70,12 @@ pub(super) struct Press {
 impl Press {
     /// A press that must first be seen unloaded.
     pub(super) fn new(at: Thresholds) -> Self {
-        Self { at, state: NEEDS_LIFT, force: Newtons::ZERO }
+        Self { written: at, at, state: NEEDS_LIFT, force: Newtons::ZERO }
+    }
+
+    /// The thresholds for the person whose foot was last on it.
+    pub(super) fn thresholds(&self) -> Thresholds {
+        self.at
     }
 
     pub(super) fn is_engaged(&self) -> bool {
@@ -103,9 +112,15 @@ impl Press {
         use State::{Arming, Down, Lifting, NeedsLift, Up};
         // A foot that is not there presses with nothing.
         let (force, trusted) = match input {
-            Input::Foot { force, trusted, .. } => (force, trusted),
+            Input::Foot { force, trusted, weight, .. } => {
+                // While it is pressed the thresholds stay: a better idea of the weight is no release.
+                if !self.is_engaged() {
+                    self.at = self.written.for_weight(weight);
+                }
+                (force, trusted)
+            }
             Input::Clear => (Newtons::ZERO, true),
-            Input::SlidOn { force } => {
+            Input::SlidOn { force } | Input::Stepping { force } => {
                 self.force = force;
                 return self.cancel();
             }
@@ -160,12 +175,7 @@ mod tests {
 
     use super::*;
 
-    const AT: Thresholds = Thresholds {
-        press: Newtons(60.0),
-        release: Newtons(40.0),
-        dwell: Duration::from_millis(20),
-        lockout: Duration::from_millis(20),
-    };
+    const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
     /// Long enough unloaded, in milliseconds, for the press to work.
     const SETTLED: u64 = 25;
@@ -200,7 +210,7 @@ mod tests {
     }
 
     fn foot(newtons: f32) -> Input {
-        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::splat(0.5) }
+        Input::Foot { force: Newtons(newtons), trusted: true, place: Vec2::splat(0.5), weight: None }
     }
 
     #[test]
@@ -275,7 +285,12 @@ mod tests {
 
     #[test]
     fn line_10_untrusted_force_starts_nothing_but_may_release() {
-        let doubtful = |newtons| Input::Foot { force: Newtons(newtons), trusted: false, place: Vec2::ZERO };
+        let doubtful = |newtons| Input::Foot {
+            force: Newtons(newtons),
+            trusted: false,
+            place: Vec2::ZERO,
+            weight: None,
+        };
         let mut bench = Bench::ready();
         bench.give(doubtful(200.0), 100);
         assert_eq!(bench.outcomes, []);
@@ -284,5 +299,37 @@ mod tests {
         bench.give(doubtful(0.0), 10);
         let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
         assert_eq!(kinds, [Outcome::Pressed, Outcome::Released]);
+    }
+
+    #[test]
+    fn line_11_a_step_starts_nothing_and_ends_what_was_started() {
+        let stepping = Input::Stepping { force: Newtons(500.0) };
+        let mut bench = Bench::ready();
+        bench.give(stepping, 300);
+        bench.force(80.0, 300);
+        assert_eq!(bench.outcomes, [], "the same foot, no longer thought to step");
+        let mut bench = Bench::ready();
+        bench.force(80.0, 30);
+        bench.give(stepping, 1);
+        assert_eq!(bench.outcomes, [(21, Outcome::Pressed), (31, Outcome::Cancelled)]);
+    }
+
+    #[test]
+    fn the_weight_moves_the_thresholds_but_not_under_a_foot_that_presses() {
+        let share = Some(super::super::WeightShare { press: 0.1, release: 0.06 });
+        let mut bench = Bench::ready();
+        bench.press = Press::new(Thresholds { share, ..AT });
+        bench.give(Input::Clear, SETTLED);
+        let of = |force, weight| Input::Foot {
+            force: Newtons(force),
+            trusted: true,
+            place: Vec2::splat(0.5),
+            weight: Some(Newtons(weight)),
+        };
+        bench.give(of(80.0, 900.0), 50);
+        assert_eq!(bench.outcomes, [], "90 N for who weighs 900 N");
+        bench.give(of(80.0, 600.0), 50);
+        bench.give(of(80.0, 2000.0), 50);
+        assert!(bench.press.is_engaged());
     }
 }

@@ -1,8 +1,25 @@
 use glam::Vec2;
 
-use super::press::{Outcome, Press};
-use super::{Axis, Emitted, EventKind, Input, SliderSpec, Value};
-use crate::units::Instant;
+use super::moment::{Acts, Moment};
+use super::press::Outcome;
+use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
+
+/// A slider: the foot's place along its axis is its value.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SliderSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+    /// Which way the value grows.
+    pub axis: Axis,
+    /// Value at the low end.
+    pub min: f32,
+    /// Value at the high end; greater than `min`.
+    pub max: f32,
+    /// Distance between the values it may take; 0 for any value.
+    pub step: f32,
+    /// Value to begin with, within the range.
+    pub initial: f32,
+}
 
 /// A slider at work: it keeps its foot until the foot lets go, wherever that slides.
 ///
@@ -16,8 +33,7 @@ use crate::units::Instant;
 #[derive(Clone, Debug)]
 pub(super) struct Slider {
     spec: SliderSpec,
-    pub(super) press: Press,
-    pub(super) value: f32,
+    value: f32,
     before: f32,
 }
 
@@ -26,53 +42,17 @@ const QUANTUM: f32 = 1e-3;
 
 impl Slider {
     pub(super) fn new(spec: SliderSpec) -> Self {
-        Self { press: Press::new(spec.thresholds), value: spec.initial, before: spec.initial, spec }
-    }
-
-    pub(super) fn step(&mut self, now: Instant, input: Input) -> Emitted {
-        let outcome = self.press.step(now, input);
-        let mut emitted = self.emit(outcome);
-        if let Input::Foot { place, .. } = input
-            && self.press.is_firm()
-        {
-            self.follow(place, &mut emitted);
-        }
-        emitted
-    }
-
-    pub(super) fn cancel(&mut self) -> Emitted {
-        let outcome = self.press.cancel();
-        self.emit(outcome)
+        Self { value: spec.initial, before: spec.initial, spec }
     }
 
     /// The nearest value the slider may take; NaN leaves it where it is.
-    pub(super) fn settle(&self, value: f32) -> f32 {
+    fn settle(&self, value: f32) -> f32 {
         let SliderSpec { min, max, step, .. } = self.spec;
         if value.is_nan() {
             return self.value;
         }
         let value = value.clamp(min, max);
         if step > 0.0 { (min + ((value - min) / step).round() * step).min(max) } else { value }
-    }
-
-    fn emit(&mut self, outcome: Option<Outcome>) -> Emitted {
-        match outcome {
-            Some(Outcome::Pressed) => {
-                self.before = self.value;
-                Emitted::from_iter([EventKind::Pressed])
-            }
-            Some(Outcome::Released) => Emitted::from_iter([EventKind::Released]),
-            Some(Outcome::Cancelled) => {
-                let mut emitted = Emitted::new();
-                if self.value != self.before {
-                    self.value = self.before;
-                    emitted.push(EventKind::Changed(Value::Number(self.value)));
-                }
-                emitted.push(EventKind::Cancelled);
-                emitted
-            }
-            None => Emitted::new(),
-        }
     }
 
     fn follow(&mut self, place: Vec2, emitted: &mut Emitted) {
@@ -88,5 +68,45 @@ impl Slider {
             self.value = value;
             emitted.push(EventKind::Changed(Value::Number(value)));
         }
+    }
+}
+
+impl Acts for Slider {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        match moment.outcome {
+            Some(Outcome::Pressed) => {
+                self.before = self.value;
+                emitted.push(EventKind::Pressed);
+            }
+            Some(Outcome::Released) => emitted.push(EventKind::Released),
+            Some(Outcome::Cancelled) => {
+                if self.value != self.before {
+                    self.value = self.before;
+                    emitted.push(EventKind::Changed(Value::Number(self.value)));
+                }
+                emitted.push(EventKind::Cancelled);
+            }
+            None => {}
+        }
+        if let Some(foot) = moment.firm {
+            self.follow(foot.place, emitted);
+        }
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Number(self.value))
+    }
+
+    fn set(&mut self, value: Value) -> Result<(), SetError> {
+        let Value::Number(number) = value else { return Err(SetError::WrongType) };
+        if !number.is_finite() {
+            return Err(SetError::NotFinite);
+        }
+        self.value = self.settle(number);
+        Ok(())
+    }
+
+    fn captures(&self) -> bool {
+        true
     }
 }

@@ -1,44 +1,63 @@
-use super::press::{Outcome, Press};
-use super::{Emitted, EventKind, Input, SwitchSpec, Value};
-use crate::units::Instant;
+//! A switch: each completed press turns it over.
+//!
+//! ```text
+//!  1  press              -> Pressed
+//!  2  release on itself  -> Released, Changed (turned over)
+//!  3  slide off, loss    -> Cancelled (not turned over)
+//!  4  an app sets it     -> no event
+//! ```
+
+use super::moment::{Acts, Moment};
+use super::press::Outcome;
+use super::{Emitted, EventKind, SetError, Thresholds, Value};
+
+/// A switch: each completed press turns it over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SwitchSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+    /// Whether it is on to begin with.
+    pub initial: bool,
+}
 
 /// A switch at work.
-///
-/// ```text
-/// press              -> Pressed
-/// release on itself  -> Released, Changed (turned over)
-/// slide off, loss    -> Cancelled (not turned over)
-/// ```
 #[derive(Clone, Debug)]
 pub(super) struct Switch {
-    pub(super) press: Press,
-    pub(super) on: bool,
+    on: bool,
+    down: bool,
 }
 
 impl Switch {
     pub(super) fn new(spec: SwitchSpec) -> Self {
-        Self { press: Press::new(spec.thresholds), on: spec.initial }
+        Self { on: spec.initial, down: false }
     }
+}
 
-    pub(super) fn step(&mut self, now: Instant, input: Input) -> Emitted {
-        let outcome = self.press.step(now, input);
-        self.emit(outcome)
-    }
-
-    pub(super) fn cancel(&mut self) -> Emitted {
-        let outcome = self.press.cancel();
-        self.emit(outcome)
-    }
-
-    fn emit(&mut self, outcome: Option<Outcome>) -> Emitted {
-        match outcome {
-            Some(Outcome::Pressed) => Emitted::from_iter([EventKind::Pressed]),
+impl Acts for Switch {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        self.down = moment.down;
+        match moment.outcome {
+            Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
             Some(Outcome::Released) => {
                 self.on = !self.on;
-                Emitted::from_iter([EventKind::Released, EventKind::Changed(Value::Switch(self.on))])
+                emitted.extend([EventKind::Released, EventKind::Changed(Value::Switch(self.on))]);
             }
-            Some(Outcome::Cancelled) => Emitted::from_iter([EventKind::Cancelled]),
-            None => Emitted::new(),
+            Some(Outcome::Cancelled) => emitted.push(EventKind::Cancelled),
+            None => {}
         }
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Switch(self.on))
+    }
+
+    fn set(&mut self, value: Value) -> Result<(), SetError> {
+        let Value::Switch(on) = value else { return Err(SetError::WrongType) };
+        self.on = on;
+        Ok(())
+    }
+
+    fn pending(&self) -> Option<Value> {
+        self.down.then_some(Value::Switch(!self.on))
     }
 }

@@ -11,21 +11,43 @@ const CONTACTS_PER_DATAGRAM: usize = 20;
 /// Writes one event as an OSC message into `bytes`, replacing what was there.
 ///
 /// The address is `/underfoot/widget/<id>/<kind>`. For `changed` the value
-/// comes first: a float for a slider, 0 or 1 (int) for a switch, since some
-/// receivers stumble over OSC's true and false. Then always force (newtons),
-/// x and y (floor metres), as floats. Characters of the id that OSC addresses
-/// may not have are written as `_`.
+/// comes first: a float for a number, two floats for a pair, the number of a
+/// choice (int), or 0 or 1 (int) for what is off or on, since some receivers
+/// stumble over OSC's true and false; for `swiped` the direction (string).
+/// Then always force (newtons), x and y (floor metres), as floats. Characters
+/// of the id that OSC addresses may not have are written as `_`.
 pub fn write_event(event: &WidgetEvent, bytes: &mut Vec<u8>) {
-    let mut args = Vec::with_capacity(4);
-    args.extend(match event.kind {
-        EventKind::Changed(Value::Number(number)) => Some(OscType::Float(number)),
-        EventKind::Changed(Value::Switch(on)) => Some(OscType::Int(on.into())),
-        EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => None,
-    });
+    let mut args = Vec::with_capacity(5);
+    match event.kind {
+        EventKind::Changed(value) => write_value(value, &mut args),
+        EventKind::Swiped(direction) => args.push(OscType::String(direction.name().into())),
+        EventKind::Pressed
+        | EventKind::Released
+        | EventKind::Clicked
+        | EventKind::DoubleTapped
+        | EventKind::LongPressed
+        | EventKind::HardPressed
+        | EventKind::HardReleased
+        | EventKind::Cancelled
+        | EventKind::Ticked
+        | EventKind::Armed
+        | EventKind::Disarmed
+        | EventKind::Warned
+        | EventKind::Refused => {}
+    }
     args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
     let address = format!("/underfoot/widget/{}/{}", address_part(&event.id), event.kind.name());
     bytes.clear();
     write(&message(address, args), bytes);
+}
+
+fn write_value(value: Value, args: &mut Vec<OscType>) {
+    match value {
+        Value::Number(number) => args.push(OscType::Float(number)),
+        Value::Switch(on) => args.push(OscType::Int(on.into())),
+        Value::Choice(choice) => args.push(OscType::Int(choice.into())),
+        Value::Pair(pair) => args.extend([OscType::Float(pair.x), OscType::Float(pair.y)]),
+    }
 }
 
 /// Writes the contacts of one instant as OSC bundles, giving each datagram to `send`.
@@ -97,6 +119,7 @@ mod tests {
     use crate::floor::TileId;
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
     use crate::units::{Instant, Newtons};
+    use crate::widget::Direction;
     use crate::wire::{Limits, check};
 
     fn event(kind: EventKind) -> WidgetEvent {
@@ -132,6 +155,14 @@ mod tests {
         assert_eq!(args, [&[OscType::Float(0.25)], &place[..]].concat());
         let (_, args) = event_message(&event(EventKind::Changed(Value::Switch(true))));
         assert_eq!(args[0], OscType::Int(1));
+        let (_, args) = event_message(&event(EventKind::Changed(Value::Choice(2))));
+        assert_eq!(args[0], OscType::Int(2));
+        let pair = Value::Pair(Vec2::new(-0.5, 0.25));
+        let (_, args) = event_message(&event(EventKind::Changed(pair)));
+        assert_eq!(args, [&[-0.5, 0.25].map(OscType::Float)[..], &place[..]].concat());
+        let (address, args) = event_message(&event(EventKind::Swiped(Direction::West)));
+        assert_eq!(address, "/underfoot/widget/zoom/swiped");
+        assert_eq!(args, [&[OscType::String("west".into())], &place[..]].concat());
     }
 
     #[test]

@@ -43,10 +43,16 @@ fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {
     line.right(0.19, &format!("{:.3}", event.at.secs()), color(theme.quiet));
     line.left(0.23, 0.56, event.id.as_str(), color(theme.ink));
     let colour = match event.kind {
-        EventKind::Pressed => theme.accent,
-        EventKind::Clicked | EventKind::Changed(_) => theme.good,
-        EventKind::Cancelled => theme.warning,
-        EventKind::Released => theme.quiet,
+        EventKind::Pressed | EventKind::HardPressed | EventKind::Armed => theme.accent,
+        EventKind::Clicked
+        | EventKind::DoubleTapped
+        | EventKind::LongPressed
+        | EventKind::Swiped(_)
+        | EventKind::Changed(_) => theme.good,
+        EventKind::Cancelled | EventKind::Warned | EventKind::Refused => theme.warning,
+        EventKind::Released | EventKind::HardReleased | EventKind::Ticked | EventKind::Disarmed => {
+            theme.quiet
+        }
     };
     line.left(0.58, 0.82, event.kind.name(), color(colour));
     let force = if event.contact.is_some() { format!("{:.0} N", event.force.0) } else { String::new() };
@@ -59,6 +65,9 @@ fn value(kind: EventKind) -> String {
     match kind {
         EventKind::Changed(Value::Switch(on)) => if on { "on" } else { "off" }.into(),
         EventKind::Changed(Value::Number(value)) => format!("{value:.3}"),
-        EventKind::Pressed | EventKind::Released | EventKind::Clicked | EventKind::Cancelled => String::new(),
+        EventKind::Changed(Value::Choice(choice)) => choice.to_string(),
+        EventKind::Changed(Value::Pair(pair)) => format!("{:.2} {:.2}", pair.x, pair.y),
+        EventKind::Swiped(direction) => direction.name().into(),
+        _ => String::new(),
     }
 }

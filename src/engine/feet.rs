@@ -1,0 +1,331 @@
+//! What is known of each contact beyond the present frame: since when it is down, how it moved,
+//! whose it is, and whether it is a foot that may press at all.
+
+use std::time::Duration;
+
+use glam::Vec2;
+
+use super::people::Person;
+use super::snapshot::{FootRole, FootState};
+use super::step::{Burden, Landing, StepWatch, Support};
+use super::still::Stillness;
+use crate::layout::Stance;
+use crate::sense::{Contact, ContactId};
+use crate::units::{Instant, Newtons};
+use crate::widget::Guard;
+
+/// Feet and people for which there is room from the start; more cost an allocation once.
+const ROOM: usize = 64;
+
+/// How often a foot's place is kept, and how many of them: the last 0.4 s.
+const PLACE_EVERY: Duration = Duration::from_millis(20);
+const PLACES: usize = 20;
+
+/// How a supporting foot rolls is taken from this many kept places before the latest five: in the
+/// last tenth of a second the foot that lands may have been taken for a part of it.
+const ROLL_PLACES: usize = 13;
+const SKIPPED_PLACES: usize = 5;
+
+/// How long a foot must have been down before it starts what must not start by accident (fault R8),
+/// and how steady: over the last tenth of a second, by this share of its force and this far in metres.
+const SETTLED: Duration = Duration::from_millis(300);
+const STEADY_PLACES: usize = 4;
+const STEADY_SHARE: f32 = 0.2;
+const STEADY_M: f32 = 0.015;
+
+/// A support carries at least this much, in newtons.
+const SUPPORT_N: f32 = 100.0;
+
+/// A foot as light as this has as good as left the floor, in newtons: below the release of any control.
+const AS_GOOD_AS_LIFTED_N: f32 = 8.0;
+
+/// Least sum of somebody's contacts from which shares of it say anything, in newtons.
+const SUM_N: f32 = 250.0;
+
+/// What the other foot must carry for such a share, in newtons.
+const OTHERS_N: f32 = 50.0;
+
+/// One contact with its past.
+#[derive(Clone, Debug)]
+pub(super) struct Foot {
+    pub(super) id: ContactId,
+    pub(super) person: u32,
+    pub(super) landed: Instant,
+    pub(super) landed_at: Vec2,
+    pub(super) place: Vec2,
+    pub(super) force: f32,
+    /// Whether a control has engaged it since it landed.
+    pub(super) pressing: bool,
+    /// Whether it came from elsewhere, and not from a control back to where it had stood.
+    stepped: bool,
+    /// Whether somebody stood on the other foot when it landed.
+    vouched: bool,
+    in_stance: bool,
+    step: bool,
+    watch: StepWatch,
+    still: Stillness,
+    /// Where it was and with which force, the latest at `next` - 1.
+    places: [(Vec2, f32); PLACES],
+    next: usize,
+    kept: usize,
+    kept_at: Instant,
+}
+
+impl Foot {
+    fn new(contact: &Contact, person: &Person, now: Instant) -> Self {
+        let (place, force) = (contact.centroid, contact.force.0);
+        Self {
+            id: contact.id,
+            person: person.id,
+            landed: now,
+            landed_at: place,
+            place,
+            force,
+            pressing: false,
+            stepped: person.steps_to(place, now),
+            vouched: false,
+            in_stance: false,
+            step: false,
+            watch: StepWatch::default(),
+            still: Stillness::new(force, place, now),
+            places: [(place, force); PLACES],
+            next: 0,
+            kept: 0,
+            kept_at: now,
+        }
+    }
+
+    /// Whether it has been left on the floor and is no foot.
+    pub(super) fn is_object(&self) -> bool {
+        self.still.is_object()
+    }
+
+    /// Whether it may be a cursor: neither a standing foot in its zone nor an object.
+    pub(super) fn may_lead(&self) -> bool {
+        !self.in_stance && !self.is_object()
+    }
+
+    /// Whether it walks or stands there, and presses nothing on purpose.
+    pub(super) fn is_step(&self) -> bool {
+        self.step
+    }
+
+    /// Whether it rests there for longer than anybody taps.
+    pub(super) fn rests(&self, now: Instant) -> bool {
+        self.watch.rests(now)
+    }
+
+    fn update(&mut self, contact: &Contact, now: Instant) {
+        (self.place, self.force) = (contact.centroid, contact.force.0);
+        self.still.update(self.force, self.place, now);
+        if now.since(self.kept_at) >= PLACE_EVERY {
+            self.kept_at = now;
+            self.places[self.next] = (self.place, self.force);
+            self.next = (self.next + 1) % PLACES;
+            self.kept = (self.kept + 1).min(PLACES);
+        }
+    }
+
+    /// How its centre of pressure has moved over the last quarter of a second, the last tenth left out.
+    fn rolling(&self) -> Vec2 {
+        let known = self.kept.saturating_sub(SKIPPED_PLACES + 1).min(ROLL_PLACES);
+        if known < ROLL_PLACES / 2 {
+            return Vec2::ZERO;
+        }
+        let place = |ago: usize| self.past(ago).0;
+        let span = PLACE_EVERY.as_secs_f32() * known as f32;
+        (place(SKIPPED_PLACES) - place(SKIPPED_PLACES + known)) / span
+    }
+
+    /// Place and force so many kept places ago.
+    fn past(&self, ago: usize) -> (Vec2, f32) {
+        self.places[(self.next + 2 * PLACES - 1 - ago) % PLACES]
+    }
+
+    /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
+    fn is_steady(&self) -> bool {
+        let (place, force) = self.past(STEADY_PLACES);
+        (self.force - force).abs() <= STEADY_SHARE * self.force && self.place.distance(place) <= STEADY_M
+    }
+
+    /// Whether it may start a press of a control with this `guard`, as far as its past tells.
+    ///
+    /// What must not start by accident waits until the foot has shown that it takes no step; unless
+    /// it only asks, and somebody stands there who can have meant it. What is free never waits.
+    pub(super) fn is_meant(&self, guard: Guard, now: Instant) -> bool {
+        let settled = || now.since(self.landed) >= SETTLED && self.is_steady();
+        match guard {
+            Guard::Free => true,
+            Guard::Confirm { .. } => self.vouched || settled(),
+            Guard::HoldToRun { .. } => settled(),
+        }
+    }
+
+    fn as_support(&self, now: Instant) -> Support {
+        Support {
+            at: self.place,
+            age: now.since(self.landed),
+            stepped: self.stepped,
+            rolling: self.rolling(),
+        }
+    }
+
+    fn judge(&mut self, person: &Person, now: Instant) {
+        if self.force < AS_GOOD_AS_LIFTED_N {
+            (self.landed, self.landed_at) = (now, self.place);
+            (self.step, self.watch) = (false, StepWatch::default());
+            return;
+        }
+        let of_weight = person.weight().map(|weight| self.force / weight.0);
+        let others = person.sum - self.force;
+        let of_sum = (person.sum >= SUM_N && others >= OTHERS_N).then(|| self.force / person.sum);
+        let share = match (of_weight, of_sum) {
+            (Some(weight), Some(sum)) => Some(weight.max(sum)),
+            (weight, sum) => weight.or(sum),
+        };
+        let burden = Burden {
+            force: self.force,
+            share,
+            age: now.since(self.landed),
+            travelled: self.place.distance(self.landed_at),
+        };
+        self.step |= self.watch.is_step(&burden, now);
+    }
+
+    fn role(&self) -> FootRole {
+        if self.is_object() {
+            FootRole::Object
+        } else if self.in_stance {
+            FootRole::Stance
+        } else if self.step {
+            FootRole::Step
+        } else {
+            FootRole::Free
+        }
+    }
+}
+
+/// All contacts with their past, and the people they belong to.
+#[derive(Clone, Debug)]
+pub(super) struct Feet {
+    /// In the order of their ids.
+    feet: Vec<Foot>,
+    people: Vec<Person>,
+    next_person: u32,
+}
+
+impl Default for Feet {
+    fn default() -> Self {
+        Self { feet: Vec::with_capacity(ROOM), people: Vec::with_capacity(ROOM), next_person: 1 }
+    }
+}
+
+impl Feet {
+    /// Takes in the contacts of one frame.
+    ///
+    /// # Real-time
+    /// Allocates nothing while there are no more than 64 contacts.
+    pub(super) fn update(&mut self, contacts: &[Contact], stances: &[Stance], now: Instant) {
+        let Self { feet, people, .. } = self;
+        feet.retain(|foot| {
+            let down = contacts.iter().any(|contact| contact.id == foot.id);
+            if !down && let Some(person) = people.iter_mut().find(|person| person.id == foot.person) {
+                person.leave(foot, now);
+            }
+            down
+        });
+        people.retain(|person| !person.is_forgotten(now));
+        for contact in contacts {
+            match self.feet.binary_search_by_key(&contact.id, |foot| foot.id) {
+                Ok(at) => self.feet[at].update(contact, now),
+                Err(at) => {
+                    let foot = self.land(contact, now);
+                    self.feet.insert(at, foot);
+                }
+            }
+        }
+        for person in &mut self.people {
+            let mine = self.feet.iter().filter(|foot| foot.person == person.id && !foot.is_object());
+            person.carry(mine.map(|foot| foot.force).sum(), now);
+        }
+        for foot in &mut self.feet {
+            foot.in_stance = stances.iter().any(|stance| stance.area.contains(foot.place));
+            if let Some(person) = self.people.iter().find(|person| person.id == foot.person) {
+                foot.judge(person, now);
+            }
+        }
+    }
+
+    /// The foot of a contact.
+    pub(super) fn of(&self, id: ContactId) -> Option<&Foot> {
+        self.feet.binary_search_by_key(&id, |foot| foot.id).ok().and_then(|at| self.feet.get(at))
+    }
+
+    /// A control has engaged a contact.
+    pub(super) fn note_press(&mut self, id: ContactId) {
+        if let Ok(at) = self.feet.binary_search_by_key(&id, |foot| foot.id) {
+            self.feet[at].pressing = true;
+        }
+    }
+
+    /// The weight of the person whose foot this is; `None` if it is not known.
+    pub(super) fn weight(&self, id: ContactId) -> Option<Newtons> {
+        self.person_of(id)?.weight()
+    }
+
+    /// Whether the floor has just lost much of the person whose foot this is.
+    pub(super) fn falls(&self, id: ContactId) -> bool {
+        self.person_of(id).is_some_and(Person::falls)
+    }
+
+    /// What there is to show of each contact, in their order.
+    pub(super) fn states(&self) -> impl Iterator<Item = FootState> + '_ {
+        self.feet.iter().map(|foot| FootState {
+            contact: foot.id,
+            role: foot.role(),
+            person: foot.person,
+            weight: self.weight(foot.id),
+        })
+    }
+
+    fn person_of(&self, id: ContactId) -> Option<&Person> {
+        let person = self.of(id)?.person;
+        self.people.iter().find(|known| known.id == person)
+    }
+
+    fn land(&mut self, contact: &Contact, now: Instant) -> Foot {
+        let whose = self.whose(contact.centroid, now);
+        let person = &self.people[whose];
+        let mut foot = Foot::new(contact, person, now);
+        let support = self
+            .feet
+            .iter()
+            .filter(|other| other.person == person.id && !other.is_object())
+            .filter(|other| other.force >= SUPPORT_N && !other.pressing)
+            .max_by(|a, b| a.force.total_cmp(&b.force));
+        let landing = Landing {
+            at: foot.place,
+            support: support.map(|support| support.as_support(now)),
+            left: person.last_left(now),
+        };
+        foot.vouched = landing.is_vouched();
+        foot.step = landing.walks();
+        foot
+    }
+
+    /// The position of the person to whom a foot that lands at `place` belongs; a new one if it is nobody's.
+    fn whose(&mut self, place: Vec2, now: Instant) -> usize {
+        let near = self
+            .people
+            .iter()
+            .enumerate()
+            .filter_map(|(at, person)| Some((at, person.reach_to(place, &self.feet, now)?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((at, _)) = near {
+            return at;
+        }
+        self.people.push(Person::new(self.next_person, now));
+        self.next_person = self.next_person.wrapping_add(1);
+        self.people.len() - 1
+    }
+}

@@ -1,0 +1,148 @@
+//! Whose feet are whose: contacts that land and stand near each other belong to one person.
+//!
+//! Nobody is identified. A contact belongs to the person whose feet are nearest when it lands,
+//! within a long step, unless that person has both feet down; it stays theirs until it lifts.
+//! Two people who stand closer than a step may exchange feet and then share a weight for a while;
+//! nothing worse follows from it.
+
+use std::time::Duration;
+
+use arrayvec::ArrayVec;
+use glam::Vec2;
+
+use super::feet::Foot;
+use super::weight::Scale;
+use crate::units::{Instant, Newtons};
+
+/// Nobody steps further, in metres.
+const STRIDE_M: f32 = 1.1;
+
+/// What lands as near as this to a foot is part of the same foot, in metres.
+const SAME_FOOT_M: f32 = 0.12;
+
+/// A foot that comes back to where it had stood lands as near as this, in metres (our choice: a hand's breadth;
+/// those who turn on the spot put it further off).
+const BACK_M: f32 = 0.08;
+
+/// A foot that has left is remembered so long; a person without feet on the floor too.
+const REMEMBERED: Duration = Duration::from_secs(5);
+
+/// How long ago a foot may have left to be the one that lands now.
+const SWINGING: Duration = Duration::from_millis(1500);
+
+/// How often the sum is kept, and how many of them: the last 0.3 s.
+const SUM_EVERY: Duration = Duration::from_millis(20);
+const SUMS: usize = 15;
+
+/// Who loses this share of what the floor carried within 0.3 s jumps or falls; a foot that goes
+/// from a control back to the floor leaves less than a fifth missing for a moment.
+const GONE_SHARE: f32 = 0.4;
+
+/// Below this nobody stood there, in newtons.
+const STOOD_N: f32 = 250.0;
+
+/// A foot that has left the floor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Left {
+    at: Instant,
+    place: Vec2,
+    /// Whether a control was pressed with it.
+    pressed: bool,
+}
+
+/// Somebody on the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Person {
+    pub(super) id: u32,
+    left: ArrayVec<Left, 8>,
+    scale: Scale,
+    /// Sum of the person's contacts now.
+    pub(super) sum: f32,
+    sums: [f32; SUMS],
+    next_sum: usize,
+    summed: Instant,
+    seen: Instant,
+}
+
+impl Person {
+    pub(super) fn new(id: u32, now: Instant) -> Self {
+        Self {
+            id,
+            left: ArrayVec::new(),
+            scale: Scale::default(),
+            sum: 0.0,
+            sums: [0.0; SUMS],
+            next_sum: 0,
+            summed: now,
+            seen: now,
+        }
+    }
+
+    /// The person's weight; `None` until it is known.
+    pub(super) fn weight(&self) -> Option<Newtons> {
+        self.scale.weight()
+    }
+
+    /// How far somebody of these `feet` would have stepped to `place`; `None` if it is none of theirs.
+    pub(super) fn reach_to(&self, place: Vec2, feet: &[Foot], now: Instant) -> Option<f32> {
+        let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
+        let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);
+        if nearest <= SAME_FOOT_M {
+            return Some(nearest);
+        }
+        if mine().count() >= 2 {
+            return None;
+        }
+        let left = self.left.iter().filter(|left| now.since(left.at) <= SWINGING);
+        let nearest = left.map(|left| left.place.distance(place)).fold(nearest, f32::min);
+        (nearest <= STRIDE_M).then_some(nearest)
+    }
+
+    /// Whether a foot that lands at `place` steps there, rather than coming back to where it had stood
+    /// after pressing a control.
+    pub(super) fn steps_to(&self, place: Vec2, now: Instant) -> bool {
+        let back = |left: &Left| left.place.distance(place) <= BACK_M;
+        let pressed = |left: &Left| left.pressed && now.since(left.at) <= SWINGING;
+        !self.left.iter().any(|left| back(left) || pressed(left))
+    }
+
+    /// How long ago a foot last left that had pressed no control.
+    pub(super) fn last_left(&self, now: Instant) -> Option<Duration> {
+        self.left.iter().filter(|left| !left.pressed).map(|left| now.since(left.at)).min()
+    }
+
+    /// One of the person's feet has left the floor.
+    pub(super) fn leave(&mut self, foot: &Foot, now: Instant) {
+        if self.left.is_full() {
+            self.left.remove(0);
+        }
+        self.left.push(Left { at: now, place: foot.place, pressed: foot.pressing });
+    }
+
+    /// Takes in the sum of the person's contacts.
+    pub(super) fn carry(&mut self, sum: f32, now: Instant) {
+        self.sum = sum;
+        self.scale.weigh(sum, now);
+        if sum > 0.0 {
+            self.seen = now;
+        }
+        if now.since(self.summed) >= SUM_EVERY {
+            self.summed = now;
+            self.sums[self.next_sum % SUMS] = sum;
+            self.next_sum = (self.next_sum + 1) % SUMS;
+        }
+        while self.left.first().is_some_and(|left| now.since(left.at) > REMEMBERED) {
+            self.left.remove(0);
+        }
+    }
+
+    /// Whether the floor has lost much of the person within the last 0.3 s.
+    pub(super) fn falls(&self) -> bool {
+        let before = self.sums.iter().copied().fold(0.0, f32::max);
+        before >= STOOD_N && self.sum < (1.0 - GONE_SHARE) * before
+    }
+
+    pub(super) fn is_forgotten(&self, now: Instant) -> bool {
+        now.since(self.seen) > REMEMBERED
+    }
+}

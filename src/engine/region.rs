@@ -1,0 +1,112 @@
+//! One region at work: which contacts are its cursors, and which control each of them has.
+
+use glam::Vec2;
+
+use crate::layout::{CursorRule, Region};
+use crate::sense::{Contact, ContactId, Cursor, CursorPicker};
+use crate::units::{Instant, Newtons};
+
+/// A foot that a control has engaged.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Held {
+    pub(super) widget: usize,
+    pub(super) contact: ContactId,
+    pub(super) force: Newtons,
+    pub(super) position: Vec2,
+}
+
+/// A contact that operates controls, as a finger does on a screen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Finger {
+    pub(super) cursor: Cursor,
+    /// The control it was on in the last frame, if it was that control's foot.
+    pub(super) over: Option<usize>,
+    /// The control that keeps it.
+    pub(super) held: Option<Held>,
+}
+
+impl Finger {
+    fn new(contact: &Contact) -> Self {
+        Self { cursor: Cursor::of(contact), over: None, held: None }
+    }
+
+    /// Whether the control `widget` has this foot.
+    pub(super) fn has(&self, widget: usize) -> bool {
+        self.over == Some(widget) || self.holds(widget)
+    }
+
+    /// Whether the control `widget` keeps this foot.
+    pub(super) fn holds(&self, widget: usize) -> bool {
+        self.held.is_some_and(|held| held.widget == widget)
+    }
+}
+
+/// The state of one region.
+#[derive(Debug, Default)]
+pub(super) struct RegionState {
+    picker: CursorPicker,
+    cursor: Option<Cursor>,
+    pub(super) fingers: Vec<Finger>,
+}
+
+impl RegionState {
+    /// The cursor: of several, the heaviest.
+    pub(super) fn cursor(&self) -> Option<Cursor> {
+        self.cursor
+    }
+
+    /// The cursors besides [`RegionState::cursor`].
+    pub(super) fn more_cursors(&self) -> impl Iterator<Item = Cursor> + '_ {
+        let first = self.cursor.map(|cursor| cursor.contact);
+        self.fingers.iter().map(|finger| finger.cursor).filter(move |cursor| Some(cursor.contact) != first)
+    }
+
+    pub(super) fn held(&self) -> impl Iterator<Item = Held> + '_ {
+        self.fingers.iter().filter_map(|finger| finger.held)
+    }
+
+    /// Finds the region's cursors among those `contacts` that `may` be one.
+    pub(super) fn point(
+        &mut self,
+        region: &Region,
+        contacts: &[Contact],
+        may: impl Fn(&Contact) -> bool,
+        now: Instant,
+    ) {
+        let area = region.area;
+        let may = |contact: &Contact| area.contains(contact.centroid) && may(contact);
+        let each = region.cursor == CursorRule::Each;
+        let held = self.held().next().map(|held| held.contact);
+        // A control that is engaged follows its own foot, whatever else there is.
+        self.picker.hold(held.filter(|_| !each));
+        self.cursor = self.picker.choose(contacts, &may, now);
+        let cursor = self.cursor.map(|cursor| cursor.contact);
+        self.fingers.retain(|finger| {
+            let id = finger.cursor.contact;
+            finger.held.is_some()
+                || if each {
+                    contacts.iter().any(|contact| contact.id == id && may(contact))
+                } else {
+                    held.is_none() && cursor == Some(id)
+                }
+        });
+        for finger in &mut self.fingers {
+            if let Some(contact) = contacts.iter().find(|contact| contact.id == finger.cursor.contact) {
+                finger.cursor = Cursor::of(contact);
+            }
+        }
+        for contact in contacts {
+            let points = if each { may(contact) } else { held.is_none() && cursor == Some(contact.id) };
+            if points && !self.fingers.iter().any(|finger| finger.cursor.contact == contact.id) {
+                self.fingers.push(Finger::new(contact));
+            }
+        }
+    }
+
+    /// Lets go of the foot that `widget` keeps.
+    pub(super) fn let_go(&mut self, widget: usize) -> Option<Held> {
+        let finger = self.fingers.iter_mut().find(|finger| finger.holds(widget))?;
+        finger.over = None;
+        finger.held.take()
+    }
+}

@@ -1,0 +1,40 @@
+use crate::floor::Rect;
+
+/// Which contacts in a region operate its controls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum CursorRule {
+    /// The one with the largest force: for people who stand beside the region.
+    ///
+    /// # Source
+    /// Paper, section 4.2.
+    #[default]
+    Largest,
+    /// The one with the largest force of those that press on a control and are no steps:
+    /// for people who stand inside of the region, between its controls.
+    Working,
+    /// Each of them, so that several controls can be engaged at once, each by one foot.
+    Each,
+}
+
+/// An active control area with cursors of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Unique among the layout's regions.
+    pub id: String,
+    /// Where it is.
+    pub area: Rect,
+    /// Which contacts in it operate its controls.
+    pub cursor: CursorRule,
+}
+
+/// A place to stand while using the controls.
+///
+/// A contact with its centroid in it is a standing foot and no cursor, also
+/// where the zone lies in a region. A control keeps a foot it has engaged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Stance {
+    /// Where it is.
+    pub area: Rect,
+    /// What is written on it; may be empty.
+    pub label: String,
+}

@@ -1,0 +1,119 @@
+//! Pages that take turns on one floor, and the controls that switch them.
+//!
+//! ```ron
+//! widgets: [ /* on every page */ ],
+//! pages: [
+//!     (id: "map", widgets: [(id: "more", kind: "button", …, goto: "settings")]),
+//!     (id: "settings", title: "Settings", widgets: [(id: "back", kind: "button", …, goto: "map")]),
+//! ],
+//! ```
+
+use std::ops::Range;
+
+use super::arrange;
+use super::control::Control;
+use super::fields::Fields;
+use super::inherit::Choice;
+use super::node::Node;
+use super::page::{self, Page};
+use super::problem::Problem;
+use super::reader::Reader;
+use super::suggest::did_you_mean;
+use crate::layout;
+use crate::widget::{Behaviour, WidgetId};
+
+/// One page as written. What could not be read is `None` and has been reported.
+pub(super) struct Sheet<'r> {
+    id: Option<&'r str>,
+    id_at: Range<usize>,
+    title: Option<&'r str>,
+}
+
+/// The page that a control switches to.
+#[derive(Clone, Debug)]
+pub(super) struct Goto {
+    id: String,
+    at: Range<usize>,
+}
+
+/// The pages of a layout; their controls are added to `controls`.
+pub(super) fn read<'r>(
+    fields: &mut Fields<'r>,
+    kinds: &Choice<'_>,
+    room: &mut usize,
+    controls: &mut Vec<Control>,
+) -> Vec<Sheet<'r>> {
+    let (pages, _) = page::list(fields, "pages", "page", |node| Sheet::read(node, kinds, room));
+    let mut sheets = Vec::with_capacity(pages.len());
+    for (number, (sheet, own)) in pages.into_iter().enumerate() {
+        controls.extend(own.into_iter().map(|mut control| {
+            control.page = Some(number);
+            control
+        }));
+        sheets.push(sheet);
+    }
+    sheets
+}
+
+/// Whether two controls are ever there at the same time.
+pub(super) fn meet(one: &Control, other: &Control) -> bool {
+    one.page.is_none() || other.page.is_none() || one.page == other.page
+}
+
+/// Notes what is wrong between pages and the controls that switch them.
+pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
+    for (number, sheet) in page.pages.iter().enumerate() {
+        let same = |other: &&Sheet<'_>| other.id.is_some() && other.id == sheet.id;
+        if let Some(earlier) = page.pages[..number].iter().find(same) {
+            let message = format!("two pages have the id \"{}\"", sheet.id.unwrap_or_default());
+            let expected = format!("the first is on line {}", reader.line(&earlier.id_at));
+            reader.report(Problem::error(sheet.id_at.clone(), message).expected(expected));
+        }
+    }
+    for control in &page.controls {
+        let Some(goto) = &control.goto else { continue };
+        if goto.number(&page.pages).is_none() && page.pages.iter().all(|sheet| sheet.id.is_some()) {
+            let ids: Vec<&str> = page.pages.iter().filter_map(|sheet| sheet.id).collect();
+            let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
+            let help = did_you_mean(&goto.id, &ids, '"');
+            let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
+            reader.report(problem.expected("no page is called so").help(help));
+        }
+        let clicks = control.kind.as_ref().is_none_or(|kind| matches!(kind.behaviour, Behaviour::Button(_)));
+        if !clicks {
+            let problem = Problem::error(goto.at.clone(), "only a button's click switches pages");
+            reader.report(problem.expected("this control never clicks").help("use a kind of button"));
+        }
+    }
+}
+
+impl<'r> Sheet<'r> {
+    fn read(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<(Self, Vec<Control>)> {
+        let mut fields = node.fields("Page")?;
+        let id = fields.read("id", None, |node| node.id());
+        let title = fields.read("title", Some(""), |node| node.text(200));
+        let widgets = fields.take("widgets");
+        let controls = widgets.map(|node| arrange::read(node, kinds, room)).unwrap_or_default();
+        let id_at = fields.span("id");
+        fields.finish();
+        Some((Self { id, id_at, title }, controls))
+    }
+
+    /// The page as the engine knows it.
+    pub(super) fn checked(&self) -> Option<layout::Page> {
+        Some(layout::Page { id: WidgetId::new(self.id?), title: self.title?.to_owned() })
+    }
+}
+
+impl Goto {
+    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
+        let node = fields.take("goto")?;
+        let id = node.id()?;
+        Some(Self { id: id.to_owned(), at: node.span() })
+    }
+
+    /// The number of the page among `pages`.
+    pub(super) fn number(&self, pages: &[Sheet<'_>]) -> Option<usize> {
+        pages.iter().position(|sheet| sheet.id == Some(&self.id))
+    }
+}
