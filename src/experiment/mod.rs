@@ -11,6 +11,7 @@
 //! | [`SeamObject`] | what one tile makes of an object over its edge | paper, figure 9 |
 //! | [`TwoFeet`] | what two feet on four tiles look like, before and after they are told apart | paper, figure 11 |
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
+//! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //!
@@ -29,6 +30,7 @@ mod figure;
 mod follow;
 mod orientation;
 mod people;
+mod place;
 mod rig;
 mod scan;
 mod seam_object;
@@ -41,6 +43,7 @@ pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
+pub use place::{PlaceLine, PlaceTable};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};

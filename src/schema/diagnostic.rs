@@ -162,6 +162,12 @@ impl Diagnostics {
         self.omitted.iter_mut().zip(other.omitted).for_each(|(sum, more)| *sum += more);
     }
 
+    /// Adds the problems of the same file in the order of its text.
+    pub fn merge(&mut self, other: Self) {
+        self.append(other);
+        self.list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
+    }
+
     fn count(&self, severity: Severity) -> usize {
         let kept = self.list.iter().filter(|problem| problem.severity == severity).count();
         kept + self.omitted[severity as usize]
