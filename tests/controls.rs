@@ -4,10 +4,9 @@
 mod support;
 
 use support::{Walker, layout};
-use underfoot::glam::Vec2;
 use underfoot::schema;
 use underfoot::units::Newtons;
-use underfoot::widget::{Axis, Behaviour, EventKind, Value};
+use underfoot::widget::{Behaviour, EventKind, Value};
 
 /// The weight of 70 kg on one foot.
 const WEIGHT: Newtons = Newtons(690.0);
@@ -21,7 +20,7 @@ fn every_button_and_switch_of_every_shipped_layout_works() {
             let last = match widget.behaviour {
                 Behaviour::Button(_) => EventKind::Clicked,
                 Behaviour::Switch(switch) => EventKind::Changed(Value::Switch(!switch.initial)),
-                Behaviour::Slider(_) => continue,
+                _ => continue,
             };
             let mut walker = Walker::on(page.clone());
             walker.stand(WEIGHT);
@@ -44,10 +43,8 @@ fn every_slider_of_every_shipped_layout_follows_the_foot_to_a_twentieth_of_its_t
         let page = layout(name);
         for widget in page.widgets.clone() {
             let Behaviour::Slider(slider) = widget.behaviour else { continue };
-            let share = |share: f32| match slider.axis {
-                Axis::East => widget.area.min + widget.area.size() * Vec2::new(share, 0.5),
-                Axis::North => widget.area.min + widget.area.size() * Vec2::new(0.5, share),
-            };
+            let size = widget.area.size();
+            let share = |share: f32| widget.area.min + slider.track.place_at(share, size) * size;
             let mut walker = Walker::on(page.clone());
             walker.stand(WEIGHT);
             walker.step_at(share(0.3), slider.thresholds.press * 1.6);
@@ -57,8 +54,8 @@ fn every_slider_of_every_shipped_layout_follows_the_foot_to_a_twentieth_of_its_t
             walker.wait(100);
             let id = widget.id.as_str();
             let Some(Value::Number(value)) = walker.engine.value(id) else { panic!("{id} holds a number") };
-            let reached = (value - slider.min) / (slider.max - slider.min);
-            let tolerance = 0.05 + 0.5 * slider.step / (slider.max - slider.min);
+            let reached = slider.scale.share(value);
+            let tolerance = 0.05 + 0.5 * slider.scale.step / slider.scale.range();
             assert!((reached - 0.75).abs() <= tolerance, "{name}: {id} at {reached}");
         }
     }

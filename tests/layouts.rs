@@ -14,7 +14,7 @@ use underfoot::schema::{
     Diagnostics, Kinds, Loaded, builtin_layout, builtin_layouts, load_layout, parse_floor, parse_layout,
 };
 use underfoot::units::Newtons;
-use underfoot::widget::{Axis, Behaviour};
+use underfoot::widget::{Behaviour, Track};
 
 fn parse(text: &str, name: &str) -> Result<Loaded, Diagnostics> {
     parse_layout(text, name, &Kinds::builtin(), &Geometry::default())
@@ -292,11 +292,11 @@ fn a_widget_overrides_any_field_of_its_kind() {
     )"##;
     let layout = parse(text, "map.ron").unwrap_or_else(|problems| panic!("{problems}")).layout;
     let (Behaviour::Slider(a), Behaviour::Slider(b)) =
-        (layout.widgets[0].behaviour, layout.widgets[1].behaviour)
+        (&layout.widgets[0].behaviour, &layout.widgets[1].behaviour)
     else {
         panic!("both are sliders")
     };
-    assert_eq!((a.min, a.max, a.axis), (10.0, 20.0, Axis::North));
+    assert_eq!((a.scale.min, a.scale.max, a.track), (10.0, 20.0, Track::NORTH));
     // The kind's initial value 0 follows the new range.
     assert_eq!(a.initial, 10.0);
     assert_eq!(a.thresholds.press, Newtons(50.0));

@@ -19,7 +19,7 @@ use underfoot::schema::{
     write_floor,
 };
 use underfoot::units::Newtons;
-use underfoot::widget::{Behaviour, ButtonSpec, SliderSpec, SwitchSpec};
+use underfoot::widget::Behaviour;
 
 /// One thing that happens to a file.
 #[derive(Clone, Debug)]
@@ -126,15 +126,12 @@ fn check_layout(layout: &Layout) {
         assert!(widget.area.size().min_element() > 0.0, "{id}");
         assert!(floor.contains(widget.area.min) && floor.contains(widget.area.max), "{id}");
         assert!(layout.regions[widget.region].area.grown(1e-4).contains(widget.area.centre()), "{id}");
-        let thresholds = match widget.behaviour {
-            Behaviour::Button(ButtonSpec { thresholds })
-            | Behaviour::Switch(SwitchSpec { thresholds, .. })
-            | Behaviour::Slider(SliderSpec { thresholds, .. }) => thresholds,
-        };
+        let thresholds = widget.behaviour.thresholds();
         assert!(thresholds.release < thresholds.press && thresholds.press.0 <= 1000.0, "{id}");
         if let Behaviour::Slider(slider) = widget.behaviour {
-            assert!(slider.min < slider.max && slider.step >= 0.0, "{id}");
-            assert!((slider.min..=slider.max).contains(&slider.initial), "{id}");
+            let scale = slider.scale;
+            assert!(scale.min < scale.max && scale.step >= 0.0, "{id}");
+            assert!((scale.min..=scale.max).contains(&slider.initial), "{id}");
         }
         for click in [&widget.feel.press, &widget.feel.release].into_iter().flatten() {
             assert!(click.level.is_finite() && !click.modes.is_empty(), "{id}");

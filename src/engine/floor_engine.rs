@@ -96,9 +96,8 @@ impl Engine {
         self.rubs.clear();
         let contacts = self.sensing.update(frame);
         self.interaction.step(frame, contacts, &self.layout, &mut self.events);
-        self.cues.extend(self.events.iter().filter_map(|event| {
-            response::cue(event, frame.received, &self.layout, contacts, &self.last_spots)
-        }));
+        let answers = response::cues(&self.events, frame.received, &self.layout, contacts, &self.last_spots);
+        self.cues.extend(answers);
         for sliding in self.interaction.sliding() {
             if let Some(rub) = response::rub(sliding, &self.layout, contacts) {
                 response::push(&mut self.rubs, rub);

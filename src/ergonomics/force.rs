@@ -4,6 +4,7 @@ use glam::Vec2;
 
 use super::{Part, Subject, cm};
 use crate::units::Newtons;
+use crate::widget::Behaviour;
 
 /// Weight of the lightest person that is thought of: 45 kg.
 const LIGHT_PERSON: Newtons = Newtons(45.0 * 9.81);
@@ -18,6 +19,7 @@ const STRAY_M: f32 = 0.10;
 
 pub(super) fn review(subject: &mut Subject<'_>) {
     light_person(subject);
+    full_pedal(subject);
     stance(subject);
 }
 
@@ -40,6 +42,17 @@ fn light_person(subject: &mut Subject<'_>) {
         let message = format!("{} is pressed by a foot that only rests on it", subject.name());
         let expected = format!("it takes {:.0} N", lightest.0);
         subject.warning("U202", Part::Press, message, expected);
+    }
+}
+
+/// A pedal's greatest value takes force too.
+fn full_pedal(subject: &mut Subject<'_>) {
+    let Behaviour::Pedal(pedal) = &subject.widget.behaviour else { return };
+    let full = pedal.full;
+    if full > LIGHT_PERSON * SHIFTED {
+        let message = format!("a person of 45 kg can't press {} all the way with one foot", subject.name());
+        let expected = format!("that takes {:.0} N, the whole weight is {:.0} N", full.0, LIGHT_PERSON.0);
+        subject.warning("U201", Part::Press, message, expected);
     }
 }
 

@@ -4,8 +4,8 @@ use glam::Vec2;
 
 use super::{Part, Subject, cm, predicted_error_m};
 use crate::floor::{Geometry, Rect, TileId};
-use crate::layout::{Shape, Stance};
-use crate::widget::{Axis, Behaviour, Guard};
+use crate::layout::{Stance, Widget};
+use crate::widget::{Axis, Behaviour, Guard, Mapping};
 
 /// Below this side feet miss.
 const MISSED_M: f32 = 0.05;
@@ -38,14 +38,14 @@ pub(super) fn review(subject: &mut Subject<'_>) {
 }
 
 fn size(subject: &mut Subject<'_>) {
-    let size = subject.widget.area.size();
+    let (size, part) = target(subject.widget);
     let side = size.min_element();
     let expected = format!("it is {} x {}", cm(size.x), cm(size.y));
     if side < MISSED_M - SLACK_M {
-        let message = format!("{} is smaller than feet can hit", subject.name());
+        let message = format!("{part}{} is smaller than feet can hit", subject.name());
         subject.error("U101", Part::Size, message, expected);
     } else if side < SMALL_M - SLACK_M {
-        let message = format!("{} is smaller than a shoe is wide", subject.name());
+        let message = format!("{part}{} is smaller than a shoe is wide", subject.name());
         subject.warning("U101", Part::Size, message, expected);
     }
 }
@@ -144,11 +144,8 @@ fn place_error(subject: &mut Subject<'_>) {
     let widget = subject.widget;
     let press = widget.behaviour.thresholds().press;
     let error = predicted_error_m(subject.floor, widget.area, press);
-    let size = widget.area.size().min_element();
-    // A round face has no corners to be missed by.
-    let half = match widget.look.shape {
-        Shape::Box | Shape::Round => 0.5 * size,
-    };
+    let (size, part) = target(widget);
+    let half = 0.5 * size.min_element();
     let expected = format!(
         "found within {} in 95 of 100 cases at {:.0} N, its edge is {} from its middle",
         cm(error),
@@ -156,24 +153,46 @@ fn place_error(subject: &mut Subject<'_>) {
         cm(half)
     );
     if error > half + SLACK_M {
-        let message = format!("{} is smaller than the error of finding a foot here", subject.name());
+        let message = format!("{part}{} is smaller than the error of finding a foot here", subject.name());
         subject.error("U105", Part::Size, message, expected);
     } else if error > 0.5 * half + SLACK_M {
-        let message = format!("{} is small for the error of finding a foot here", subject.name());
+        let message = format!("{part}{} is small for the error of finding a foot here", subject.name());
         subject.warning("U105", Part::Size, message, expected);
     }
 }
 
 fn steps(subject: &mut Subject<'_>) {
-    let Behaviour::Slider(slider) = subject.widget.behaviour else { return };
     let size = subject.widget.area.size();
-    let length = match slider.axis {
-        Axis::East => size.x,
-        Axis::North => size.y,
+    let step = match &subject.widget.behaviour {
+        Behaviour::Slider(slider) if slider.mapping == Mapping::Absolute => {
+            let share = slider.scale.step / slider.scale.range();
+            // Measured in the middle, where a straight track and an arc are alike.
+            let [from, to] = [0.5, 0.5 + share].map(|share| slider.track.place_at(share, size) * size);
+            (slider.scale.step > 0.0).then(|| from.distance(to))
+        }
+        Behaviour::Pad(pad) => {
+            let axes = [(pad.x, size.x), (pad.y, size.y)].into_iter().filter(|(scale, _)| scale.step > 0.0);
+            axes.map(|(scale, length)| length * scale.step / scale.range()).min_by(f32::total_cmp)
+        }
+        _ => None,
     };
-    let step = length * slider.step / (slider.max - slider.min);
-    if slider.step > 0.0 && step < STEP_M - SLACK_M {
-        let message = format!("{} has steps finer than a foot can hold", subject.name());
-        subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
+    let Some(step) = step.filter(|step| *step < STEP_M - SLACK_M) else { return };
+    let message = format!("{} has steps finer than a foot can hold", subject.name());
+    subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
+}
+
+/// The smallest part of a control that a foot must hit, and what it is.
+fn target(widget: &Widget) -> (Vec2, &'static str) {
+    let size = widget.area.size();
+    let split = |axis: Axis, parts: f32| match axis {
+        Axis::East => Vec2::new(size.x / parts, size.y),
+        Axis::North => Vec2::new(size.x, size.y / parts),
+    };
+    match &widget.behaviour {
+        Behaviour::Selector(selector) => {
+            (split(selector.axis, selector.options.len().max(1) as f32), "each option of ")
+        }
+        Behaviour::Stepper(stepper) => (split(stepper.axis, 2.0), "each half of "),
+        _ => (size, ""),
     }
 }

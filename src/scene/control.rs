@@ -11,7 +11,7 @@ use super::widths::{CAP_HEIGHT, width};
 use super::{Scene, View};
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
-use crate::widget::{Axis, Behaviour, SliderSpec, Value};
+use crate::widget::{Axis, Behaviour, Scale, SliderSpec, Track, Value};
 
 /// A slider's handle.
 const HANDLE: Colour = Colour::rgb(0xff, 0xff, 0xff);
@@ -26,7 +26,7 @@ pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
 fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
     let state = view.widget_state(index);
     let pressed = f32::from(u8::from(state.pressed));
-    match (widget.behaviour, state.value) {
+    match (&widget.behaviour, state.value) {
         (Behaviour::Switch(_), Some(Value::Switch(on))) => {
             // On is lit; pressing shows half of the other colour under either.
             let lit = if on { 1.0 - 0.3 * pressed } else { 0.3 * pressed };
@@ -34,7 +34,7 @@ fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
         }
         (Behaviour::Slider(slider), Some(Value::Number(value))) => {
             let face = Face::new(widget, state, view.theme, 0.12 * pressed).straight();
-            self::slider(scene, &face, &slider, value);
+            self::slider(scene, &face, slider, value);
         }
         _ => {
             let building =
@@ -118,7 +118,7 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
     let text = Reading { value, slider };
     let size = area.size();
     let inset = 0.010;
-    let track = match slider.axis {
+    let track = match axis_of(slider) {
         Axis::East => {
             let strip = (0.34 * size.y).min(0.062);
             caption(scene, face, Rect::new(Vec2::new(area.min.x, area.max.y - strip), area.max), text);
@@ -132,10 +132,10 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
         }
     };
     self::track(scene, face, slider, track, value);
-    match slider.axis {
+    match axis_of(slider) {
         // On the half of the track where the handle is not.
         Axis::East => {
-            let east = if value > 0.5 * (slider.min + slider.max) { 0.25 } else { 0.75 };
+            let east = if value > 0.5 * (slider.scale.min + slider.scale.max) { 0.25 } else { 0.75 };
             let x = track.min.x + east * track.size().x;
             face.draw_badge_at(scene, Vec2::new(x, track.centre().y));
         }
@@ -143,15 +143,19 @@ fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
     }
 }
 
+fn axis_of(slider: &SliderSpec) -> Axis {
+    if slider.track == Track::NORTH { Axis::North } else { Axis::East }
+}
+
 fn track(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, value: f32) {
-    let share = ((value - slider.min) / (slider.max - slider.min)).clamp(0.0, 1.0);
+    let share = ((value - slider.scale.min) / (slider.scale.max - slider.scale.min)).clamp(0.0, 1.0);
     let share = if share.is_finite() { share } else { 0.0 };
     let out_of_use = face.state.disabled || face.state.needs_lift;
     let lit = if out_of_use { face.widget.look.lit.mix(face.theme.plate, 0.6) } else { face.widget.look.lit };
     let radius = face.radius_m - 0.008;
     let ground = face.colour.mix(face.theme.shadow, 0.13);
     scene.add_box(track, radius, Paint::fill(Ink::solid(ground)));
-    let along = match slider.axis {
+    let along = match axis_of(slider) {
         Axis::East => Vec2::X,
         Axis::North => Vec2::Y,
     };
@@ -182,7 +186,7 @@ fn track(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, v
 
 /// Small ticks where the value may stop, if they are few enough to be told apart.
 fn steps(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, along: Vec2) {
-    let stops = (slider.max - slider.min) / slider.step;
+    let stops = (slider.scale.max - slider.scale.min) / slider.scale.step;
     if !(2.0..=20.5).contains(&stops) {
         return;
     }
@@ -253,7 +257,7 @@ struct Reading<'a> {
 
 impl Reading<'_> {
     fn decimals(&self) -> usize {
-        let SliderSpec { min, max, step, .. } = *self.slider;
+        let Scale { min, max, step, .. } = self.slider.scale;
         let enough = |decimals: &i32| {
             let scale = 10_f32.powi(*decimals);
             if step > 0.0 {
@@ -274,7 +278,7 @@ impl Reading<'_> {
             let _ = fmt::Write::write_fmt(&mut digits, format_args!("{:.1$}", value, self.decimals()));
             width(&digits)
         };
-        number(self.slider.min).max(number(self.slider.max))
+        number(self.slider.scale.min).max(number(self.slider.scale.max))
     }
 }
 
@@ -296,7 +300,7 @@ mod tests {
 
     fn reading(min: f32, max: f32, step: f32, value: f32) -> String {
         let thresholds = Thresholds::new(Newtons(30.0), Newtons(20.0));
-        let slider = SliderSpec { thresholds, axis: Axis::East, min, max, step, initial: min };
+        let slider = SliderSpec::new(thresholds, Scale { step, ..Scale::new(min, max) });
         Reading { value, slider: &slider }.to_string()
     }
 

@@ -9,16 +9,17 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Widget};
 use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
+use crate::widget::{Behaviour, ButtonSpec, Scale, SliderSpec, SwitchSpec, Thresholds, Track, WidgetId};
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
-pub(crate) fn slider(axis: Axis, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
-    Behaviour::Slider(SliderSpec { thresholds: THRESHOLDS, axis, min, max, step, initial })
+pub(crate) fn slider(track: Track, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
+    let scale = Scale { step, ..Scale::new(min, max) };
+    Behaviour::Slider(SliderSpec { track, initial, ..SliderSpec::new(THRESHOLDS, scale) })
 }
 
 pub(crate) fn button() -> Behaviour {
-    Behaviour::Button(ButtonSpec { thresholds: THRESHOLDS })
+    Behaviour::Button(ButtonSpec::new(THRESHOLDS))
 }
 
 pub(crate) fn switch(initial: bool) -> Behaviour {
@@ -97,7 +98,7 @@ pub(crate) fn map() -> Layout {
                 "Time of day",
                 [0.25, 2.1],
                 [3.2, 0.6],
-                slider(Axis::East, 0.0, 24.0, 0.0, 12.0),
+                slider(Track::EAST, 0.0, 24.0, 0.0, 12.0),
                 sand(),
             ),
             widget(
@@ -105,7 +106,7 @@ pub(crate) fn map() -> Layout {
                 "Tilt",
                 [4.95, 2.1],
                 [0.6, 1.65],
-                slider(Axis::North, 0.0, 90.0, 5.0, 30.0),
+                slider(Track::NORTH, 0.0, 90.0, 5.0, 30.0),
                 sand(),
             ),
         ],
@@ -114,11 +115,6 @@ pub(crate) fn map() -> Layout {
 
 /// `layout` on the paper's floor with nobody on it.
 pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
-    let value = |widget: &Widget| match widget.behaviour {
-        Behaviour::Button(_) => None,
-        Behaviour::Switch(switch) => Some(Value::Switch(switch.initial)),
-        Behaviour::Slider(slider) => Some(Value::Number(slider.initial)),
-    };
     let live = TileState { quality: [Quality::Live; 4], ..TileState::default() };
     Snapshot {
         at: Instant::from_millis(3214),
@@ -127,7 +123,7 @@ pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
         widgets: layout
             .widgets
             .iter()
-            .map(|widget| WidgetState { value: value(widget), ..WidgetState::default() })
+            .map(|widget| WidgetState { value: widget.behaviour.initial(), ..WidgetState::default() })
             .collect(),
         link: LinkState::Live,
         ..Snapshot::default()

@@ -10,7 +10,7 @@ use crate::floor::{Corner, Geometry, Rect, TileId};
 use crate::layout::{Layout, Shape, Widget};
 use crate::sense::Quality;
 use crate::units::Newtons;
-use crate::widget::{Axis, Value};
+use crate::widget::{Track, Value};
 
 fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
     shown(layout, snapshot, Show::WINDOW)
@@ -57,14 +57,15 @@ fn words_stay_on_their_controls_and_off_each_other() {
     let behaviours = [
         button(),
         sample::switch(true),
-        sample::slider(Axis::East, 0.0, 24.0, 0.0, 23.9),
-        sample::slider(Axis::North, -100.0, 100.0, 0.25, -99.75),
+        sample::slider(Track::EAST, 0.0, 24.0, 0.0, 23.9),
+        sample::slider(Track::NORTH, -100.0, 100.0, 0.25, -99.75),
     ];
     for label in labels {
         for size in sizes {
-            for behaviour in behaviours {
+            for behaviour in &behaviours {
                 for shape in [Shape::Box, Shape::Round] {
-                    let layout = only(widget("it", label, [1.0, 1.0], size, behaviour, sample::blue(shape)));
+                    let layout =
+                        only(widget("it", label, [1.0, 1.0], size, behaviour.clone(), sample::blue(shape)));
                     for (disabled, needs_lift) in [(false, false), (true, false), (false, true)] {
                         let mut snapshot = at_rest(&layout);
                         snapshot.widgets[0].disabled = disabled;

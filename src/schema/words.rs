@@ -2,13 +2,16 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(super) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 6] = [
+    const UNITS: [(&str, &str); 9] = [
         ("_m_s", " m/s"),
         ("_per_volt", " per volt"),
         ("_ms", " ms"),
         ("_n", " N"),
         ("hz", " Hz"),
         ("_m", " m"),
+        ("_deg", " degrees"),
+        ("_per_s", " per second"),
+        ("_s", " s"),
     ];
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
@@ -31,6 +34,10 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
         "release_n" => "release_n: 40",
         "min" => "min: 0",
         "max" => "max: 1",
+        "options" => "options: [\"Low\", \"High\"]",
+        "full_n" => "full_n: 250",
+        "max_s" => "max_s: 60",
+        "full_per_s" => "full_per_s: 0.5",
         "level_n" => "level_n: 12",
         "modes" => "modes: [(hz: 180, decay_ms: 18, amplitude: 1.0)]",
         "hz" => "hz: 180",
@@ -56,6 +63,9 @@ mod tests {
         assert_eq!(unit("full_speed_m_s"), " m/s");
         assert_eq!(unit("low_hz"), " Hz");
         assert_eq!(unit("tile_m"), " m");
+        assert_eq!(unit("max_s"), " s");
+        assert_eq!(unit("full_per_s"), " per second");
+        assert_eq!(unit("angle_deg"), " degrees");
         assert_eq!(unit("amplitude"), "");
     }
 }

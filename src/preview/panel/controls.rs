@@ -31,8 +31,8 @@ impl App {
                         match (&widget.behaviour, state.value) {
                             (Behaviour::Slider(slider), Some(Value::Number(value))) => {
                                 let mut wanted = value;
-                                let speed = 0.005 * (slider.max - slider.min);
-                                let range = slider.min..=slider.max;
+                                let speed = 0.005 * (slider.scale.range());
+                                let range = slider.scale.min..=slider.scale.max;
                                 let drag = ui.add(DragValue::new(&mut wanted).range(range).speed(speed));
                                 drag.widget_info(|| {
                                     WidgetInfo::slider(true, f64::from(value), format!("{id} value"))
