@@ -5,7 +5,7 @@ use std::collections::HashSet;
 use super::{Part, Subject};
 use crate::engine::Snapshot;
 use crate::floor::Floor;
-use crate::layout::Layout;
+use crate::layout::{Icon, Layout};
 use crate::scene::{self, Mark, Scene, Show, Theme, View};
 
 /// Least contrast of text.
@@ -16,7 +16,8 @@ const LARGE_TEXT: f32 = 3.0;
 pub(super) fn review(subject: &mut Subject<'_>, is_cut: bool) {
     let widget = subject.widget;
     let look = widget.look;
-    if widget.label.trim().is_empty() && look.icon.is_none() {
+    let icon = look.icon.filter(|_| Icon::is_shown_on(&widget.behaviour));
+    if widget.label.trim().is_empty() && icon.is_none() {
         let message = format!("nothing tells what {} is for", subject.name());
         subject.warning("U303", Part::Id, message, "it has neither label nor icon".into());
         return;

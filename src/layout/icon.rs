@@ -1,3 +1,5 @@
+use crate::widget::Behaviour;
+
 /// A picture on a control's face, told apart from standing height.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub enum Icon {
@@ -73,4 +75,10 @@ impl Icon {
         ("Sound", Self::Sound),
         ("Help", Self::Help),
     ];
+
+    /// Whether controls of this behaviour have room for an icon on their faces; the others show their value there.
+    #[must_use]
+    pub const fn is_shown_on(behaviour: &Behaviour) -> bool {
+        matches!(behaviour, Behaviour::Button(_) | Behaviour::Hold(_) | Behaviour::Switch(_))
+    }
 }

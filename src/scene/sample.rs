@@ -1,5 +1,8 @@
 //! A page of controls and a floor at work, for tests.
 
+use std::sync::Arc;
+use std::time::Duration;
+
 use glam::Vec2;
 use smallvec::smallvec;
 
@@ -9,7 +12,10 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Widget};
 use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Behaviour, ButtonSpec, Scale, SliderSpec, SwitchSpec, Thresholds, Track, WidgetId};
+use crate::widget::{
+    Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec,
+    SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
+};
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
@@ -24,6 +30,39 @@ pub(crate) fn button() -> Behaviour {
 
 pub(crate) fn switch(initial: bool) -> Behaviour {
     Behaviour::Switch(SwitchSpec { thresholds: THRESHOLDS, initial })
+}
+
+/// The behaviours beside buttons, switches and straight sliders.
+pub(crate) fn others() -> Vec<Behaviour> {
+    let thresholds = THRESHOLDS;
+    let scale = Scale { step: 0.5, ..Scale::new(-10.0, 10.0) };
+    let options = ["Pan", "Zoom by hand", "Turn"].map(Arc::from).into();
+    let slider = SliderSpec::new(thresholds, Scale::UNIT);
+    let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    vec![
+        Behaviour::Hold(HoldSpec { thresholds }),
+        Behaviour::Selector(SelectorSpec { thresholds, axis: Axis::East, options, initial: 1 }),
+        Behaviour::Slider(SliderSpec { track: arc, ..slider }),
+        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 30.0 }, ..slider }),
+        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 120.0 }, ..slider }),
+        Behaviour::Pedal(PedalSpec {
+            thresholds,
+            scale: Scale::new(0.0, 10.0),
+            deadband: Newtons(60.0),
+            full: Newtons(250.0),
+            curve: 1.0,
+        }),
+        Behaviour::Pad(PadSpec { thresholds, x: Scale::new(-1.0, 1.0), y: scale, initial: Vec2::ZERO }),
+        Behaviour::Dial(DialSpec { thresholds, scale, turn_degrees: 270.0, initial: -10.0 }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::East, scale, initial: 0.0, repeat: None }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::North, scale, initial: 0.0, repeat: None }),
+        Behaviour::Lean(LeanSpec {
+            thresholds,
+            settle: Duration::from_millis(250),
+            deadband_m: 0.008,
+            full_m: 0.03,
+        }),
+    ]
 }
 
 /// A control `size` tiles wide and deep with its south-west corner at `at`, in tiles of the paper's floor.

@@ -14,6 +14,7 @@ use super::pages::Goto;
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
+use crate::layout::Icon;
 
 /// One control. What could not be read is `None` and has been reported.
 pub(super) struct Control {
@@ -235,6 +236,16 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
 fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
     let look = fields.read("look", Some(base.look), |node| look::read_over(node, base.look));
+    if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.written_span("look"))
+        && look.icon.is_some()
+        && base.look.icon != look.icon
+        && !Icon::is_shown_on(behaviour)
+    {
+        let problem = Problem::warning(span, "no icon is shown on this control");
+        fields.report(
+            problem.expected("its face shows its value").help("buttons, holds and switches show icons"),
+        );
+    }
     let feel = fields.read("feel", Some(base.feel.clone()), |node| feel::read_over(node, &base.feel));
     Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
 }

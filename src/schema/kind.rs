@@ -130,6 +130,9 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     Some(Kind { name: name?.to_owned(), behaviour: behaviour?, feel: feel?, look: look? })
 }
 
+/// Most kinds of one folder.
+const MAX_FILES: usize = 4096;
+
 /// The files named `*.ron` in `folder`, sorted.
 fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
     let unreadable = |error: std::io::Error| {
@@ -141,6 +144,11 @@ fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
         let path = entry.map_err(unreadable)?.path();
         if path.extension().is_some_and(|extension| extension == "ron") {
             files.push(path);
+        }
+        if files.len() > MAX_FILES {
+            let message = format!("the folder holds more than {MAX_FILES} kinds");
+            let help = Some("is this the right folder?".into());
+            return Err(Diagnostic::of_file(&folder.display().to_string(), message, help).into());
         }
     }
     files.sort();

@@ -22,6 +22,8 @@ mod number;
 mod pad;
 mod pedal;
 mod press;
+#[cfg(test)]
+mod random;
 mod scale;
 mod selector;
 mod slider;

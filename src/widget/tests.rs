@@ -2,11 +2,9 @@
 
 use std::time::Duration;
 
-use glam::Vec2;
-use proptest::prelude::*;
-
 use super::*;
 use crate::units::{Instant, Newtons};
+use glam::Vec2;
 
 const AT: Thresholds =
     Thresholds { dwell: Duration::from_millis(5), ..Thresholds::new(Newtons(60.0), Newtons(40.0)) };
@@ -121,50 +119,4 @@ fn switching_a_control_off_cancels_and_silences_it() {
     assert!(home.step(Instant::from_millis(500), foot(80.0, 0.5)).is_empty());
     home.set_disabled(false);
     assert!(home.needs_lift());
-}
-
-fn any_input() -> impl Strategy<Value = Input> {
-    prop_oneof![
-        6 => (0.0f32..200.0, -0.5f32..1.5, any::<bool>()).prop_map(|(newtons, share, trusted)| {
-            Input::Foot { force: Newtons(newtons), trusted, place: Vec2::new(share, 0.5), weight: None }
-        }),
-        1 => Just(Input::Clear),
-        1 => Just(Input::SlidOff),
-        1 => Just(Input::Lost),
-        1 => (0.0f32..200.0).prop_map(|newtons| Input::SlidOn { force: Newtons(newtons) }),
-        1 => (0.0f32..200.0).prop_map(|newtons| Input::Stepping { force: Newtons(newtons) }),
-    ]
-}
-
-proptest! {
-    /// Whatever feet do: each press ends exactly once, nothing commits on a cancel, values stay in range.
-    #[test]
-    fn every_press_ends_once(
-        inputs in prop::collection::vec((any_input(), 1u64..40), 1..60),
-        which in 0usize..3,
-    ) {
-        let mut control = [button(), switch(), slider(0.0)][which].clone();
-        let mut down = false;
-        let events = play(&mut control, &inputs);
-        for (index, event) in events.iter().enumerate() {
-            match event {
-                EventKind::Pressed => {
-                    prop_assert!(!down);
-                    down = true;
-                }
-                EventKind::Released | EventKind::Cancelled => {
-                    prop_assert!(down);
-                    down = false;
-                }
-                EventKind::Clicked | EventKind::Changed(Value::Switch(_)) => {
-                    prop_assert_eq!(events[index - 1], EventKind::Released);
-                }
-                EventKind::Changed(Value::Number(value)) => {
-                    prop_assert!(down && (0.0..=10.0).contains(value));
-                }
-                other => prop_assert!(false, "{other:?}"),
-            }
-        }
-        prop_assert_eq!(down, control.is_engaged());
-    }
 }

@@ -12,7 +12,7 @@ pub enum Track {
         /// Direction in which the value grows.
         degrees: f32,
     },
-    /// Part of a circle, as large as fits the area.
+    /// Part of a circle, as large as fits the area with room for a foot around it.
     Arc {
         /// Where it begins, seen from its centre.
         from_degrees: f32,
@@ -23,6 +23,9 @@ pub enum Track {
 
 /// Part of an arc's radius within which a place is too near its centre to be at an angle.
 const HUB: f32 = 0.25;
+
+/// Part of an area's smaller side that stays free around an arc.
+const AROUND: f32 = 0.18;
 
 impl Track {
     /// Eastwards.
@@ -77,7 +80,7 @@ impl Track {
         0.5 + offset / size
     }
 
-    /// Centre (from the area's middle) and outer radius of an arc in an area of `size`, in metres; `None` for a line.
+    /// Centre (from the area's middle) and radius of an arc in an area of `size`, in metres; `None` for a line.
     #[must_use]
     pub fn circle(&self, size: Vec2) -> Option<(Vec2, f32)> {
         match *self {
@@ -103,7 +106,7 @@ fn chord(along: Vec2, size: Vec2) -> f32 {
     (size / along.abs()).min_element()
 }
 
-/// The circle of which an arc is part, so that the arc just fits the area.
+/// The circle of which an arc is part, so that the arc just fits.
 fn circle(from_degrees: f32, to_degrees: f32, size: Vec2) -> (Vec2, f32) {
     let (from, to) = (from_degrees.min(to_degrees).to_radians(), from_degrees.max(to_degrees).to_radians());
     let (mut low, mut high) = (Vec2::from_angle(from), Vec2::from_angle(from));
@@ -113,6 +116,7 @@ fn circle(from_degrees: f32, to_degrees: f32, size: Vec2) -> (Vec2, f32) {
         low = low.min(point);
         high = high.max(point);
     }
+    let size = size - 2.0 * AROUND * size.min_element();
     let radius = (size / (high - low).max(Vec2::splat(1e-3))).min_element();
     (-0.5 * (low + high) * radius, radius)
 }
@@ -155,9 +159,10 @@ mod tests {
     fn a_half_circle_fills_an_area_twice_as_wide_as_deep() {
         let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
         let (centre, radius) = arc.circle(Vec2::new(0.6, 0.3)).unwrap();
-        assert!((radius - 0.3).abs() < 1e-5);
-        assert!(centre.distance(Vec2::new(0.0, -0.15)) < 1e-5);
-        assert_eq!(arc.share_at(Vec2::new(0.5, 0.05), Vec2::new(0.6, 0.3)), None, "at the hub");
+        // 18 % of 30 cm stay free all around.
+        assert!((radius - 0.192).abs() < 1e-5);
+        assert!(centre.distance(Vec2::new(0.0, -0.096)) < 1e-5);
+        assert_eq!(arc.share_at(Vec2::new(0.5, 0.14), Vec2::new(0.6, 0.3)), None, "at the hub");
     }
 
     #[test]
