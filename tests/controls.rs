@@ -4,35 +4,47 @@
 mod support;
 
 use support::{Walker, layout};
+use underfoot::glam::Vec2;
 use underfoot::schema;
 use underfoot::units::Newtons;
-use underfoot::widget::{Behaviour, EventKind, Value};
+use underfoot::widget::{Behaviour, EventKind, Guard, Value};
 
 /// The weight of 70 kg on one foot.
 const WEIGHT: Newtons = Newtons(690.0);
 
 #[test]
-fn every_button_and_switch_of_every_shipped_layout_works() {
+fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothing() {
     for name in schema::builtin_layouts() {
         let page = layout(name);
         for widget in page.widgets.clone() {
-            let press = widget.behaviour.thresholds().press * 1.6;
-            let last = match widget.behaviour {
-                Behaviour::Button(_) => EventKind::Clicked,
-                Behaviour::Switch(switch) => EventKind::Changed(Value::Switch(!switch.initial)),
-                _ => continue,
-            };
+            let id = widget.id.to_string();
+            let at = widget.behaviour.thresholds();
             let mut walker = Walker::on(page.clone());
             walker.stand(WEIGHT);
             walker.wait(300);
             assert_eq!(walker.take_events(), [], "standing is no press: {name}");
-            walker.step_onto(widget.id.as_str(), press);
-            walker.wait(150);
-            walker.lift();
-            walker.wait(100);
-            let id = widget.id.to_string();
-            let expected = [EventKind::Pressed, EventKind::Released, last].map(|kind| (id.clone(), kind));
-            assert_eq!(walker.take_events(), expected, "{name}: {id}");
+            // Off the middle, where no selector, stepper or dial is as it was.
+            let place = widget.area.min + widget.area.size() * Vec2::new(0.75, 0.6);
+            let taps = if matches!(at.guard, Guard::Confirm { .. }) { 2 } else { 1 };
+            for _ in 0..taps {
+                // Part of a foot rests on the tile behind.
+                walker.step_at(place, at.press * 2.5);
+                walker.wait(150 + at.dwell.as_millis() as u64);
+                walker.lift();
+                walker.wait(100);
+            }
+            // A single tap is known once no second one has come.
+            walker.wait(400);
+            let events = walker.take_events();
+            assert!(events.iter().all(|(of, _)| *of == id), "{name}: {events:?}");
+            let kinds: Vec<EventKind> = events.into_iter().map(|(_, kind)| kind).collect();
+            let ends = kinds.iter().filter(|kind| **kind == EventKind::Released).count();
+            assert_eq!((kinds[0], ends), (EventKind::Pressed, taps), "{name}: {id}: {kinds:?}");
+            let acts = |kind: &EventKind| matches!(kind, EventKind::Clicked | EventKind::Changed(_));
+            // Leaning is a matter of more than a tap; see the timelines.
+            let acts =
+                kinds.iter().any(acts) || matches!(widget.behaviour, Behaviour::Lean(_) | Behaviour::Dial(_));
+            assert!(acts, "{name}: {id}: {kinds:?}");
         }
     }
 }

@@ -37,6 +37,9 @@ pub struct LeanSpec {
 /// Smallest change of the length worth an event (our choice: standing still sways by as much).
 const QUANTUM: f32 = 0.02;
 
+/// Over how much of the last time the origin is averaged, so that a foot that rolled there is not half-way.
+const MEMORY: Duration = Duration::from_millis(30);
+
 /// A direction pad at work.
 #[derive(Clone, Debug)]
 pub(super) struct Lean {
@@ -49,8 +52,8 @@ pub(super) struct Lean {
 enum Origin {
     /// Not pressed.
     None,
-    /// The mean of the places since the press.
-    Settling { since: Instant, sum: Vec2, count: f32 },
+    /// The mean of the last places since the press.
+    Settling { since: Instant, mean: Option<Vec2> },
     /// Known, in metres from the control's middle.
     At(Vec2),
 }
@@ -79,7 +82,7 @@ impl Machine for Lean {
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
         match moment.outcome {
             Some(Outcome::Pressed) => {
-                self.origin = Origin::Settling { since: moment.now, sum: Vec2::ZERO, count: 0.0 };
+                self.origin = Origin::Settling { since: moment.now, mean: None };
                 emitted.push(EventKind::Pressed);
             }
             Some(Outcome::Released) => {
@@ -97,12 +100,13 @@ impl Machine for Lean {
         let Some(at) = moment.offset() else { return };
         match self.origin {
             Origin::None => {}
-            Origin::Settling { since, sum, count } => {
-                let (sum, count) = (sum + at, count + 1.0);
+            Origin::Settling { since, mean } => {
+                let forget = 1.0 - (-moment.elapsed.div_duration_f32(MEMORY)).exp();
+                let mean = mean.map_or(at, |mean| mean.lerp(at, forget));
                 self.origin = if moment.now.since(since) >= self.spec.settle {
-                    Origin::At(sum / count)
+                    Origin::At(mean)
                 } else {
-                    Origin::Settling { since, sum, count }
+                    Origin::Settling { since, mean: Some(mean) }
                 };
             }
             Origin::At(origin) => self.change(self.leaning(at - origin), emitted),

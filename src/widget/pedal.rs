@@ -32,7 +32,7 @@ pub struct PedalSpec {
 }
 
 /// Smallest change worth an event, as a part of the range (our choice: a foot's force trembles by as much).
-const QUANTUM: f32 = 5e-3;
+const QUANTUM: f32 = 0.01;
 
 /// A pedal at work.
 #[derive(Clone, Debug)]

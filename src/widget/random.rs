@@ -18,7 +18,7 @@ const SIZE: Vec2 = Vec2::new(0.4, 0.3);
 const LIMIT: Duration = Duration::from_millis(700);
 
 /// One of each, plain.
-fn behaviours(at: Thresholds) -> Vec<Behaviour> {
+pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
     let scale = Scale { step: 0.5, ..Scale::new(-1.0, 3.0) };
     let gestures = Gestures {
         double_tap: Some(Duration::from_millis(150)),

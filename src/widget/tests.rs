@@ -120,3 +120,19 @@ fn switching_a_control_off_cancels_and_silences_it() {
     home.set_disabled(false);
     assert!(home.needs_lift());
 }
+
+#[test]
+fn a_step_takes_back_whatever_a_press_did() {
+    for behaviour in random::behaviours(AT) {
+        let mut control = control(&behaviour);
+        let before = control.value();
+        let stepping = Input::Stepping { force: Newtons(500.0) };
+        // Pressed, moved, and then recognised as a step that goes on for as long as a step does.
+        let events = play(&mut control, &[(foot(130.0, 0.4), 60), (foot(130.0, 0.8), 60), (stepping, 400)]);
+        assert_eq!(events.last(), Some(&EventKind::Cancelled), "{}", behaviour.name());
+        assert_eq!(control.value(), before, "{}", behaviour.name());
+        // The foot of a step that lands on it presses nothing, heavy as it is.
+        let events = play(&mut control, &[(stepping, 400), (foot(500.0, 0.5), 200)]);
+        assert_eq!(events, [], "{}", behaviour.name());
+    }
+}

@@ -48,6 +48,8 @@ pub struct Walker {
     foot: Option<Foot>,
     /// Whether boards are heard.
     pub connected: bool,
+    /// Whether no tile's forces may be believed.
+    pub doubtful: bool,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
     cursors: Vec<Option<Cursor>>,
@@ -81,6 +83,7 @@ impl Walker {
             stance: None,
             foot: None,
             connected: true,
+            doubtful: false,
             events: Vec::new(),
             cues: Vec::new(),
             cursors: Vec::new(),
@@ -208,7 +211,13 @@ impl Walker {
             self.assembler.poll(self.now);
         }
         while let Some(frame) = self.assembler.ready() {
-            take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+            if self.doubtful {
+                let mut frame = frame.clone();
+                frame.may_start.fill(false);
+                take(&mut self.engine, &frame, &mut self.events, &mut self.cues);
+            } else {
+                take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+            }
         }
         let mut snapshot = Snapshot::default();
         self.engine.snapshot(&mut snapshot);

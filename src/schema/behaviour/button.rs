@@ -58,8 +58,9 @@ fn hard(
     let light = at.map_or(0.0, |at| at.press.0);
     let shown = |force: f32| plain(force.into());
     if release >= press || release <= light {
-        let span = fields.written_span("hard_release_n").or_else(|| fields.written_span("hard_n"));
-        if let Some(span) = span {
+        // What is wrong in the kind has been said there.
+        let names = ["hard_release_n", "hard_n", "press_n"];
+        if let Some(span) = names.iter().find_map(|name| fields.written_span(name)) {
             let problem =
                 Problem::error(span, "the second stage must end between `press_n` and its own beginning");
             let found = format!(
