@@ -188,7 +188,7 @@ fn pointers_carry_force_as_pressure() {
     let mut datagrams = Vec::new();
     let heavy = Contact { force: Newtons(1500.0), ..foot(8, 1.0, 0.5) };
     tuio.write(Instant::START, CLOCK, &[foot(7, 0.456, 0.304), heavy], |bytes| {
-        datagrams.push(messages(bytes))
+        datagrams.push(messages(bytes));
     });
     let [bundle] = datagrams.as_slice() else { panic!("{} bundles", datagrams.len()) };
     let addresses: Vec<&str> = bundle.iter().map(|message| message.addr.as_str()).collect();

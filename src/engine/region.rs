@@ -79,7 +79,7 @@ impl RegionState {
         let held = self.held().next().map(|held| held.contact);
         // A control that is engaged follows its own foot, whatever else there is.
         self.picker.hold(held.filter(|_| !each));
-        self.cursor = self.picker.choose(contacts, &may, now);
+        self.cursor = self.picker.choose(contacts, may, now);
         let cursor = self.cursor.map(|cursor| cursor.contact);
         self.fingers.retain(|finger| {
             let id = finger.cursor.contact;

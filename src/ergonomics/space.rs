@@ -99,7 +99,7 @@ fn reach(subject: &mut Subject<'_>) {
     if reach <= REACH_M + SLACK_M {
         return;
     }
-    let expected = format!("{:.2} m from the nearest place to stand", reach);
+    let expected = format!("{reach:.2} m from the nearest place to stand");
     if reach > STEP_AWAY_M {
         let message = format!("{} is beyond a step from every stance zone", subject.name());
         subject.error("U103", Part::Place, message, expected);
