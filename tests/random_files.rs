@@ -9,6 +9,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use underfoot::ergonomics;
 use underfoot::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, MapRecord, PositionMap,
     SensorId,
@@ -159,16 +160,22 @@ proptest! {
 
     #[test]
     fn damaged_layouts_never_panic_and_what_is_read_is_sound(
-        name in select(builtin_layouts().collect::<Vec<_>>()),
+        text in select(layouts()),
         edits in vec(edit(), 1..6),
     ) {
-        let bytes = edited(builtin_layout(name).unwrap().as_bytes(), edits);
+        let bytes = edited(text.as_bytes(), edits);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
         fs::write(&path, &bytes).unwrap();
         match load_layout(&path, &Kinds::builtin(), &Geometry::default()) {
             Ok(loaded) => {
                 check_layout(&loaded.layout);
+                // Places are in the text, whatever is found about them.
+                let found = ergonomics::review(&loaded.layout, &Floor::default());
+                for problem in &loaded.places.locate(&found) {
+                    let text = std::str::from_utf8(&bytes).unwrap();
+                    prop_assert!(text.get(problem.span.clone()).is_some(), "{:?}", problem);
+                }
                 prop_assert!(loaded.warnings.iter().all(|problem| problem.severity == Severity::Warning));
             }
             Err(problems) => check_problems(&bytes, &problems),
@@ -200,6 +207,29 @@ proptest! {
             Err(problems) => prop_assert!(false, "{}\n{}", problems, text),
         }
     }
+}
+
+/// Shipped layouts, and one that uses all of the language.
+fn layouts() -> Vec<&'static str> {
+    const LANGUAGE: &str = r#"Layout(
+    version: 1,
+    units: Metres,
+    kinds: [
+        (name: "key", from: "big", look: (icon: Home)),
+        Kind(name: "big", from: "button", press_n: 80, release_n: 50),
+    ],
+    regions: [(id: "all", at: (0, 0), size: (1.8, 1.8), cursor: Each)],
+    widgets: [
+        Group(id: "pad", at: (0.2, 0.7), widgets: [
+            (id: "key_{label}", kind: "key", at: (0, 0), size: (0.15, 0.14),
+                repeat: (columns: 3, rows: 2, gap: (0.06, 0.07), labels: ["1", "2", None, "4", "5", "OK"])),
+            Group(right_of: "key_2", gap: 0.3, widgets: [(id: "deep", kind: "switch", at: (9, 9), size: (0.2, 0.2))]),
+        ]),
+        (id: "last", kind: "slider", below: "first", gap: 0.1, align: End, max: 9),
+        (id: "first", kind: "button", right_of: "pad", gap: 0.1, size: (0.3, 0.2), label: "Über"),
+    ],
+)"#;
+    builtin_layouts().filter_map(builtin_layout).chain([LANGUAGE, LANGUAGE]).collect()
 }
 
 /// 400 cases of each, or as many as `PROPTEST_CASES` says.

@@ -49,6 +49,7 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
             face: Colour::default(),
             lit: Colour::default(),
             ink: Colour::default(),
+            icon: None,
         },
     }
 }

@@ -11,6 +11,7 @@
 //! | [`SeamObject`] | what one tile makes of an object over its edge | paper, figure 9 |
 //! | [`TwoFeet`] | what two feet on four tiles look like, before and after they are told apart | paper, figure 11 |
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
+//! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
@@ -33,6 +34,7 @@ mod intent_act;
 mod intent_sweep;
 mod orientation;
 mod people;
+mod place;
 mod rig;
 mod scan;
 mod seam_object;
@@ -48,6 +50,7 @@ pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
+pub use place::{PlaceLine, PlaceTable};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};

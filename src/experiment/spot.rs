@@ -78,14 +78,14 @@ impl Way {
 }
 
 /// A floor of three by three tiles, of which the middle one is tried.
-struct Bench {
+pub(super) struct Bench {
     rig: Rig,
     sensing: [Sensing; Way::ALL.len()],
     tried: usize,
 }
 
 impl Bench {
-    fn new(seed: u64) -> Result<Self, ExperimentError> {
+    pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
         Ok(Self::over(Rig::of_mapped_parts(geometry(), seed)?))
     }
 
@@ -100,7 +100,7 @@ impl Bench {
     }
 
     /// Where each way finds the thing: its heaviest contact; `None` if it finds none.
-    fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; Way::ALL.len()] {
+    pub(super) fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
         let Self { rig, sensing, .. } = self;
@@ -118,7 +118,7 @@ impl Bench {
     }
 }
 
-fn geometry() -> Geometry {
+pub(super) fn geometry() -> Geometry {
     Geometry::of_paper_tiles(3, 3).unwrap_or_default()
 }
 
@@ -267,7 +267,7 @@ impl SeamTable {
 const PLACES: u16 = 48;
 
 /// A low-discrepancy sequence over the unit square.
-fn spread(step: u16) -> Vec2 {
+pub(super) fn spread(step: u16) -> Vec2 {
     // Powers of the plastic number's inverse.
     let index = f32::from(step) + 0.5;
     Vec2::new((index * 0.754_877_7).fract(), (index * 0.569_840_3).fract())

@@ -118,7 +118,7 @@ fn beside(scene: &mut Scene, face: &Face<'_>, widest_m: f32, tall: f32) -> Rect 
     let down = (tall * across).min(if wide { 0.8 * size.y } else { 0.42 * size.y });
     let figure = Vec2::new(across, down);
     let gap = if wide { 0.022 } else { 0.012 };
-    let labelled = !face.label().is_empty();
+    let labelled = !face.label().is_empty() || face.widget.look.icon.is_some();
     let (label, middle) = match (labelled, wide) {
         (false, _) => (None, room.centre()),
         (true, true) => (
@@ -131,6 +131,7 @@ fn beside(scene: &mut Scene, face: &Face<'_>, widest_m: f32, tall: f32) -> Rect 
         ),
     };
     if let Some(label) = label {
+        let label = face.draw_icon(scene, label);
         let anchor = if wide && face.shape == Shape::Box { Anchor::Start } else { Anchor::Middle };
         face.write(scene, face.label(), label, anchor);
     }

@@ -6,7 +6,7 @@ use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
-use super::{Scene, Theme, outline};
+use super::{Scene, Theme, icon, outline};
 use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
@@ -17,6 +17,12 @@ const LABEL_M: f32 = 0.046;
 
 /// Smallest letters of a label, in metres: 8 pixels on a floor shown 600 pixels wide.
 pub(super) const SMALL_M: f32 = 0.024;
+
+/// Largest side of an icon, in metres.
+const ICON_M: f32 = 0.11;
+
+/// Smallest side of an icon that is still told from others, in metres; below it there is only the label.
+const ICON_LEAST_M: f32 = 0.02;
 
 /// How far a pressed face shrinks on each side, in metres.
 const SINK_M: f32 = 0.004;
@@ -245,10 +251,14 @@ impl<'a> Face<'a> {
         scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
     }
 
-    /// Writes the label in the middle of the face.
+    /// Writes the label in the middle of the face, under the icon if there is one.
     pub(super) fn write_label(&self, scene: &mut Scene) {
-        let room = self.room();
+        let room = self.draw_icon(scene, self.room());
         let label = &self.widget.label;
+        if self.widget.look.icon.is_some() {
+            self.write(scene, label, room, Anchor::Middle);
+            return;
+        }
         let fitted = fit(label, room.size(), LABEL_M, SMALL_M);
         if self.shape == Shape::Round && self.badge().is_none() {
             // One line may be longer than the square in the circle is wide.
@@ -265,6 +275,29 @@ impl<'a> Face<'a> {
     /// Writes `text` into `room`, as large as it fits, with its lines' middle in the room's middle.
     pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
         self.write_in(scene, text, room, anchor, self.ink);
+    }
+
+    /// Draws the icon, if there is one, and gives back the room that it leaves: beside it where there is width, else below.
+    pub(super) fn draw_icon(&self, scene: &mut Scene, room: Rect) -> Rect {
+        let Some(icon) = self.widget.look.icon else { return room };
+        let size = room.size();
+        let labelled = !self.widget.label.is_empty();
+        let beside = labelled && size.x > 1.8 * size.y;
+        // The label keeps a line, of small letters at least.
+        let strip = if labelled && !beside { (0.36 * size.y).max(LINE_HEIGHT * SMALL_M) } else { 0.0 };
+        let side = (0.92 * (size.y - strip)).min(0.8 * size.x).min(ICON_M);
+        if side < ICON_LEAST_M {
+            return room;
+        }
+        if beside {
+            let middle = Vec2::new(room.min.x + 0.5 * side, room.centre().y);
+            icon::draw(scene, icon, middle, side, self.ink);
+            return Rect::new(Vec2::new(room.min.x + 1.15 * side, room.min.y), room.max);
+        }
+        let top = room.centre().y + 0.5 * (side + strip);
+        icon::draw(scene, icon, Vec2::new(room.centre().x, top - 0.5 * side), side, self.ink);
+        let label = Rect::new(Vec2::new(room.min.x, top - side - strip), Vec2::new(room.max.x, top - side));
+        Rect::new(label.min.max(room.min), label.max)
     }
 
     /// The same in another colour.

@@ -91,7 +91,7 @@ pub(crate) fn widget(
 
 pub(crate) fn look(shape: Shape, face: u32, lit: u32, ink: u32) -> Look {
     let colour = |hex: u32| Colour::rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8);
-    Look { shape, face: colour(face), lit: colour(lit), ink: colour(ink) }
+    Look { shape, face: colour(face), lit: colour(lit), ink: colour(ink), icon: None }
 }
 
 pub(crate) fn blue(shape: Shape) -> Look {

@@ -13,9 +13,6 @@ pub(super) fn unit(field: &str) -> &'static str {
         ("_per_s", " per second"),
         ("_s", " s"),
     ];
-    if matches!(field, "at" | "size") {
-        return " tiles";
-    }
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
 
@@ -26,12 +23,13 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
         "title" => "title: \"Map navigation\"",
         "id" => "id: \"home\"",
         "kind" => "kind: \"button\"",
-        "at" => "at: (2.5, 3.0), the south-west corner in tiles",
-        "size" => "size: (0.6, 0.6), width and depth in tiles",
+        "at" => "at: (2.5, 3.0), its south-west corner",
+        "size" => "size: (0.6, 0.6), its width and depth",
         "regions" => "regions: [(id: \"map\", at: (0, 2), size: (6, 4))]",
         "widgets" => "widgets: [(id: \"home\", kind: \"button\", at: (2, 3), size: (0.6, 0.6))]",
         "name" => "name: \"my_button\"",
-        "behaviour" => "behaviour: Button",
+        "columns" => "columns: 3",
+        "behaviour" => "behaviour: Button, or make it from another kind: from: \"button\"",
         "press_n" => "press_n: 60",
         "release_n" => "release_n: 40",
         "min" => "min: 0",

@@ -331,6 +331,7 @@ mod tests {
                 face: Colour::default(),
                 lit: Colour::default(),
                 ink: Colour::default(),
+                icon: None,
             },
         };
         let tiles = |x: f32, y: f32, w: f32, h: f32| {
