@@ -35,8 +35,22 @@ pub(super) enum End {
     Within,
     /// Below what the sensor reads on the empty floor, and next to zero volts.
     Low,
+    /// Next to zero volts, where it is on the empty floor as well.
+    Bare,
     /// At 98 % or above: the force is this or more.
     High,
+}
+
+impl End {
+    /// Whether nothing presses the sensor, or nothing that it can tell.
+    const fn reads_nothing(self) -> bool {
+        matches!(self, Self::Low | Self::Bare)
+    }
+
+    /// Whether the reading alone is a reason to look at the tile.
+    const fn is_odd(self) -> bool {
+        matches!(self, Self::Low | Self::High)
+    }
 }
 
 /// The sensors' health on one floor.
@@ -101,7 +115,7 @@ impl Health {
     pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, guessed: bool) {
         self.ends[tile as usize][corner] = end;
         self.guessed[tile as usize] |= guessed;
-        let is_loud = force.abs() > LOUD_N || end != End::Within;
+        let is_loud = force.abs() > LOUD_N || end.is_odd();
         // A tile may come four times if its sensors are on boards of their own, never more often.
         if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
             self.loud.push(tile);
@@ -137,7 +151,7 @@ impl Health {
             for (corner, sensor) in sensors.iter_mut().enumerate() {
                 let found = match ends[corner] {
                     End::High if alone == Some(corner) => Some(Trouble::Short),
-                    End::Low if measured && plate::should_bear_more(forces, out, corner) => {
+                    End::Low if measured && plate::should_bear_more(forces, ends, out, corner) => {
                         Some(Trouble::Open)
                     }
                     _ if measured && alone == Some(corner) => Some(Trouble::Offset),

@@ -3,6 +3,8 @@
 //! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ
 //! from it in one bit of its number, its diagonal in both.
 
+use super::End;
+
 /// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
 const ALONE_N: f32 = 8.0;
 
@@ -47,20 +49,37 @@ pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
 }
 
 /// Whether a corner other than `corner` has lifted off, so that the plate tips and [`expected`] says nothing.
-pub(super) fn tips(forces: [f32; 4], corner: usize) -> bool {
-    (0..4).any(|other| other != corner && forces[other] < LIFTED_N)
+///
+/// A part that misses its law where it is light may read no less in the air than at rest;
+/// that it reads next to nothing tells all the same.
+pub(super) fn tips(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
+    (0..4).any(|other| other != corner && has_lifted(forces, ends, other))
+}
+
+fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
+    forces[corner] < LIFTED_N || ends[corner].reads_nothing()
+}
+
+/// Whether another corner than `corner` bears an unknown amount more than it reads, so that
+/// [`expected`] is off by as much.
+pub(super) fn overloaded(ends: [End; 4], corner: usize) -> bool {
+    (0..4).any(|other| other != corner && ends[other] == End::High)
 }
 
 /// Whether `corner`, which reads nothing at all, should read more: half of what it reads on
 /// the empty floor is there by what the others carry, all errors allowed for.
 ///
 /// A corner that a foot on the far side has lifted off reads nothing as well, rightly; so
-/// where the plate may tip, or a sensor is out, only a tile that carries nothing tells.
-pub(super) fn should_bear_more(forces: [f32; 4], out: [bool; 4], corner: usize) -> bool {
+/// where the plate may tip, or a sensor is out, only a tile that carries nothing tells. A far
+/// side at the end of its range may bear any load, and lift this corner whatever the others say.
+pub(super) fn should_bear_more(forces: [f32; 4], ends: [End; 4], out: [bool; 4], corner: usize) -> bool {
     let others = [corner ^ 1, corner ^ 2, corner ^ 3];
-    if others.iter().any(|&other| out[other]) || tips(forces, corner) {
-        let tells = |other: usize| !out[other] && forces[other] >= LIFTED_N;
+    if others.iter().any(|&other| out[other]) || tips(forces, ends, corner) {
+        let tells = |other: usize| !out[other] && !has_lifted(forces, ends, other);
         return others.iter().all(|&other| !tells(other) || forces[other].abs() < LEAST_ANSWER_N);
+    }
+    if ends[corner ^ 3] == End::High {
+        return false;
     }
     let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
     expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
@@ -98,10 +117,18 @@ mod tests {
     #[test]
     fn a_lifted_corner_is_no_broken_one() {
         // sw reads nothing, 11 N less than at rest.
-        assert!(should_bear_more([-11.0, 0.1, -0.2, 0.3], NONE_OUT, 0), "nobody there");
-        assert!(should_bear_more([-11.0, 150.0, 160.0, 140.0], NONE_OUT, 0), "a foot in the middle");
-        assert!(!should_bear_more([-11.0, 10.0, 10.0, 280.0], NONE_OUT, 0), "a foot on ne");
-        assert!(!should_bear_more([-11.0, 300.0, -11.0, -10.0], NONE_OUT, 0), "tipped over se");
-        assert!(should_bear_more([-11.0, -11.0, -11.0, -11.0], NONE_OUT, 0), "the whole tile unplugged");
+        let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0);
+        let alone = [End::Low, End::Within, End::Within, End::Within];
+        assert!(sw_of([-11.0, 0.1, -0.2, 0.3], alone), "nobody there");
+        assert!(sw_of([-11.0, 150.0, 160.0, 140.0], alone), "a foot in the middle");
+        assert!(!sw_of([-11.0, 10.0, 10.0, 280.0], alone), "a foot on ne");
+        assert!(!sw_of([-11.0, 300.0, -11.0, -10.0], alone), "tipped over se");
+        assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [End::Low; 4]), "the whole tile unplugged");
+        // The part at nw reads 1.5 N at rest where 11 N press it, and nothing in the air.
+        let east = [End::Low, End::Within, End::Bare, End::Within];
+        assert!(!sw_of([-11.0, 190.0, -1.5, 90.0], east), "tipped over the east edge");
+        // ne is at the end of its range: nobody knows how much it bears.
+        let beyond = [End::Low, End::Within, End::Within, End::High];
+        assert!(!sw_of([-11.0, 190.0, 180.0, 260.0], beyond), "a very heavy foot on ne");
     }
 }

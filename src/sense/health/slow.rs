@@ -114,15 +114,11 @@ impl Slow {
                 self.tracks[corner] = Track::default();
                 // No telling what it should read, but on an empty tile.
                 let empty = others.iter().all(|&other| out[other] || means[other].abs() <= RIGHT_N);
-                sensor.review(
-                    own,
-                    empty && own.abs() <= RIGHT_N && ends[corner] == End::Within,
-                    block.seconds,
-                );
+                sensor.review(own, empty && own.abs() <= RIGHT_N && !ends[corner].is_odd(), block.seconds);
                 continue;
             }
             let lifted = own < plate::LIFTED_N && sensor.trouble().is_none();
-            if lifted || plate::tips(means, corner) {
+            if lifted || plate::tips(means, ends, corner) || plate::overloaded(ends, corner) {
                 // Neither evidence for it nor against it.
                 continue;
             }
@@ -130,7 +126,7 @@ impl Slow {
             let is_right = (own - expected).abs() <= RIGHT_N + plate::SLACK * load;
             match sensor.trouble() {
                 None | Some(Trouble::Drifted | Trouble::Noisy) => {}
-                Some(_) => sensor.review(own, is_right && ends[corner] == End::Within, block.seconds),
+                Some(_) => sensor.review(own, is_right && !ends[corner].is_odd(), block.seconds),
             }
             // A reading at the end of the range stands still rightly under a heavy foot.
             if ends[corner] == End::High || sensor.is_out() {
