@@ -34,7 +34,7 @@ pub enum ExperimentError {
 }
 
 /// A simulated floor with everything behind it up to the force frames: packets, calibration, tare.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Rig {
     sim: SimFloor,
     geometry: Geometry,
