@@ -13,3 +13,6 @@ mod desk;
 mod doubtful;
 mod long_run;
 mod loop_gain;
+mod scenes;
+mod taps;
+mod visits;
