@@ -119,6 +119,11 @@ pub struct LoadedTile {
     pub quality: Quality,
     /// What the force counts for in a centroid over several tiles.
     weight: f32,
+    /// Standard deviation of the position along each axis that the tile's map leaves, in metres; `None` without a map.
+    mapped_m: Option<f32>,
+    /// What the zeros of tiles that the load strays to add to a moment's variance, per variance of a sensor's zero:
+    /// four times the squared distance from the centroid, in square metres.
+    strayed_m2: f32,
     /// Which sensors are estimated from the others, one bit each.
     lost: u8,
     /// What is left in `corners` of what sensors read before they were lost or found again.
@@ -139,9 +144,15 @@ pub(super) fn counted(force: f32) -> f32 {
     force * ((force - NO_WEIGHT) / (FULL_WEIGHT - NO_WEIGHT)).clamp(0.0, 1.0)
 }
 
+/// The 95th percentile of a distance in the plane over its standard deviation along each axis.
+const P95_PER_DEVIATION: f32 = 2.4477;
+
 /// How far a corner's force estimated from the other three is off, as a share of the tile's force (one
 /// standard deviation; measured on simulated floors of parts and supports as the paper's).
-const ESTIMATED: f32 = 0.12;
+const ESTIMATED: f32 = 0.15;
+
+/// How far a sensor is off that nobody has calibrated, as a share of its reading (parts differ by a quarter).
+const UNSURE: f32 = 0.2;
 
 /// How far the force at a sensor that reads "at least" may be above its reading, as a share of it (our choice).
 const AT_LEAST: f32 = 0.5;
@@ -195,6 +206,15 @@ impl LoadedTile {
         self.weight
     }
 
+    /// What its map leaves along each axis, in metres (standard deviation); `None` without one.
+    pub(super) fn mapped_m(&self) -> Option<f32> {
+        self.mapped_m
+    }
+
+    pub(super) fn strayed_m2(&self) -> f32 {
+        self.strayed_m2
+    }
+
     /// What the tile itself feels.
     pub(super) fn reading(&self, geometry: &Geometry) -> TileReading {
         let half = Vec2::splat(0.5 * geometry.pitch_m());
@@ -209,6 +229,7 @@ impl LoadedTile {
     pub(super) fn add_strayed(&mut self, force: f32, point: Vec2) {
         self.weight += force;
         self.strayed += force;
+        self.strayed_m2 += 4.0 * point.distance_squared(self.centroid);
         self.centroid += (point - self.centroid) * (force / self.weight);
         self.wrench.force += force;
         self.wrench.moment = (self.centroid - self.centre) * self.wrench.force;
@@ -219,7 +240,7 @@ impl LoadedTile {
         for (vague, (corner, quality)) in self.vague.iter_mut().zip(sensors.into_iter().enumerate()) {
             *vague = match quality {
                 Quality::Live => 0.0,
-                Quality::Degraded if may_start => 0.0,
+                Quality::Degraded if may_start => UNSURE * self.corners[corner].abs(),
                 Quality::Degraded => AT_LEAST * self.corners[corner].abs(),
                 Quality::Stale | Quality::Faulty => {
                     // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
@@ -270,6 +291,8 @@ impl LoadedTile {
             quality,
             weight: counted(wrench.force),
             strayed: 0.0,
+            mapped_m: map.map(|map| map.residual_m / P95_PER_DEVIATION),
+            strayed_m2: 0.0,
             lost: lag.lost,
             lag: lag_n,
         })

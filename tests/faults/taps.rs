@@ -2,7 +2,7 @@
 //!
 //! The region is one button; each of a scene's six touches should press it once, nothing else should.
 
-use underfoot::experiment::TapScene;
+use underfoot::experiment::{Stance, TapScene};
 use underfoot::floor::{Geometry, SensorId};
 use underfoot::sense::Trouble;
 use underfoot::sim::SensorFault;
@@ -10,9 +10,9 @@ use underfoot::sim::SensorFault;
 use crate::scenes::{Break, Coupled, Tapped, offset, tapped, under_the_stance, under_the_taps};
 use crate::visits::{creeping, hum, newtons, nominal, plain, weak};
 
-/// Two people, in both stances: 24 touches.
-const PEOPLE: [u64; 2] = [1, 2];
-const TOUCHES: usize = 24;
+/// Who taps, in both stances: 12 touches.
+const PEOPLE: [u64; 1] = [1];
+const TOUCHES: usize = 12;
 
 /// When sensors break while somebody stands there already, but has not touched the region yet.
 const STANDING_MS: u64 = 700;
@@ -69,7 +69,7 @@ fn s1_a_stuck_sensor() {
 fn s2_sensors_that_saturate_start_nothing_by_themselves() {
     let tapped = tapped(PEOPLE, weak, |_, _| ());
     // Where the standing foot saturates the tile that is touched, nothing may start.
-    assert_pressed("weak parts", &tapped, TOUCHES - 8);
+    assert_pressed("weak parts", &tapped, TOUCHES - 4);
     assert_eq!(tapped.troubles, []);
     assert!(tapped.score.cursor.quantile(0.5).unwrap() < 0.02);
 }
@@ -88,19 +88,17 @@ fn s3_open_and_short_circuits() {
 
 #[test]
 fn s4_a_sensor_that_has_drifted_by_ten_newtons() {
-    let drifted = |seed| {
-        let mut rig = plain(seed);
-        let scene = TapScene::of(seed, underfoot::experiment::Stance::Facing, rig.geometry()).unwrap();
-        let part = under_the_taps(&scene, rig.geometry());
-        for second in 0..600_u16 {
-            rig.set_fault(part, Some(offset(f32::from(second) / 60.0)));
-            rig.hold(1000, &[], |_| {});
-        }
-        rig
-    };
-    let tapped = tapped(PEOPLE.into_iter().take(1), drifted, |_, _| ());
+    let mut rig = plain(PEOPLE[0]);
+    let scene = TapScene::of(PEOPLE[0], Stance::Facing, rig.geometry()).unwrap();
+    let part = under_the_taps(&scene, rig.geometry());
+    for second in 0..600_u16 {
+        rig.set_fault(part, Some(offset(f32::from(second) / 60.0)));
+        rig.hold(1000, &[], |_| {});
+    }
+    let drifted = |_| rig.clone();
+    let tapped = tapped(PEOPLE, drifted, |_, _| ());
     println!("drifted: {tapped}");
-    assert_eq!((tapped.score.pressed, tapped.score.touches), (TOUCHES / 2, TOUCHES / 2));
+    assert_eq!((tapped.score.pressed, tapped.score.touches), (TOUCHES, TOUCHES));
     assert_eq!((tapped.score.out_of_nothing, tapped.score.repeated), (0, 0));
     assert_eq!(tapped.troubles, []);
 }
@@ -117,7 +115,7 @@ fn s6_loads_out_of_nowhere() {
     for newtons in [50.0, 150.0, -30.0] {
         broken(offset(newtons), |what, tapped| {
             // Half a second of doubt may swallow a touch or two.
-            assert_pressed(what, tapped, TOUCHES - 4);
+            assert_pressed(what, tapped, TOUCHES - 2);
         });
     }
 }
