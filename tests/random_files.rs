@@ -276,10 +276,12 @@ fn record(floor: &mut Floor, seed: u64) {
         if rng.random_bool(0.3) {
             let trims = [(); 4].map(|()| std::array::from_fn(|_| rng.random_range(-0.6f32..0.6)));
             let bends = [(); 2].map(|()| std::array::from_fn(|_| rng.random_range(-2.0f32..2.0)));
-            floor.position_maps[tile] = Some(PositionMap { trims, bends });
-            floor.map_records[tile] = rng
+            let record = rng
                 .random_bool(0.8)
                 .then(|| MapRecord { day: day(&mut rng), residual_m: rng.random_range(0.0..0.05) });
+            let residual_m = record.map_or(PositionMap::SOME_RESIDUAL_M, |record| record.residual_m);
+            floor.position_maps[tile] = Some(PositionMap { trims, bends, residual_m });
+            floor.map_records[tile] = record;
         }
     }
 }

@@ -58,7 +58,7 @@ impl PlaceTable {
                 for (errors, way) in row.errors.iter_mut().zip(WAYS) {
                     // A foot that isn't found presses nothing: missed, not beside.
                     if let Some(found) = found[way] {
-                        errors.push(found.distance(at));
+                        errors.push(found.error());
                     }
                 }
             }
