@@ -45,7 +45,7 @@ fn checks(c: &mut Criterion) {
     let mut group = c.benchmark_group("check");
     group.bench_function("500 controls, all well", |b| b.iter(|| check(black_box(&good), &kinds, &floor)));
     group.bench_function("500 controls, each too small", |b| {
-        b.iter(|| check(black_box(&poor), &kinds, &floor))
+        b.iter(|| check(black_box(&poor), &kinds, &floor));
     });
     group.finish();
 }
