@@ -29,7 +29,9 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             for _ in 0..taps {
                 // Part of a foot rests on the tile behind.
                 walker.step_at(place, at.press * 2.5);
-                walker.wait(150 + at.dwell.as_millis() as u64);
+                // What runs while it is held waits for a foot that has settled.
+                let settled = if matches!(at.guard, Guard::HoldToRun { .. }) { 400 } else { 0 };
+                walker.wait(150 + settled + at.dwell.as_millis() as u64);
                 walker.lift();
                 walker.wait(100);
             }
