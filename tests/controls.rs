@@ -20,8 +20,9 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             let id = widget.id.to_string();
             let at = widget.behaviour.thresholds();
             let mut walker = Walker::on(page.clone());
+            // Somebody who has come to stand there, and is no longer about to walk on.
             walker.stand(WEIGHT);
-            walker.wait(300);
+            walker.wait(3000);
             assert_eq!(walker.take_events(), [], "standing is no press: {name}");
             // Off the middle, where no selector, stepper or dial is as it was.
             let place = widget.area.min + widget.area.size() * Vec2::new(0.75, 0.6);

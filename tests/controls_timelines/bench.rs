@@ -33,8 +33,9 @@ impl Bench {
         let layout = page(&text);
         let area = layout.widgets[0].area;
         let mut walker = Walker::on(layout);
+        // Somebody who has come to stand there, and is no longer about to walk on.
         walker.stand(WEIGHT);
-        walker.wait(300);
+        walker.wait(3000);
         Self { walker, middle: area.centre(), size: area.size() }
     }
 
