@@ -20,8 +20,9 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             let id = widget.id.to_string();
             let at = widget.behaviour.thresholds();
             let mut walker = Walker::on(page.clone());
+            // Somebody who has come to stand there, and is no longer about to walk on.
             walker.stand(WEIGHT);
-            walker.wait(300);
+            walker.wait(3000);
             assert_eq!(walker.take_events(), [], "standing is no press: {name}");
             // Off the middle, where no selector, stepper or dial is as it was.
             let place = widget.area.min + widget.area.size() * Vec2::new(0.75, 0.6);
@@ -29,7 +30,9 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             for _ in 0..taps {
                 // Part of a foot rests on the tile behind.
                 walker.step_at(place, at.press * 2.5);
-                walker.wait(150 + at.dwell.as_millis() as u64);
+                // What runs while it is held waits for a foot that has settled.
+                let settled = if matches!(at.guard, Guard::HoldToRun { .. }) { 400 } else { 0 };
+                walker.wait(150 + settled + at.dwell.as_millis() as u64);
                 walker.lift();
                 walker.wait(100);
             }

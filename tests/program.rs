@@ -247,6 +247,9 @@ fn a_layout_is_drawn_without_a_display() {
         assert!(output.status.success(), "{}", said(&output));
         assert!(std::fs::metadata(&path).unwrap().len() > 2000);
     }
+    // At rest, which is not the moment after the program was started.
+    let drawn = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(drawn.contains("Satellite") && !drawn.contains("lift foot"));
 }
 
 #[test]
