@@ -1,11 +1,13 @@
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 use clap::Subcommand;
 use serde::Serialize;
 use underfoot::experiment::{
-    ExperimentError, Figure, Orientation, PeopleTable, PlaceTable, SeamObject, SeamTable, SpotTable,
-    TapTable, TileScan, TwoFeet,
+    ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
+    SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
 };
 use underfoot::picture;
 
@@ -34,6 +36,9 @@ enum What {
     Place(SpotArgs),
     /// How well both feet of people are found, and the cursor of a foot that works beside a heavy one.
     Feet(FeetArgs),
+    /// How often controls act that nobody meant, and miss what somebody meant: people who cross and use
+    /// every shipped layout, and rows of buttons of many sizes and thresholds.
+    Intent(IntentArgs),
 }
 
 #[derive(clap::Args, Debug)]
@@ -75,6 +80,31 @@ struct FeetArgs {
     json: bool,
 }
 
+#[derive(clap::Args, Debug)]
+struct IntentArgs {
+    /// How many people, each on a floor of other parts.
+    #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=100_000))]
+    people: u64,
+    /// How many steps they take altogether over the shipped layouts.
+    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    steps: u64,
+    /// How many presses they mean altogether on the shipped layouts.
+    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    presses: u64,
+    /// The first person; the next ones follow.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// Folder for the tables as CSV and the plot as PNG and SVG; made if it is missing.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Width of the PNG, in pixels.
+    #[arg(long, value_name = "PX", default_value_t = 1800)]
+    width: u32,
+    /// One JSON object instead of tables; no files.
+    #[arg(long)]
+    json: bool,
+}
+
 /// Makes the experiment.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.what {
@@ -85,7 +115,88 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Spot(args) => spot(args),
         What::Place(args) => place(args),
         What::Feet(args) => feet(args),
+        What::Intent(args) => intent(args),
     }
+}
+
+fn intent(args: &IntentArgs) -> Result<(), Failure> {
+    let each =
+        IntentEffort { steps: args.steps.div_ceil(args.people), presses: args.presses.div_ceil(args.people) };
+    // The rows of buttons see a tenth of it.
+    let sweepers = args.people.div_ceil(4);
+    let tenth = IntentEffort {
+        steps: (args.steps / 10).div_ceil(sweepers),
+        presses: (args.presses / 4).div_ceil(sweepers),
+    };
+    let (mut table, mut sweep) = (IntentTable::default(), IntentSweep::default());
+    // In the order of people, whoever was done first: the same seed gives the same table.
+    for person in in_parallel("person", args.people, |number| {
+        let seed = args.seed.wrapping_add(number);
+        let (mut table, mut sweep) = (IntentTable::default(), IntentSweep::default());
+        table.add_person(seed, number, each)?;
+        if number < sweepers {
+            sweep.add_person(seed.wrapping_add(args.people), number, tenth)?;
+        }
+        Ok((table, sweep))
+    })? {
+        table.append(person.0);
+        sweep.append(&person.1);
+    }
+    if args.json {
+        #[derive(Serialize)]
+        struct Tables<L, C> {
+            lines: Vec<L>,
+            cells: C,
+        }
+        return print_json(&Tables { lines: table.lines().collect(), cells: sweep.cells() });
+    }
+    anstream::println!("{table}");
+    FigureArgs { out: args.out.clone(), seed: args.seed, width: args.width }.make("intent_sweep", &sweep)?;
+    let path = args.out.join("intent.csv");
+    std::fs::write(&path, table.csv()).map_err(|error| Failure::File(path.clone(), error))?;
+    anstream::println!("{}", path.display());
+    Ok(())
+}
+
+/// Does something so many times on all processors, telling a person at the terminal how far it has
+/// come; gives back what came of each time, in order.
+fn in_parallel<T: Send>(
+    what: &str,
+    times: u64,
+    act: impl Fn(u64) -> Result<T, ExperimentError> + Sync,
+) -> Result<Vec<T>, Failure> {
+    let watched = std::io::stderr().is_terminal();
+    let next = AtomicU64::new(0);
+    let done = Mutex::new(Vec::new());
+    let workers = std::thread::available_parallelism().map_or(1, usize::from);
+    std::thread::scope(|scope| {
+        for _ in 0..workers {
+            scope.spawn(|| {
+                loop {
+                    let number = next.fetch_add(1, Ordering::Relaxed);
+                    if number >= times {
+                        break;
+                    }
+                    let result = act(number);
+                    let failed = result.is_err();
+                    let Ok(mut done) = done.lock() else { break };
+                    done.push((number, result));
+                    if watched {
+                        anstream::eprint!("\r{what} {} of {times} ", done.len());
+                    }
+                    if failed {
+                        next.store(times, Ordering::Relaxed);
+                    }
+                }
+            });
+        }
+    });
+    if watched {
+        anstream::eprint!("\r{:40}\r", "");
+    }
+    let mut done = done.into_inner().map_err(|_| Failure::Other("a thread of the experiment died".into()))?;
+    done.sort_by_key(|(number, _)| *number);
+    Ok(done.into_iter().map(|(_, result)| result).collect::<Result<_, _>>()?)
 }
 
 impl FigureArgs {

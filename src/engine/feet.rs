@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::people::Person;
+use super::people::{Person, SAME_FOOT_M};
 use super::snapshot::{FootRole, FootState};
-use super::step::{Burden, Landing, StepWatch, Support};
+use super::step::{Burden, Landing, RESTS, RESTS_N, StepWatch, Support};
 use super::still::Stillness;
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
@@ -33,6 +33,18 @@ const STEADY_PLACES: usize = 4;
 const STEADY_SHARE: f32 = 0.2;
 const STEADY_M: f32 = 0.015;
 
+/// Who jumps or falls is left by this share of what the floor carried within so many kept places; a
+/// foot that goes from a control back to the floor leaves less than a fifth missing for a moment.
+const FALLEN: f32 = 0.6;
+const FALL_PLACES: usize = 15;
+
+/// Whose other foot carried less than this did not stand on it, in newtons.
+const STOOD_N: f32 = 150.0;
+
+/// A press has most of its force after so long; weight is shifted from foot to foot in no less than 0.3 s.
+const EARLY: Duration = Duration::from_millis(150);
+const AT_ONCE: f32 = 0.85;
+
 /// A support carries at least this much, in newtons.
 const SUPPORT_N: f32 = 100.0;
 
@@ -44,6 +56,14 @@ const SUM_N: f32 = 250.0;
 
 /// What the other foot must carry for such a share, in newtons.
 const OTHERS_N: f32 = 50.0;
+
+/// Where a foot was, with which force, and what the person's other feet carried.
+#[derive(Clone, Copy, Debug, Default)]
+struct Past {
+    place: Vec2,
+    force: f32,
+    others: f32,
+}
 
 /// One contact with its past.
 #[derive(Clone, Debug)]
@@ -64,8 +84,13 @@ pub(super) struct Foot {
     step: bool,
     watch: StepWatch,
     still: Stillness,
-    /// Where it was and with which force, the latest at `next` - 1.
-    places: [(Vec2, f32); PLACES],
+    /// Share of the body that it carries, where that is known.
+    share: Option<f32>,
+    /// What it pressed with when it had been down for a moment.
+    early: Option<f32>,
+    /// What the person's other feet carried when this one was last looked at.
+    others: f32,
+    past: [Past; PLACES],
     next: usize,
     kept: usize,
     kept_at: Instant,
@@ -88,7 +113,11 @@ impl Foot {
             step: false,
             watch: StepWatch::default(),
             still: Stillness::new(force, place, now),
-            places: [(place, force); PLACES],
+            share: None,
+            early: None,
+            others: 0.0,
+            // The latest is at `next` - 1.
+            past: [Past { place, force, others: 0.0 }; PLACES],
             next: 0,
             kept: 0,
             kept_at: now,
@@ -120,7 +149,7 @@ impl Foot {
         self.still.update(self.force, self.place, now);
         if now.since(self.kept_at) >= PLACE_EVERY {
             self.kept_at = now;
-            self.places[self.next] = (self.place, self.force);
+            self.past[self.next] = Past { place: self.place, force: self.force, others: self.others };
             self.next = (self.next + 1) % PLACES;
             self.kept = (self.kept + 1).min(PLACES);
         }
@@ -132,33 +161,56 @@ impl Foot {
         if known < ROLL_PLACES / 2 {
             return Vec2::ZERO;
         }
-        let place = |ago: usize| self.past(ago).0;
+        let place = |ago: usize| self.past(ago).place;
         let span = PLACE_EVERY.as_secs_f32() * known as f32;
         (place(SKIPPED_PLACES) - place(SKIPPED_PLACES + known)) / span
     }
 
-    /// Place and force so many kept places ago.
-    fn past(&self, ago: usize) -> (Vec2, f32) {
-        self.places[(self.next + 2 * PLACES - 1 - ago) % PLACES]
+    /// What it was like so many kept places ago.
+    fn past(&self, ago: usize) -> Past {
+        self.past[(self.next + 2 * PLACES - 1 - ago) % PLACES]
+    }
+
+    /// Whether the other foot has left the floor within the last 0.3 s, and this one has not taken over
+    /// what it carried: the person jumps or falls.
+    pub(super) fn falls(&self) -> bool {
+        let lately = || (0..FALL_PLACES.min(self.kept)).map(|ago| self.past(ago));
+        let others = lately().map(|past| past.others).fold(0.0, f32::max);
+        let sum = lately().map(|past| past.others + past.force).fold(0.0, f32::max);
+        others >= STOOD_N && self.others < FALLEN * others && self.others + self.force < FALLEN * sum
+    }
+
+    /// Whether it is or was of late where another contact lands now: two feet don't stand in one place.
+    fn was_at(&self, place: Vec2) -> bool {
+        let near = |at: Vec2| at.distance(place) <= SAME_FOOT_M;
+        near(self.place) || (0..self.kept).any(|ago| near(self.past(ago).place))
     }
 
     /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
     fn is_steady(&self) -> bool {
-        let (place, force) = self.past(STEADY_PLACES);
-        (self.force - force).abs() <= STEADY_SHARE * self.force && self.place.distance(place) <= STEADY_M
+        let past = self.past(STEADY_PLACES);
+        (self.force - past.force).abs() <= STEADY_SHARE * self.force
+            && self.place.distance(past.place) <= STEADY_M
     }
 
     /// Whether it may start a press of a control with this `guard`, as far as its past tells.
     ///
-    /// What must not start by accident waits until the foot has shown that it takes no step; unless
-    /// it only asks, and somebody stands there who can have meant it. What is free never waits.
+    /// What must not start by accident waits until the foot has shown that it takes no step. What only
+    /// asks waits so where nobody is known to stand there who can have meant it. What is free never waits.
     pub(super) fn is_meant(&self, guard: Guard, now: Instant) -> bool {
-        let settled = || now.since(self.landed) >= SETTLED && self.is_steady();
+        let settled = || now.since(self.landed) >= SETTLED && self.is_steady() && !self.took_weight_over();
         match guard {
             Guard::Free => true,
             Guard::Confirm { .. } => self.vouched || settled(),
             Guard::HoldToRun { .. } => settled(),
         }
+    }
+
+    /// Whether it carries as much as a resting foot does and came to it slowly: a press is put on at
+    /// once, a body is shifted over.
+    fn took_weight_over(&self) -> bool {
+        let rests = self.force >= RESTS_N && self.share.is_none_or(|share| share >= RESTS);
+        rests && self.early.is_none_or(|early| early < AT_ONCE * self.force)
     }
 
     fn as_support(&self, now: Instant) -> Support {
@@ -173,16 +225,21 @@ impl Foot {
     fn judge(&mut self, person: &Person, now: Instant) {
         if self.force < AS_GOOD_AS_LIFTED_N {
             (self.landed, self.landed_at) = (now, self.place);
-            (self.step, self.watch) = (false, StepWatch::default());
+            (self.step, self.watch, self.early) = (false, StepWatch::default(), None);
             return;
         }
         let of_weight = person.weight().map(|weight| self.force / weight.0);
-        let others = person.sum - self.force;
+        let others = (person.sum - self.force).max(0.0);
+        self.others = others;
         let of_sum = (person.sum >= SUM_N && others >= OTHERS_N).then(|| self.force / person.sum);
         let share = match (of_weight, of_sum) {
             (Some(weight), Some(sum)) => Some(weight.max(sum)),
             (weight, sum) => weight.or(sum),
         };
+        self.share = share;
+        if now.since(self.landed) >= EARLY {
+            self.early.get_or_insert(self.force);
+        }
         let burden = Burden {
             force: self.force,
             share,
@@ -227,6 +284,7 @@ impl Feet {
     /// Allocates nothing while there are no more than 64 contacts.
     pub(super) fn update(&mut self, contacts: &[Contact], stances: &[Stance], now: Instant) {
         let Self { feet, people, .. } = self;
+        let before = feet.len();
         feet.retain(|foot| {
             let down = contacts.iter().any(|contact| contact.id == foot.id);
             if !down && let Some(person) = people.iter_mut().find(|person| person.id == foot.person) {
@@ -235,14 +293,19 @@ impl Feet {
             down
         });
         people.retain(|person| !person.is_forgotten(now));
+        let mut changed = feet.len() != before;
         for contact in contacts {
             match self.feet.binary_search_by_key(&contact.id, |foot| foot.id) {
                 Ok(at) => self.feet[at].update(contact, now),
                 Err(at) => {
                     let foot = self.land(contact, now);
+                    changed = true;
                     self.feet.insert(at, foot);
                 }
             }
+        }
+        if changed {
+            self.bring_together();
         }
         for person in &mut self.people {
             let mine = self.feet.iter().filter(|foot| foot.person == person.id && !foot.is_object());
@@ -273,11 +336,6 @@ impl Feet {
         self.person_of(id)?.weight()
     }
 
-    /// Whether the floor has just lost much of the person whose foot this is.
-    pub(super) fn falls(&self, id: ContactId) -> bool {
-        self.person_of(id).is_some_and(Person::falls)
-    }
-
     /// What there is to show of each contact, in their order.
     pub(super) fn states(&self) -> impl Iterator<Item = FootState> + '_ {
         self.feet.iter().map(|foot| FootState {
@@ -303,6 +361,13 @@ impl Feet {
             .filter(|other| other.person == person.id && !other.is_object())
             .filter(|other| other.force >= SUPPORT_N && !other.pressing)
             .max_by(|a, b| a.force.total_cmp(&b.force));
+        let mut mates = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
+        if let Some(mate) = mates.find(|mate| mate.was_at(foot.place)) {
+            // No second foot, but the first one under another name, or a part of it told apart for a while.
+            (foot.landed, foot.landed_at) = (mate.landed, mate.landed_at);
+            (foot.step, foot.stepped, foot.vouched) = (mate.step, mate.stepped, mate.vouched);
+            return foot;
+        }
         let landing = Landing {
             at: foot.place,
             support: support.map(|support| support.as_support(now)),
@@ -311,6 +376,25 @@ impl Feet {
         foot.vouched = landing.is_vouched();
         foot.step = landing.walks();
         foot
+    }
+
+    /// Makes one person of two that had been taken for two while their feet were on the way.
+    fn bring_together(&mut self) {
+        let mut first = 0;
+        while first < self.people.len() {
+            let one = &self.people[first];
+            let second = (first + 1..self.people.len())
+                .find(|&second| one.is_one_with(&self.people[second], &self.feet));
+            match second {
+                Some(second) => {
+                    let (kept, gone) = (one.id, self.people.remove(second).id);
+                    for foot in self.feet.iter_mut().filter(|foot| foot.person == gone) {
+                        foot.person = kept;
+                    }
+                }
+                None => first += 1,
+            }
+        }
     }
 
     /// The position of the person to whom a foot that lands at `place` belongs; a new one if it is nobody's.

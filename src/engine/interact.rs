@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::feet::Feet;
+use super::feet::{Feet, Foot};
 use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
@@ -37,6 +37,8 @@ pub(super) struct Interaction {
     awake: Vec<usize>,
     feet: Feet,
     rises: Rises,
+    /// Whether a control of the region that is being stepped acts while it is held.
+    running: bool,
 }
 
 /// What happens in one frame.
@@ -80,6 +82,7 @@ impl Interaction {
             controls,
             feet: Feet::default(),
             rises: Rises::default(),
+            running: false,
         }
     }
 
@@ -222,9 +225,11 @@ impl Interaction {
         // Taken out while the rest of the interaction works with them.
         let mut fingers = std::mem::take(&mut state.fingers);
         let busy = fingers.iter().any(|finger| finger.held.is_some());
+        self.running = false;
         for finger in fingers.iter_mut().filter(|finger| finger.held.is_some()) {
             finger.over = None;
             self.step_held(finger, at, events);
+            self.running |= finger.held.is_some_and(|held| holds_to_run(at.layout, held.widget));
         }
         if !busy || region.cursor == CursorRule::Each {
             self.step_free(index, &mut fingers, at, events);
@@ -279,6 +284,7 @@ impl Interaction {
     ) {
         let now = at.now();
         let Some(contact) = at.contact(finger.cursor.contact) else { return };
+        let rivals = self.runs_elsewhere(widget, at.layout);
         let (Some(spec), Some(control)) = (at.layout.widgets.get(widget), self.controls.get_mut(widget))
         else {
             return;
@@ -297,16 +303,23 @@ impl Interaction {
         } else {
             let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
             let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, now));
-            self::foot(contact, spec, at.frame, weight, risen && meant)
+            self::foot(contact, spec, at.frame, weight, risen && meant && !rivals)
         };
         let emitted = control.step(now, input);
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
         if control.is_engaged() {
             finger.held = Some(held);
+            self.running |= holds_to_run(at.layout, widget);
             self.feet.note_press(contact.id);
         }
         report(at.layout, now, widget, Some(held), &emitted, events);
         self.wake(widget);
+    }
+
+    /// Whether `widget` acts while it is held, and another such control is held already: only one runs at a time.
+    fn runs_elsewhere(&self, widget: usize, layout: &Layout) -> bool {
+        holds_to_run(layout, widget)
+            && (self.running || self.held().any(|held| holds_to_run(layout, held.widget)))
     }
 
     /// A control that is engaged follows its own foot, whatever the cursor does.
@@ -326,7 +339,7 @@ impl Interaction {
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 let guard = spec.behaviour.thresholds().guard;
                 let rests = is_tapped(spec) && foot.is_some_and(|foot| foot.rests(at.now()));
-                let falls = guard != Guard::Free && self.feet.falls(contact.id);
+                let falls = guard != Guard::Free && foot.is_some_and(Foot::falls);
                 if rests || falls || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
@@ -423,6 +436,12 @@ fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<N
         && may_start(contact, frame)
         && may;
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
+}
+
+/// Whether `widget` acts only while it is held.
+fn holds_to_run(layout: &Layout, widget: usize) -> bool {
+    let spec = layout.widgets.get(widget);
+    spec.is_some_and(|spec| matches!(spec.behaviour.thresholds().guard, Guard::HoldToRun { .. }))
 }
 
 /// Whether a press of it lasts no longer than a tap: what a foot at rest does to it is not meant.

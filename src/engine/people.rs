@@ -17,29 +17,26 @@ use crate::units::{Instant, Newtons};
 /// Nobody steps further, in metres.
 const STRIDE_M: f32 = 1.1;
 
-/// What lands as near as this to a foot is part of the same foot, in metres.
-const SAME_FOOT_M: f32 = 0.12;
+/// What lands as near as this to a foot is part of the same foot, in metres: feet are wider.
+pub(super) const SAME_FOOT_M: f32 = 0.12;
 
-/// A foot that comes back to where it had stood lands as near as this, in metres (our choice: a hand's breadth;
+/// Contacts as near as this to each other may be parts of one foot that the tracker has not yet put
+/// together, in metres, and lighter ones than this in newtons mere traces: they are not two feet.
+const ONE_FOOT_M: f32 = 0.2;
+const TRACE_N: f32 = 40.0;
+
+/// Two people do not stand on one leg each as near to each other as this, in metres.
+const STANCE_M: f32 = 0.45;
+
+/// A foot that comes back to where it had stood lands as near as this, in metres (our choice:
 /// those who turn on the spot put it further off).
-const BACK_M: f32 = 0.08;
+const BACK_M: f32 = 0.03;
 
 /// A foot that has left is remembered so long; a person without feet on the floor too.
 const REMEMBERED: Duration = Duration::from_secs(5);
 
 /// How long ago a foot may have left to be the one that lands now.
 const SWINGING: Duration = Duration::from_millis(1500);
-
-/// How often the sum is kept, and how many of them: the last 0.3 s.
-const SUM_EVERY: Duration = Duration::from_millis(20);
-const SUMS: usize = 15;
-
-/// Who loses this share of what the floor carried within 0.3 s jumps or falls; a foot that goes
-/// from a control back to the floor leaves less than a fifth missing for a moment.
-const GONE_SHARE: f32 = 0.4;
-
-/// Below this nobody stood there, in newtons.
-const STOOD_N: f32 = 250.0;
 
 /// A foot that has left the floor.
 #[derive(Clone, Copy, Debug)]
@@ -58,24 +55,12 @@ pub(super) struct Person {
     scale: Scale,
     /// Sum of the person's contacts now.
     pub(super) sum: f32,
-    sums: [f32; SUMS],
-    next_sum: usize,
-    summed: Instant,
     seen: Instant,
 }
 
 impl Person {
     pub(super) fn new(id: u32, now: Instant) -> Self {
-        Self {
-            id,
-            left: ArrayVec::new(),
-            scale: Scale::default(),
-            sum: 0.0,
-            sums: [0.0; SUMS],
-            next_sum: 0,
-            summed: now,
-            seen: now,
-        }
+        Self { id, left: ArrayVec::new(), scale: Scale::default(), sum: 0.0, seen: now }
     }
 
     /// The person's weight; `None` until it is known.
@@ -87,15 +72,32 @@ impl Person {
     pub(super) fn reach_to(&self, place: Vec2, feet: &[Foot], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
         let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);
-        if nearest <= SAME_FOOT_M {
+        if nearest <= ONE_FOOT_M {
             return Some(nearest);
         }
-        if mine().count() >= 2 {
+        if self.has_both_down(feet) {
             return None;
         }
         let left = self.left.iter().filter(|left| now.since(left.at) <= SWINGING);
         let nearest = left.map(|left| left.place.distance(place)).fold(nearest, f32::min);
         (nearest <= STRIDE_M).then_some(nearest)
+    }
+
+    /// Whether two feet of the person are on the floor.
+    fn has_both_down(&self, feet: &[Foot]) -> bool {
+        let firm = || {
+            feet.iter()
+                .filter(|foot| foot.person == self.id && !foot.is_object())
+                .filter(|foot| foot.force >= TRACE_N)
+        };
+        firm().any(|one| firm().any(|other| one.place.distance(other.place) > ONE_FOOT_M))
+    }
+
+    /// Whether this person and the `other` one, each with one foot down, stand as one person does.
+    pub(super) fn is_one_with(&self, other: &Self, feet: &[Foot]) -> bool {
+        let of = |id: u32| feet.iter().filter(move |foot| foot.person == id && !foot.is_object());
+        let near = |one: &Foot| of(other.id).any(|foot| foot.place.distance(one.place) <= STANCE_M);
+        of(self.id).any(near) && !self.has_both_down(feet) && !other.has_both_down(feet)
     }
 
     /// Whether a foot that lands at `place` steps there, rather than coming back to where it had stood
@@ -126,20 +128,9 @@ impl Person {
         if sum > 0.0 {
             self.seen = now;
         }
-        if now.since(self.summed) >= SUM_EVERY {
-            self.summed = now;
-            self.sums[self.next_sum % SUMS] = sum;
-            self.next_sum = (self.next_sum + 1) % SUMS;
-        }
         while self.left.first().is_some_and(|left| now.since(left.at) > REMEMBERED) {
             self.left.remove(0);
         }
-    }
-
-    /// Whether the floor has lost much of the person within the last 0.3 s.
-    pub(super) fn falls(&self) -> bool {
-        let before = self.sums.iter().copied().fold(0.0, f32::max);
-        before >= STOOD_N && self.sum < (1.0 - GONE_SHARE) * before
     }
 
     pub(super) fn is_forgotten(&self, now: Instant) -> bool {

@@ -65,9 +65,9 @@ const STANDS_N: f32 = 200.0;
 const STANDS_FOR: Duration = Duration::from_millis(800);
 
 /// A foot at rest on a control that is meant to be tapped: share of the body, newtons, and for how long.
-const RESTS: f32 = 0.25;
-const RESTS_N: f32 = 110.0;
-const RESTS_FOR: Duration = Duration::from_secs(2);
+pub(super) const RESTS: f32 = 0.25;
+pub(super) const RESTS_N: f32 = 110.0;
+const RESTS_FOR: Duration = Duration::from_secs(1);
 
 /// How far a foot rolls over before that is no wobble, in metres, and within which time of its landing.
 const ROLLED_M: f32 = 0.07;
@@ -147,7 +147,8 @@ impl StepWatch {
         let Burden { force, share, age, travelled } = *burden;
         let above = |least: f32, newtons: f32| force >= newtons && share.is_none_or(|share| share >= least);
         let carries = share.map_or(force >= CARRIES_ALONE_N, |share| share >= CARRIES);
-        self.rests.note(above(RESTS, RESTS_N), now);
+        // Of a foot alone on the floor nobody knows whether it is at rest or held there.
+        self.rests.note(share.is_some() && above(RESTS, RESTS_N), now);
         let rolls = above(ROLLS, ROLLS_N) && travelled >= ROLLED_M && age <= ROLLED_WITHIN;
         self.carries.note(carries, now) >= Some(CARRIES_FOR)
             || self.stands.note(above(STANDS, STANDS_N), now) >= Some(STANDS_FOR)

@@ -14,6 +14,7 @@
 //! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
+//! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
 //!
 //! ```
 //! use underfoot::experiment::PeopleTable;
@@ -28,6 +29,9 @@ mod chart;
 mod errors;
 mod figure;
 mod follow;
+mod intent;
+mod intent_act;
+mod intent_sweep;
 mod orientation;
 mod people;
 mod place;
@@ -37,10 +41,13 @@ mod seam_object;
 mod spot;
 mod taps;
 mod two_feet;
+mod wilson;
 
 pub use errors::{Errors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
+pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
+pub use intent_sweep::{IntentSweep, SweepCell};
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use place::{PlaceLine, PlaceTable};
@@ -50,6 +57,7 @@ pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{Stance, TapLine, TapScore, TapTable};
 pub use two_feet::TwoFeet;
+pub use wilson::Counted;
 
 use crate::sense::Method;
 

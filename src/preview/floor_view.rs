@@ -171,18 +171,19 @@ impl App {
         let snapshot = self.snapshots.output_buffer();
         for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
             let state = snapshot.widgets.get(index).copied().unwrap_or_default();
+            if state.hidden {
+                continue;
+            }
             let id = ui.scope_id().with(("floor control", index));
             let node = ui.interact(map.rect(widget.area), id, Sense::hover());
             node.widget_info(|| {
                 let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
                 let enabled = !state.disabled;
                 match (&widget.behaviour, state.value) {
-                    (Behaviour::Switch(_), Some(Value::Switch(on))) => {
+                    (Behaviour::Switch(_) | Behaviour::Hold(_), Some(Value::Switch(on))) => {
                         WidgetInfo::selected(Role::Switch, enabled, on, name)
                     }
-                    (Behaviour::Slider(_), Some(Value::Number(value))) => {
-                        WidgetInfo::slider(enabled, f64::from(value), name)
-                    }
+                    (_, Some(Value::Number(value))) => WidgetInfo::slider(enabled, f64::from(value), name),
                     _ => WidgetInfo::selected(Role::Button, enabled, state.pressed, name),
                 }
             });

@@ -32,7 +32,10 @@ const MOST_STOPS: f32 = 20.5;
 /// Draws every control in the layout's order.
 pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
     for (index, widget) in view.layout.widgets.iter().enumerate() {
-        draw(scene, view, widget, view.widget_state(index));
+        let state = view.widget_state(index);
+        if !state.hidden {
+            draw(scene, view, widget, state);
+        }
     }
 }
 

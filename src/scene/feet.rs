@@ -5,6 +5,7 @@ use glam::Vec2;
 use super::mark::{Ink, Paint, Stroke};
 use super::view::Shoe;
 use super::{Scene, View, outline};
+use crate::engine::FootRole;
 use crate::sense::Contact;
 
 /// Area of a contact's circle per newton, in square metres: 350 N, half a person, make 13 cm across.
@@ -62,7 +63,14 @@ pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) {
 fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     let theme = view.theme;
     let leads = view.snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
-    let colour = if leads { theme.cursor } else { theme.contact };
+    // What lies there and is no foot is drawn as what no longer counts.
+    let is_object =
+        view.snapshot.feet.iter().any(|foot| foot.contact == contact.id && foot.role == FootRole::Object);
+    let colour = match (is_object, leads) {
+        (true, _) => theme.stale,
+        (false, true) => theme.cursor,
+        (false, false) => theme.contact,
+    };
     let (at, radius) = (contact.centroid, radius_m(contact.force.0));
     let edge = Stroke::new(0.003, Ink::faint(colour, 0.9));
     scene.add_circle(at, radius, Paint::fill(Ink::faint(colour, 0.22)).with_stroke(edge));
@@ -91,12 +99,13 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     let middle = (at + away).min(floor.max - inside).max(floor.min + inside);
     let edged = ground.with_stroke(Stroke::new(0.0018, Ink::faint(colour, 0.7)));
     let number = contact.id.0;
+    let left = if is_object { " · ignored" } else { "" };
     scene.add_badge(
         middle,
         size_m,
         Ink::solid(colour),
         edged,
-        format_args!("{number} · {:.0} N", contact.force.0),
+        format_args!("{number} · {:.0} N{left}", contact.force.0),
     );
 }
 

@@ -93,7 +93,8 @@ impl<'a> View<'a> {
     /// The state of the control at `index`, at rest where the snapshot does not fit the layout.
     pub(super) fn widget_state(&self, index: usize) -> WidgetState {
         let Some(widget) = self.layout.widgets.get(index) else { return WidgetState::default() };
-        let rest = WidgetState { value: widget.behaviour.initial(), ..WidgetState::default() };
+        let hidden = !widget.is_on(self.snapshot.page);
+        let rest = WidgetState { value: widget.behaviour.initial(), hidden, ..WidgetState::default() };
         match self.snapshot.widgets.get(index) {
             Some(state) if same_kind(state.value, rest.value) => *state,
             _ => rest,

@@ -1,6 +1,6 @@
 use super::{
-    ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, SelectorSpec, SliderSpec, StepperSpec,
-    SwitchSpec, Thresholds, Value,
+    ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
+    StepperSpec, SwitchSpec, Thresholds, Value,
 };
 
 /// What a control does, with its settings.
@@ -74,6 +74,17 @@ impl Behaviour {
             // With one axis free, the other's stops would be felt all the time.
             (Self::Pad(spec), Value::Pair(pair)) => spec.x.is_stop(pair.x) && spec.y.is_stop(pair.y),
             _ => false,
+        }
+    }
+
+    /// The values of a control that holds one number and takes one from an app; `None` for others.
+    #[must_use]
+    pub const fn scale(&self) -> Option<&Scale> {
+        match self {
+            Self::Slider(spec) => Some(&spec.scale),
+            Self::Dial(spec) => Some(&spec.scale),
+            Self::Stepper(spec) => Some(&spec.scale),
+            _ => None,
         }
     }
 

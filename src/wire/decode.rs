@@ -405,6 +405,8 @@ mod tests {
         assert_eq!(control(address, vec![OscType::Float(0.5)]), set(Value::Number(0.5)));
         assert_eq!(control(address, vec![OscType::Int(1)]), set(Value::Number(1.0)));
         assert_eq!(control(address, vec![OscType::Bool(true)]), set(Value::Switch(true)));
+        let pair = vec![OscType::Float(0.5), OscType::Int(-1)];
+        assert_eq!(control(address, pair), set(Value::Pair(glam::Vec2::new(0.5, -1.0))));
         let enable = control("/underfoot/widget/zoom/enable", vec![]);
         assert_eq!(enable, Ok(ControlMessage::Enable { id: id.clone() }));
         let disable = control("/underfoot/widget/zoom/disable", vec![]);

@@ -104,6 +104,22 @@ impl Bench {
         }
     }
 
+    /// Lets time pass under one foot that stays, swaying by some millimetres as people who stand do:
+    /// what keeps perfectly still for a minute is no foot (S10).
+    pub fn stay(
+        &mut self,
+        at: Vec2,
+        force: f32,
+        seconds: u16,
+        mut disturb: impl FnMut(u64, (usize, usize), &mut f32),
+    ) {
+        for tenth in 0..seconds * 10 {
+            let sway = 0.008 * (0.08 * f32::from(tenth)).sin();
+            self.feet = vec![foot(at + Vec2::new(0.0, sway), force)];
+            self.run_with(100, |ms, channel, reading| disturb(u64::from(tenth) * 100 + ms, channel, reading));
+        }
+    }
+
     pub fn lift(&mut self, at: Vec2) {
         self.press(at, 0.0);
         self.feet.clear();

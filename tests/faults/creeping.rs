@@ -50,7 +50,7 @@ fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
     let mut bench = Bench::tared_at_start(Sensing::Counts(parts));
     // Below the threshold of 60 N to begin with, above it after some minutes of creep.
     bench.press(BUTTON, 52.0);
-    bench.run(600_000);
+    bench.stay(BUTTON, 52.0, 600, |_, _, _| {});
     let force: f32 = bench.contacts().iter().map(|contact| contact.force.0).sum();
     assert!(force > 60.0, "or nothing is shown: {force} N");
     assert_eq!(bench.events, [], "gained");
@@ -59,7 +59,7 @@ fn s5_a_foot_that_stands_and_creeps_is_neither_lost_nor_gained_nor_zeroed() {
     bench.press(BUTTON, 150.0);
     bench.run(60);
     assert_eq!(bench.events, [EventKind::Pressed]);
-    bench.run(300_000);
+    bench.stay(BUTTON, 150.0, 300, |_, _, _| {});
     assert_eq!(bench.events, [EventKind::Pressed], "lost");
     bench.lift(BUTTON);
     bench.run(200);

@@ -24,7 +24,7 @@ fn s7_hum_and_noise_make_no_event_in_ten_minutes() {
         bench.run_with(150_000, &mut noise);
         assert_eq!(bench.events, [], "nobody there, {mains_hz} Hz");
         bench.press(BUTTON, 100.0);
-        bench.run_with(150_000, &mut noise);
+        bench.stay(BUTTON, 100.0, 150, &mut noise);
         assert_eq!(bench.events, [EventKind::Pressed], "a foot that stays, {mains_hz} Hz");
         bench.lift(BUTTON);
         bench.run(100);

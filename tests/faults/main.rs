@@ -1,4 +1,4 @@
-//! What goes wrong with sensors, and what becomes of the feet: one test per row of the fault table, named by its id.
+//! What goes wrong with sensors, links and people, and what becomes of the feet: one test per row of the fault table, named by its id.
 //!
 //! Simulated packets go through the assembler into an engine, as those of a real floor do.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
@@ -13,3 +13,5 @@ mod desk;
 mod doubtful;
 mod long_run;
 mod loop_gain;
+mod lost;
+mod people;

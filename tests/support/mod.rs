@@ -50,6 +50,11 @@ pub struct Walker {
     pub connected: bool,
     /// Whether no tile's forces may be believed.
     pub doubtful: bool,
+    /// Whether what boards send is kept back on its way, until it is released.
+    pub hold_back: bool,
+    held_back: Vec<SensorPacket>,
+    /// Whether somebody looks at the floor all the time.
+    pub watched: bool,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
     cursors: Vec<Option<Cursor>>,
@@ -84,6 +89,9 @@ impl Walker {
             foot: None,
             connected: true,
             doubtful: false,
+            hold_back: false,
+            held_back: Vec::new(),
+            watched: true,
             events: Vec::new(),
             cues: Vec::new(),
             cursors: Vec::new(),
@@ -103,6 +111,38 @@ impl Walker {
             roll: 0.5,
         });
         self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = weight * share);
+    }
+
+    /// Puts the other foot down at `point` too, as who sits can do.
+    pub fn also_at(&mut self, point: Vec2, force: Newtons) {
+        self.stance = Some(foot_at(point));
+        self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = force * share);
+    }
+
+    /// Takes all weight off both feet within so many milliseconds, and the feet off the floor.
+    pub fn leave_floor(&mut self, millis: u64) {
+        let before = [self.stance, self.foot].map(|foot| foot.map_or(Newtons::ZERO, |foot| foot.force));
+        for step in 1..=millis {
+            let share = 1.0 - step as f32 / millis as f32;
+            for (foot, before) in [&mut self.stance, &mut self.foot].into_iter().zip(before) {
+                if let Some(foot) = foot {
+                    foot.force = before * share;
+                }
+            }
+            self.tick();
+        }
+        (self.stance, self.foot) = (None, None);
+    }
+
+    /// Lets through, all at once and now, what was held back.
+    pub fn release_packets(&mut self) {
+        self.hold_back = false;
+        for packet in std::mem::take(&mut self.held_back) {
+            self.assembler.take(&SensorPacket { received: self.now, ..packet });
+            while let Some(frame) = self.assembler.ready() {
+                take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+            }
+        }
     }
 
     /// Puts the working foot on a control and presses.
@@ -200,12 +240,16 @@ impl Walker {
         let readings = self.sim.step(&feet);
         if self.connected {
             for (board, readings) in (0..).zip(readings) {
-                self.assembler.take(&SensorPacket {
-                    board,
-                    sequence: self.sequence,
-                    received: self.now,
-                    readings: readings.clone(),
-                });
+                let readings = readings.clone();
+                let packet = SensorPacket { board, sequence: self.sequence, received: self.now, readings };
+                if self.hold_back {
+                    self.held_back.push(packet);
+                } else {
+                    self.assembler.take(&packet);
+                }
+            }
+            if self.hold_back {
+                self.assembler.poll(self.now);
             }
         } else {
             self.assembler.poll(self.now);
@@ -218,6 +262,9 @@ impl Walker {
             } else {
                 take(&mut self.engine, frame, &mut self.events, &mut self.cues);
             }
+        }
+        if !self.watched {
+            return;
         }
         let mut snapshot = Snapshot::default();
         self.engine.snapshot(&mut snapshot);

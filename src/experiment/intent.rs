@@ -1,0 +1,454 @@
+//! Whether controls do what feet meant: false activations of people who walk over them, and missed
+//! and wrong presses of people who use them.
+
+use std::collections::BTreeMap;
+use std::fmt;
+use std::fmt::Write;
+use std::time::Duration;
+
+use serde::Serialize;
+
+use super::intent_act::{Act, Somebody};
+use super::rig::{ExperimentError, Rig};
+use super::wilson::Counted;
+use crate::engine::Engine;
+use crate::floor::{Geometry, Rect};
+use crate::layout::{Layout, Widget};
+use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
+use crate::sense::Method;
+use crate::sim::{Foot, Load};
+use crate::units::Instant;
+use crate::widget::{Behaviour, EventKind, Guard, WidgetEvent};
+
+/// From which force on a foot counts as put down, in newtons.
+const DOWN_N: f32 = 20.0;
+
+/// How long the floor is empty between two acts.
+const PAUSE_MS: u32 = 300;
+
+/// How often people cross in a row, and how often they press before they leave.
+const CROSSINGS: usize = 6;
+const PRESSES: usize = 12;
+
+/// What of each kind and guard was done, wanted and not.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct IntentScore {
+    /// Times that people wanted something of a control.
+    pub intended: u64,
+    /// Those of them of which nothing came.
+    pub missed: u64,
+    /// Those of them that made another control act, or made it act twice.
+    pub wrong: u64,
+    /// Times that a control acted although nobody had wanted anything of any.
+    pub false_activations: u64,
+    /// Presses that nobody had wanted and that were taken back before they did anything.
+    pub taken_back: u64,
+}
+
+impl IntentScore {
+    fn add(&mut self, other: &Self) {
+        let Self { intended, missed, wrong, false_activations, taken_back } = other;
+        self.intended += intended;
+        self.missed += missed;
+        self.wrong += wrong;
+        self.false_activations += false_activations;
+        self.taken_back += taken_back;
+    }
+}
+
+/// What a layout's controls are guarded with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Guarded {
+    /// Unguarded.
+    Free,
+    /// Armed by a first press.
+    Confirm,
+    /// Acting while held.
+    HoldToRun,
+}
+
+impl Guarded {
+    /// All of them, in the order of the table.
+    pub const ALL: [Self; 3] = [Self::Free, Self::Confirm, Self::HoldToRun];
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Free => "free",
+            Self::Confirm => "confirm",
+            Self::HoldToRun => "hold to run",
+        }
+    }
+
+    fn of(widget: &Widget) -> Self {
+        match widget.behaviour.thresholds().guard {
+            Guard::Free => Self::Free,
+            Guard::Confirm { .. } => Self::Confirm,
+            Guard::HoldToRun { .. } => Self::HoldToRun,
+        }
+    }
+
+    /// `layout` with its buttons (and, for Confirm, its switches) guarded so; thresholds stay.
+    fn put_on(self, layout: &Layout) -> Layout {
+        let mut layout = layout.clone();
+        let guard = match self {
+            Self::Free => return layout,
+            Self::Confirm => Guard::Confirm { within: Duration::from_secs(3) },
+            Self::HoldToRun => {
+                Guard::HoldToRun { max: Duration::from_secs(60), warn: Duration::from_secs(30) }
+            }
+        };
+        for widget in &mut layout.widgets {
+            if widget.behaviour.thresholds().guard != Guard::Free {
+                continue;
+            }
+            match &mut widget.behaviour {
+                Behaviour::Button(button) => button.thresholds.guard = guard,
+                Behaviour::Switch(switch) if self == Self::Confirm => switch.thresholds.guard = guard,
+                _ => {}
+            }
+        }
+        layout
+    }
+}
+
+/// How controls of shipped layouts did, by kind and guard.
+///
+/// Each layout is tried as it is shipped, with its buttons and switches guarded
+/// by `Confirm`, and with its buttons guarded by `HoldToRun`, all with the
+/// thresholds they are shipped with. Crossings are the same for all three; uses
+/// are each guard's own. What counts as acting: a button's click, a switch that
+/// turns over, and the press of anything that follows the foot or acts while held.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct IntentTable {
+    scores: BTreeMap<(String, Guarded), IntentScore>,
+    /// Steps on floors on which each guard was tried.
+    steps: [u64; 3],
+    people: u64,
+}
+
+/// How much one person does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct IntentEffort {
+    /// Steps over the layout.
+    pub steps: u64,
+    /// Presses that are meant.
+    pub presses: u64,
+}
+
+impl IntentTable {
+    /// Lets the person that follows from `seed` cross and use one of the shipped layouts on a floor
+    /// whose parts follow from it too; `number` says which layout, and at which speed the person walks.
+    ///
+    /// # Errors
+    /// Those of [`Rig::of_mapped_parts`]; [`ExperimentError::Layout`] and [`ExperimentError::Move`],
+    /// which no seed should bring about.
+    pub fn add_person(
+        &mut self,
+        seed: u64,
+        number: u64,
+        effort: IntentEffort,
+    ) -> Result<(), ExperimentError> {
+        let geometry = Geometry::default();
+        let number = number as usize;
+        let layout = shipped(number, &geometry)?;
+        let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
+        let mut rig = Rig::of_mapped_parts(geometry, seed)?;
+        let mut body = Somebody::of(seed, number / builtin_layouts().count(), geometry.bounds());
+        let area =
+            layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
+
+        let trial = |(guard, layout): (Guarded, &Layout)| {
+            Trial::new(rig.engine(layout.clone(), Method::Tracker), guard)
+        };
+        let mut trials: Vec<Trial> = Guarded::ALL.into_iter().zip(&layouts).map(trial).collect();
+        let mut walked = 0;
+        while walked < effort.steps {
+            for _ in 0..CROSSINGS {
+                let act = body.cross(area)?;
+                walked += play(&act, &mut rig, &mut trials);
+            }
+        }
+        for (guard, mut trial) in Guarded::ALL.into_iter().zip(trials) {
+            let mut pressed = 0;
+            // A third of the presses to each guard.
+            while pressed < effort.presses.div_ceil(3) {
+                let page = trial.engine.layout().clone();
+                let wanted = |widget: &Widget| {
+                    widget.goto.is_none() && widget.is_on(0) && Guarded::of(widget) == guard
+                };
+                let act = body.make_use(&page, wanted, PRESSES)?;
+                if act.intended.is_empty() {
+                    break;
+                }
+                pressed += act.intended.len() as u64;
+                play(&act, &mut rig, std::slice::from_mut(&mut trial));
+            }
+            self.steps[guard as usize] += trial.steps;
+            for (key, score) in trial.scores {
+                self.scores.entry(key).or_default().add(&score);
+            }
+        }
+        self.people += 1;
+        Ok(())
+    }
+
+    /// Adds all people of another table.
+    pub fn append(&mut self, other: Self) {
+        for (key, score) in other.scores {
+            self.scores.entry(key).or_default().add(&score);
+        }
+        for (steps, others) in self.steps.iter_mut().zip(other.steps) {
+            *steps += others;
+        }
+        self.people += other.people;
+    }
+
+    /// Steps that were taken in the presence of controls with this guard.
+    #[must_use]
+    pub fn steps(&self, guard: Guarded) -> u64 {
+        self.steps[guard as usize]
+    }
+
+    /// All kinds with one guard together.
+    #[must_use]
+    pub fn whole(&self, guard: Guarded) -> IntentScore {
+        let mut whole = IntentScore::default();
+        self.scores.iter().filter(|((_, of), _)| *of == guard).for_each(|(_, score)| whole.add(score));
+        whole
+    }
+
+    /// All lines, for programs: each kind and guard, then all kinds of each guard.
+    pub fn lines(&self) -> impl Iterator<Item = IntentLine> + '_ {
+        let kinds = self.scores.iter().map(|((kind, guard), score)| (kind.clone(), *guard, *score));
+        let wholes = Guarded::ALL.into_iter().map(|guard| ("all".to_owned(), guard, self.whole(guard)));
+        kinds.chain(wholes).map(|(kind, guard, score)| IntentLine {
+            steps: self.steps(guard),
+            kind,
+            guard,
+            score,
+        })
+    }
+
+    /// All lines as CSV with a header line.
+    #[must_use]
+    pub fn csv(&self) -> String {
+        let mut text = String::from(
+            "kind,guard,steps,false_activations,taken_back,false_per_1000,false_low,false_high,\
+             intended,missed,missed_per_1000,missed_low,missed_high,wrong,wrong_per_1000,wrong_low,wrong_high\n",
+        );
+        for line in self.lines() {
+            let IntentLine { kind, guard, steps, score } = &line;
+            let [falsely, missed, wrong] = [line.falsely(), line.missed(), line.wrong()].map(|counted| {
+                let (low, high) = counted.wilson_95();
+                format!("{:.3},{:.3},{:.3}", 1e3 * counted.share(), 1e3 * low, 1e3 * high)
+            });
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "{kind},{},{steps},{},{},{falsely},{},{},{missed},{},{wrong}",
+                guard.name(),
+                score.false_activations,
+                score.taken_back,
+                score.intended,
+                score.missed,
+                score.wrong
+            );
+        }
+        text
+    }
+}
+
+/// One line of an [`IntentTable`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct IntentLine {
+    /// Name of the kind of control, or `all`.
+    pub kind: String,
+    /// What it was guarded with.
+    pub guard: Guarded,
+    /// Steps in its presence.
+    pub steps: u64,
+    /// What came of them and of the presses that were meant.
+    #[serde(flatten)]
+    pub score: IntentScore,
+}
+
+impl IntentLine {
+    /// False activations of all steps.
+    #[must_use]
+    pub fn falsely(&self) -> Counted {
+        Counted { hits: self.score.false_activations, of: self.steps }
+    }
+
+    /// Missed presses of all that were meant.
+    #[must_use]
+    pub fn missed(&self) -> Counted {
+        Counted { hits: self.score.missed, of: self.score.intended }
+    }
+
+    /// Wrong controls of all presses that were meant.
+    #[must_use]
+    pub fn wrong(&self) -> Counted {
+        Counted { hits: self.score.wrong, of: self.score.intended }
+    }
+}
+
+impl fmt::Display for IntentTable {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        writeln!(
+            f,
+            "shipped layouts on a floor of 6 x 6 tiles, {} people of 45 to 120 kg at three speeds;\n\
+             per 1000, with the interval that holds the truth 95 times in 100 (Wilson)",
+            self.people
+        )?;
+        writeln!(
+            f,
+            "                                   false activations                            missed               wrong"
+        )?;
+        writeln!(
+            f,
+            "guard       kind            steps         per 1000 steps  taken back  meant        per 1000            per 1000"
+        )?;
+        for line in self.lines() {
+            let IntentLine { kind, guard, steps, score } = &line;
+            writeln!(
+                f,
+                "{:12}{kind:14}{steps:7}   {}{:12}{:7}{}{}",
+                guard.name(),
+                line.falsely(),
+                score.taken_back,
+                score.intended,
+                line.missed(),
+                line.wrong()
+            )?;
+        }
+        Ok(())
+    }
+}
+
+/// An engine, and what came of what people did to it.
+#[derive(Debug)]
+pub(super) struct Trial {
+    pub(super) engine: Engine,
+    pub(super) scores: BTreeMap<(String, Guarded), IntentScore>,
+    pub(super) steps: u64,
+    /// Which controls are watched.
+    guard: Guarded,
+    /// How often each intention of the present act came true.
+    done: Vec<u32>,
+    /// Presses nobody wanted that have not ended, by control.
+    unwanted: Vec<usize>,
+}
+
+impl Trial {
+    pub(super) fn new(engine: Engine, guard: Guarded) -> Self {
+        Self { engine, scores: BTreeMap::new(), steps: 0, guard, done: Vec::new(), unwanted: Vec::new() }
+    }
+
+    /// All kinds together.
+    pub(super) fn whole(&self) -> IntentScore {
+        let mut whole = IntentScore::default();
+        self.scores.values().for_each(|score| whole.add(score));
+        whole
+    }
+
+    fn take(&mut self, event: &WidgetEvent, since: Duration, act: &Act) {
+        let Some(widget) = self.engine.layout().widget_index(event.id.as_str()) else { return };
+        let spec = &self.engine.layout().widgets[widget];
+        if Guarded::of(spec) != self.guard {
+            return;
+        }
+        let key = (spec.kind.clone(), Guarded::of(spec));
+        let acted = acts(event.kind, spec);
+        let meant = act.intended.iter().position(|intended| (intended.from..intended.to).contains(&since));
+        match meant {
+            Some(meant) if act.intended[meant].widget == widget => self.done[meant] += u32::from(acted),
+            Some(meant) if acted => {
+                let meant = &self.engine.layout().widgets[act.intended[meant].widget];
+                let key = (meant.kind.clone(), Guarded::of(meant));
+                self.scores.entry(key).or_default().wrong += 1;
+            }
+            Some(_) => {}
+            None => {
+                let score = self.scores.entry(key).or_default();
+                score.false_activations += u64::from(acted);
+                match event.kind {
+                    EventKind::Pressed if !acted => self.unwanted.push(widget),
+                    EventKind::Cancelled if self.unwanted.contains(&widget) => score.taken_back += 1,
+                    _ => {}
+                }
+                if !matches!(event.kind, EventKind::Pressed) {
+                    self.unwanted.retain(|&other| other != widget);
+                }
+            }
+        }
+    }
+
+    fn conclude(&mut self, act: &Act) {
+        for (intended, &done) in act.intended.iter().zip(&self.done) {
+            let spec = &self.engine.layout().widgets[intended.widget];
+            let score = self.scores.entry((spec.kind.clone(), Guarded::of(spec))).or_default();
+            score.intended += 1;
+            score.missed += u64::from(done == 0);
+            score.wrong += u64::from(done > 1);
+        }
+    }
+}
+
+/// Whether a control of this kind has acted.
+fn acts(kind: EventKind, widget: &Widget) -> bool {
+    let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
+    match widget.behaviour {
+        Behaviour::Button(_) if !held => kind == EventKind::Clicked,
+        Behaviour::Switch(_) if !held => matches!(kind, EventKind::Changed(_)),
+        _ => kind == EventKind::Pressed,
+    }
+}
+
+/// Plays an act to every trial at once, and counts its steps: all feet put down that pressed nothing on purpose.
+pub(super) fn play(act: &Act, rig: &mut Rig, trials: &mut [Trial]) -> u64 {
+    let geometry = *rig.geometry();
+    for trial in trials.iter_mut() {
+        trial.done.clear();
+        trial.done.resize(act.intended.len(), 0);
+    }
+    let (mut feet, mut down, mut steps) = (Vec::<Foot>::new(), 0, 0);
+    let length = act.script.duration().as_millis() as u32;
+    for milli in 1..=length + PAUSE_MS {
+        let since = Duration::from_millis(milli.into());
+        feet.clear();
+        if milli <= length {
+            act.script.feet_at(Instant::START + since, &mut feet);
+        }
+        let now_down = feet
+            .iter()
+            .filter(|foot| foot.force.0 > DOWN_N && geometry.bounds().contains(foot.centre_of_pressure()))
+            .count();
+        let meant = act.intended.iter().any(|intended| (intended.from..intended.to).contains(&since));
+        steps += if meant { 0 } else { now_down.saturating_sub(down) as u64 };
+        down = now_down;
+        rig.step(feet.iter().map(Foot::as_load).collect::<Vec<Load>>(), |frame| {
+            for trial in trials.iter_mut() {
+                let events = trial.engine.step(frame).events.to_vec();
+                events.iter().for_each(|event| trial.take(event, since, act));
+            }
+        });
+    }
+    for trial in trials.iter_mut() {
+        trial.steps += steps;
+        trial.conclude(act);
+    }
+    steps
+}
+
+/// One of the shipped layouts, round and round.
+fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
+    let name = builtin_layouts().nth(number % builtin_layouts().count()).unwrap_or_default();
+    let text = builtin_layout(name).unwrap_or_default();
+    let loaded = parse_layout(text, name, &Kinds::builtin(), geometry);
+    loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))
+}
+
+fn joined(one: Rect, other: Rect) -> Rect {
+    Rect::new(one.min.min(other.min), one.max.max(other.max))
+}

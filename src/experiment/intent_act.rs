@@ -1,0 +1,245 @@
+//! What people do in front of a layout: cross it, and use it.
+
+use std::f32::consts::{PI, TAU};
+use std::time::Duration;
+
+use glam::Vec2;
+use rand::{RngExt, SeedableRng};
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use super::rig::ExperimentError;
+use crate::floor::Rect;
+use crate::layout::{Layout, Widget};
+use crate::sim::{MoveError, Performance, Person, Script};
+use crate::units::Newtons;
+use crate::widget::Guard;
+
+/// Walking speeds, in metres per second: slow, usual, brisk.
+///
+/// # Source
+/// Adults' slow, comfortable and fast walking (Bohannon 1997: 0.8 at the slow end of the old, 1.3, 1.7 and more).
+pub(super) const SPEEDS_M_S: [f32; 3] = [0.8, 1.2, 1.6];
+
+/// Scatter of the point that is pressed about the one aimed at, in metres each way (our assumption:
+/// feet hit targets of 10 to 12 cm nearly always and those of 5 cm often not, Saunders and Vogel 2015).
+const AIM_M: f32 = 0.02;
+
+/// People press with about twice what a control takes, give or take a quarter (our assumption), but
+/// with no more than half of their weight: beyond that the other foot no longer carries them.
+const FORCE_OVER_PRESS: f32 = 2.0;
+const FORCE_SCATTER: f32 = 0.3;
+
+/// Who feels no click presses on: nobody stays below this much of what the control takes.
+const FORCE_AT_LEAST: f32 = 1.2;
+
+const MOST_OF_WEIGHT: f32 = 0.5;
+
+/// How near to a control people stand who did not reach it from where they stood, in metres.
+const NEAR_M: f32 = 0.60;
+
+/// How far beyond the floor people come from, in metres: no part of a foot is on it there.
+const BEYOND_M: f32 = 0.45;
+
+/// Somebody who wants something of a control, and when.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Intended {
+    /// Which control.
+    pub(super) widget: usize,
+    /// From the first move towards it.
+    pub(super) from: Duration,
+    /// To a moment after the last foot has left it.
+    pub(super) to: Duration,
+}
+
+/// A stretch of a person's life.
+#[derive(Clone, Debug)]
+pub(super) struct Act {
+    pub(super) script: Script,
+    pub(super) intended: Vec<Intended>,
+}
+
+/// How long after a press what comes of it may still be told.
+const AFTER: Duration = Duration::from_millis(120);
+
+/// Somebody made up from a seed.
+#[derive(Debug)]
+pub(super) struct Somebody {
+    person: Person,
+    rng: Pcg64Mcg,
+    bounds: Rect,
+}
+
+impl Somebody {
+    /// A person of 45 to 120 kg in shoes over feet of 22 to 30 cm, on a floor with these bounds;
+    /// `number` says who of three walks at which speed.
+    pub(super) fn of(seed: u64, number: usize, bounds: Rect) -> Self {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x1274_e475);
+        let person = Person {
+            mass_kg: rng.random_range(45.0..120.0),
+            foot_length_m: rng.random_range(0.22..0.30),
+            speed_m_s: SPEEDS_M_S[number % 3] * rng.random_range(0.92..1.08),
+            step_width_m: rng.random_range(0.08..0.16),
+            stand_width_m: rng.random_range(0.15..0.32),
+            toe_out: rng.random_range(0.0..0.2),
+            ..Person::default()
+        };
+        Self { person, rng, bounds }
+    }
+
+    /// Crosses the floor over a point of `area`: straight on, with a stop, turning there or stepping aside.
+    pub(super) fn cross(&mut self, area: Rect) -> Result<Act, ExperimentError> {
+        let through = area.min + area.size() * self.pair(0.0, 1.0);
+        let way = self.rng.random_range(0.0..TAU);
+        let from = self.beyond(through, way + PI);
+        let mut to = self.beyond(through, way);
+        let mut walker = Performance::new(self.person, self.rng.random());
+        walker.appear(from, way - 0.5 * PI)?;
+        let manner = self.rng.random_range(0.0..1.0);
+        if manner > 0.6 {
+            walker.walk(&[through])?;
+            walker.wait(self.millis(500, 2000));
+            if manner > 0.85 {
+                let aside = self.rng.random_range(0.1..0.5) * self.sign();
+                walker.sidestep(through + Vec2::from_angle(way).perp() * aside)?;
+                walker.wait(self.millis(300, 1500));
+            } else if manner > 0.7 {
+                let turn = self.rng.random_range(0.5..2.8) * self.sign();
+                walker.turn(way - 0.5 * PI + turn)?;
+                walker.wait(self.millis(300, 1500));
+                to = self.beyond(through, way + turn);
+            }
+        }
+        walker.walk(&[to])?;
+        Ok(Act { script: Script::new(vec![walker], self.bounds), intended: Vec::new() })
+    }
+
+    /// Comes to the layout's stance zone, uses controls `times` times, and leaves.
+    ///
+    /// Only controls that `wanted` says so are used.
+    pub(super) fn make_use(
+        &mut self,
+        layout: &Layout,
+        wanted: impl Fn(&Widget) -> bool,
+        times: usize,
+    ) -> Result<Act, ExperimentError> {
+        let choice: Vec<usize> =
+            (0..layout.widgets.len()).filter(|&index| wanted(&layout.widgets[index])).collect();
+        let mut user = Performance::new(self.person, self.rng.random());
+        let stance = stance(layout, self.bounds) + self.pair(-0.04, 0.04);
+        let way = self.rng.random_range(0.0..PI);
+        user.appear(self.beyond(stance, way + PI), way - 0.5 * PI)?;
+        user.walk(&[stance])?;
+        user.turn(0.0)?;
+        user.wait(self.millis(1000, 2500));
+        let mut intended = Vec::new();
+        if !choice.is_empty() {
+            for _ in 0..times {
+                let widget = choice[self.rng.random_range(0..choice.len())];
+                let from = user.duration();
+                self.operate(&mut user, &layout.widgets[widget])?;
+                intended.push(Intended { widget, from, to: user.duration() + AFTER });
+                user.wait(AFTER + self.millis(200, 1200));
+            }
+        }
+        let away = self.rng.random_range(PI..TAU);
+        let away = self.beyond(stance, away);
+        user.walk(&[away])?;
+        Ok(Act { script: Script::new(vec![user], self.bounds), intended })
+    }
+
+    /// Does what the control's guard takes for it to act once.
+    fn operate(&mut self, user: &mut Performance, widget: &Widget) -> Result<(), ExperimentError> {
+        match widget.behaviour.thresholds().guard {
+            Guard::Free => self.press(user, widget, (80, 350), None)?,
+            Guard::Confirm { .. } => {
+                let first = self.press(user, widget, (80, 350), None)?;
+                self.press(user, widget, (80, 350), Some(first))?
+            }
+            Guard::HoldToRun { .. } => self.press(user, widget, (800, 2000), None)?,
+        };
+        Ok(())
+    }
+
+    /// Presses once for some milliseconds and gives back where. Who does not reach it moves, unless
+    /// it has been reached `before`.
+    fn press(
+        &mut self,
+        user: &mut Performance,
+        widget: &Widget,
+        hold_ms: (u64, u64),
+        before: Option<Vec2>,
+    ) -> Result<Vec2, ExperimentError> {
+        let hold = self.millis(hold_ms.0, hold_ms.1);
+        let scatter = Vec2::new(self.normal(), self.normal()) * AIM_M;
+        let aim = widget.area.centre() + scatter;
+        let press = widget.behaviour.thresholds().for_weight(Some(self.person.weight())).press;
+        let meant = press * (FORCE_OVER_PRESS * (FORCE_SCATTER * self.normal()).exp()).max(FORCE_AT_LEAST);
+        let most = self.person.weight() * MOST_OF_WEIGHT;
+        let force = Newtons(meant.0.min(most.0));
+        let failed = match user.press(aim, force, hold) {
+            Ok(()) => return Ok(aim),
+            Err(failed) => failed,
+        };
+        let (MoveError::OutOfReach { .. } | MoveError::Occupied { .. }) = failed else {
+            return Err(failed.into());
+        };
+        let again = match before {
+            Some(before) => before,
+            None => {
+                // Stands before the control then, and near enough to it.
+                let place = user.place().unwrap_or_default();
+                let nearer = place.y.max(aim.y - NEAR_M);
+                user.sidestep(Vec2::new(aim.x + 0.05 * self.sign(), nearer))?;
+                user.wait(self.millis(800, 1500));
+                aim
+            }
+        };
+        user.press(again, force, hold)?;
+        Ok(again)
+    }
+
+    /// Where somebody who goes from `point` in the direction `way` has left the floor.
+    fn beyond(&self, point: Vec2, way: f32) -> Vec2 {
+        let outer = self.bounds.grown(BEYOND_M);
+        let direction = Vec2::from_angle(way);
+        let to_edge = |from: f32, along: f32, low: f32, high: f32| {
+            if along.abs() < 1e-6 {
+                f32::INFINITY
+            } else {
+                ((if along > 0.0 { high } else { low }) - from) / along
+            }
+        };
+        let distance = to_edge(point.x, direction.x, outer.min.x, outer.max.x).min(to_edge(
+            point.y,
+            direction.y,
+            outer.min.y,
+            outer.max.y,
+        ));
+        point + direction * distance
+    }
+
+    fn pair(&mut self, low: f32, high: f32) -> Vec2 {
+        Vec2::new(self.rng.random_range(low..high), self.rng.random_range(low..high))
+    }
+
+    fn normal(&mut self) -> f32 {
+        StandardNormal.sample(&mut self.rng)
+    }
+
+    fn sign(&mut self) -> f32 {
+        if self.rng.random_bool(0.5) { 1.0 } else { -1.0 }
+    }
+
+    fn millis(&mut self, least: u64, most: u64) -> Duration {
+        Duration::from_millis(self.rng.random_range(least..most))
+    }
+}
+
+/// Where people stand to use `layout`; in the middle of the south where it does not say.
+fn stance(layout: &Layout, bounds: Rect) -> Vec2 {
+    layout
+        .stances
+        .first()
+        .map_or(Vec2::new(bounds.centre().x, bounds.min.y + 0.15), |stance| stance.area.centre())
+}
