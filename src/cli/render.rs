@@ -3,7 +3,7 @@ use std::path::PathBuf;
 use underfoot::engine::{Engine, Snapshot};
 use underfoot::picture;
 use underfoot::scene::{self, Scene, Show, Theme, View};
-use underfoot::sense::Method;
+use underfoot::sense::{ForceFrame, Method};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -32,7 +32,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = args.floor.load()?.geometry;
     let layout = args.layout.load(&geometry)?;
     let mut snapshot = Snapshot::default();
-    let engine = Engine::new(geometry, layout, Method::default());
+    let mut engine = Engine::new(geometry, layout, Method::default());
+    // An empty floor has been seen: nobody has to lift a foot first.
+    engine.step(&ForceFrame::empty(&geometry));
     engine.snapshot(&mut snapshot);
     let show = if args.bare { Show::PROJECTOR } else { Show::LAYOUT };
     let mut scene = Scene::new();
