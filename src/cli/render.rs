@@ -4,6 +4,7 @@ use underfoot::engine::{Engine, Snapshot};
 use underfoot::picture;
 use underfoot::scene::{self, Scene, Show, Theme, View};
 use underfoot::sense::{ForceFrame, Method};
+use underfoot::units::Instant;
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -34,7 +35,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut snapshot = Snapshot::default();
     let mut engine = Engine::new(geometry, layout, Method::default());
     // An empty floor has been seen: nobody has to lift a foot first.
-    engine.step(&ForceFrame::empty(&geometry));
+    for ms in 0..100 {
+        engine.step(&ForceFrame { at: Instant::from_millis(ms), ..ForceFrame::empty(&geometry) });
+    }
     engine.snapshot(&mut snapshot);
     let show = if args.bare { Show::PROJECTOR } else { Show::LAYOUT };
     let mut scene = Scene::new();
