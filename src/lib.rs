@@ -12,6 +12,7 @@
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
 pub mod engine;
+pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;

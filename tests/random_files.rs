@@ -9,6 +9,7 @@ use proptest::prelude::*;
 use proptest::sample::{Index, select};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use underfoot::ergonomics;
 use underfoot::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, MapRecord, PositionMap,
     SensorId,
@@ -19,7 +20,7 @@ use underfoot::schema::{
     write_floor,
 };
 use underfoot::units::Newtons;
-use underfoot::widget::{Behaviour, ButtonSpec, SliderSpec, SwitchSpec};
+use underfoot::widget::Behaviour;
 
 /// One thing that happens to a file.
 #[derive(Clone, Debug)]
@@ -126,15 +127,12 @@ fn check_layout(layout: &Layout) {
         assert!(widget.area.size().min_element() > 0.0, "{id}");
         assert!(floor.contains(widget.area.min) && floor.contains(widget.area.max), "{id}");
         assert!(layout.regions[widget.region].area.grown(1e-4).contains(widget.area.centre()), "{id}");
-        let thresholds = match widget.behaviour {
-            Behaviour::Button(ButtonSpec { thresholds })
-            | Behaviour::Switch(SwitchSpec { thresholds, .. })
-            | Behaviour::Slider(SliderSpec { thresholds, .. }) => thresholds,
-        };
+        let thresholds = widget.behaviour.thresholds();
         assert!(thresholds.release < thresholds.press && thresholds.press.0 <= 1000.0, "{id}");
         if let Behaviour::Slider(slider) = widget.behaviour {
-            assert!(slider.min < slider.max && slider.step >= 0.0, "{id}");
-            assert!((slider.min..=slider.max).contains(&slider.initial), "{id}");
+            let scale = slider.scale;
+            assert!(scale.min < scale.max && scale.step >= 0.0, "{id}");
+            assert!((scale.min..=scale.max).contains(&slider.initial), "{id}");
         }
         for click in [&widget.feel.press, &widget.feel.release].into_iter().flatten() {
             assert!(click.level.is_finite() && !click.modes.is_empty(), "{id}");
@@ -162,16 +160,22 @@ proptest! {
 
     #[test]
     fn damaged_layouts_never_panic_and_what_is_read_is_sound(
-        name in select(builtin_layouts().collect::<Vec<_>>()),
+        text in select(layouts()),
         edits in vec(edit(), 1..6),
     ) {
-        let bytes = edited(builtin_layout(name).unwrap().as_bytes(), edits);
+        let bytes = edited(text.as_bytes(), edits);
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("layout.ron");
         fs::write(&path, &bytes).unwrap();
         match load_layout(&path, &Kinds::builtin(), &Geometry::default()) {
             Ok(loaded) => {
                 check_layout(&loaded.layout);
+                // Places are in the text, whatever is found about them.
+                let found = ergonomics::review(&loaded.layout, &Floor::default());
+                for problem in &loaded.places.locate(&found) {
+                    let text = std::str::from_utf8(&bytes).unwrap();
+                    prop_assert!(text.get(problem.span.clone()).is_some(), "{:?}", problem);
+                }
                 prop_assert!(loaded.warnings.iter().all(|problem| problem.severity == Severity::Warning));
             }
             Err(problems) => check_problems(&bytes, &problems),
@@ -203,6 +207,29 @@ proptest! {
             Err(problems) => prop_assert!(false, "{}\n{}", problems, text),
         }
     }
+}
+
+/// Shipped layouts, and one that uses all of the language.
+fn layouts() -> Vec<&'static str> {
+    const LANGUAGE: &str = r#"Layout(
+    version: 1,
+    units: Metres,
+    kinds: [
+        (name: "key", from: "big", look: (icon: Home)),
+        Kind(name: "big", from: "button", press_n: 80, release_n: 50),
+    ],
+    regions: [(id: "all", at: (0, 0), size: (1.8, 1.8), cursor: Each)],
+    widgets: [
+        Group(id: "pad", at: (0.2, 0.7), widgets: [
+            (id: "key_{label}", kind: "key", at: (0, 0), size: (0.15, 0.14),
+                repeat: (columns: 3, rows: 2, gap: (0.06, 0.07), labels: ["1", "2", None, "4", "5", "OK"])),
+            Group(right_of: "key_2", gap: 0.3, widgets: [(id: "deep", kind: "switch", at: (9, 9), size: (0.2, 0.2))]),
+        ]),
+        (id: "last", kind: "slider", below: "first", gap: 0.1, align: End, max: 9),
+        (id: "first", kind: "button", right_of: "pad", gap: 0.1, size: (0.3, 0.2), label: "Über"),
+    ],
+)"#;
+    builtin_layouts().filter_map(builtin_layout).chain([LANGUAGE, LANGUAGE]).collect()
 }
 
 /// 400 cases of each, or as many as `PROPTEST_CASES` says.
@@ -249,10 +276,12 @@ fn record(floor: &mut Floor, seed: u64) {
         if rng.random_bool(0.3) {
             let trims = [(); 4].map(|()| std::array::from_fn(|_| rng.random_range(-0.6f32..0.6)));
             let bends = [(); 2].map(|()| std::array::from_fn(|_| rng.random_range(-2.0f32..2.0)));
-            floor.position_maps[tile] = Some(PositionMap { trims, bends });
-            floor.map_records[tile] = rng
+            let record = rng
                 .random_bool(0.8)
                 .then(|| MapRecord { day: day(&mut rng), residual_m: rng.random_range(0.0..0.05) });
+            let residual_m = record.map_or(PositionMap::SOME_RESIDUAL_M, |record| record.residual_m);
+            floor.position_maps[tile] = Some(PositionMap { trims, bends, residual_m });
+            floor.map_records[tile] = record;
         }
     }
 }

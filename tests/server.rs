@@ -18,7 +18,7 @@ use underfoot::sink::{ActuatorSink, EventSink, ManualSink, SinkError};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
-use underfoot::wire::{ControlMessage, SensorPacket};
+use underfoot::wire::{ControlMessage, Request, SensorPacket};
 
 /// Packets of a foot on `home`, with silences in between: the clock goes on, nothing comes.
 struct Visit {
@@ -57,8 +57,8 @@ impl SensorSource for Visit {
         Instant::from_millis(self.millis.into())
     }
 
-    fn take_control(&mut self) -> Option<ControlMessage> {
-        self.requests.pop_front()
+    fn take_request(&mut self) -> Option<Request> {
+        self.requests.pop_front().map(Request::from)
     }
 }
 

@@ -218,5 +218,5 @@ fn the_granted_buffer_is_told() {
 
 /// What apps have asked for, oldest first.
 fn asked(source: &mut UdpSource) -> Vec<ControlMessage> {
-    std::iter::from_fn(|| source.take_control()).collect()
+    std::iter::from_fn(|| source.take_request()).map(|request| request.message).collect()
 }

@@ -1,5 +1,7 @@
 use std::path::PathBuf;
 
+use underfoot::ergonomics::{self, RULES};
+use underfoot::floor::Floor;
 use underfoot::schema::{self, Diagnostics};
 
 use super::failure::Failure;
@@ -10,7 +12,7 @@ use super::layout_args::LayoutArgs;
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// Layout files.
-    #[arg(required = true, value_name = "LAYOUT")]
+    #[arg(required_unless_present_any = ["explain", "rules"], value_name = "LAYOUT")]
     layouts: Vec<PathBuf>,
     #[command(flatten)]
     floor: FloorArgs,
@@ -20,29 +22,37 @@ pub(crate) struct Args {
     /// Print the diagnostics as one JSON array on standard output.
     #[arg(long)]
     json: bool,
+    /// Fail on warnings too.
+    #[arg(long)]
+    strict: bool,
+    /// Say what an ergonomic rule asks for, why, and who says so, such as U101.
+    #[arg(long, value_name = "CODE", conflicts_with = "layouts")]
+    explain: Option<String>,
+    /// List all ergonomic rules.
+    #[arg(long, conflicts_with_all = ["layouts", "explain"])]
+    rules: bool,
 }
 
-/// Reads every layout and says everything that is wrong with it.
+/// Reads every layout and says everything that is wrong with it, for the program and for feet.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(code) = &args.explain {
+        return explain(code, args.json);
+    }
+    if args.rules {
+        return list_rules(args.json);
+    }
     let floor = args.floor.load()?;
     let mut found = Diagnostics::default();
     let mut bad = 0;
     for path in &args.layouts {
-        let files = LayoutArgs { layout: Some(path.clone()), widgets: args.widgets.clone() };
-        let read = files.kinds().and_then(|kinds| schema::load_layout(path, &kinds, &floor.geometry));
-        match read {
-            Ok(loaded) => found.append(loaded.warnings),
-            Err(diagnostics) => {
-                bad += 1;
-                found.append(diagnostics);
-            }
-        }
+        let problems = check(path, args, &floor);
+        bad += usize::from(problems.errors() > 0 || (args.strict && problems.warnings() > 0));
+        found.append(problems);
     }
     if args.json {
-        let json = serde_json::to_string(&found).map_err(|error| Failure::Other(error.to_string()))?;
-        anstream::println!("{json}");
-    } else {
-        anstream::eprint!("{found}");
+        print_json(&found)?;
+    } else if !found.is_empty() {
+        anstream::eprintln!("{}", if colours() { format!("{found:#}") } else { found.to_string() });
     }
     match bad {
         0 => {
@@ -53,6 +63,60 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         bad => Err(Failure::Other(format!("{} of {} bad", bad, count(args.layouts.len())))),
     }
+}
+
+/// Everything there is to say of the layout at `path`.
+fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
+    let files = LayoutArgs { layout: Some(path.to_path_buf()), widgets: args.widgets.clone() };
+    let read = files.kinds().and_then(|kinds| schema::load_layout(path, &kinds, &floor.geometry));
+    match read {
+        Ok(loaded) => {
+            let mut problems = loaded.warnings;
+            problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+            problems
+        }
+        Err(problems) => problems,
+    }
+}
+
+fn explain(code: &str, json: bool) -> Result<(), Failure> {
+    let rule = ergonomics::rule(code).ok_or_else(|| {
+        let codes: Vec<&str> = RULES.iter().map(|rule| rule.code).collect();
+        Failure::Other(format!("there is no rule {code}; there are {}", codes.join(", ")))
+    })?;
+    if json {
+        return print_json(rule);
+    }
+    anstream::println!(
+        "{}: {}\n\n{}\n\nWhy: {}\nTo do: {}",
+        rule.code,
+        rule.title,
+        rule.limits,
+        rule.source,
+        rule.remedy
+    );
+    Ok(())
+}
+
+fn list_rules(json: bool) -> Result<(), Failure> {
+    if json {
+        return print_json(&RULES);
+    }
+    for rule in RULES {
+        anstream::println!("{}  {}: {}", rule.code, rule.title, rule.limits);
+    }
+    Ok(())
+}
+
+fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
+    let json = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
+    anstream::println!("{json}");
+    Ok(())
+}
+
+/// Whether somebody looks at standard error who sees colours.
+fn colours() -> bool {
+    anstream::stderr().current_choice() != anstream::ColorChoice::Never
 }
 
 fn count(layouts: usize) -> String {

@@ -6,8 +6,8 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use clap::Subcommand;
 use serde::Serialize;
 use underfoot::experiment::{
-    ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, SeamObject,
-    SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
+    SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
 };
 use underfoot::picture;
 
@@ -32,6 +32,8 @@ enum What {
     Figure11(FigureArgs),
     /// How well one contact is found, over a whole tile and at its seams.
     Spot(SpotArgs),
+    /// How well one foot is found by its force and its distance from a seam: what `underfoot check` predicts by.
+    Place(SpotArgs),
     /// How well both feet of people are found, and the cursor of a foot that works beside a heavy one.
     Feet(FeetArgs),
     /// How often controls act that nobody meant, and miss what somebody meant: people who cross and use
@@ -111,6 +113,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Figure9(args) => args.make("figure9", &SeamObject::measure(args.seed)?),
         What::Figure11(args) => args.make("figure11", &TwoFeet::measure(args.seed)?),
         What::Spot(args) => spot(args),
+        What::Place(args) => place(args),
         What::Feet(args) => feet(args),
         What::Intent(args) => intent(args),
     }
@@ -232,6 +235,16 @@ fn spot(args: &SpotArgs) -> Result<(), Failure> {
         return print_json(&Tables { lines: tile.lines().chain(seam.lines()).collect() });
     }
     anstream::println!("{tile}\n{seam}");
+    Ok(())
+}
+
+fn place(args: &SpotArgs) -> Result<(), Failure> {
+    let mut table = PlaceTable::new(96);
+    counted("floor", args.floors, |step| table.add_floor(args.seed.wrapping_add(step)))?;
+    if args.json {
+        return print_json(&table.lines().collect::<Vec<_>>());
+    }
+    anstream::println!("{table}");
     Ok(())
 }
 

@@ -3,6 +3,7 @@
 //! Exit status 0: done; 1: the work failed (standard error says what to do next); 2: wrong usage.
 
 mod actuate;
+mod addresses;
 mod calibrate;
 mod check;
 mod experiment;
@@ -56,6 +57,8 @@ enum Command {
     Session(session::Args),
     /// Read layouts and say everything that is wrong with them.
     Check(check::Args),
+    /// Every OSC address of a layout, in and out, with its arguments.
+    Addresses(addresses::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
@@ -94,6 +97,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Simulate(args)) => simulate::run(&args),
         Some(Command::Session(args)) => session::run(&args),
+        Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),

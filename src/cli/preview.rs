@@ -23,7 +23,7 @@ use underfoot::sink::{EventSink, Fanout};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, UdpSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::WidgetEvent;
-use underfoot::wire::ControlMessage;
+use underfoot::wire::{ControlMessage, Prefix};
 
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
@@ -90,7 +90,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let choices = args.choices();
     obey(wished, args.layout.clone(), choices.clone(), floor.geometry, desk, commands);
 
-    let mut told = args.outputs.open()?;
+    let mut told = args.outputs.open(&floor.geometry)?;
     told.push(ToWindow { events: event_sender, missed: 0 });
     let served = Served {
         floor: stage.floor.clone(),
@@ -100,6 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         method: if args.eq4 { Method::Eq4 } else { Method::default() },
         actuate: args.actuate.clone(),
         told,
+        prefix: args.outputs.prefix.osc_prefix.clone(),
         snapshots: snapshot_input,
         inbox,
         notices: notice_sender,
@@ -150,7 +151,8 @@ struct Stage {
 impl Args {
     fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
         if let Some(address) = self.listen {
-            let source = UdpSource::bind(address, floor)?;
+            let prefix = self.outputs.prefix.osc_prefix.clone();
+            let source = UdpSource::bind(address, floor)?.with_prefix(prefix);
             return Ok(Stage {
                 floor: floor.clone(),
                 clock: source.clock(),
@@ -194,6 +196,7 @@ struct Served {
     method: Method,
     actuate: ActuateArgs,
     told: Fanout,
+    prefix: Prefix,
     snapshots: triple_buffer::Input<Snapshot>,
     inbox: Receiver<Command>,
     notices: Sender<String>,
@@ -210,6 +213,7 @@ impl Served {
         let mut server = Server::new(&self.floor, self.layout, self.method, self.source)
             .with_feel(feel, sink)
             .with_events(Box::new(self.told))
+            .with_prefix(self.prefix)
             .with_snapshots(self.snapshots)
             .with_commands(self.inbox);
         Ok(server.run(stop)?)

@@ -45,7 +45,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
-    let source = UdpSource::bind(args.listen, &floor)?;
+    let prefix = args.outputs.prefix.osc_prefix.clone();
+    let source = UdpSource::bind(args.listen, &floor)?.with_prefix(prefix.clone());
     let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), source.clock())?;
@@ -73,7 +74,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let mut server = Server::new(&floor, layout, method, Box::new(source))
         .with_feel(feel, sink)
-        .with_events(Box::new(args.outputs.open()?))
+        .with_events(Box::new(args.outputs.open(&floor.geometry)?))
+        .with_prefix(prefix)
         .with_commands(inbox);
     let served = server.run(&stop);
     let counters = server.counters();
@@ -95,7 +97,7 @@ fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
 /// What came in, what was not used, and how quickly the floor answered.
 fn report(counters: &LinkCounters, dropped: u64, latency: &LatencyMeter) {
     anstream::eprintln!(
-        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; events not sent {dropped}.",
+        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; requests not met {}; events not sent {dropped}.",
         counters.packets,
         counters.frames,
         counters.lost,
@@ -103,6 +105,7 @@ fn report(counters: &LinkCounters, dropped: u64, latency: &LatencyMeter) {
         counters.duplicate,
         counters.refused(),
         counters.bad_readings,
+        counters.denied,
     );
     match latency.summary() {
         Some(summary) => anstream::eprintln!("From packet to first sample handed on: {summary}."),

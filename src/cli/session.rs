@@ -1,4 +1,5 @@
 use std::fs::File;
+use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
@@ -11,7 +12,7 @@ use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot::sim::{Foot, Script, SimFloor};
-use underfoot::sink::{JsonSink, WavOptions, WavSink, WhenFull};
+use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
@@ -19,6 +20,7 @@ use underfoot::widget::Value;
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
 
 /// What `underfoot session` is asked to do.
@@ -30,6 +32,13 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     sim: SimArgs,
+    #[command(flatten)]
+    tuio: TuioArgs,
+    #[command(flatten)]
+    prefix: PrefixArg,
+    /// Send events and contacts as OSC as well.
+    #[arg(long, value_name = "HOST:PORT", value_parser = osc_target)]
+    osc: Option<SocketAddr>,
     /// Scenario file; without it, the built-in session.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
@@ -57,6 +66,9 @@ impl Default for Args {
             layout: LayoutArgs::default(),
             floor: FloorArgs::default(),
             sim: SimArgs::default(),
+            tuio: TuioArgs::default(),
+            prefix: PrefixArg::default(),
+            osc: None,
             scenario: None,
             calibrate: false,
             out: DEFAULT_OUT.into(),
@@ -89,9 +101,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let options = WavOptions { when_full: WhenFull::Wait, ..WavOptions::default() };
     let wav = WavSink::create(&sound, renderer, options)?;
     let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
+    let mut told = Fanout::new().with(JsonSink::new(events)?);
+    if let Some(osc) = args.osc {
+        told.push(OscSink::under(osc, args.prefix.osc_prefix.clone())?);
+    }
+    args.tuio.open(&geometry, &mut told)?;
     let mut server = Server::new(&floor, layout, Method::default(), Box::new(source))
         .with_feel(feel, Box::new(wav))
-        .with_events(Box::new(JsonSink::new(events)?));
+        .with_events(Box::new(told));
     let mut camera = Camera::default();
     while server.turn()? == Ended::No {
         camera.look(&server);

@@ -6,6 +6,7 @@ use crate::units::Instant;
 use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent};
 
 use super::interact::Interaction;
+use super::labels::Labels;
 use super::response::{self, LastSpots};
 use super::{PageShown, Snapshot, TileState, WidgetState};
 
@@ -27,6 +28,7 @@ pub struct Engine {
     /// A page that has come since the last step, and in it.
     page_shown: Option<PageShown>,
     page_told: Option<PageShown>,
+    labels: Labels,
     sensing: Sensing,
     interaction: Interaction,
     last_spots: LastSpots,
@@ -71,6 +73,7 @@ impl Engine {
             waiting_page: None,
             page_shown: None,
             page_told: None,
+            labels: Labels::default(),
             last_spots: LastSpots::default(),
             pending: Vec::new(),
             events: Vec::new(),
@@ -96,9 +99,8 @@ impl Engine {
         self.rubs.clear();
         let contacts = self.sensing.update(frame);
         self.interaction.step(frame, contacts, &self.layout, &mut self.events);
-        self.cues.extend(self.events.iter().filter_map(|event| {
-            response::cue(event, frame.received, &self.layout, contacts, &self.last_spots)
-        }));
+        let answers = response::cues(&self.events, frame.received, &self.layout, contacts, &self.last_spots);
+        self.cues.extend(answers);
         for sliding in self.interaction.sliding() {
             if let Some(rub) = response::rub(sliding, &self.layout, contacts) {
                 response::push(&mut self.rubs, rub);
@@ -214,6 +216,18 @@ impl Engine {
         Ok(())
     }
 
+    /// Writes `label` on the control named `id`, in place of what the layout says, also of one given later.
+    ///
+    /// Only its first 64 characters are kept, as many as a layout may have.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn set_label(&mut self, id: &str, label: &str) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        self.labels.write(&mut self.layout, widget, label);
+        Ok(())
+    }
+
     /// The control named `id`, to read back what it holds and how it is; `None` for an unknown name.
     #[must_use]
     pub fn control(&self, id: &str) -> Option<&Control> {
@@ -228,6 +242,8 @@ impl Engine {
         snapshot.contacts.extend_from_slice(self.sensing.contacts());
         snapshot.feet.clear();
         snapshot.feet.extend(self.interaction.feet());
+        snapshot.labels.clear();
+        snapshot.labels.extend(self.labels.iter(&self.layout));
         snapshot.page = self.interaction.page();
         snapshot.cursors.clear();
         snapshot.cursors.extend(self.interaction.cursors());
@@ -323,6 +339,7 @@ impl Engine {
         self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;
+        self.labels.apply(&mut self.layout);
         self.layout_revision = revision;
     }
 }

@@ -11,6 +11,7 @@
 mod feet;
 mod floor_engine;
 mod interact;
+mod labels;
 mod page;
 mod people;
 mod region;

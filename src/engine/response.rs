@@ -8,10 +8,25 @@ use crate::widget::{EventKind, WidgetEvent};
 
 use super::interact::Sliding;
 
-/// The cue that answers `event`, on the tiles under the contact that caused it; `None` if it has none.
+/// The cues that answer `events`, on the tiles under the contacts that caused them.
+pub(super) fn cues<'a>(
+    events: &'a [WidgetEvent],
+    received: Instant,
+    layout: &'a Layout,
+    contacts: &'a [Contact],
+    last_spots: &'a LastSpots,
+) -> impl Iterator<Item = Cue> + 'a {
+    events.iter().enumerate().filter_map(move |(at, event)| {
+        let next = events.get(at + 1);
+        let taken_back = next.is_some_and(|next| next.kind == EventKind::Cancelled && next.id == event.id);
+        if taken_back { None } else { cue(event, received, layout, contacts, last_spots) }
+    })
+}
+
+/// The cue that answers `event`; `None` if it has none.
 ///
-/// A cancel is not felt as a release: the foot has left, or the floor can't be trusted.
-pub(super) fn cue(
+/// A cancel is not felt, nor what it takes back: the foot has left, or the floor can't be trusted.
+fn cue(
     event: &WidgetEvent,
     received: Instant,
     layout: &Layout,
@@ -26,6 +41,7 @@ pub(super) fn cue(
         EventKind::HardPressed | EventKind::LongPressed => feel.stage.as_ref().or(feel.press.as_ref()),
         EventKind::HardReleased => feel.release.as_ref(),
         EventKind::Ticked => feel.step.as_ref(),
+        EventKind::Changed(value) if widget.behaviour.is_stop(value) => feel.step.as_ref(),
         EventKind::Armed => feel.arm.as_ref(),
         EventKind::Warned | EventKind::Refused => feel.warn.as_ref(),
         EventKind::Clicked

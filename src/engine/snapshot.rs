@@ -1,3 +1,5 @@
+use std::sync::Arc;
+
 use glam::Vec2;
 
 use crate::feel::FeelCounters;
@@ -25,6 +27,8 @@ pub struct Snapshot {
     pub cursors: Vec<Option<Cursor>>,
     /// Which of the layout's pages is shown; 0 without pages.
     pub page: usize,
+    /// What apps have written on controls in place of what the layout says: the control's index and its label.
+    pub labels: Vec<(usize, Arc<str>)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
     /// Whether sensor packets arrive.

@@ -12,7 +12,7 @@ use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Widget};
 use crate::sense::{ForceFrame, Method, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{
-    Axis, Behaviour, ButtonSpec, EventKind, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
+    Behaviour, ButtonSpec, EventKind, Scale, SetError, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId,
 };
 
 const AT: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
@@ -49,6 +49,7 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
             face: Colour::default(),
             lit: Colour::default(),
             ink: Colour::default(),
+            icon: None,
         },
     }
 }
@@ -56,9 +57,9 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
 /// A button `home`, a slider `zoom` and a switch `light` on the paper's floor, well apart.
 fn page() -> Layout {
     let size = Vec2::splat(0.2);
-    let home = Behaviour::Button(ButtonSpec { thresholds: AT });
+    let home = Behaviour::Button(ButtonSpec::new(AT));
     let light = Behaviour::Switch(SwitchSpec { thresholds: AT, initial: false });
-    let zoom = SliderSpec { thresholds: AT, axis: Axis::East, min: 0.0, max: 1.0, step: 0.0, initial: 0.0 };
+    let zoom = SliderSpec::new(AT, Scale::UNIT);
     Layout {
         title: "Test page".into(),
         regions: vec![Region {

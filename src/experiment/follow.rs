@@ -46,6 +46,8 @@ pub struct Followed {
     pub two_feet: Errors,
     /// Error of each foot that is down alone.
     pub one_foot: Errors,
+    /// Feet of `one_foot` and of `two_feet` that were within the 95 % ellipse of their contacts.
+    pub inside: [usize; 2],
     /// Feet looked for, one per foot that was down and sample.
     pub feet: usize,
     /// Those of them for which there was no contact.
@@ -65,9 +67,11 @@ pub struct Followed {
 impl Followed {
     /// Adds all of another comparison.
     pub fn append(&mut self, other: Self) {
-        let Self { two_feet, one_foot, feet, missed, of_two, of_two_within_5cm, extra, steps, swaps } = other;
+        let Self { two_feet, one_foot, inside, feet, missed, of_two, of_two_within_5cm, extra, steps, swaps } =
+            other;
         self.two_feet.append(two_feet);
         self.one_foot.append(one_foot);
+        self.inside.iter_mut().zip(inside).for_each(|(sum, more)| *sum += more);
         self.feet += feet;
         self.missed += missed;
         self.of_two += of_two;
@@ -93,6 +97,12 @@ impl Followed {
     #[must_use]
     pub fn share_extra(&self) -> f32 {
         share(self.extra, self.feet)
+    }
+
+    /// Share (0 to 1) of the feet that were within the 95 % ellipse of their contacts, alone and while two were down.
+    #[must_use]
+    pub fn share_inside(&self) -> [f32; 2] {
+        [share(self.inside[0], self.one_foot.count()), share(self.inside[1], self.two_feet.count())]
     }
 
     /// Changes of name per 1000 steps; `None` without a step.
@@ -160,12 +170,20 @@ fn count(
         score.missed += usize::from(error.is_none());
         let errors = if down.len() == 1 { &mut score.one_foot } else { &mut score.two_feet };
         error.into_iter().for_each(|error| errors.push(error));
+        let is_inside = |&found: &usize| {
+            let Contact { centroid, covariance, .. } = &contacts[found];
+            covariance.mahalanobis_squared(foot.centre - *centroid) <= ELLIPSE_95
+        };
+        score.inside[usize::from(down.len() > 1)] += usize::from(found.as_ref().is_some_and(is_inside));
         if down.len() > 1 {
             score.of_two += 1;
             score.of_two_within_5cm += usize::from(error.is_some_and(|error| error <= 0.05));
         }
     }
 }
+
+/// The 95 % quantile of chi-squared with two degrees of freedom.
+pub(super) const ELLIPSE_95: f32 = 5.991;
 
 /// Most contacts that feet are looked for among, heaviest first: beyond it the search grows out of hand.
 const MOST_CONTACTS: usize = 6;

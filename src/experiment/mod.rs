@@ -11,6 +11,7 @@
 //! | [`SeamObject`] | what one tile makes of an object over its edge | paper, figure 9 |
 //! | [`TwoFeet`] | what two feet on four tiles look like, before and after they are told apart | paper, figure 11 |
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
+//! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
@@ -31,8 +32,10 @@ mod follow;
 mod intent;
 mod intent_act;
 mod intent_sweep;
+mod mishap;
 mod orientation;
 mod people;
+mod place;
 mod rig;
 mod scan;
 mod seam_object;
@@ -46,13 +49,15 @@ pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
 pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
+pub use mishap::Mishap;
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
+pub use place::{PlaceLine, PlaceTable};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
-pub use taps::{Stance, TapLine, TapScore, TapTable};
+pub use taps::{Stance, TapLine, TapScene, TapScore, TapTable};
 pub use two_feet::TwoFeet;
 pub use wilson::Counted;
 

@@ -1,5 +1,6 @@
 //! How well both feet of people are found while they walk, turn and stand.
 
+use std::cell::RefCell;
 use std::f32::consts::{PI, TAU};
 use std::fmt;
 use std::time::Duration;
@@ -12,10 +13,12 @@ use serde::Serialize;
 use super::METHODS;
 use super::errors::Summary;
 use super::follow::{Followed, Follower, Truth};
+use super::mishap::Mishap;
 use super::rig::{ExperimentError, Rig};
 use crate::floor::Geometry;
-use crate::sim::{Foot, Load, MoveError, Performance, Person, Script};
+use crate::sim::{Foot, MoveError, Performance, Person, Script};
 use crate::units::Instant;
+use crate::wire::Readings;
 
 /// What somebody does at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -161,6 +164,12 @@ impl PeopleTable {
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         let mut rig = Rig::of_mapped_parts(Geometry::default(), seed)?;
         let visit = Visit::of(seed, rig.geometry())?;
+        self.add_visit(&mut rig, &visit, &mut ());
+        Ok(())
+    }
+
+    /// Lets `visit` happen on the floor of `rig` while `mishap` does.
+    pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, mishap: &mut impl Mishap) {
         let geometry = *rig.geometry();
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
         let mut feet: Vec<Foot> = Vec::new();
@@ -173,7 +182,13 @@ impl PeopleTable {
             truth.clear();
             truth.extend(feet.iter().filter_map(|foot| Truth::of(foot, &geometry)));
             let activity = visit.activity(at) as usize;
-            rig.step(feet.iter().map(Foot::as_load).collect::<Vec<Load>>(), |frame| {
+            mishap.before(milli, rig);
+            let loads = feet.iter().map(Foot::as_load);
+            let shared = RefCell::new(&mut *mishap);
+            let disturb =
+                |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(milli, board, readings);
+            rig.step_disturbed(loads, disturb, |frame| {
+                shared.borrow_mut().sensed(milli, frame);
                 for ((sensing, follower), scores) in methods.iter_mut().zip(scores.iter_mut()) {
                     let contacts = sensing.update(frame);
                     follower.compare(
@@ -186,7 +201,6 @@ impl PeopleTable {
             });
         }
         self.people += 1;
-        Ok(())
     }
 
     /// Adds all people of another table.

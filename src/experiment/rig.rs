@@ -6,12 +6,12 @@ use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
 use crate::engine::Engine;
-use crate::floor::{Floor, Geometry, PositionMap};
+use crate::floor::{Floor, Geometry, PositionMap, SensorId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, ForceFrame, Method, Sensing};
-use crate::sim::{self, CalibrationError, Load, MappingError, MoveError, SimConfig, SimFloor};
+use crate::sim::{self, CalibrationError, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor};
 use crate::units::{Instant, Newtons};
-use crate::wire::SensorPacket;
+use crate::wire::{Readings, SensorPacket};
 
 /// Standard deviation of a sensor's zero since it was tared, in newtons.
 pub const OFFSET_N: f32 = 0.5;
@@ -34,7 +34,7 @@ pub enum ExperimentError {
 }
 
 /// A simulated floor with everything behind it up to the force frames: packets, calibration, tare.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct Rig {
     sim: SimFloor,
     geometry: Geometry,
@@ -60,16 +60,24 @@ impl Rig {
         Ok(Self::over(sim, &floor))
     }
 
+    /// As [`Rig::of_mapped_parts`], of other plates or parts; without position maps.
+    ///
+    /// # Errors
+    /// [`ExperimentError::Calibration`] if a part follows no law.
+    pub fn of_parts(geometry: Geometry, config: SimConfig, seed: u64) -> Result<Self, ExperimentError> {
+        let wired = Floor::of(geometry);
+        let sim = SimFloor::new(&wired, config, seed);
+        let mut floor = sim::calibrated(&wired, &sim, seed)?;
+        drift(&mut floor, seed);
+        Ok(Self::over(sim, &floor))
+    }
+
     /// As [`Rig::of_mapped_parts`], without position maps: the paper's floor.
     ///
     /// # Errors
     /// [`ExperimentError::Calibration`] if a part follows no law.
     pub fn of_calibrated_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
-        let wired = Floor::of(geometry);
-        let sim = SimFloor::new(&wired, SimConfig::default(), seed);
-        let mut floor = sim::calibrated(&wired, &sim, seed)?;
-        drift(&mut floor, seed);
-        Ok(Self::over(sim, &floor))
+        Self::of_parts(geometry, SimConfig::default(), seed)
     }
 
     /// A floor without error.
@@ -124,16 +132,39 @@ impl Rig {
     }
 
     /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.
-    pub fn step(&mut self, loads: impl IntoIterator<Item = Load>, mut sensed: impl FnMut(&ForceFrame)) {
+    pub fn step(&mut self, loads: impl IntoIterator<Item = Load>, sensed: impl FnMut(&ForceFrame)) {
+        self.step_disturbed(loads, |_, _| {}, sensed);
+    }
+
+    /// As [`Rig::step`]; `disturb` may change what each board (by number) sends.
+    pub fn step_disturbed(
+        &mut self,
+        loads: impl IntoIterator<Item = Load>,
+        mut disturb: impl FnMut(usize, &mut Readings),
+        mut sensed: impl FnMut(&ForceFrame),
+    ) {
         self.now = self.now + Duration::from_millis(1);
         self.sequence = self.sequence.wrapping_add(1);
         let (sequence, received) = (self.sequence, self.now);
         for (board, readings) in (0..).zip(self.sim.step_under(loads)) {
-            self.assembler.take(&SensorPacket { board, sequence, received, readings: readings.clone() });
+            let mut readings = readings.clone();
+            disturb(usize::from(board), &mut readings);
+            self.assembler.take(&SensorPacket { board, sequence, received, readings });
         }
         while let Some(frame) = self.assembler.ready() {
             sensed(frame);
         }
+    }
+
+    /// Breaks a sensor, or repairs it with `None`.
+    pub fn set_fault(&mut self, sensor: SensorId, fault: Option<SensorFault>) {
+        self.sim.set_fault(sensor, fault);
+    }
+
+    /// What turns packets into frames, and knows the sensors' health.
+    #[must_use]
+    pub const fn assembler(&self) -> &Assembler {
+        &self.assembler
     }
 
     /// Lets milliseconds pass under the same loads.

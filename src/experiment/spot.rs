@@ -6,9 +6,10 @@ use glam::Vec2;
 use serde::Serialize;
 
 use super::errors::{Errors, Summary};
+use super::follow::ELLIPSE_95;
 use super::rig::{ExperimentError, Rig};
 use crate::floor::{Geometry, TileId};
-use crate::sense::{Method, Sensing};
+use crate::sense::{Covariance, Method, Sensing};
 use crate::sim::{Load, Print};
 use crate::units::Newtons;
 
@@ -64,61 +65,89 @@ pub struct Way {
     pub method: Method,
     /// Whether the tiles' position maps are used.
     pub mapped: bool,
+    /// Whether the floor has been empty for a while before, so that the zeros could be followed.
+    pub settled: bool,
     /// What it is called in tables.
     pub name: &'static str,
 }
 
 impl Way {
     /// All that are compared, in the order of the tables: the paper's own first.
-    pub const ALL: [Self; 3] = [
-        Self { method: Method::Eq4, mapped: false, name: "Eq. 4" },
-        Self { method: Method::Tracker, mapped: false, name: "tracker" },
-        Self { method: Method::Tracker, mapped: true, name: "with map" },
+    pub const ALL: [Self; 4] = [
+        Self { method: Method::Eq4, mapped: false, settled: false, name: "Eq. 4" },
+        Self { method: Method::Tracker, mapped: false, settled: false, name: "tracker" },
+        Self { method: Method::Tracker, mapped: true, settled: false, name: "with map" },
+        Self { method: Method::Tracker, mapped: true, settled: true, name: "settled" },
     ];
 }
 
+/// How long a settled floor has been empty: its zeros, half a newton off, are followed at a newton a minute.
+const SETTLED_MS: u32 = 100_000;
+
 /// A floor of three by three tiles, of which the middle one is tried.
-struct Bench {
-    rig: Rig,
+pub(super) struct Bench {
+    /// The floor just after its zeros have moved, and after nobody has been on it for a while.
+    rigs: [Rig; 2],
     sensing: [Sensing; Way::ALL.len()],
     tried: usize,
 }
 
 impl Bench {
-    fn new(seed: u64) -> Result<Self, ExperimentError> {
-        Ok(Self::over(Rig::of_mapped_parts(geometry(), seed)?))
+    pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
+        let fresh = Rig::of_mapped_parts(geometry(), seed)?;
+        let mut settled = fresh.clone();
+        settled.hold(SETTLED_MS, &[], |_| {});
+        Ok(Self::over([fresh, settled]))
     }
 
-    fn over(rig: Rig) -> Self {
-        let sensing =
-            Way::ALL.map(
-                |Way { method, mapped, .. }| {
-                    if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
-                },
-            );
-        Self { rig, sensing, tried: 0 }
+    fn over(rigs: [Rig; 2]) -> Self {
+        let sensing = Way::ALL.map(|Way { method, mapped, settled, .. }| {
+            let rig = &rigs[usize::from(settled)];
+            if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
+        });
+        Self { rigs, sensing, tried: 0 }
     }
 
-    /// Where each way finds the thing: its heaviest contact; `None` if it finds none.
-    fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Vec2>; Way::ALL.len()] {
+    /// Where each way finds the thing, and how sure it is: its heaviest contact; `None` if it finds none.
+    pub(super) fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Found>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
-        let Self { rig, sensing, .. } = self;
-        let mut sense = |frame: &_| {
-            for sensing in sensing.iter_mut() {
-                sensing.update(frame);
-            }
-        };
-        rig.hold(PAUSE_MS, &[], &mut sense);
-        rig.hold(SETTLE_MS, &[load], &mut sense);
+        for (settled, rig) in [false, true].into_iter().zip(&mut self.rigs) {
+            let ways = Way::ALL.iter().zip(&mut self.sensing).filter(|(way, _)| way.settled == settled);
+            let mut sensing: Vec<_> = ways.map(|(_, sensing)| sensing).collect();
+            let mut sense = |frame: &_| {
+                for sensing in &mut sensing {
+                    sensing.update(frame);
+                }
+            };
+            rig.hold(PAUSE_MS, &[], &mut sense);
+            rig.hold(SETTLE_MS, &[load], &mut sense);
+        }
         self.sensing.each_ref().map(|sensing| {
             let heaviest = sensing.contacts().iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0));
-            heaviest.map(|contact| contact.centroid)
+            heaviest.map(|contact| Found { off: contact.centroid - at, covariance: contact.covariance })
         })
     }
 }
 
-fn geometry() -> Geometry {
+/// A contact's distance from where the thing was, and how sure it claims to be.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found {
+    off: Vec2,
+    covariance: Covariance,
+}
+
+impl Found {
+    pub(super) fn error(&self) -> f32 {
+        self.off.length()
+    }
+
+    fn is_inside(&self) -> bool {
+        self.covariance.mahalanobis_squared(self.off) <= ELLIPSE_95
+    }
+}
+
+pub(super) fn geometry() -> Geometry {
     Geometry::of_paper_tiles(3, 3).unwrap_or_default()
 }
 
@@ -144,6 +173,16 @@ pub struct SpotRow {
     pub errors: Errors,
     /// Places at which nothing was found.
     pub missed: usize,
+    /// Places at which the true centre of pressure was within the contact's 95 % ellipse.
+    pub inside: usize,
+}
+
+impl SpotRow {
+    /// Share (0 to 1) of the things found that were within their contacts' 95 % ellipses.
+    #[must_use]
+    pub fn share_inside(&self) -> f32 {
+        self.inside as f32 / self.errors.count().max(1) as f32
+    }
 }
 
 /// How well a single contact is found over one whole tile, up to half a centimetre from its edges.
@@ -165,6 +204,7 @@ impl SpotTable {
             way,
             errors: Errors::default(),
             missed: 0,
+            inside: 0,
         };
         let rows = Thing::ALL
             .into_iter()
@@ -186,7 +226,10 @@ impl SpotTable {
             for at in raster(&geometry(), self.side) {
                 for (row, found) in rows.iter_mut().zip(bench.find(thing, at, force)) {
                     match found {
-                        Some(found) => row.errors.push(found.distance(at)),
+                        Some(found) => {
+                            row.errors.push(found.error());
+                            row.inside += usize::from(found.is_inside());
+                        }
                         None => row.missed += 1,
                     }
                 }
@@ -200,10 +243,12 @@ impl fmt::Display for SpotTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { side, floors, .. } = self;
         writeln!(f, "error of one contact over a whole tile, {side} x {side} places on {floors} floors, cm")?;
-        writeln!(f, "thing  force_n  found by    median     p95   worst  missed")?;
+        writeln!(f, "thing  force_n  found by    median     p95   worst  missed  in ellipse")?;
         for row in &self.rows {
-            let SpotRow { thing, force, way, errors, missed } = row;
-            writeln!(f, "{:5}  {:7.0}  {:10}{errors}  {missed:6}", thing.name(), force.0, way.name)?;
+            let SpotRow { thing, force, way, errors, missed, .. } = row;
+            let inside = 100.0 * row.share_inside();
+            let (thing, way) = (thing.name(), way.name);
+            writeln!(f, "{thing:5}  {:7.0}  {way:10}{errors}  {missed:6}  {inside:8.1} %", force.0)?;
         }
         Ok(())
     }
@@ -246,10 +291,10 @@ impl SeamTable {
             for step in 0..PLACES {
                 let (middle, seam) = (place_in_the_middle(step), place_at_a_seam(step));
                 for (row, found) in rows.iter_mut().zip(bench.find(thing, middle, force)) {
-                    found.into_iter().for_each(|found| row.middle.push(found.distance(middle)));
+                    found.into_iter().for_each(|found| row.middle.push(found.error()));
                 }
                 for (row, found) in rows.iter_mut().zip(bench.find(thing, seam, force)) {
-                    found.into_iter().for_each(|found| row.seam.push(found.distance(seam)));
+                    found.into_iter().for_each(|found| row.seam.push(found.error()));
                 }
             }
         }
@@ -267,7 +312,7 @@ impl SeamTable {
 const PLACES: u16 = 48;
 
 /// A low-discrepancy sequence over the unit square.
-fn spread(step: u16) -> Vec2 {
+pub(super) fn spread(step: u16) -> Vec2 {
     // Powers of the plastic number's inverse.
     let index = f32::from(step) + 0.5;
     Vec2::new((index * 0.754_877_7).fract(), (index * 0.569_840_3).fract())
@@ -310,6 +355,8 @@ pub struct SpotLine {
     force_n: f32,
     found_by: &'static str,
     place: &'static str,
+    /// Share (0 to 1) within the contact's 95 % ellipse.
+    in_ellipse: Option<f32>,
     #[serde(flatten)]
     errors: Option<Summary>,
 }
@@ -322,6 +369,7 @@ impl SpotTable {
             force_n: row.force.0,
             found_by: row.way.name,
             place: "tile",
+            in_ellipse: Some(row.share_inside()),
             errors: row.errors.summary(),
         })
     }
@@ -337,6 +385,7 @@ impl SeamTable {
                     force_n: 120.0,
                     found_by: way.name,
                     place,
+                    in_ellipse: None,
                     errors: errors.summary(),
                 })
             })
@@ -350,11 +399,11 @@ mod tests {
 
     #[test]
     fn an_ideal_floor_finds_points_and_feet_where_they_are() {
-        let mut bench = Bench::over(Rig::ideal(geometry()));
+        let mut bench = Bench::over([(); 2].map(|()| Rig::ideal(geometry())));
         for thing in Thing::ALL {
             for at in raster(&geometry(), 4).chain((0..8).map(place_at_a_seam)) {
                 for found in bench.find(thing, at, Newtons(100.0)) {
-                    let error = found.unwrap().distance(at);
+                    let error = found.unwrap().error();
                     // A tile that carries less than 6 of the 100 N does not count, up to 10 cm away.
                     assert!(error < 0.01, "{thing:?} at {at}: {error} m");
                 }

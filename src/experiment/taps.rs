@@ -1,25 +1,31 @@
 //! Whether a heavy foot beside a region disturbs the light one that works in it.
 
+use std::cell::RefCell;
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt;
+use std::ops::Range;
 
 use glam::Vec2;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use serde::Serialize;
+use smallvec::SmallVec;
 
 use super::METHODS;
 use super::errors::{Errors, Summary};
 use super::follow::DOWN_N;
+use super::mishap::Mishap;
 use super::rig::{ExperimentError, Rig};
 use crate::engine::{Engine, Snapshot};
+use crate::feel::Cue;
 use crate::floor::{Geometry, Rect};
 use crate::layout::Layout;
 use crate::schema::{Kinds, parse_layout};
-use crate::sense::ForceFrame;
+use crate::sense::{ContactId, ForceFrame};
 use crate::sim::{Foot, shoe_size};
 use crate::units::Newtons;
 use crate::widget::EventKind;
+use crate::wire::Readings;
 
 /// How the heavy foot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -54,7 +60,9 @@ struct Touch {
 
 /// Somebody on one leg beside a region of 1.2 x 0.6 m, tapping and sliding in it with the other foot.
 #[derive(Clone, Debug)]
-struct Scene {
+pub struct TapScene {
+    layout: Layout,
+    way: Stance,
     stance: Foot,
     touching: Foot,
     press: Newtons,
@@ -79,8 +87,15 @@ const TOUCHES: u32 = 6;
 /// How long a foot takes to put its force on or off, in milliseconds.
 const RAMP_MS: f32 = 50.0;
 
-impl Scene {
-    fn of(seed: u64, stance: Stance, region: Rect) -> Self {
+impl TapScene {
+    /// The scene that follows from `seed`, on the paper's floor: 350 to 700 N on one foot 0 to 15 cm from the
+    /// region, six touches of 30 to 150 N with the other.
+    ///
+    /// # Errors
+    /// [`ExperimentError::Layout`], which no seed should bring about.
+    pub fn of(seed: u64, stance: Stance, geometry: &Geometry) -> Result<Self, ExperimentError> {
+        let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], geometry)?;
+        let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x7a95);
         let length_m = rng.random_range(0.22..0.30);
         let heavy = Newtons(rng.random_range(350.0..700.0));
@@ -115,15 +130,29 @@ impl Scene {
             start_ms = end_ms + PAUSE_MS;
         }
         let sway = [(); 2].map(|()| rng.random_range(0.0..TAU));
-        Self { stance: standing, touching, press, touches, sway }
+        Ok(Self { layout, way: stance, stance: standing, touching, press, touches, sway })
     }
 
-    fn length_ms(&self) -> u32 {
+    /// The region, all of it one button.
+    #[must_use]
+    pub const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// Where and when the foot touches the region, in milliseconds.
+    pub fn touches(&self) -> impl ExactSizeIterator<Item = (Vec2, Range<u32>)> + '_ {
+        self.touches.iter().map(|touch| (touch.from, touch.start_ms..touch.end_ms))
+    }
+
+    /// How long it lasts.
+    #[must_use]
+    pub fn length_ms(&self) -> u32 {
         self.touches.last().map_or(0, |last| last.end_ms) + 300
     }
 
-    /// The two feet at a moment; the working one without force while it is in the air.
-    fn feet(&self, milli: u32) -> [Foot; 2] {
+    /// The two feet at a moment, the standing one first; the working one without force while it is in the air.
+    #[must_use]
+    pub fn feet(&self, milli: u32) -> [Foot; 2] {
         let time = milli as f32;
         let now = self.touches.iter().find(|touch| (touch.start_ms..touch.end_ms).contains(&milli));
         let mut working = self.touching;
@@ -180,6 +209,24 @@ pub struct TapScore {
     pub repeated: usize,
     /// Presses while nothing touched the region.
     pub out_of_nothing: usize,
+    /// Times that another contact became the cursor during a touch.
+    pub flips: usize,
+}
+
+impl TapScore {
+    /// Adds all of another score.
+    pub fn append(&mut self, other: Self) {
+        let Self { cursor, samples, without_cursor, touches, pressed, repeated, out_of_nothing, flips } =
+            other;
+        self.cursor.append(cursor);
+        self.samples += samples;
+        self.without_cursor += without_cursor;
+        self.touches += touches;
+        self.pressed += pressed;
+        self.repeated += repeated;
+        self.out_of_nothing += out_of_nothing;
+        self.flips += flips;
+    }
 }
 
 /// The cursor and the events of a region, while a foot of 350 to 700 N stands 0 to 15 cm from it
@@ -203,36 +250,47 @@ impl TapTable {
     /// # Errors
     /// Those of [`Rig::of_mapped_parts`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        for (which, stance) in Stance::ALL.into_iter().enumerate() {
+        for stance in Stance::ALL {
             let geometry = Geometry::default();
-            let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], &geometry)?;
-            let region = layout.regions.first().map_or_else(Rect::default, |region| region.area);
-            let scene = Scene::of(seed, stance, region);
-            let mut rig = Rig::of_mapped_parts(geometry, seed)?;
-            let scores = &mut self.scores;
-            let mut engines = METHODS.map(|(method, _)| Watched {
-                engine: rig.engine(layout.clone(), method),
-                snapshot: Snapshot::default(),
-                presses: vec![0; scene.touches.len()],
-            });
-            for milli in 1..=scene.length_ms() {
-                let feet = scene.feet(milli);
-                rig.step(feet.iter().map(Foot::as_load), |frame| {
-                    for (watched, scores) in engines.iter_mut().zip(scores.iter_mut()) {
-                        watched.step(frame, &scene, milli, &feet[1], &mut scores[which]);
-                    }
-                });
-            }
-            for (watched, scores) in engines.iter().zip(scores.iter_mut()) {
-                let score = &mut scores[which];
-                score.touches += watched.presses.len();
-                score.pressed += watched.presses.iter().filter(|&&presses| presses > 0).count();
-                score.repeated +=
-                    watched.presses.iter().map(|presses| presses.saturating_sub(1)).sum::<usize>();
-            }
+            let scene = TapScene::of(seed, stance, &geometry)?;
+            self.add_scene(&mut Rig::of_mapped_parts(geometry, seed)?, &scene, &mut ());
         }
         self.people += 1;
         Ok(())
+    }
+
+    /// Lets `scene` happen on the floor of `rig` while `mishap` does.
+    pub fn add_scene(&mut self, rig: &mut Rig, scene: &TapScene, mishap: &mut impl Mishap) {
+        let which = scene.way as usize;
+        let scores = &mut self.scores;
+        let mut engines = METHODS.map(|(method, _)| Watched {
+            engine: rig.engine(scene.layout.clone(), method),
+            snapshot: Snapshot::default(),
+            presses: vec![0; scene.touches.len()],
+            cursor: None,
+        });
+        for milli in 1..=scene.length_ms() {
+            let (feet, time) = (scene.feet(milli), u64::from(milli));
+            mishap.before(time, rig);
+            let mut cues: SmallVec<[Cue; 4]> = SmallVec::new();
+            let loads = feet.iter().map(Foot::as_load);
+            let shared = RefCell::new(&mut *mishap);
+            let disturb =
+                |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(time, board, readings);
+            rig.step_disturbed(loads, disturb, |frame| {
+                shared.borrow_mut().sensed(time, frame);
+                for (watched, scores) in engines.iter_mut().zip(scores.iter_mut()) {
+                    cues = watched.step(frame, scene, milli, &feet[1], &mut scores[which]);
+                }
+            });
+            mishap.felt(time, &cues);
+        }
+        for (watched, scores) in engines.iter().zip(scores.iter_mut()) {
+            let score = &mut scores[which];
+            score.touches += watched.presses.len();
+            score.pressed += watched.presses.iter().filter(|&&presses| presses > 0).count();
+            score.repeated += watched.presses.iter().map(|presses| presses.saturating_sub(1)).sum::<usize>();
+        }
     }
 
     fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, &TapScore)> + '_ {
@@ -261,25 +319,41 @@ struct Watched {
     engine: Engine,
     snapshot: Snapshot,
     presses: Vec<usize>,
+    /// Who was the cursor while the foot was last seen to press.
+    cursor: Option<ContactId>,
 }
 
 impl Watched {
-    fn step(&mut self, frame: &ForceFrame, scene: &Scene, milli: u32, working: &Foot, score: &mut TapScore) {
-        let pressed = self.engine.step(frame).events.iter().filter(|event| event.kind == EventKind::Pressed);
-        let pressed = pressed.count();
+    fn step(
+        &mut self,
+        frame: &ForceFrame,
+        scene: &TapScene,
+        milli: u32,
+        working: &Foot,
+        score: &mut TapScore,
+    ) -> SmallVec<[Cue; 4]> {
+        let step = self.engine.step(frame);
+        let pressed = step.events.iter().filter(|event| event.kind == EventKind::Pressed).count();
+        let cues = step.cues.iter().cloned().collect();
         let touched = |touch: &Touch| (touch.start_ms..touch.end_ms + AFTER_MS).contains(&milli);
         match scene.touches.iter().position(touched) {
             Some(touch) => self.presses[touch] += pressed,
             None => score.out_of_nothing += pressed,
         }
-        if working.force.0 > DOWN_N {
-            self.engine.snapshot(&mut self.snapshot);
-            score.samples += 1;
-            match self.snapshot.cursors.first().copied().flatten() {
-                Some(cursor) => score.cursor.push(cursor.position.distance(working.centre_of_pressure())),
-                None => score.without_cursor += 1,
-            }
+        if working.force.0 <= DOWN_N {
+            self.cursor = None;
+            return cues;
         }
+        self.engine.snapshot(&mut self.snapshot);
+        score.samples += 1;
+        let Some(cursor) = self.snapshot.cursors.first().copied().flatten() else {
+            score.without_cursor += 1;
+            return cues;
+        };
+        score.cursor.push(cursor.position.distance(working.centre_of_pressure()));
+        score.flips +=
+            usize::from(self.cursor.replace(cursor.contact).is_some_and(|old| old != cursor.contact));
+        cues
     }
 }
 
@@ -340,12 +414,13 @@ impl fmt::Display for TapTable {
 mod tests {
     use super::*;
 
-    fn scenes() -> impl Iterator<Item = (Rect, Scene)> {
+    fn scenes() -> impl Iterator<Item = (Rect, TapScene)> {
         let geometry = Geometry::default();
         (0..60_u64).flat_map(move |seed| {
-            let layout = layout(REGION_TILES[usize::from(seed % 2 == 1)], &geometry).unwrap();
-            let region = layout.regions[0].area;
-            Stance::ALL.map(|stance| (region, Scene::of(seed, stance, region)))
+            Stance::ALL.map(|stance| {
+                let scene = TapScene::of(seed, stance, &geometry).unwrap();
+                (scene.layout.regions[0].area, scene)
+            })
         })
     }
 

@@ -1,3 +1,4 @@
+use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
@@ -17,6 +18,27 @@ impl Colour {
     #[must_use]
     pub const fn rgb(red: u8, green: u8, blue: u8) -> Self {
         Self { red, green, blue }
+    }
+
+    /// How well the two stand off from each other, 1 (not at all) to 21.
+    ///
+    /// # Source
+    /// Web Content Accessibility Guidelines 2.2, "contrast ratio": `(L1 + 0.05) / (L2 + 0.05)` of the
+    /// relative luminances.
+    #[must_use]
+    pub fn contrast(self, other: Self) -> f32 {
+        let (one, other) = (self.luminance(), other.luminance());
+        (one.max(other) + 0.05) / (one.min(other) + 0.05)
+    }
+
+    /// Relative luminance, 0 to 1.
+    #[must_use]
+    pub fn luminance(self) -> f32 {
+        let linear = |byte: u8| {
+            let share = f32::from(byte) / 255.0;
+            if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
+        };
+        0.2126 * linear(self.red) + 0.7152 * linear(self.green) + 0.0722 * linear(self.blue)
     }
 
     /// The colour `share` (0 to 1) of the way from `self` to `other`.
@@ -66,6 +88,8 @@ pub struct Look {
     pub face: Colour,
     /// Face while pressed or on, and the filled part of a slider.
     pub lit: Colour,
-    /// Label.
+    /// Label and icon.
     pub ink: Colour,
+    /// Picture above the label, or instead of it.
+    pub icon: Option<Icon>,
 }

@@ -4,11 +4,13 @@
 //! positive and numbers finite; [`crate::schema`] is where nonsense stops.
 
 mod hit;
+mod icon;
 mod look;
 mod page;
 mod region;
 
 pub use hit::HitIndex;
+pub use icon::Icon;
 pub use look::{Colour, Look, Shape};
 pub use page::Page;
 pub use region::{CursorRule, Region, Stance};

@@ -95,6 +95,7 @@ impl App {
         let fresh = self.snapshots.update();
         let snapshot = self.snapshots.output_buffer();
         self.inbox.receive(now_s, snapshot.layout_revision);
+        self.inbox.relabel(&snapshot.labels);
         self.watch.observe(now_s, snapshot, fresh);
         self.looked.follow(snapshot);
         self.scopes.update(&self.floor, snapshot, self.looked.tile(), elapsed_s);

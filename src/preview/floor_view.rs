@@ -180,12 +180,10 @@ impl App {
                 let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
                 let enabled = !state.disabled;
                 match (&widget.behaviour, state.value) {
-                    (Behaviour::Switch(_), Some(Value::Switch(on))) => {
+                    (Behaviour::Switch(_) | Behaviour::Hold(_), Some(Value::Switch(on))) => {
                         WidgetInfo::selected(Role::Switch, enabled, on, name)
                     }
-                    (Behaviour::Slider(_), Some(Value::Number(value))) => {
-                        WidgetInfo::slider(enabled, f64::from(value), name)
-                    }
+                    (_, Some(Value::Number(value))) => WidgetInfo::slider(enabled, f64::from(value), name),
                     _ => WidgetInfo::selected(Role::Button, enabled, state.pressed, name),
                 }
             });

@@ -62,6 +62,16 @@ impl Inbox {
         }
     }
 
+    /// Writes on controls what apps have written on them; `labels` are the latest snapshot's.
+    pub(super) fn relabel(&mut self, labels: &[(usize, Arc<str>)]) {
+        for (index, label) in labels {
+            if self.layout.widgets.get(*index).is_some_and(|widget| *widget.label != **label) {
+                let layout = Arc::make_mut(&mut self.layout);
+                layout.widgets[*index].label = label.as_ref().to_owned();
+            }
+        }
+    }
+
     /// Takes in everything that waits; `revision` is the latest snapshot's.
     pub(super) fn receive(&mut self, now_s: f64, revision: u64) {
         for event in self.events.try_iter() {

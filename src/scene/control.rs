@@ -1,50 +1,86 @@
-//! Buttons, switches and sliders.
+//! Controls: a face each, and on it what tells their kinds apart.
 
-use std::fmt;
+mod curved;
+mod dial;
+mod lean;
+mod pad;
+mod pedal;
+mod reading;
+mod selector;
+mod slider;
+mod stepper;
+mod switch;
 
 use glam::Vec2;
 
-use super::face::{BADGE_STRIP_M, Face, SMALL_M};
+use super::face::{Face, SMALL_M};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
-use super::theme::readable;
-use super::widths::{CAP_HEIGHT, width};
+use super::widths::CAP_HEIGHT;
 use super::{Scene, View};
+use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
-use crate::widget::{Axis, Behaviour, SliderSpec, Value};
+use crate::widget::{Axis, Behaviour, Scale, Track, Value};
+use reading::Reading;
 
 /// A slider's handle.
 const HANDLE: Colour = Colour::rgb(0xff, 0xff, 0xff);
 
+/// Most steps that are shown as ticks.
+const MOST_STOPS: f32 = 20.5;
+
 /// Draws every control in the layout's order.
 pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
     for (index, widget) in view.layout.widgets.iter().enumerate() {
-        draw(scene, view, index, widget);
+        let state = view.widget_state(index);
+        if !state.hidden {
+            draw(scene, view, widget, state);
+        }
     }
 }
 
-fn draw(scene: &mut Scene, view: &View<'_>, index: usize, widget: &Widget) {
-    let state = view.widget_state(index);
-    if state.hidden {
-        return;
-    }
+fn draw(scene: &mut Scene, view: &View<'_>, widget: &Widget, state: WidgetState) {
     let pressed = f32::from(u8::from(state.pressed));
-    match (widget.behaviour, state.value) {
+    let face = |lit: f32| Face::new(widget, state, view.theme, lit);
+    // Faces that show their value keep their colour: only a breath of the lit one.
+    let calm = || face(0.12 * pressed).straight();
+    match (&widget.behaviour, state.value) {
         (Behaviour::Switch(_), Some(Value::Switch(on))) => {
             // On is lit; pressing shows half of the other colour under either.
             let lit = if on { 1.0 - 0.3 * pressed } else { 0.3 * pressed };
-            switch(scene, &Face::new(widget, state, view.theme, lit), on);
+            switch::draw(scene, &face(lit), on);
         }
-        (Behaviour::Slider(slider), Some(Value::Number(value))) => {
-            let face = Face::new(widget, state, view.theme, 0.12 * pressed).straight();
-            self::slider(scene, &face, &slider, value);
+        (Behaviour::Hold(_), Some(Value::Switch(on))) => {
+            hold(scene, &face(if on { 1.0 } else { building(state) }), on);
         }
-        _ => {
-            let building =
-                if state.press_share.is_finite() { state.press_share.clamp(0.0, 1.0) } else { 0.0 };
-            button(scene, &Face::new(widget, state, view.theme, pressed.max(0.25 * building)));
+        (Behaviour::Selector(spec), Some(Value::Choice(choice))) => {
+            selector::draw(scene, &calm(), spec, choice);
         }
+        (Behaviour::Slider(spec), Some(Value::Number(value))) => match spec.track {
+            Track::EAST => slider::draw(scene, &calm(), &spec.scale, Axis::East, value),
+            Track::NORTH => slider::draw(scene, &calm(), &spec.scale, Axis::North, value),
+            track => curved::draw(scene, &calm(), &spec.scale, track, value),
+        },
+        (Behaviour::Pedal(spec), Some(Value::Number(value))) => {
+            pedal::draw(scene, &calm(), &spec.scale, value);
+        }
+        (Behaviour::Pad(spec), Some(Value::Pair(value))) => pad::draw(scene, &calm(), spec, value),
+        (Behaviour::Dial(spec), Some(Value::Number(value))) => {
+            dial::draw(scene, &face(0.12 * pressed), spec, value);
+        }
+        (Behaviour::Stepper(spec), Some(Value::Number(value))) => {
+            stepper::draw(scene, &calm(), spec, value);
+        }
+        (Behaviour::Lean(_), Some(Value::Pair(value))) => {
+            lean::draw(scene, &face(0.3 * pressed), value);
+        }
+        _ => button(scene, &face(pressed.max(building(state)))),
     }
+}
+
+/// How far a face is lit while the force on it is still growing.
+fn building(state: WidgetState) -> f32 {
+    if state.press_share.is_finite() { 0.25 * state.press_share.clamp(0.0, 1.0) } else { 0.0 }
 }
 
 fn button(scene: &mut Scene, face: &Face<'_>) {
@@ -53,17 +89,36 @@ fn button(scene: &mut Scene, face: &Face<'_>) {
     face.draw_badge(scene);
 }
 
-/// The label, and a pill whose knob stands at one end.
-fn switch(scene: &mut Scene, face: &Face<'_>, on: bool) {
+/// The label, and a bar that a foot holds down.
+fn hold(scene: &mut Scene, face: &Face<'_>, on: bool) {
     face.draw(scene);
+    let area = beside(scene, face, 0.11, 0.62);
+    let ink = Ink::solid(face.ink);
+    let size = area.size();
+    let stroke = |width: f32| Paint::stroke(Stroke::new(width, ink));
+    let base = Vec2::new(0.5 * size.x, 0.06 * size.y);
+    let south = Vec2::new(area.centre().x, area.min.y + base.y);
+    scene.add_line(south - Vec2::new(base.x, 0.0), south + Vec2::new(base.x, 0.0), stroke(0.007));
+    // An arrow that stands on the bar while it is held, and above it otherwise.
+    let tip = south + Vec2::new(0.0, if on { 0.010 } else { 0.24 * size.y });
+    let tail = Vec2::new(tip.x, area.max.y);
+    scene.add_line(tip, tail, stroke(0.006));
+    let wing = Vec2::splat(0.26 * size.y);
+    scene.add_path([tip + wing * Vec2::new(-1.0, 1.0), tip, tip + wing], false, stroke(0.006));
+    face.draw_badge(scene);
+}
+
+/// Writes the label, and gives back the place beside or above it for a figure of at most `widest_m`,
+/// `tall` times as deep as wide.
+fn beside(scene: &mut Scene, face: &Face<'_>, widest_m: f32, tall: f32) -> Rect {
     let room = face.room();
     let size = room.size();
     let wide = size.x > 1.7 * size.y;
-    let across = if wide { 0.42 * size.x } else { 0.8 * size.x }.min(0.135);
-    let down = (0.46 * across).min(if wide { 0.8 * size.y } else { 0.42 * size.y });
-    let pill_size = Vec2::new(across, down);
+    let across = if wide { 0.42 * size.x } else { 0.8 * size.x }.min(widest_m);
+    let down = (tall * across).min(if wide { 0.8 * size.y } else { 0.42 * size.y });
+    let figure = Vec2::new(across, down);
     let gap = if wide { 0.022 } else { 0.012 };
-    let labelled = !face.widget.label.is_empty();
+    let labelled = !face.label().is_empty() || face.widget.look.icon.is_some();
     let (label, middle) = match (labelled, wide) {
         (false, _) => (None, room.centre()),
         (true, true) => (
@@ -76,135 +131,27 @@ fn switch(scene: &mut Scene, face: &Face<'_>, on: bool) {
         ),
     };
     if let Some(label) = label {
+        let label = face.draw_icon(scene, label);
         let anchor = if wide && face.shape == Shape::Box { Anchor::Start } else { Anchor::Middle };
-        face.write(scene, &face.widget.label, label, anchor);
+        face.write(scene, face.label(), label, anchor);
     }
-    pill(scene, face, Rect::from_centre_size(middle, pill_size), on);
-    face.draw_badge(scene);
+    Rect::from_centre_size(middle, figure)
 }
 
-fn pill(scene: &mut Scene, face: &Face<'_>, area: Rect, on: bool) {
-    let radius = 0.5 * area.size().y;
-    let edge = Stroke::new(0.004, Ink::solid(face.ink));
-    // On: filled with ink, a hole for a knob. Off: an outline with a knob of ink.
-    let (paint, knob) = if on {
-        (Paint::fill(Ink::solid(face.ink)).with_stroke(edge), face.colour)
-    } else {
-        (Paint::fill(Ink::faint(face.colour, 0.6)).with_stroke(edge), face.ink)
-    };
-    scene.add_box(area, radius, paint);
-    let reach = 0.5 * area.size().x - radius;
-    let side = if on { reach } else { -reach };
-    let centre = area.centre();
-    scene.add_circle(centre + Vec2::new(side, 0.0), radius - 0.009, Paint::fill(Ink::solid(knob)));
-    let size_m = (1.05 * radius).min(0.032);
-    let ink = if on { readable(face.colour, face.ink) } else { face.ink };
-    let lettering = Lettering {
-        at: centre - Vec2::new(0.85 * side, 0.5 * CAP_HEIGHT * size_m),
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(ink),
-    };
-    if size_m >= 0.018 {
-        scene.add_text(lettering, format_args!("{}", if on { "on" } else { "off" }));
-    }
-}
-
-/// A caption strip with label and value, and a track whose filled part ends at the handle.
-///
-/// Along its axis the track is as long as the control: the handle is where the foot is.
-fn slider(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, value: f32) {
-    face.draw(scene);
-    let area = face.area;
-    let text = Reading { value, slider };
-    let size = area.size();
-    let inset = 0.010;
-    let track = match slider.axis {
-        Axis::East => {
-            let strip = (0.34 * size.y).min(0.062);
-            caption(scene, face, Rect::new(Vec2::new(area.min.x, area.max.y - strip), area.max), text);
-            Rect::new(area.min + inset, Vec2::new(area.max.x - inset, area.max.y - strip))
-        }
-        Axis::North => {
-            let strip = (0.42 * size.x).min(0.085);
-            let side = Rect::new(Vec2::new(area.max.x - strip, area.min.y), area.max);
-            upright_caption(scene, face, side, text);
-            Rect::new(area.min + inset, Vec2::new(area.max.x - strip, area.max.y - inset))
-        }
-    };
-    self::track(scene, face, slider, track, value);
-    match slider.axis {
-        // On the half of the track where the handle is not.
-        Axis::East => {
-            let east = if value > 0.5 * (slider.min + slider.max) { 0.25 } else { 0.75 };
-            let x = track.min.x + east * track.size().x;
-            face.draw_badge_at(scene, Vec2::new(x, track.centre().y));
-        }
-        Axis::North => face.draw_badge(scene),
-    }
-}
-
-fn track(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, value: f32) {
-    let share = ((value - slider.min) / (slider.max - slider.min)).clamp(0.0, 1.0);
-    let share = if share.is_finite() { share } else { 0.0 };
-    let out_of_use = face.state.disabled || face.state.needs_lift;
-    let lit = if out_of_use { face.widget.look.lit.mix(face.theme.plate, 0.6) } else { face.widget.look.lit };
-    let radius = face.radius_m - 0.008;
-    let ground = face.colour.mix(face.theme.shadow, 0.13);
-    scene.add_box(track, radius, Paint::fill(Ink::solid(ground)));
-    let along = match slider.axis {
-        Axis::East => Vec2::X,
-        Axis::North => Vec2::Y,
-    };
-    // The control's own ends, not the track's: what the foot is measured by.
-    let (low, high) = (face.widget.area.min, face.widget.area.max);
-    let at = (low + (high - low) * share).clamp(track.min, track.max);
-    let end = track.max * (Vec2::ONE - along) + at * along;
-    scene.add_box(Rect::new(track.min, end), radius, Paint::fill(Ink::solid(lit)));
-    steps(scene, face, slider, track, along);
-    // The handle: a bar across the track.
-    let thick = 0.022;
-    let reach = track.size() * (Vec2::ONE - along) + along * thick;
-    let middle = track.centre() * (Vec2::ONE - along)
-        + at.clamp(track.min + 0.5 * thick, track.max - 0.5 * thick) * along;
-    let handle = Rect::from_centre_size(middle, reach).grown(0.004);
-    if !out_of_use {
-        let shadow = Paint::fill(Ink::faint(face.theme.shadow, 0.16));
-        scene.add_box(handle.grown(0.003), 0.012, shadow);
-    }
-    // Light on a lit track, and told from the rest of it by its edge.
-    let colour = HANDLE.mix(face.colour, if out_of_use { 0.5 } else { 0.0 });
-    let outline = readable(face.ink, colour);
-    let edge = Stroke::new(if face.state.pressed { 0.006 } else { 0.0035 }, Ink::solid(outline));
-    scene.add_box(handle, 0.009, Paint::fill(Ink::solid(colour)).with_stroke(edge));
-    let grip = 0.5 * handle.size() * (Vec2::ONE - along) * 0.45;
-    scene.add_line(middle - grip, middle + grip, Paint::stroke(Stroke::new(0.003, Ink::faint(outline, 0.7))));
-}
-
-/// Small ticks where the value may stop, if they are few enough to be told apart.
-fn steps(scene: &mut Scene, face: &Face<'_>, slider: &SliderSpec, track: Rect, along: Vec2) {
-    let stops = (slider.max - slider.min) / slider.step;
-    if !(2.0..=20.5).contains(&stops) {
-        return;
-    }
-    let (low, high) = (face.widget.area.min, face.widget.area.max);
-    for stop in 1..(stops + 0.5) as usize {
-        let at = low + (high - low) * (stop as f32 / stops);
-        let across = Vec2::ONE - along;
-        let from = track.min * across + at * along;
-        let to = from + across * (0.16 * track.size()).min(Vec2::splat(0.014));
-        scene.add_line(from, to, Paint::stroke(Stroke::new(0.003, Ink::faint(face.ink, 0.35))));
-    }
+/// Depth of the strip at the top of a face that holds its label and its value.
+fn strip_m(face: &Face<'_>) -> f32 {
+    (0.34 * face.area.size().y).min(0.062)
 }
 
 /// Label at the strip's beginning, value at its end.
-fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: Reading<'_>) {
+fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Reading) {
     // Clear of the round ends of a slider whose kind is round.
     let inset = 0.022 + 0.5 * (face.radius_m - 0.028).max(0.0);
-    let size_m = (0.60 * strip.size().y).min(0.036);
-    let wide = reading.widest() * size_m;
+    let room = strip.size().x - 2.0 * inset;
+    // The label is worth as much room as the value.
+    let part = if face.label().is_empty() { 1.0 } else { 0.46 };
+    let size_m = (0.60 * strip.size().y).min(0.036).min(part * room / reading.widest);
+    let wide = reading.widest * size_m;
     let value = Vec2::new(strip.max.x - inset, strip.centre().y - 0.5 * CAP_HEIGHT * size_m);
     let lettering = Lettering {
         at: value,
@@ -214,102 +161,17 @@ fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: Reading<'_>
         turn_rad: 0.0,
         ink: Ink::solid(face.ink),
     };
-    scene.add_text(lettering, format_args!("{reading}"));
+    scene.add_text(lettering, format_args!("{}", reading.text));
     let end = strip.max.x - inset - wide - 0.02;
     let start = strip.min.x + inset;
     let lettering = Lettering { at: Vec2::new(start, value.y), anchor: Anchor::Start, ..lettering };
-    scene.add_line_of(lettering, &face.widget.label, end - start, SMALL_M.min(size_m));
+    scene.add_line_of(lettering, face.label(), end - start, SMALL_M.min(size_m));
 }
 
-/// Value at the top of a narrow strip, the label turned upright below it.
-fn upright_caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: Reading<'_>) {
-    let inset = 0.008;
-    let size_m = ((strip.size().x - inset) / reading.widest()).min(0.034);
-    let centre = strip.centre().x - 0.5 * inset;
-    let top = strip.max.y - 0.016 - CAP_HEIGHT * size_m;
-    let mut lettering = Lettering {
-        at: Vec2::new(centre, top),
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
-    scene.add_text(lettering, format_args!("{reading}"));
-    let south = strip.min.y + if face.badge().is_some() { BADGE_STRIP_M + 0.014 } else { 0.018 };
-    lettering.at = Vec2::new(centre, south);
-    lettering.anchor = Anchor::Start;
-    lettering.turn_rad = std::f32::consts::FRAC_PI_2;
-    lettering.size_m = 0.036_f32.min(0.7 * (strip.size().x - inset));
-    // Turned to read northwards, the letters stand west of their base line.
-    lettering.at.x += 0.5 * CAP_HEIGHT * lettering.size_m;
-    let smallest_m = SMALL_M.min(lettering.size_m);
-    scene.add_line_of(lettering, &face.widget.label, top - 0.012 - south, smallest_m);
-}
-
-/// A slider's value with as many decimals as its steps need.
-#[derive(Clone, Copy)]
-struct Reading<'a> {
-    value: f32,
-    slider: &'a SliderSpec,
-}
-
-impl Reading<'_> {
-    fn decimals(&self) -> usize {
-        let SliderSpec { min, max, step, .. } = *self.slider;
-        let enough = |decimals: &i32| {
-            let scale = 10_f32.powi(*decimals);
-            if step > 0.0 {
-                let scaled = step * scale;
-                scaled > 0.5 && (scaled - scaled.round()).abs() < 1e-3 * scaled
-            } else {
-                // Without steps a hundredth of the range is as fine as a foot can do.
-                0.01 * (max - min) * scale >= 0.999
-            }
-        };
-        (0..4).find(enough).unwrap_or(4) as usize
-    }
-
-    /// Width that any value of the range may need, in em, so that the label never jumps.
-    fn widest(&self) -> f32 {
-        let number = |value: f32| {
-            let mut digits = arrayvec::ArrayString::<48>::new();
-            let _ = fmt::Write::write_fmt(&mut digits, format_args!("{:.1$}", value, self.decimals()));
-            width(&digits)
-        };
-        number(self.slider.min).max(number(self.slider.max))
-    }
-}
-
-impl fmt::Display for Reading<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let decimals = self.decimals();
-        // No minus sign before a value that reads as zero.
-        let half = 0.5 * 10_f32.powi(-(decimals as i32));
-        let value = if self.value.abs() < half { 0.0 } else { self.value };
-        write!(f, "{value:.decimals$}")
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::units::Newtons;
-    use crate::widget::Thresholds;
-
-    fn reading(min: f32, max: f32, step: f32, value: f32) -> String {
-        let thresholds = Thresholds::new(Newtons(30.0), Newtons(20.0));
-        let slider = SliderSpec { thresholds, axis: Axis::East, min, max, step, initial: min };
-        Reading { value, slider: &slider }.to_string()
-    }
-
-    #[test]
-    fn values_show_the_decimals_their_steps_need() {
-        assert_eq!(reading(0.0, 1.0, 0.0, 0.333), "0.33");
-        assert_eq!(reading(0.0, 10.0, 0.5, 2.5), "2.5");
-        assert_eq!(reading(0.0, 1.0, 0.25, 0.75), "0.75");
-        assert_eq!(reading(0.0, 200.0, 0.0, 66.6), "67");
-        assert_eq!(reading(1.0, 18.0, 1.0, 12.0), "12");
-        assert_eq!(reading(-1.0, 1.0, 0.0, -0.001), "0.00");
-    }
+/// The shares of the scale where the value may stop between its ends, if they are few enough to be told apart.
+fn stops(scale: &Scale) -> Option<impl Iterator<Item = f32> + use<>> {
+    let width = if scale.step > 0.0 { scale.step } else { scale.detent };
+    let stops = scale.range() / width;
+    let shown = (1.5..=MOST_STOPS).contains(&stops);
+    shown.then(|| (1..(stops + 0.5) as usize).map(move |stop| stop as f32 / stops))
 }

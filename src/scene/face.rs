@@ -6,16 +6,23 @@ use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
-use super::{Scene, Theme, outline};
+use super::{Scene, Theme, icon, outline};
 use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
+use crate::widget::{Guard, Indicator};
 
 /// Largest letters of a label, in metres: read easily from standing height.
 const LABEL_M: f32 = 0.046;
 
 /// Smallest letters of a label, in metres: 8 pixels on a floor shown 600 pixels wide.
 pub(super) const SMALL_M: f32 = 0.024;
+
+/// Largest side of an icon, in metres.
+const ICON_M: f32 = 0.11;
+
+/// Smallest side of an icon that is still told from others, in metres; below it there is only the label.
+const ICON_LEAST_M: f32 = 0.02;
 
 /// How far a pressed face shrinks on each side, in metres.
 const SINK_M: f32 = 0.004;
@@ -56,9 +63,25 @@ impl<'a> Face<'a> {
         Self { widget, state, theme, shape, area, radius_m, colour, ink }
     }
 
-    /// Draws shadow, face, edge and the ring that fills as the force builds.
+    /// What is written on it; may be empty.
+    pub(super) fn label(&self) -> &'a str {
+        &self.widget.label
+    }
+
+    /// Whether it does not work just now.
+    pub(super) fn is_out_of_use(&self) -> bool {
+        self.state.disabled || self.state.needs_lift
+    }
+
+    /// The colour of what is lit on it.
+    pub(super) fn lit(&self) -> Colour {
+        let lit = self.widget.look.lit;
+        if self.is_out_of_use() { lit.mix(self.theme.plate, 0.6) } else { lit }
+    }
+
+    /// Draws shadow, face, edge, what guards it and the ring that fills as the force builds.
     pub(super) fn draw(&self, scene: &mut Scene) {
-        let flat = self.state.disabled || self.state.needs_lift;
+        let flat = self.is_out_of_use();
         if self.state.pressed {
             self.glow(scene);
         } else if !flat {
@@ -68,12 +91,52 @@ impl<'a> Face<'a> {
         let stroke = match (self.state.needs_lift, self.state.disabled) {
             (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
             (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
+            _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
+            _ if self.state.armed => Stroke::new(0.008, Ink::solid(self.theme.accent)),
+            _ if self.state.locked => Stroke::new(0.005, Ink::solid(self.theme.quiet)),
             _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
             _ => Stroke::new(0.002, Ink::faint(edge, 0.8)),
         };
         self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(stroke));
         if !flat {
+            self.guard(scene);
             self.ring(scene);
+        }
+    }
+
+    /// A second line inside the edge of what takes more than a press: unbroken where a second press
+    /// confirms, broken where it must be held.
+    fn guard(&self, scene: &mut Scene) {
+        let line = Stroke::new(0.003, Ink::faint(self.ink, 0.55));
+        let stroke = match self.widget.behaviour.thresholds().guard {
+            Guard::Free => return,
+            Guard::Confirm { .. } => line,
+            Guard::HoldToRun { .. } => line.dashed(0.016, 0.009),
+        };
+        self.outlined(scene, -0.0155, Paint::stroke(stroke));
+    }
+
+    /// The lamp that apps switch, in the north-east: each state has a shape of its own.
+    fn lamp(&self, scene: &mut Scene) {
+        // On the rim, clear of everything that is written.
+        let at = match self.shape {
+            Shape::Box => self.area.max - Vec2::splat(0.005),
+            Shape::Round => self.area.centre() + 0.5 * self.area.size() * std::f32::consts::FRAC_1_SQRT_2,
+        };
+        let edge = Stroke::new(0.003, Ink::solid(readable(self.theme.ink, self.colour)));
+        let radius = 0.0095;
+        let paint = |colour: Colour| Paint::fill(Ink::solid(colour)).with_stroke(edge);
+        match self.state.indicator {
+            Indicator::Off => {}
+            Indicator::On => scene.add_circle(at, radius, paint(self.theme.good)),
+            Indicator::Busy => {
+                scene.add_circle(at, radius, paint(self.theme.plate));
+                scene.add_circle(at, 0.45 * radius, Paint::fill(Ink::solid(self.theme.accent)));
+            }
+            Indicator::Attention => {
+                let corner = |degrees: f32| at + 1.35 * radius * Vec2::from_angle(degrees.to_radians());
+                scene.add_path([corner(90.0), corner(210.0), corner(330.0)], true, paint(self.theme.warning));
+            }
         }
     }
 
@@ -138,8 +201,9 @@ impl<'a> Face<'a> {
 
     /// The part of the face that letters may fill: inside the ring, and inside the round of a round face.
     pub(super) fn room(&self) -> Rect {
+        let line = if self.widget.behaviour.thresholds().guard == Guard::Free { 0.0 } else { 0.006 };
         let inside = match self.shape {
-            Shape::Box => self.area.grown(-(0.022_f32).min(0.12 * self.area.size().min_element())),
+            Shape::Box => self.area.grown(-(0.022_f32).min(0.12 * self.area.size().min_element()) - line),
             Shape::Round => Rect::from_centre_size(self.area.centre(), self.area.size() * 0.70),
         };
         match self.badge() {
@@ -149,79 +213,121 @@ impl<'a> Face<'a> {
         }
     }
 
-    /// What is written about a control that does not work just now.
+    /// What is written about a control that does not work as usual just now.
     pub(super) fn badge(&self) -> Option<&'static str> {
         let room = self.widget.area.size();
         let text = match self.state {
             WidgetState { needs_lift: true, .. } => "lift foot",
             WidgetState { disabled: true, .. } => "disabled",
+            WidgetState { locked: true, .. } => "locked",
+            WidgetState { warned: true, .. } => "let go",
+            WidgetState { armed: true, .. } => "again",
             _ => return None,
         };
         (room.x >= 0.15 && room.y >= 0.11).then_some(text)
     }
 
-    /// Draws the badge of a control that does not work just now, over everything else on the face.
+    /// Draws the lamp, and the badge of a control that does not work as usual just now, over everything else on the face.
     pub(super) fn draw_badge(&self, scene: &mut Scene) {
         let lift = match self.shape {
             Shape::Box => 0.028,
-            Shape::Round => 0.028 + 0.10 * self.area.size().y,
+            // Over the rim: the round has no corner to spare.
+            Shape::Round => 0.014,
         };
         self.draw_badge_at(scene, Vec2::new(self.area.centre().x, self.area.min.y + lift));
     }
 
     /// The same, with its middle elsewhere.
     pub(super) fn draw_badge_at(&self, scene: &mut Scene, middle: Vec2) {
+        self.lamp(scene);
         let Some(text) = self.badge() else { return };
-        let ground = if self.state.needs_lift { self.theme.warning } else { self.theme.quiet };
+        let ground = match self.state {
+            WidgetState { needs_lift: true, .. } => self.theme.warning,
+            WidgetState { disabled: true, .. } | WidgetState { locked: true, .. } => self.theme.quiet,
+            WidgetState { warned: true, .. } => self.theme.warning,
+            _ => self.theme.accent,
+        };
         let ink = Ink::solid(readable(self.theme.plate, ground));
         scene.add_badge(middle, SMALL_M, ink, Paint::fill(Ink::solid(ground)), format_args!("{text}"));
     }
 
-    /// Writes the label in the middle of the face.
+    /// Writes the label in the middle of the face, under the icon if there is one.
     pub(super) fn write_label(&self, scene: &mut Scene) {
-        let room = self.room();
+        let room = self.draw_icon(scene, self.room());
         let label = &self.widget.label;
+        if self.widget.look.icon.is_some() {
+            self.write(scene, label, room, Anchor::Middle);
+            return;
+        }
         let fitted = fit(label, room.size(), LABEL_M, SMALL_M);
         if self.shape == Shape::Round && self.badge().is_none() {
             // One line may be longer than the square in the circle is wide.
             let middle = Rect::from_centre_size(self.area.centre(), self.area.size() * Vec2::new(0.88, 0.42));
             let flat = fit(label, middle.size(), LABEL_M, SMALL_M);
             if (fitted.shortened && !flat.shortened) || flat.size_m > fitted.size_m {
-                self.set(scene, label, middle, Anchor::Middle, &flat);
+                set(scene, label, middle, Anchor::Middle, self.ink, &flat);
                 return;
             }
         }
-        self.set(scene, label, room, Anchor::Middle, &fitted);
+        set(scene, label, room, Anchor::Middle, self.ink, &fitted);
     }
 
     /// Writes `text` into `room`, as large as it fits, with its lines' middle in the room's middle.
     pub(super) fn write(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor) {
-        self.set(scene, text, room, anchor, &fit(text, room.size(), LABEL_M, SMALL_M));
+        self.write_in(scene, text, room, anchor, self.ink);
     }
 
-    fn set(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, fitted: &Fitted) {
-        let x = match anchor {
-            Anchor::Start => room.min.x,
-            Anchor::Middle => room.centre().x,
-            Anchor::End => room.max.x,
-        };
-        let top = room.centre().y + 0.5 * fitted.height_m();
-        for (line, bytes) in fitted.lines.iter().enumerate() {
-            let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
-            let lettering = Lettering {
-                at: Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
-                anchor,
-                size_m: fitted.size_m,
-                strong: true,
-                turn_rad: 0.0,
-                ink: Ink::solid(self.ink),
-            };
-            let last = line + 1 == fitted.lines.len();
-            let end = if fitted.shortened && last { "…" } else { "" };
-            scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));
+    /// Draws the icon, if there is one, and gives back the room that it leaves: beside it where there is width, else below.
+    pub(super) fn draw_icon(&self, scene: &mut Scene, room: Rect) -> Rect {
+        let Some(icon) = self.widget.look.icon else { return room };
+        let size = room.size();
+        let labelled = !self.widget.label.is_empty();
+        let beside = labelled && size.x > 1.8 * size.y;
+        // The label keeps a line, of small letters at least.
+        let strip = if labelled && !beside { (0.36 * size.y).max(LINE_HEIGHT * SMALL_M) } else { 0.0 };
+        let side = (0.92 * (size.y - strip)).min(0.8 * size.x).min(ICON_M);
+        if side < ICON_LEAST_M {
+            return room;
         }
+        if beside {
+            let middle = Vec2::new(room.min.x + 0.5 * side, room.centre().y);
+            icon::draw(scene, icon, middle, side, self.ink);
+            return Rect::new(Vec2::new(room.min.x + 1.15 * side, room.min.y), room.max);
+        }
+        let top = room.centre().y + 0.5 * (side + strip);
+        icon::draw(scene, icon, Vec2::new(room.centre().x, top - 0.5 * side), side, self.ink);
+        let label = Rect::new(Vec2::new(room.min.x, top - side - strip), Vec2::new(room.max.x, top - side));
+        Rect::new(label.min.max(room.min), label.max)
+    }
+
+    /// The same in another colour.
+    pub(super) fn write_in(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour) {
+        set(scene, text, room, anchor, ink, &fit(text, room.size(), LABEL_M, SMALL_M));
     }
 }
 
 /// Height of the strip that a badge takes from the label, in metres.
 pub(super) const BADGE_STRIP_M: f32 = 0.036;
+
+fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, fitted: &Fitted) {
+    let x = match anchor {
+        Anchor::Start => room.min.x,
+        Anchor::Middle => room.centre().x,
+        Anchor::End => room.max.x,
+    };
+    let top = room.centre().y + 0.5 * fitted.height_m();
+    for (line, bytes) in fitted.lines.iter().enumerate() {
+        let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
+        let lettering = Lettering {
+            at: Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
+            anchor,
+            size_m: fitted.size_m,
+            strong: true,
+            turn_rad: 0.0,
+            ink: Ink::solid(ink),
+        };
+        let last = line + 1 == fitted.lines.len();
+        let end = if fitted.shortened && last { "…" } else { "" };
+        scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));
+    }
+}

@@ -20,6 +20,7 @@ mod face;
 mod feet;
 mod fit;
 mod ground;
+mod icon;
 mod mark;
 mod outline;
 #[cfg(test)]

@@ -1,5 +1,8 @@
 //! A page of controls and a floor at work, for tests.
 
+use std::sync::Arc;
+use std::time::Duration;
+
 use glam::Vec2;
 use smallvec::smallvec;
 
@@ -9,20 +12,57 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Widget};
 use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Axis, Behaviour, ButtonSpec, SliderSpec, SwitchSpec, Thresholds, Value, WidgetId};
+use crate::widget::{
+    Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec,
+    SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
+};
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 
-pub(crate) fn slider(axis: Axis, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
-    Behaviour::Slider(SliderSpec { thresholds: THRESHOLDS, axis, min, max, step, initial })
+pub(crate) fn slider(track: Track, min: f32, max: f32, step: f32, initial: f32) -> Behaviour {
+    let scale = Scale { step, ..Scale::new(min, max) };
+    Behaviour::Slider(SliderSpec { track, initial, ..SliderSpec::new(THRESHOLDS, scale) })
 }
 
 pub(crate) fn button() -> Behaviour {
-    Behaviour::Button(ButtonSpec { thresholds: THRESHOLDS })
+    Behaviour::Button(ButtonSpec::new(THRESHOLDS))
 }
 
 pub(crate) fn switch(initial: bool) -> Behaviour {
     Behaviour::Switch(SwitchSpec { thresholds: THRESHOLDS, initial })
+}
+
+/// The behaviours beside buttons, switches and straight sliders.
+pub(crate) fn others() -> Vec<Behaviour> {
+    let thresholds = THRESHOLDS;
+    let scale = Scale { step: 0.5, ..Scale::new(-10.0, 10.0) };
+    let options = ["Pan", "Zoom by hand", "Turn"].map(Arc::from).into();
+    let slider = SliderSpec::new(thresholds, Scale::UNIT);
+    let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    vec![
+        Behaviour::Hold(HoldSpec { thresholds }),
+        Behaviour::Selector(SelectorSpec { thresholds, axis: Axis::East, options, initial: 1 }),
+        Behaviour::Slider(SliderSpec { track: arc, ..slider }),
+        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 30.0 }, ..slider }),
+        Behaviour::Slider(SliderSpec { track: Track::Line { degrees: 120.0 }, ..slider }),
+        Behaviour::Pedal(PedalSpec {
+            thresholds,
+            scale: Scale::new(0.0, 10.0),
+            deadband: Newtons(60.0),
+            full: Newtons(250.0),
+            curve: 1.0,
+        }),
+        Behaviour::Pad(PadSpec { thresholds, x: Scale::new(-1.0, 1.0), y: scale, initial: Vec2::ZERO }),
+        Behaviour::Dial(DialSpec { thresholds, scale, turn_degrees: 270.0, initial: -10.0 }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::East, scale, initial: 0.0, repeat: None }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::North, scale, initial: 0.0, repeat: None }),
+        Behaviour::Lean(LeanSpec {
+            thresholds,
+            settle: Duration::from_millis(250),
+            deadband_m: 0.008,
+            full_m: 0.03,
+        }),
+    ]
 }
 
 /// A control `size` tiles wide and deep with its south-west corner at `at`, in tiles of the paper's floor.
@@ -51,7 +91,7 @@ pub(crate) fn widget(
 
 pub(crate) fn look(shape: Shape, face: u32, lit: u32, ink: u32) -> Look {
     let colour = |hex: u32| Colour::rgb((hex >> 16) as u8, (hex >> 8) as u8, hex as u8);
-    Look { shape, face: colour(face), lit: colour(lit), ink: colour(ink) }
+    Look { shape, face: colour(face), lit: colour(lit), ink: colour(ink), icon: None }
 }
 
 pub(crate) fn blue(shape: Shape) -> Look {
@@ -97,7 +137,7 @@ pub(crate) fn map() -> Layout {
                 "Time of day",
                 [0.25, 2.1],
                 [3.2, 0.6],
-                slider(Axis::East, 0.0, 24.0, 0.0, 12.0),
+                slider(Track::EAST, 0.0, 24.0, 0.0, 12.0),
                 sand(),
             ),
             widget(
@@ -105,7 +145,7 @@ pub(crate) fn map() -> Layout {
                 "Tilt",
                 [4.95, 2.1],
                 [0.6, 1.65],
-                slider(Axis::North, 0.0, 90.0, 5.0, 30.0),
+                slider(Track::NORTH, 0.0, 90.0, 5.0, 30.0),
                 sand(),
             ),
         ],
@@ -114,11 +154,6 @@ pub(crate) fn map() -> Layout {
 
 /// `layout` on the paper's floor with nobody on it.
 pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
-    let value = |widget: &Widget| match widget.behaviour {
-        Behaviour::Button(_) => None,
-        Behaviour::Switch(switch) => Some(Value::Switch(switch.initial)),
-        Behaviour::Slider(slider) => Some(Value::Number(slider.initial)),
-    };
     let live = TileState { quality: [Quality::Live; 4], ..TileState::default() };
     Snapshot {
         at: Instant::from_millis(3214),
@@ -127,7 +162,7 @@ pub(crate) fn at_rest(layout: &Layout) -> Snapshot {
         widgets: layout
             .widgets
             .iter()
-            .map(|widget| WidgetState { value: value(widget), ..WidgetState::default() })
+            .map(|widget| WidgetState { value: widget.behaviour.initial(), ..WidgetState::default() })
             .collect(),
         link: LinkState::Live,
         ..Snapshot::default()

@@ -10,7 +10,7 @@ use crate::floor::{Corner, Geometry, Rect, TileId};
 use crate::layout::{Layout, Shape, Widget};
 use crate::sense::Quality;
 use crate::units::Newtons;
-use crate::widget::{Axis, Value};
+use crate::widget::{Indicator, Track, Value};
 
 fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
     shown(layout, snapshot, Show::WINDOW)
@@ -54,21 +54,29 @@ fn words_stay_on_their_controls_and_off_each_other() {
     ];
     // From the smallest target that a foot can hit (10 cm) to a whole row of tiles, both ways.
     let sizes = [[0.34, 0.34], [1.0, 0.4], [0.45, 1.6], [1.0, 1.0], [3.0, 0.6], [0.6, 3.0]];
-    let behaviours = [
+    let mut behaviours = vec![
         button(),
         sample::switch(true),
-        sample::slider(Axis::East, 0.0, 24.0, 0.0, 23.9),
-        sample::slider(Axis::North, -100.0, 100.0, 0.25, -99.75),
+        sample::slider(Track::EAST, 0.0, 24.0, 0.0, 23.9),
+        sample::slider(Track::NORTH, -100.0, 100.0, 0.25, -99.75),
     ];
+    behaviours.extend(sample::others());
     for label in labels {
         for size in sizes {
-            for behaviour in behaviours {
+            for behaviour in &behaviours {
                 for shape in [Shape::Box, Shape::Round] {
-                    let layout = only(widget("it", label, [1.0, 1.0], size, behaviour, sample::blue(shape)));
-                    for (disabled, needs_lift) in [(false, false), (true, false), (false, true)] {
+                    let layout =
+                        only(widget("it", label, [1.0, 1.0], size, behaviour.clone(), sample::blue(shape)));
+                    for (disabled, needs_lift, armed) in [
+                        (false, false, false),
+                        (true, false, false),
+                        (false, true, false),
+                        (false, false, true),
+                    ] {
                         let mut snapshot = at_rest(&layout);
                         snapshot.widgets[0].disabled = disabled;
                         snapshot.widgets[0].needs_lift = needs_lift;
+                        snapshot.widgets[0].armed = armed;
                         let scene = shown(&layout, &snapshot, Show::PROJECTOR);
                         let words: Vec<_> = scene
                             .texts()
@@ -97,9 +105,8 @@ fn words_stay_on_their_controls_and_off_each_other() {
     }
 }
 
-/// The marks that differ from one scene to the other.
 fn differs(one: &Scene, other: &Scene) -> bool {
-    one.marks() != other.marks()
+    one != other
 }
 
 #[test]
@@ -113,6 +120,12 @@ fn each_state_of_a_control_looks_its_own_way() {
         with(&rest, |it| (it.widgets[0].pressed, it.widgets[0].press_share) = (true, 1.5)),
         with(&rest, |it| it.widgets[0].disabled = true),
         with(&rest, |it| it.widgets[0].needs_lift = true),
+        with(&rest, |it| it.widgets[0].locked = true),
+        with(&rest, |it| it.widgets[0].armed = true),
+        with(&rest, |it| it.widgets[0].warned = true),
+        with(&rest, |it| it.widgets[0].indicator = Indicator::On),
+        with(&rest, |it| it.widgets[0].indicator = Indicator::Busy),
+        with(&rest, |it| it.widgets[0].indicator = Indicator::Attention),
         with(&rest, |it| it.widgets[7].value = Some(Value::Switch(true))),
         with(&rest, |it| it.widgets[9].value = Some(Value::Number(3.0))),
         with(&rest, |it| it.widgets[10].value = Some(Value::Number(90.0))),
@@ -123,6 +136,32 @@ fn each_state_of_a_control_looks_its_own_way() {
             assert!(differs(scene, other), "states {earlier} and {at} look alike");
         }
     }
+}
+
+#[test]
+fn each_value_of_each_behaviour_looks_its_own_way() {
+    let changed = |value: Value| match value {
+        Value::Switch(on) => Value::Switch(!on),
+        Value::Number(number) => Value::Number(number + 0.5),
+        Value::Choice(choice) => Value::Choice(choice + 1),
+        Value::Pair(pair) => Value::Pair(pair + Vec2::new(0.3, -0.4)),
+    };
+    for behaviour in sample::others() {
+        let layout = only(widget("it", "Label", [1.0, 1.0], [1.0, 0.8], behaviour, sample::sand()));
+        let rest = at_rest(&layout);
+        let other = with(&rest, |it| it.widgets[0].value = it.widgets[0].value.map(changed));
+        let scenes = [&rest, &other].map(|state| shown(&layout, state, Show::PROJECTOR));
+        let name = layout.widgets[0].behaviour.name();
+        assert!(differs(&scenes[0], &scenes[1]), "{name}");
+        let pressed = with(&rest, |it| it.widgets[0].pressed = true);
+        assert!(differs(&scenes[0], &shown(&layout, &pressed, Show::PROJECTOR)), "{name}");
+    }
+    // What a selector's foot would choose is outlined before it is.
+    let selector = sample::others().swap_remove(1);
+    let layout = only(widget("it", "Label", [1.0, 1.0], [1.0, 0.8], selector, sample::sand()));
+    let rest = at_rest(&layout);
+    let pending = with(&rest, |it| it.widgets[0].pending = Some(Value::Choice(2)));
+    assert!(differs(&shown(&layout, &rest, Show::WINDOW), &shown(&layout, &pending, Show::WINDOW)));
 }
 
 fn with(snapshot: &Snapshot, change: impl FnOnce(&mut Snapshot)) -> Snapshot {

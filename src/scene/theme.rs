@@ -89,7 +89,7 @@ impl Theme {
     /// Whether text is lighter than what it stands on.
     #[must_use]
     pub fn is_dark(&self) -> bool {
-        luminance(self.canvas) < luminance(self.ink)
+        self.canvas.luminance() < self.ink.luminance()
     }
 }
 
@@ -120,21 +120,8 @@ pub(super) fn readable(wish: Colour, ground: Colour) -> Colour {
 }
 
 /// How well two colours stand off from each other, 1 (not at all) to 21.
-///
-/// # Source
-/// Web Content Accessibility Guidelines 2.2, "contrast ratio".
 pub(super) fn contrast(one: Colour, other: Colour) -> f32 {
-    let (one, other) = (luminance(one), luminance(other));
-    (one.max(other) + 0.05) / (one.min(other) + 0.05)
-}
-
-/// Relative luminance, 0 to 1.
-fn luminance(colour: Colour) -> f32 {
-    let linear = |byte: u8| {
-        let share = f32::from(byte) / 255.0;
-        if share <= 0.04045 { share / 12.92 } else { ((share + 0.055) / 1.055).powf(2.4) }
-    };
-    0.2126 * linear(colour.red) + 0.7152 * linear(colour.green) + 0.0722 * linear(colour.blue)
+    one.contrast(other)
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::engine::{Snapshot, WidgetState};
 use crate::floor::{Geometry, TileId};
 use crate::layout::Layout;
 use crate::units::Newtons;
-use crate::widget::{Behaviour, Value};
+use crate::widget::Value;
 
 /// A simulated shoe, for drawing.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,20 +94,11 @@ impl<'a> View<'a> {
     pub(super) fn widget_state(&self, index: usize) -> WidgetState {
         let Some(widget) = self.layout.widgets.get(index) else { return WidgetState::default() };
         let hidden = !widget.is_on(self.snapshot.page);
-        let rest = WidgetState { value: resting_value(&widget.behaviour), hidden, ..WidgetState::default() };
+        let rest = WidgetState { value: widget.behaviour.initial(), hidden, ..WidgetState::default() };
         match self.snapshot.widgets.get(index) {
             Some(state) if same_kind(state.value, rest.value) => *state,
             _ => rest,
         }
-    }
-}
-
-/// What a control holds before anybody touched it.
-fn resting_value(behaviour: &Behaviour) -> Option<Value> {
-    match behaviour {
-        Behaviour::Button(_) => None,
-        Behaviour::Switch(switch) => Some(Value::Switch(switch.initial)),
-        Behaviour::Slider(slider) => Some(Value::Number(slider.initial)),
     }
 }
 
@@ -117,5 +108,7 @@ fn same_kind(one: Option<Value>, other: Option<Value>) -> bool {
         (None, None)
             | (Some(Value::Switch(_)), Some(Value::Switch(_)))
             | (Some(Value::Number(_)), Some(Value::Number(_)))
+            | (Some(Value::Choice(_)), Some(Value::Choice(_)))
+            | (Some(Value::Pair(_)), Some(Value::Pair(_)))
     )
 }

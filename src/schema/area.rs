@@ -5,12 +5,13 @@ use glam::Vec2;
 
 use super::fields::Fields;
 use super::number::plain;
+use super::units::Units;
 use crate::floor::{Geometry, Rect};
 
 /// How far edges may miss each other and still count as touching, in tiles: far below any foot, far above rounding.
 const TOUCH: f64 = 1e-6;
 
-/// A rectangle as layouts write it: in tiles, from the floor's south-west corner.
+/// A rectangle as layouts write it: in their [`Units`], from the floor's south-west corner.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Area {
     min: [f64; 2],
@@ -20,9 +21,9 @@ pub(super) struct Area {
 impl Area {
     /// The area in the fields `at` and `size`.
     pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let side = f64::from(Geometry::MAX_SIDE);
-        let at = fields.read("at", None, |node| node.pair(-side..=side));
-        let size = fields.read("size", None, |node| node.pair(0.05..=side));
+        let (least, most) = (fields.units().shortest(), fields.units().furthest());
+        let at = fields.read("at", None, |node| node.pair(-most..=most));
+        let size = fields.read("size", None, |node| node.pair(least..=most));
         Some(Self::new(at?, size?))
     }
 
@@ -31,8 +32,37 @@ impl Area {
     }
 
     /// The whole floor.
-    pub(super) fn of_floor(geometry: &Geometry) -> Self {
-        Self::new([0.0; 2], [f64::from(geometry.columns()), f64::from(geometry.rows())])
+    pub(super) fn of_floor(geometry: &Geometry, units: Units) -> Self {
+        // How long a tile is: 1 tile, without rounding.
+        let tile = match units {
+            Units::Tiles => 1.0,
+            Units::Metres => Units::Tiles.metres(geometry),
+        };
+        Self::new([0.0; 2], [geometry.columns(), geometry.rows()].map(|tiles| f64::from(tiles) * tile))
+    }
+
+    pub(super) fn min(&self) -> [f64; 2] {
+        self.min
+    }
+
+    pub(super) fn max(&self) -> [f64; 2] {
+        self.max
+    }
+
+    /// The smallest rectangle that holds both.
+    pub(super) fn around(&self, other: &Self) -> Self {
+        let (mut min, mut max) = (self.min, self.max);
+        for axis in 0..2 {
+            min[axis] = min[axis].min(other.min[axis]);
+            max[axis] = max[axis].max(other.max[axis]);
+        }
+        Self { min, max }
+    }
+
+    /// The same, moved east and north.
+    pub(super) fn moved_by(&self, by: [f64; 2]) -> Self {
+        let move_corner = |corner: [f64; 2]| [corner[0] + by[0], corner[1] + by[1]];
+        Self { min: move_corner(self.min), max: move_corner(self.max) }
     }
 
     pub(super) fn size(&self) -> [f64; 2] {
@@ -84,9 +114,9 @@ impl Area {
     }
 
     /// The same rectangle in floor metres.
-    pub(super) fn in_metres(&self, geometry: &Geometry) -> Rect {
+    pub(super) fn in_metres(&self, geometry: &Geometry, units: Units) -> Rect {
         let metres =
-            |point: [f64; 2]| Vec2::from(point.map(|tiles| (tiles * f64::from(geometry.pitch_m())) as f32));
+            |point: [f64; 2]| Vec2::from(point.map(|length| (length * units.metres(geometry)) as f32));
         Rect::new(metres(self.min), metres(self.max))
     }
 }
@@ -140,8 +170,11 @@ mod tests {
 
     #[test]
     fn tiles_become_metres_by_the_pitch() {
-        let rect = Area::new([2.0, 1.0], [1.0, 0.5]).in_metres(&Geometry::default());
+        let geometry = Geometry::default();
+        let rect = Area::new([2.0, 1.0], [1.0, 0.5]).in_metres(&geometry, Units::Tiles);
         assert!((rect.min - Vec2::new(0.608, 0.304)).length() < 1e-6);
         assert!((rect.size() - Vec2::new(0.304, 0.152)).length() < 1e-6);
+        let metres = Area::new([0.5, 1.0], [0.25, 0.5]).in_metres(&geometry, Units::Metres);
+        assert_eq!(metres, Rect::new(Vec2::new(0.5, 1.0), Vec2::new(0.75, 1.5)));
     }
 }

@@ -1,18 +1,33 @@
 //! The files of `widgets/` and `layouts/`, compiled in.
 
 /// The shipped kinds: file name and text.
-pub(super) const KINDS: [(&str, &str); 7] = [
+pub(super) const KINDS: [(&str, &str); 21] = [
+    ("widgets/arc_slider.ron", include_str!("../../widgets/arc_slider.ron")),
     ("widgets/button.ron", include_str!("../../widgets/button.ron")),
+    ("widgets/confirm_button.ron", include_str!("../../widgets/confirm_button.ron")),
+    ("widgets/dead_man.ron", include_str!("../../widgets/dead_man.ron")),
+    ("widgets/dial.ron", include_str!("../../widgets/dial.ron")),
     ("widgets/fader.ron", include_str!("../../widgets/fader.ron")),
+    ("widgets/gesture_button.ron", include_str!("../../widgets/gesture_button.ron")),
     ("widgets/heavy_button.ron", include_str!("../../widgets/heavy_button.ron")),
+    ("widgets/hold.ron", include_str!("../../widgets/hold.ron")),
+    ("widgets/instant_button.ron", include_str!("../../widgets/instant_button.ron")),
+    ("widgets/lean.ron", include_str!("../../widgets/lean.ron")),
+    ("widgets/pad.ron", include_str!("../../widgets/pad.ron")),
+    ("widgets/pedal.ron", include_str!("../../widgets/pedal.ron")),
+    ("widgets/rate_slider.ron", include_str!("../../widgets/rate_slider.ron")),
     ("widgets/round_button.ron", include_str!("../../widgets/round_button.ron")),
+    ("widgets/selector.ron", include_str!("../../widgets/selector.ron")),
     ("widgets/slider.ron", include_str!("../../widgets/slider.ron")),
     ("widgets/soft_button.ron", include_str!("../../widgets/soft_button.ron")),
+    ("widgets/stepper.ron", include_str!("../../widgets/stepper.ron")),
     ("widgets/switch.ron", include_str!("../../widgets/switch.ron")),
+    ("widgets/two_stage_button.ron", include_str!("../../widgets/two_stage_button.ron")),
 ];
 
 /// The shipped layouts: name and text.
-const LAYOUTS: [(&str, &str); 3] = [
+const LAYOUTS: [(&str, &str); 4] = [
+    ("all_controls", include_str!("../../layouts/all_controls.ron")),
     ("first_steps", include_str!("../../layouts/first_steps.ron")),
     ("map", include_str!("../../layouts/map.ron")),
     ("surgical", include_str!("../../layouts/surgical.ron")),

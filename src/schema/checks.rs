@@ -1,21 +1,19 @@
 //! What only shows when all parts of a layout are seen together, and on which floor.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::area::{Area, Placed};
+use super::control::Control;
 use super::number::plain;
-use super::page::{Control, Page, Zone};
+use super::page::{Page, Zone};
 use super::pages;
 use super::problem::Problem;
 use super::reader::Reader;
 use crate::floor::Geometry;
 
-/// Side below which feet miss a target, in metres (Saunders and Vogel 2015).
-const MISSED_BELOW_M: f64 = 0.05;
-
 /// Notes everything wrong between the parts of `page`, and between it and the floor.
 pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
-    let floor = Area::of_floor(geometry);
+    let floor = Area::of_floor(geometry, page.units);
     check_zones(reader, page, &floor);
     check_ids(reader, page);
     pages::check(reader, page);
@@ -23,20 +21,27 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));
     }
+    // What is wrong with a grid is said of its first control only.
+    let mut said = HashSet::new();
     for (index, control) in page.controls.iter().enumerate() {
         let Some(place) = &control.place else { continue };
         let name = control.name();
-        if check_on_floor(reader, &name, place, &floor) {
-            check_region(reader, page, &name, place);
+        let off = off_floor(page, &name, place, &floor);
+        let outside = if off.is_none() { outside_region(page, &name, place) } else { None };
+        let overlap = overlapping(reader, page, index, &name, place, &floor);
+        for (what, problem) in [off, outside, overlap].into_iter().enumerate() {
+            let Some(problem) = problem else { continue };
+            let grid = control.written.repeat.as_ref().map(|repeat| (repeat.start, what));
+            if grid.is_none_or(|grid| said.insert(grid)) {
+                reader.report(problem);
+            }
         }
-        check_size(reader, &name, place, geometry);
-        check_overlap(reader, &page.controls[..index], control, &name, place, &floor);
     }
 }
 
-impl Control<'_> {
+impl Control {
     fn name(&self) -> String {
-        self.id.map_or("this widget".into(), |id| format!("\"{id}\""))
+        self.id.as_ref().map_or("this widget".into(), |id| format!("\"{id}\""))
     }
 }
 
@@ -53,7 +58,7 @@ fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
     for (index, region) in page.regions.iter().enumerate() {
         let Some(place) = &region.place else { continue };
         let name = region.named("region");
-        check_on_floor(reader, &name, place, floor);
+        off_floor(page, &name, place, floor).into_iter().for_each(|problem| reader.report(problem));
         let earlier = page.regions[..index].iter().filter_map(|other| Some((other, other.place.as_ref()?)));
         for (other, other_place) in earlier {
             if place.area.shared(&other_place.area).is_some() {
@@ -67,7 +72,8 @@ fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
     }
     for stance in &page.stances {
         let Some(place) = &stance.place else { continue };
-        check_on_floor(reader, &stance.named("stance zone"), place, floor);
+        let off = off_floor(page, &stance.named("stance zone"), place, floor);
+        off.into_iter().for_each(|problem| reader.report(problem));
         let inside = |zone: &&Zone<'_>| {
             zone.place.as_ref().is_some_and(|region| region.area.shared(&place.area).is_some())
         };
@@ -82,7 +88,11 @@ fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
 fn check_ids(reader: &Reader<'_>, page: &Page<'_>) {
     let regions = page.regions.iter().map(|zone| (zone.name, &zone.name_at));
     check_unique(reader, "regions", regions);
-    check_unique(reader, "widgets", page.controls.iter().map(|control| (control.id, &control.id_at)));
+    check_unique(
+        reader,
+        "widgets",
+        page.controls.iter().map(|control| (control.id.as_deref(), &control.written.id)),
+    );
 }
 
 fn check_unique<'a>(
@@ -103,30 +113,28 @@ fn check_unique<'a>(
     }
 }
 
-/// Whether all of it is.
-fn check_on_floor(reader: &Reader<'_>, name: &str, place: &Placed, floor: &Area) -> bool {
-    let inside = place.area.within(floor);
-    if !inside {
-        let problem = Problem::error(place.at.clone(), format!("{name} reaches beyond the floor"));
-        let expected = format!("it spans {}, the floor {floor}", place.area);
-        reader.report(
-            problem.expected(expected).help("places count in tiles from the floor's south-west corner"),
-        );
+/// What to say of something that is not all on the floor.
+fn off_floor(page: &Page<'_>, name: &str, place: &Placed, floor: &Area) -> Option<Problem> {
+    if place.area.within(floor) {
+        return None;
     }
-    inside
+    let problem = Problem::error(place.at.clone(), format!("{name} reaches beyond the floor"));
+    let expected = format!("it spans {}, the floor {floor}", place.area);
+    let help = format!("places count in {} from the floor's south-west corner", page.units.name());
+    Some(problem.expected(expected).help(help))
 }
 
-fn check_region(reader: &Reader<'_>, page: &Page<'_>, name: &str, place: &Placed) {
+/// What to say of a control that is not all in one region.
+fn outside_region(page: &Page<'_>, name: &str, place: &Placed) -> Option<Problem> {
     match page.region_of(&place.area).and_then(|index| page.regions.get(index)) {
         Some(region) => {
-            if region.place.as_ref().is_some_and(|outer| !place.area.within(&outer.area)) {
-                let message = format!("part of {name} lies outside of {}", region.named("region"));
-                let expected = "feet on that part don't count";
-                reader.report(Problem::warning(place.at.clone(), message).expected(expected));
-            }
+            let within = region.place.as_ref().is_none_or(|outer| place.area.within(&outer.area));
+            let message = format!("part of {name} lies outside of {}", region.named("region"));
+            let expected = "feet on that part don't count";
+            (!within).then(|| Problem::warning(place.at.clone(), message).expected(expected))
         }
         // A region that could not be read might be the one.
-        None if !page.regions_known => {}
+        None if !page.regions_known => None,
         None => {
             let [east, north] = place.area.middle().map(plain);
             let help = match page.regions.first().and_then(|zone| Some((zone, zone.place.as_ref()?))) {
@@ -134,45 +142,35 @@ fn check_region(reader: &Reader<'_>, page: &Page<'_>, name: &str, place: &Placed
                 Some((zone, region)) => format!("{} spans {}", zone.named("region"), region.area),
             };
             let problem = Problem::error(place.at.clone(), format!("{name} lies in no region"));
-            reader.report(problem.expected(format!("its middle is at ({east}, {north})")).help(help));
+            Some(problem.expected(format!("its middle is at ({east}, {north})")).help(help))
         }
     }
 }
 
-fn check_size(reader: &Reader<'_>, name: &str, place: &Placed, geometry: &Geometry) {
-    let [width, depth] = place.area.size().map(|tiles| tiles * f64::from(geometry.pitch_m()));
-    if width.min(depth) < MISSED_BELOW_M {
-        let message = format!("{name} is too small for a foot");
-        let expected =
-            format!("it is {} x {} cm", plain((width * 100.0).round()), plain((depth * 100.0).round()));
-        let problem = Problem::warning(place.at.clone(), message).expected(expected);
-        reader.report(problem.help("feet miss targets below 5 cm; 12 cm and more work well"));
-    }
-}
-
-/// Reports the first of the `earlier` controls that this one overlaps.
-fn check_overlap(
+/// What to say of the first of the earlier controls that the one at `index` overlaps.
+fn overlapping(
     reader: &Reader<'_>,
-    earlier: &[Control<'_>],
-    control: &Control<'_>,
+    page: &Page<'_>,
+    index: usize,
     name: &str,
     place: &Placed,
     floor: &Area,
-) {
-    let mut overlapped = earlier.iter().filter(|other| pages::meet(control, other)).filter_map(|other| {
+) -> Option<Problem> {
+    let control = &page.controls[index];
+    let earlier = page.controls[..index].iter().filter(|other| pages::meet(control, other));
+    let mut overlapped = earlier.filter_map(|other| {
         let there = other.place.as_ref()?;
         Some((other, there, place.area.shared(&there.area)?))
     });
-    if let Some((other, there, [width, depth])) = overlapped.next() {
-        let more = match overlapped.count() {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        let message = format!("{name} overlaps {}{more}", other.name());
-        let line = reader.line(&there.at);
-        let expected =
-            format!("{} x {} tiles of {} on line {line}", plain(width), plain(depth), other.name());
-        let help = place.area.way_off(&there.area, floor);
-        reader.report(Problem::error(place.at.clone(), message).expected(expected).help_if(help));
-    }
+    let (other, there, [width, depth]) = overlapped.next()?;
+    let more = match overlapped.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    let message = format!("{name} overlaps {}{more}", other.name());
+    let line = reader.line(&there.at);
+    let (width, depth, units) = (plain(width), plain(depth), page.units.suffix());
+    let expected = format!("{width} x {depth}{units} of {} on line {line}", other.name());
+    let help = place.area.way_off(&there.area, floor);
+    Some(Problem::error(place.at.clone(), message).expected(expected).help_if(help))
 }

@@ -30,6 +30,9 @@ impl fmt::Display for Severity {
 pub struct Diagnostic {
     /// How bad it is.
     pub severity: Severity,
+    /// Which ergonomic rule it is about, such as `U101`; `None` for what the format itself forbids.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub code: Option<&'static str>,
     /// The file, as it was named when it was read.
     pub path: String,
     /// Line, from 1; 0 if the problem is the file as a whole.
@@ -57,6 +60,7 @@ impl Diagnostic {
     pub(super) fn of_file(path: &str, message: String, help: Option<String>) -> Self {
         Self {
             severity: Severity::Error,
+            code: None,
             path: path.into(),
             line: 0,
             column: 0,
@@ -82,7 +86,8 @@ impl fmt::Display for Diagnostic {
             Severity::Warning => "\x1b[1;33m",
         });
         let margin = self.line.max(1).ilog10() as usize + 1;
-        writeln!(f, "{loud}{}{end}{bold}: {}{end}", self.severity, self.message)?;
+        let code = self.code.map(|code| format!("[{code}]")).unwrap_or_default();
+        writeln!(f, "{loud}{}{code}{end}{bold}: {}{end}", self.severity, self.message)?;
         if self.line == 0 {
             writeln!(f, "{:margin$}{frame}-->{end} {}", "", self.path)?;
         } else {
@@ -155,6 +160,12 @@ impl Diagnostics {
     pub fn append(&mut self, other: Self) {
         self.list.extend(other.list);
         self.omitted.iter_mut().zip(other.omitted).for_each(|(sum, more)| *sum += more);
+    }
+
+    /// Adds the problems of the same file in the order of its text.
+    pub fn merge(&mut self, other: Self) {
+        self.append(other);
+        self.list.sort_by_key(|problem| (problem.line, problem.column, problem.severity));
     }
 
     fn count(&self, severity: Severity) -> usize {

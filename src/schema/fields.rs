@@ -6,6 +6,7 @@ use super::node::Node;
 use super::problem::Problem;
 use super::reader::{Reader, bytes};
 use super::suggest::{did_you_mean, listed, nearest};
+use super::units::Units;
 use super::words::example;
 
 /// The named fields of one `Name(...)`, each to be read once.
@@ -88,6 +89,11 @@ impl<'r> Fields<'r> {
             }
         }
         found.map(|field| Node { reader: self.reader, expr: &field.value, what: name }.inside())
+    }
+
+    /// What places and sizes count in.
+    pub(super) fn units(&self) -> Units {
+        self.reader.units()
     }
 
     /// Where the fields begin.

@@ -25,7 +25,8 @@ pub(super) fn maps(node: Node<'_>, grid: Grid, floor: &mut Floor) -> Option<()> 
         if let ((Some(map), Some(old)), (Some(trims), Some(bends), Some(record))) =
             (slots, (trims, bends, record))
         {
-            *map = Some(PositionMap { trims, bends });
+            let residual_m = record.map_or(PositionMap::SOME_RESIDUAL_M, |record| record.residual_m);
+            *map = Some(PositionMap { trims, bends, residual_m });
             *old = record;
         }
     }

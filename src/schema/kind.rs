@@ -5,12 +5,10 @@ use super::behaviour::{self, Form};
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::feel;
+use super::inherit;
 use super::look;
 use super::node::Node;
-use super::pairs::Limits;
-use super::reader::Reader;
-use super::source::{Source, read_text};
-use super::suggest::did_you_mean;
+use super::problem::Problem;
 use super::version;
 use crate::feel::Feel;
 use crate::layout::Look;
@@ -50,13 +48,14 @@ impl Kinds {
 
     /// Adds the kind that `text` describes, in place of any other of its name; gives back warnings.
     ///
+    /// It may be made from any of these kinds, also from the one that it replaces.
     /// `name` is what diagnostics call the text, usually a path.
     ///
     /// # Errors
     /// Everything wrong with the text; these kinds then stay as they were.
     pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
-        let (kind, warnings) = parse_kind(text, name)?;
-        self.kinds.insert(kind.name.clone(), kind);
+        let (kinds, warnings) = inherit::read_texts(&[(name, text)], self)?;
+        kinds.into_iter().for_each(|kind| self.insert(kind));
         Ok(warnings)
     }
 
@@ -65,29 +64,17 @@ impl Kinds {
     /// # Errors
     /// Everything wrong with any of the files, two files that describe a kind
     /// of the same name, or a folder that cannot be read; these kinds then stay as they were.
+    ///
+    /// A kind may be made from another one of the folder or from any of these kinds.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
-        let mut problems = Diagnostics::default();
-        let mut read: BTreeMap<String, (Kind, String)> = BTreeMap::new();
-        for path in ron_files(folder)? {
-            let name = path.display().to_string();
-            match read_text(&path).and_then(|text| parse_kind(&text, &name)) {
-                Ok((kind, warnings)) => {
-                    problems.append(warnings);
-                    if let Some((_, first)) = read.get(&kind.name) {
-                        let message = format!("there is a kind \"{}\" in {first} already", kind.name);
-                        let help = Some("give one of them another name".into());
-                        problems.append(Diagnostic::of_file(&name, message, help).into());
-                    }
-                    read.insert(kind.name.clone(), (kind, name));
-                }
-                Err(errors) => problems.append(errors),
-            }
-        }
-        if problems.errors() > 0 {
-            return Err(problems);
-        }
-        self.kinds.extend(read.into_iter().map(|(name, (kind, _))| (name, kind)));
-        Ok(problems)
+        let (kinds, warnings) = inherit::read_files(&ron_files(folder)?, self)?;
+        kinds.into_iter().for_each(|kind| self.insert(kind));
+        Ok(warnings)
+    }
+
+    /// Puts `kind` in place of any other of its name.
+    pub(super) fn insert(&mut self, kind: Kind) {
+        self.kinds.insert(kind.name.clone(), kind);
     }
 
     /// The kind called `name`.
@@ -101,38 +88,50 @@ impl Kinds {
         self.kinds.values()
     }
 
-    /// What to say to those who asked for a kind that isn't there.
-    pub(super) fn suggestion(&self, name: &str) -> Option<String> {
-        let names: Vec<&str> = self.kinds.keys().map(String::as_str).collect();
-        did_you_mean(name, &names, '"')
+    /// The names of all kinds, sorted.
+    pub(super) fn names(&self) -> impl Iterator<Item = &str> {
+        self.kinds.keys().map(String::as_str)
     }
 }
 
-fn parse_kind(text: &str, name: &str) -> Result<(Kind, Diagnostics), Diagnostics> {
-    let source = Source::new(name, text)?;
-    let reader = Reader::new(&source, "Kind", Limits::LAYOUT);
-    if let Some(newer) = version::newer(&reader, "Kind") {
-        return Err(newer);
-    }
-    let kind = reader.root("kind").and_then(kind);
-    reader.conclude(kind)
-}
-
-fn kind(node: Node<'_>) -> Option<Kind> {
+/// The kind that `node` describes; where it is made from a `parent`, all that it doesn't say is the parent's.
+pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     let mut fields = node.fields("Kind")?;
     fields.read("version", Some(1), version::read);
     let name = fields.read("name", None, |node| node.id());
-    let form = fields.read("behaviour", None, Form::read);
-    let behaviour = form.and_then(|form| behaviour::read(&mut fields, form));
-    let look = fields.read("look", Some(look::PLAIN), |node| look::read_over(node, look::PLAIN));
-    let silent = Feel::default();
-    let feel = fields.read("feel", Some(silent.clone()), |node| feel::read_over(node, &silent));
-    match form {
-        Some(_) => fields.finish(),
-        None => fields.finish_leniently(),
+    // Looked up by whoever knows the other kinds.
+    fields.take("from");
+    let plain = (look::PLAIN, Feel::default());
+    let (base_look, base_feel) = parent.map_or(plain, |parent| (parent.look, parent.feel.clone()));
+    let mut knows_fields = true;
+    let behaviour = match parent {
+        Some(parent) => {
+            if let Some(node) = fields.take("behaviour") {
+                let message = format!("what this kind does comes from \"{}\"", parent.name);
+                let expected = format!("that one is a {}", parent.behaviour.name());
+                let help = "leave out `behaviour`, or `from`";
+                fields.report(Problem::error(node.span(), message).expected(expected).help(help));
+            }
+            behaviour::read_over(&mut fields, &parent.behaviour)
+        }
+        None => {
+            let form = fields.read("behaviour", None, Form::read);
+            knows_fields = form.is_some();
+            form.and_then(|form| behaviour::read(&mut fields, form))
+        }
+    };
+    let look = fields.read("look", Some(base_look), |node| look::read_over(node, base_look));
+    let feel = fields.read("feel", Some(base_feel.clone()), |node| feel::read_over(node, &base_feel));
+    if knows_fields {
+        fields.finish();
+    } else {
+        fields.finish_leniently();
     }
     Some(Kind { name: name?.to_owned(), behaviour: behaviour?, feel: feel?, look: look? })
 }
+
+/// Most kinds of one folder.
+const MAX_FILES: usize = 4096;
 
 /// The files named `*.ron` in `folder`, sorted.
 fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
@@ -145,6 +144,11 @@ fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
         let path = entry.map_err(unreadable)?.path();
         if path.extension().is_some_and(|extension| extension == "ron") {
             files.push(path);
+        }
+        if files.len() > MAX_FILES {
+            let message = format!("the folder holds more than {MAX_FILES} kinds");
+            let help = Some("is this the right folder?".into());
+            return Err(Diagnostic::of_file(&folder.display().to_string(), message, help).into());
         }
     }
     files.sort();

@@ -1,6 +1,6 @@
 use super::node::Node;
 use super::problem::Problem;
-use crate::layout::{Colour, Look, Shape};
+use crate::layout::{Colour, Icon, Look, Shape};
 
 /// The look of kinds that don't say: a calm grey blue.
 pub(super) const PLAIN: Look = Look {
@@ -8,6 +8,7 @@ pub(super) const PLAIN: Look = Look {
     face: Colour::rgb(0xdd, 0xe4, 0xec),
     lit: Colour::rgb(0x8f, 0xb6, 0xe0),
     ink: Colour::rgb(0x1f, 0x2a, 0x36),
+    icon: None,
 };
 
 /// `base` with what is written.
@@ -18,8 +19,11 @@ pub(super) fn read_over(node: Node<'_>, base: Look) -> Option<Look> {
     let face = fields.read("face", Some(base.face), colour);
     let lit = fields.read("lit", Some(base.lit), colour);
     let ink = fields.read("ink", Some(base.ink), colour);
+    let icon = fields.read("icon", Some(base.icon), |node| {
+        if node.is_none() { Some(None) } else { node.choice(&Icon::ALL).map(Some) }
+    });
     fields.finish();
-    Some(Look { shape: shape?, face: face?, lit: lit?, ink: ink? })
+    Some(Look { shape: shape?, face: face?, lit: lit?, ink: ink?, icon: icon? })
 }
 
 fn colour(node: Node<'_>) -> Option<Colour> {

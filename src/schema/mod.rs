@@ -6,14 +6,17 @@
 //! ```text
 //! bytes -source-> text -scan-> brackets that close, bounded nesting
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range
-//!   -page, kind, floor-> what was meant -checks-> Layout, Kind, Floor
+//!   -page, control, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Floor
 //! ```
 
 mod area;
+mod arrange;
 mod behaviour;
 mod builtin;
+mod chain;
 mod checks;
 mod complaint;
+mod control;
 mod day;
 mod diagnostic;
 mod excerpt;
@@ -22,6 +25,7 @@ mod fields;
 mod floor;
 mod floor_maps;
 mod floor_text;
+mod inherit;
 mod kind;
 mod look;
 mod node;
@@ -29,15 +33,19 @@ mod number;
 mod page;
 mod pages;
 mod pairs;
+mod place;
+mod places;
 mod problem;
 mod reader;
 mod region;
 mod remedy;
+mod repeat;
 mod save;
 mod scan;
 mod source;
 mod suggest;
 mod syntax;
+mod units;
 mod version;
 mod words;
 
@@ -47,5 +55,6 @@ pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, MAX_WIDGETS, load_layout, parse_layout};
+pub use places::Places;
 pub use save::{SaveError, Saved, save_floor, save_text};
 pub use version::FORMAT_VERSION;

@@ -59,6 +59,25 @@ impl<'r> Node<'r> {
         Some(Node { expr: &field.value, what: name, ..*self }.inside())
     }
 
+    /// Whether it is a `Name(...)` of this name, or the name alone.
+    pub(super) fn is_called(&self, name: &str) -> bool {
+        matches!(self.expr, Expr::Struct(node) if node.name.name == name)
+    }
+
+    /// Its value if it is text; nothing is reported.
+    pub(super) fn peek_text(&self) -> Option<&'r str> {
+        let Expr::String(text) = self.expr else { return None };
+        Some(&text.value)
+    }
+
+    /// The unit of the number it is, with a space before it; empty if it has none.
+    fn unit(&self) -> &'static str {
+        match self.what {
+            "at" | "size" | "gap" => self.reader.units().suffix(),
+            what => unit(what),
+        }
+    }
+
     /// Its value if it is a number; nothing is reported.
     pub(super) fn peek_number(&self) -> Option<f64> {
         let Expr::Number(number) = self.expr else { return None };
@@ -85,14 +104,14 @@ impl<'r> Node<'r> {
         let (message, found) = match parse_number(raw) {
             Ok(number) if range.contains(&number.value) => return Some(number),
             Ok(number) => {
-                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), unit(what)))
+                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), self.unit()))
             }
             Err(NotANumber::TooLarge) => (format!("`{what}` is out of range"), raw.to_string()),
             Err(NotANumber::NotFinite) => (format!("`{what}` must be an ordinary number"), raw.to_string()),
             Err(NotANumber::Malformed) => (format!("`{what}` must be a number"), raw.to_string()),
         };
         let (least, most) = (plain(*range.start()), plain(*range.end()));
-        let bounds = if least == most { least } else { format!("{least} to {most}{}", unit(what)) };
+        let bounds = if least == most { least } else { format!("{least} to {most}{}", self.unit()) };
         self.report(
             Problem::error(self.span(), message).expected(format!("expected {bounds}, found {found}")),
         );
@@ -132,12 +151,16 @@ impl<'r> Node<'r> {
     /// A name that can be part of an OSC address: `a` to `z`, `0` to `9` and `_`, at most 64 of them.
     pub(super) fn id(&self) -> Option<&'r str> {
         let text = self.text(64)?;
-        let legal = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_';
-        if !text.is_empty() && text.chars().all(legal) {
+        if is_id(text) {
             return Some(text);
         }
+        let legal = in_id;
         let mended: String = text.to_lowercase().chars().map(|c| if legal(c) { c } else { '_' }).collect();
-        let help = (mended.len() == text.len() && !mended.is_empty()).then(|| format!("write \"{mended}\""));
+        let help = if text.contains('{') {
+            Some("patterns such as {n} are for widgets with `repeat`".to_owned())
+        } else {
+            (mended.len() == text.len() && !mended.is_empty()).then(|| format!("write \"{mended}\""))
+        };
         let message = format!("`{}` can't be part of an address", self.what);
         let expected = "expected 1 to 64 of the characters a-z, 0-9 and _";
         self.report(Problem::error(self.span(), message).expected(expected).help_if(help));
@@ -147,7 +170,10 @@ impl<'r> Node<'r> {
     /// One of the names in `choices`, and what it stands for.
     pub(super) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let expected = listed(&names, "or");
+        let all = listed(&names, "or");
+        // What is too long to stand beside the carets is told below them.
+        let (expected, many) =
+            if names.len() <= 8 { (all, None) } else { (format!("one of {} names", names.len()), Some(all)) };
         let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
         let written = &*variant.name.name;
         if let (Some((_, choice)), None) = (choices.iter().find(|(name, _)| *name == written), &variant.body)
@@ -162,6 +188,7 @@ impl<'r> Node<'r> {
         }
         let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.what));
         let help = nearest(written, names).map(|name| format!("did you mean {name}?"));
+        let help = help.or_else(|| many.map(|all| format!("there is {}", all.replace(" or ", " and "))));
         self.report(problem.expected(format!("expected {expected}")).help_if(help));
         None
     }
@@ -197,6 +224,14 @@ impl<'r> Node<'r> {
         Some([east?.value, north?.value])
     }
 
+    /// One number within `range` for both directions, or one for each.
+    pub(super) fn one_or_two(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+        match self.expr {
+            Expr::Tuple(_) => self.pair(range),
+            _ => self.number(range).map(|number| [number.value; 2]),
+        }
+    }
+
     /// The named fields of a `Name(...)`, the name being optional.
     pub(super) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
         let (written, open, fields) = match self.expr {
@@ -220,4 +255,13 @@ impl<'r> Node<'r> {
         }
         Some(Fields::new(*self, name, open, fields))
     }
+}
+
+/// Whether `text` can be part of an OSC address.
+pub(super) fn is_id(text: &str) -> bool {
+    (1..=64).contains(&text.len()) && text.chars().all(in_id)
+}
+
+fn in_id(c: char) -> bool {
+    c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'
 }

@@ -10,10 +10,12 @@
 
 use std::ops::Range;
 
+use super::arrange;
+use super::control::Control;
 use super::fields::Fields;
-use super::kind::Kinds;
+use super::inherit::Choice;
 use super::node::Node;
-use super::page::{self, Control, Page};
+use super::page::{self, Page};
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
@@ -28,18 +30,20 @@ pub(super) struct Sheet<'r> {
 }
 
 /// The page that a control switches to.
-pub(super) struct Goto<'r> {
-    id: &'r str,
+#[derive(Clone, Debug)]
+pub(super) struct Goto {
+    id: String,
     at: Range<usize>,
 }
 
 /// The pages of a layout; their controls are added to `controls`.
 pub(super) fn read<'r>(
     fields: &mut Fields<'r>,
-    kinds: &Kinds,
-    controls: &mut Vec<Control<'r>>,
+    kinds: &Choice<'_>,
+    room: &mut usize,
+    controls: &mut Vec<Control>,
 ) -> Vec<Sheet<'r>> {
-    let (pages, _) = page::list(fields, "pages", "page", |node| Sheet::read(node, kinds));
+    let (pages, _) = page::list(fields, "pages", "page", |node| Sheet::read(node, kinds, room));
     let mut sheets = Vec::with_capacity(pages.len());
     for (number, (sheet, own)) in pages.into_iter().enumerate() {
         controls.extend(own.into_iter().map(|mut control| {
@@ -52,7 +56,7 @@ pub(super) fn read<'r>(
 }
 
 /// Whether two controls are ever there at the same time.
-pub(super) fn meet(one: &Control<'_>, other: &Control<'_>) -> bool {
+pub(super) fn meet(one: &Control, other: &Control) -> bool {
     one.page.is_none() || other.page.is_none() || one.page == other.page
 }
 
@@ -71,7 +75,7 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
         if goto.number(&page.pages).is_none() && page.pages.iter().all(|sheet| sheet.id.is_some()) {
             let ids: Vec<&str> = page.pages.iter().filter_map(|sheet| sheet.id).collect();
             let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
-            let help = did_you_mean(goto.id, &ids, '"');
+            let help = did_you_mean(&goto.id, &ids, '"');
             let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
             reader.report(problem.expected("no page is called so").help(help));
         }
@@ -84,11 +88,12 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
 }
 
 impl<'r> Sheet<'r> {
-    fn read(node: Node<'r>, kinds: &Kinds) -> Option<(Self, Vec<Control<'r>>)> {
+    fn read(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<(Self, Vec<Control>)> {
         let mut fields = node.fields("Page")?;
         let id = fields.read("id", None, |node| node.id());
         let title = fields.read("title", Some(""), |node| node.text(200));
-        let (controls, _) = page::list(&mut fields, "widgets", "widget", |node| Control::read(node, kinds));
+        let widgets = fields.take("widgets");
+        let controls = widgets.map(|node| arrange::read(node, kinds, room)).unwrap_or_default();
         let id_at = fields.span("id");
         fields.finish();
         Some((Self { id, id_at, title }, controls))
@@ -100,15 +105,15 @@ impl<'r> Sheet<'r> {
     }
 }
 
-impl<'r> Goto<'r> {
-    pub(super) fn read(fields: &mut Fields<'r>) -> Option<Self> {
+impl Goto {
+    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
         let node = fields.take("goto")?;
         let id = node.id()?;
-        Some(Self { id, at: node.span() })
+        Some(Self { id: id.to_owned(), at: node.span() })
     }
 
     /// The number of the page among `pages`.
     pub(super) fn number(&self, pages: &[Sheet<'_>]) -> Option<usize> {
-        pages.iter().position(|sheet| sheet.id == Some(self.id))
+        pages.iter().position(|sheet| sheet.id == Some(&self.id))
     }
 }

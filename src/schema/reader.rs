@@ -3,7 +3,7 @@
 //! Every reading gives `None` after it has reported why. Callers read on with
 //! what they have, and only build something if nothing was `None`.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use ron2::ast::{Expr, StructBody};
@@ -14,12 +14,15 @@ use super::pairs::Limits;
 use super::problem::Problem;
 use super::source::Source;
 use super::syntax::{self, Syntax};
+use super::units::Units;
 
 /// One file being read, and everything found wrong with it so far.
 pub(super) struct Reader<'t> {
     source: &'t Source<'t>,
     syntax: Syntax<'t>,
     problems: RefCell<Vec<Problem>>,
+    /// What lengths of the file count in.
+    units: Cell<Units>,
 }
 
 impl<'t> Reader<'t> {
@@ -27,12 +30,27 @@ impl<'t> Reader<'t> {
     pub(super) fn new(source: &'t Source<'t>, kind: &str, limits: Limits) -> Self {
         let mut syntax = syntax::parse(source.text(), kind, limits);
         let problems = RefCell::new(std::mem::take(&mut syntax.problems));
-        Self { source, syntax, problems }
+        Self { source, syntax, problems, units: Cell::default() }
     }
 
     /// What the file holds.
     pub(super) fn root(&self, what: &'static str) -> Option<Node<'_>> {
         self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, what })
+    }
+
+    /// What places and sizes count in.
+    pub(super) fn units(&self) -> Units {
+        self.units.get()
+    }
+
+    /// From now on places and sizes count in these.
+    pub(super) fn count_in(&self, units: Units) {
+        self.units.set(units);
+    }
+
+    /// What diagnostics call the file.
+    pub(super) fn name(&self) -> &'t str {
+        self.source.name()
     }
 
     /// Notes a problem, unless it lies where the text is broken anyway.
@@ -62,21 +80,24 @@ impl<'t> Reader<'t> {
         diagnose(self.source, self.syntax.root.as_ref(), problem).into()
     }
 
-    /// `value` with the warnings, if there is one and nothing was wrong; otherwise everything that was.
-    pub(super) fn conclude<T>(self, value: Option<T>) -> Result<(T, Diagnostics), Diagnostics> {
-        let sound = self.is_sound();
+    /// Everything noted so far.
+    pub(super) fn into_diagnostics(self) -> Diagnostics {
         let mut problems = self.problems.take();
         problems.sort_by_key(|problem| (problem.span.start, problem.severity));
         let omitted = problems.split_off(problems.len().min(Diagnostics::LIMIT));
         let omitted = omitted.into_iter().map(|problem| problem.severity);
         let list =
             problems.into_iter().map(|problem| diagnose(self.source, self.syntax.root.as_ref(), problem));
-        let diagnostics = Diagnostics::new(list.collect(), omitted);
+        Diagnostics::new(list.collect(), omitted)
+    }
+
+    /// `value` with the warnings, if there is one and nothing was wrong; otherwise everything that was.
+    pub(super) fn conclude<T>(self, value: Option<T>) -> Result<(T, Diagnostics), Diagnostics> {
         match value {
-            Some(value) if sound => Ok((value, diagnostics)),
+            Some(value) if self.is_sound() => Ok((value, self.into_diagnostics())),
             // Nobody is told "no" without a reason.
-            None if sound => Err(self.only(Problem::error(0..0, "this file makes no sense"))),
-            _ => Err(diagnostics),
+            None if self.is_sound() => Err(self.only(Problem::error(0..0, "this file makes no sense"))),
+            _ => Err(self.into_diagnostics()),
         }
     }
 }

@@ -34,7 +34,7 @@ pub(super) fn remedy(found: &Expr<'_>, expected: &str) -> Option<String> {
         Expr::String(text) if expected == "true or false" => truth(&text.value),
         Expr::Struct(node) if expected == "true or false" => truth(&node.name.name),
         Expr::Number(number) if expected == "true or false" => truth(&number.raw),
-        Expr::String(text) if expected.contains(" or ") => {
+        Expr::String(text) if expected.contains(" or ") || expected.starts_with("one of ") => {
             Some(format!("names stand without quotes: {}", text.value))
         }
         Expr::Struct(node) if expected == "text" && node.body.is_none() => {

@@ -32,6 +32,11 @@ impl<'t> Source<'t> {
         Ok(Self { name, text: bare, skipped: text.len() - bare.len(), line_starts })
     }
 
+    /// What diagnostics call the file.
+    pub(super) fn name(&self) -> &'t str {
+        self.name
+    }
+
     /// The text, without a byte-order mark; all places count from its start.
     pub(super) fn text(&self) -> &'t str {
         self.text
@@ -53,6 +58,7 @@ impl<'t> Source<'t> {
         let excerpt = Excerpt::of(written, start - from..end - from);
         Diagnostic {
             severity,
+            code: None,
             path: self.name.into(),
             line,
             column: self.text[from..start].chars().count() + 1,

@@ -2,17 +2,17 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(super) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 6] = [
+    const UNITS: [(&str, &str); 9] = [
         ("_m_s", " m/s"),
         ("_per_volt", " per volt"),
         ("_ms", " ms"),
         ("_n", " N"),
         ("hz", " Hz"),
         ("_m", " m"),
+        ("_deg", " degrees"),
+        ("_per_s", " per second"),
+        ("_s", " s"),
     ];
-    if matches!(field, "at" | "size") {
-        return " tiles";
-    }
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
 
@@ -23,16 +23,21 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
         "title" => "title: \"Map navigation\"",
         "id" => "id: \"home\"",
         "kind" => "kind: \"button\"",
-        "at" => "at: (2.5, 3.0), the south-west corner in tiles",
-        "size" => "size: (0.6, 0.6), width and depth in tiles",
+        "at" => "at: (2.5, 3.0), its south-west corner",
+        "size" => "size: (0.6, 0.6), its width and depth",
         "regions" => "regions: [(id: \"map\", at: (0, 2), size: (6, 4))]",
         "widgets" => "widgets: [(id: \"home\", kind: \"button\", at: (2, 3), size: (0.6, 0.6))]",
         "name" => "name: \"my_button\"",
-        "behaviour" => "behaviour: Button",
+        "columns" => "columns: 3",
+        "behaviour" => "behaviour: Button, or make it from another kind: from: \"button\"",
         "press_n" => "press_n: 60",
         "release_n" => "release_n: 40",
         "min" => "min: 0",
         "max" => "max: 1",
+        "options" => "options: [\"Low\", \"High\"]",
+        "full_n" => "full_n: 250",
+        "max_s" => "max_s: 60",
+        "full_per_s" => "full_per_s: 0.5",
         "level_n" => "level_n: 12",
         "modes" => "modes: [(hz: 180, decay_ms: 18, amplitude: 1.0)]",
         "hz" => "hz: 180",
@@ -58,6 +63,9 @@ mod tests {
         assert_eq!(unit("full_speed_m_s"), " m/s");
         assert_eq!(unit("low_hz"), " Hz");
         assert_eq!(unit("tile_m"), " m");
+        assert_eq!(unit("max_s"), " s");
+        assert_eq!(unit("full_per_s"), " per second");
+        assert_eq!(unit("angle_deg"), " degrees");
         assert_eq!(unit("amplitude"), "");
     }
 }

@@ -27,6 +27,13 @@ use self::trouble::Sensor;
 /// Force beside zero from which on a tile is looked at in every frame: the least that counts as load.
 const LOUD_N: f32 = 6.0;
 
+/// A sensor's load that grows by more in a millisecond is no foot's: the hardest heel strike takes five to
+/// put its weight on (our choice).
+const SUDDEN_N: f32 = 30.0;
+
+/// A sensor that loses more in a millisecond is not lifted off: what rests on a corner of an empty plate (our choice).
+const FELL_N: f32 = 8.0;
+
 /// Where in the converter's range a reading lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum End {
@@ -35,8 +42,22 @@ pub(super) enum End {
     Within,
     /// Below what the sensor reads on the empty floor, and next to zero volts.
     Low,
+    /// Next to zero volts, where it is on the empty floor as well.
+    Bare,
     /// At 98 % or above: the force is this or more.
     High,
+}
+
+impl End {
+    /// Whether nothing presses the sensor, or nothing that it can tell.
+    const fn reads_nothing(self) -> bool {
+        matches!(self, Self::Low | Self::Bare)
+    }
+
+    /// Whether the reading alone is a reason to look at the tile.
+    const fn is_odd(self) -> bool {
+        matches!(self, Self::Low | Self::High)
+    }
 }
 
 /// The sensors' health on one floor.
@@ -61,8 +82,9 @@ pub(super) struct Health {
     watched: Vec<u32>,
     /// For building the next `watched`.
     spare: Vec<u32>,
-    /// Number of the frame in which each tile was last looked at.
+    /// Number of the frame in which each tile was last looked at, and what its sensors read then.
     looked: Vec<u32>,
+    read: Vec<[f32; 4]>,
     number: u32,
     changes: u64,
 }
@@ -86,6 +108,7 @@ impl Health {
             watched: Vec::with_capacity(tiles),
             spare: Vec::with_capacity(tiles),
             looked: vec![0; tiles],
+            read: vec![[0.0; 4]; tiles],
             number: 0,
             changes: 0,
         }
@@ -101,7 +124,7 @@ impl Health {
     pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, guessed: bool) {
         self.ends[tile as usize][corner] = end;
         self.guessed[tile as usize] |= guessed;
-        let is_loud = force.abs() > LOUD_N || end != End::Within;
+        let is_loud = force.abs() > LOUD_N || end.is_odd();
         // A tile may come four times if its sensors are on boards of their own, never more often.
         if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
             self.loud.push(tile);
@@ -115,11 +138,18 @@ impl Health {
         let mut watched = std::mem::take(&mut self.watched);
         self.spare.clear();
         for tile in loud.drain(..).chain(watched.drain(..)) {
-            if std::mem::replace(&mut self.looked[tile as usize], self.number) != self.number
-                && self.look(tile as usize, frame)
-            {
+            let before = std::mem::replace(&mut self.looked[tile as usize], self.number);
+            if before == self.number {
+                continue;
+            }
+            if before != self.number.wrapping_sub(1) {
+                // It was not worth looking at: nothing to speak of lay on it.
+                self.read[tile as usize] = [0.0; 4];
+            }
+            if self.look(tile as usize, frame) {
                 self.spare.push(tile);
             }
+            self.read[tile as usize] = frame.forces[tile as usize];
         }
         self.loud = loud;
         self.watched = std::mem::replace(&mut self.spare, watched);
@@ -134,10 +164,20 @@ impl Health {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
             let measured = !self.guessed[tile];
+            let before = self.read[tile];
             for (corner, sensor) in sensors.iter_mut().enumerate() {
                 let found = match ends[corner] {
                     End::High if alone == Some(corner) => Some(Trouble::Short),
-                    End::Low if measured && plate::should_bear_more(forces, out, corner) => {
+                    End::Low
+                        if measured
+                            && plate::should_bear_more(
+                                forces,
+                                ends,
+                                out,
+                                corner,
+                                before[corner] - forces[corner] > FELL_N,
+                            ) =>
+                    {
                         Some(Trouble::Open)
                     }
                     _ if measured && alone == Some(corner) => Some(Trouble::Offset),
@@ -145,6 +185,9 @@ impl Health {
                 };
                 if let Some(found) = found {
                     self.changes += u64::from(sensor.find(found, forces[corner]));
+                    if (forces[corner] - before[corner]).abs() > SUDDEN_N {
+                        sensor.struck();
+                    }
                 }
             }
         }
@@ -179,7 +222,7 @@ impl Health {
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
             if !guessed[tile] {
-                slow.judge(&block, ends[tile], sensors);
+                slow.judge(&block, ends[tile], alone, sensors);
             }
             slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
         }

@@ -1,7 +1,11 @@
-use super::tile::{LoadedTile, TileReading, known_corners};
+use std::time::Duration;
+
+use glam::Vec2;
+
+use super::tile::{Lag, LoadedTile, TileReading, Wrench, at_least, counted, known_corners};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap};
-use crate::units::Newtons;
+use crate::units::{Instant, Newtons};
 
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
@@ -37,6 +41,8 @@ impl Default for LoadThreshold {
 pub(super) struct LoadedTiles {
     geometry: Geometry,
     threshold: LoadThreshold,
+    /// How far from a tile's centre its centroid may lie for load on the far side's neighbours to be its own.
+    astray_m: f32,
     /// Per tile of the floor; none for the tiles past the end.
     maps: Vec<Option<PositionMap>>,
     sums: Vec<f32>,
@@ -45,6 +51,9 @@ pub(super) struct LoadedTiles {
     list: Vec<LoadedTile>,
     /// Indices that pass the lower threshold, reused.
     candidates: Vec<u32>,
+    at: Option<Instant>,
+    /// Since the last frame.
+    dt: Duration,
 }
 
 impl LoadedTiles {
@@ -53,11 +62,14 @@ impl LoadedTiles {
         Self {
             geometry,
             threshold,
+            astray_m: REACH_M - 0.5 * geometry.pitch_m(),
             maps: Vec::new(),
             sums: vec![0.0; tiles],
             place: vec![NONE; tiles],
             list: Vec::with_capacity(tiles.min(4096)),
             candidates: Vec::with_capacity(tiles),
+            at: None,
+            dt: Duration::ZERO,
         }
     }
 
@@ -90,17 +102,15 @@ impl LoadedTiles {
     pub(super) fn reading(&self, index: usize) -> TileReading {
         let force = Newtons(self.sums.get(index).copied().unwrap_or_default());
         match self.place.get(index).and_then(|&place| self.list.get(place as usize)) {
-            Some(loaded) => TileReading {
-                force: Newtons(loaded.wrench.force),
-                centroid: Some(loaded.centroid),
-                quality: loaded.quality,
-            },
+            Some(loaded) => loaded.reading(&self.geometry),
             None => TileReading { force, centroid: None, quality: Quality::Live },
         }
     }
 
     /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not looked at.
     pub(super) fn update(&mut self, frame: &ForceFrame) {
+        self.dt = self.at.map_or(Duration::ZERO, |last| frame.at.since(last));
+        self.at = Some(frame.at);
         self.candidates.clear();
         let off = self.threshold.off.0;
         let missing = frame.forces.len().min(frame.quality.len());
@@ -138,15 +148,18 @@ impl LoadedTiles {
         let previous = list.len();
         for &index in &self.candidates {
             let index = index as usize;
-            let was_loaded = self.place[index] != NONE;
-            let least = if was_loaded { self.threshold.off } else { self.threshold.on };
+            let before = list[..previous].get(self.place[index] as usize);
+            let least = if before.is_some() { self.threshold.off } else { self.threshold.on };
+            let lag = Lag::new(frame.quality[index], before, || self.dt.as_secs_f32());
             let map = self.maps.get(index).and_then(Option::as_ref);
+            let may_start = frame.may_start.get(index) == Some(&true);
             list.extend(
                 known_corners(frame.forces[index], frame.quality[index])
-                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map))
+                    .map(|(corners, quality)| (if may_start { corners } else { at_least(corners) }, quality))
+                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map, lag))
                     .map(|tile| match tile.quality {
                         Quality::Live => tile,
-                        _ => tile.judged(frame.quality[index], frame.may_start.get(index) == Some(&true)),
+                        _ => tile.judged(frame.quality[index], may_start),
                     }),
             );
         }
@@ -157,8 +170,81 @@ impl LoadedTiles {
             self.place[loaded.index as usize] = position as u32;
         }
         self.list = list;
+        self.gather(frame);
+    }
+
+    /// Counts what lies on tiles too light to be listed to the listed tile it most likely belongs to.
+    ///
+    /// The toes of a light foot over a seam press with less than what makes a tile count as loaded,
+    /// but far enough from the rest to move the centroid by centimetres.
+    fn gather(&mut self, frame: &ForceFrame) {
+        let (columns, rows) = (i32::from(self.geometry.columns()), i32::from(self.geometry.rows()));
+        for position in 0..self.list.len() {
+            let tile = &self.list[position];
+            let (column, row) = (i32::from(tile.tile.column), i32::from(tile.tile.row));
+            let arm = tile.centroid - tile.centre;
+            let sides = |arm: f32, at: i32, count: i32| {
+                let low = at - i32::from(arm < self.astray_m);
+                let high = at + i32::from(arm > -self.astray_m);
+                low.max(0)..(high + 1).min(count)
+            };
+            let (around, along) = (sides(arm.y, row, rows), sides(arm.x, column, columns));
+            for row in around {
+                for column in along.clone() {
+                    let index = (row * columns + column) as usize;
+                    if self.place[index] == NONE && counted(self.sums[index]) > 0.0 {
+                        self.give(index, position, frame);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Gives the load of the unlisted tile at `index` to the listed one at `position`, if that is the nearest.
+    fn give(&mut self, index: usize, position: usize, frame: &ForceFrame) {
+        // One with a sensor out is too uncertain to say anything of so little.
+        if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
+            return;
+        }
+        let Some((corners, _)) = known_corners(frame.forces[index], frame.quality[index]) else { return };
+        let stray = self.geometry.tile_at_index(index);
+        let (column, row) = (i32::from(stray.column), i32::from(stray.row));
+        let centre = self.geometry.centre(stray);
+        let half = 0.5 * self.geometry.pitch_m();
+        let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
+        let mine = away(&self.list[position]);
+        let nearer = AROUND.iter().any(|(east, north)| {
+            let other = self.find(column + east, row + north).filter(|&other| other != position);
+            other.is_some_and(|other| (away(&self.list[other]), other) < (mine, position))
+        });
+        let share = ((REACH_M - mine) / REACH_FADE_M).clamp(0.0, 1.0);
+        if nearer || share <= 0.0 {
+            return;
+        }
+        let map = self.maps.get(index).and_then(Option::as_ref);
+        let corners = map.map_or(corners, |map| map.trimmed(corners));
+        let wrench = Wrench::of_corners(corners, self.geometry.sensor_reach_m());
+        let force = counted(wrench.force) * share;
+        if force > 0.0 {
+            // Where it acts is hardly felt, but it is the edge of a foot that stands over there.
+            let rim = self.list[position].centroid - centre;
+            let rim = rim.clamp(Vec2::splat(RIM_M - half), Vec2::splat(half - RIM_M));
+            let sure = wrench.force * wrench.force / (wrench.force * wrench.force + RIM_N * RIM_N);
+            self.list[position].add_strayed(force, centre + rim.lerp(wrench.arm(half), sure));
+        }
     }
 }
+
+/// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which
+/// distance this grows doubtful, in metres: half a shoe (our choice).
+const REACH_M: f32 = 0.16;
+const REACH_FADE_M: f32 = 0.05;
+
+/// How deep such a load lies on its tile, in metres, and the force from which on its own moment says more.
+const RIM_M: f32 = 0.03;
+const RIM_N: f32 = 4.0;
+
+const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 #[cfg(test)]
 mod tests {

@@ -223,12 +223,15 @@ fn best<T: Copy>(
     });
     let least = judged.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1)));
     match least {
-        Some((parts, left)) if rms(&left) < WORTH_IT * rms(&before) => Ok(MapFit {
-            map: fit(points, parts),
-            points: points.len(),
-            before: Errors::of(before),
-            after: Errors::of(left),
-        }),
+        Some((parts, left)) if rms(&left) < WORTH_IT * rms(&before) => {
+            let after = Errors::of(left);
+            Ok(MapFit {
+                map: PositionMap { residual_m: after.p95_m, ..fit(points, parts) },
+                points: points.len(),
+                before: Errors::of(before),
+                after,
+            })
+        }
         least => Err(MapError::NoBetter {
             rms_mm: 1e3 * least.map_or(0.0, |(_, left)| rms(&left)),
             before_mm: 1e3 * rms(&before),

@@ -86,6 +86,16 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
     forces.iter().all(|force| force.abs() <= 1e6).then_some((forces, worst))
 }
 
+/// The forces of a tile whose heaviest loaded sensor reads "at least": no less than the plate demands by the other three.
+///
+/// Only a bound itself where the diagonal has lifted off.
+pub(super) fn at_least(mut forces: [f32; 4]) -> [f32; 4] {
+    let heaviest = (0..4).max_by(|&a, &b| forces[a].total_cmp(&forces[b])).unwrap_or_default();
+    let demanded = forces[heaviest ^ 1] + forces[heaviest ^ 2] - forces[heaviest ^ 3];
+    forces[heaviest] = forces[heaviest].max(demanded);
+    forces
+}
+
 /// One tile with a load on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedTile {
@@ -102,28 +112,127 @@ pub struct LoadedTile {
     /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
     /// zero but for one that is estimated from the others, or at the end of its range.
     pub vague: [f32; 4],
-    /// Where the load acts, in floor metres, always on the tile's plate.
+    /// Where the load acts, in floor metres: on the tile's plate, or up to a few centimetres beside it
+    /// if part of the load lies on tiles around it that are too light to count themselves.
     pub centroid: Vec2,
     /// [`Quality::Live`], or [`Quality::Degraded`] with a sensor estimated or doubtful.
     pub quality: Quality,
+    /// What the force counts for in a centroid over several tiles.
+    weight: f32,
+    /// Standard deviation of the position along each axis that the tile's map leaves, in metres; `None` without a map.
+    mapped_m: Option<f32>,
+    /// What the zeros of tiles that the load strays to add to a moment's variance, per variance of a sensor's zero:
+    /// four times the squared distance from the centroid, in square metres.
+    strayed_m2: f32,
+    /// Which sensors are estimated from the others, one bit each.
+    lost: u8,
+    /// What is left in `corners` of what sensors read before they were lost or found again.
+    lag: [f32; 4],
+    /// What of the force lies on tiles around this one that are too light to be listed themselves.
+    strayed: f32,
 }
 
-/// Force from which on a tile has its full weight among others (our choice: three times the least that counts as load).
-const FULL_WEIGHT: f32 = 12.0;
+/// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
+/// choice: one and four deviations of what four sensors with half a newton of offset each add up to).
+const NO_WEIGHT: f32 = 1.0;
+const FULL_WEIGHT: f32 = 4.0;
+
+/// What `force` on one tile counts for in a centroid over several.
+///
+/// Between nothing and all there is no jump, so that a foot sliding over a seam gains its next tile gradually.
+pub(super) fn counted(force: f32) -> f32 {
+    force * ((force - NO_WEIGHT) / (FULL_WEIGHT - NO_WEIGHT)).clamp(0.0, 1.0)
+}
+
+/// The 95th percentile of a distance in the plane over its standard deviation along each axis.
+const P95_PER_DEVIATION: f32 = 2.4477;
 
 /// How far a corner's force estimated from the other three is off, as a share of the tile's force (one
 /// standard deviation; measured on simulated floors of parts and supports as the paper's).
-const ESTIMATED: f32 = 0.12;
+const ESTIMATED: f32 = 0.15;
+
+/// How far a sensor is off that nobody has calibrated, as a share of its reading (parts differ by a quarter).
+const UNSURE: f32 = 0.2;
 
 /// How far the force at a sensor that reads "at least" may be above its reading, as a share of it (our choice).
 const AT_LEAST: f32 = 0.5;
 
+/// How a tile gets from what a sensor read to what the others say of it, or back, without a leap of its
+/// centroid that could be taken for another foot.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Lag {
+    /// Sensors that are estimated now, one bit each.
+    lost: u8,
+    /// What the tile's sensors read before, the last lag, and which sensors were estimated then.
+    before: Option<([f32; 4], [f32; 4], u8)>,
+    /// What is left of the last lag.
+    fade: f32,
+}
+
+/// How long the way from one to the other takes, in seconds (e-fold; our choice: a slow shift of weight).
+const LAG_S: f32 = 0.08;
+
+/// Lag that is over, in newtons.
+const NO_LAG_N: f32 = 0.05;
+
+impl Lag {
+    /// The lag of a tile whose sensors have `quality`, `dt` seconds after it was as `before`.
+    pub(super) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: impl FnOnce() -> f32) -> Self {
+        let bit = |(corner, quality): (usize, Quality)| u8::from(quality >= Quality::Stale) << corner;
+        let lost = quality.into_iter().enumerate().map(bit).sum();
+        let before = before.filter(|tile| tile.lost != lost || tile.lag != [0.0; 4]);
+        Self {
+            lost,
+            before: before.map(|tile| (tile.corners, tile.lag, tile.lost)),
+            fade: before.map_or(0.0, |_| (-dt() / LAG_S).exp()),
+        }
+    }
+
+    /// What to add to `corners`.
+    fn of(&self, corners: [f32; 4]) -> [f32; 4] {
+        let Some((read, lag, lost)) = self.before else { return [0.0; 4] };
+        std::array::from_fn(|corner| {
+            let has_changed = (self.lost ^ lost) >> corner & 1 == 1;
+            let lag = if has_changed { read[corner] - corners[corner] } else { lag[corner] };
+            let left = lag * self.fade;
+            if left.abs() > NO_LAG_N { left } else { 0.0 }
+        })
+    }
+}
+
 impl LoadedTile {
-    /// What the tile's force weighs in a centroid over several tiles: all of it from 12 N on, ever
-    /// less below, so that a foot sliding over a seam gains its next tile gradually, not with a
-    /// jump when that tile first counts as loaded.
+    /// What the tile's force counts for in a centroid over several tiles.
     pub(super) fn weight(&self) -> f32 {
-        self.wrench.force * (self.wrench.force / FULL_WEIGHT).min(1.0)
+        self.weight
+    }
+
+    /// What its map leaves along each axis, in metres (standard deviation); `None` without one.
+    pub(super) fn mapped_m(&self) -> Option<f32> {
+        self.mapped_m
+    }
+
+    pub(super) fn strayed_m2(&self) -> f32 {
+        self.strayed_m2
+    }
+
+    /// What the tile itself feels.
+    pub(super) fn reading(&self, geometry: &Geometry) -> TileReading {
+        let half = Vec2::splat(0.5 * geometry.pitch_m());
+        TileReading {
+            force: Newtons(self.wrench.force - self.strayed),
+            centroid: Some(self.centroid.clamp(self.centre - half, self.centre + half)),
+            quality: self.quality,
+        }
+    }
+
+    /// Adds `force` at `point` of a tile around this one that is too light to be listed itself.
+    pub(super) fn add_strayed(&mut self, force: f32, point: Vec2) {
+        self.weight += force;
+        self.strayed += force;
+        self.strayed_m2 += 4.0 * point.distance_squared(self.centroid);
+        self.centroid += (point - self.centroid) * (force / self.weight);
+        self.wrench.force += force;
+        self.wrench.moment = (self.centroid - self.centre) * self.wrench.force;
     }
 
     /// This tile, its vagueness judged by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
@@ -131,7 +240,7 @@ impl LoadedTile {
         for (vague, (corner, quality)) in self.vague.iter_mut().zip(sensors.into_iter().enumerate()) {
             *vague = match quality {
                 Quality::Live => 0.0,
-                Quality::Degraded if may_start => 0.0,
+                Quality::Degraded if may_start => UNSURE * self.corners[corner].abs(),
                 Quality::Degraded => AT_LEAST * self.corners[corner].abs(),
                 Quality::Stale | Quality::Faulty => {
                     // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
@@ -151,8 +260,13 @@ impl LoadedTile {
         (corners, quality): ([f32; 4], Quality),
         least: Newtons,
         map: Option<&PositionMap>,
+        lag: Lag,
     ) -> Option<Self> {
-        let corners = map.map_or(corners, |map| map.trimmed(corners));
+        let mut corners = map.map_or(corners, |map| map.trimmed(corners));
+        let lag_n = lag.of(corners);
+        for (corner, lag) in corners.iter_mut().zip(lag_n) {
+            *corner += lag;
+        }
         let mut wrench = Wrench::of_corners(corners, geometry.sensor_reach_m());
         if wrench.force < least.0.max(f32::MIN_POSITIVE) {
             return None;
@@ -166,7 +280,22 @@ impl LoadedTile {
             arm = unbent;
         }
         let centroid = centre + arm;
-        Some(Self { tile, index: index as u32, centre, corners, wrench, vague: [0.0; 4], centroid, quality })
+        Some(Self {
+            tile,
+            index: index as u32,
+            centre,
+            corners,
+            wrench,
+            vague: [0.0; 4],
+            centroid,
+            quality,
+            weight: counted(wrench.force),
+            strayed: 0.0,
+            mapped_m: map.map(|map| map.residual_m / P95_PER_DEVIATION),
+            strayed_m2: 0.0,
+            lost: lag.lost,
+            lag: lag_n,
+        })
     }
 }
 

@@ -6,9 +6,12 @@
 //! people who set a floor up.
 
 mod measure;
+mod reference;
+mod request;
 mod server;
 mod tare;
 
 pub use measure::{ForceRange, ForceWatch, TileRange};
+pub use reference::{Argument, Direction, Entry, Reference};
 pub use server::{Command, Ended, Server};
 pub use tare::{TareFailure, take_tare};

@@ -5,6 +5,7 @@ use std::time::Duration;
 use tracing::{info, warn};
 use triple_buffer::Input;
 
+use super::request;
 use crate::engine::{Engine, LinkState, Snapshot};
 use crate::feel::CueSender;
 use crate::floor::{Floor, SensorId};
@@ -13,8 +14,7 @@ use crate::sense::{Assembler, Method, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::widget::Value;
-use crate::wire::{ControlMessage, LinkCounters};
+use crate::wire::{ControlMessage, LinkCounters, Prefix, Request, write_error};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -72,6 +72,12 @@ pub struct Server {
     /// Sensors without calibration, as far as that has been said.
     uncalibrated: usize,
     shown: Instant,
+    /// What addresses in answers begin with.
+    prefix: Prefix,
+    /// The answer being written.
+    answer: Vec<u8>,
+    /// Requests that could not be met.
+    denied: u64,
 }
 
 impl Server {
@@ -96,7 +102,17 @@ impl Server {
             trouble_changes: 0,
             uncalibrated: 0,
             shown: Instant::START,
+            prefix: Prefix::default(),
+            answer: Vec::new(),
+            denied: 0,
         }
+    }
+
+    /// Begins the addresses of its answers with `prefix`; its source and sinks have prefixes of their own.
+    #[must_use]
+    pub fn with_prefix(mut self, prefix: Prefix) -> Self {
+        self.prefix = prefix;
+        self
     }
 
     /// Sends cues through `feel` to the renderer that `actuators` plays.
@@ -137,7 +153,8 @@ impl Server {
     /// What came in and what was refused, from the socket to the frames.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
-        self.source.counters() + self.assembler.counters()
+        let own = LinkCounters { denied: self.denied, ..LinkCounters::default() };
+        self.source.counters() + self.assembler.counters() + own
     }
 
     /// Events that other programs could not be told so far.
@@ -208,6 +225,9 @@ impl Server {
         }
         if let Some(events) = &mut self.events {
             events.events(step.events);
+            if let Some(page) = step.page {
+                events.page(page);
+            }
             events.contacts(at, step.contacts);
         }
         self.play_until(at + FRAME);
@@ -322,35 +342,32 @@ impl Server {
     }
 
     fn obey(&mut self) {
-        while let Some(control) = self.source.take_control() {
-            self.control(&control);
+        while let Some(request) = self.source.take_request() {
+            self.meet(&request);
         }
         while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
             match command {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
-                Command::Control(control) => self.control(&control),
+                Command::Control(message) => self.meet(&message.into()),
             }
         }
     }
 
-    fn control(&mut self, control: &ControlMessage) {
-        let (id, done) = match control {
-            ControlMessage::Set { id, value } => {
-                (id, self.engine.set_value(id.as_str(), self.as_held(id.as_str(), *value)))
+    /// Does what an app asks, and tells it what it wants to know or why it can't be done.
+    fn meet(&mut self, request: &Request) {
+        let Self { engine, prefix, answer, .. } = self;
+        let told = match request::meet(engine, prefix, &request.message, answer) {
+            Ok(told) => told,
+            Err(error) => {
+                self.denied += 1;
+                let address = self.prefix.address(&request.message.path());
+                warn!("{address} refused: {error}");
+                write_error(&self.prefix, &address, &error.to_string(), &mut self.answer);
+                true
             }
-            ControlMessage::Enable { id } => (id, self.engine.set_enabled(id.as_str(), true)),
-            ControlMessage::Disable { id } => (id, self.engine.set_enabled(id.as_str(), false)),
         };
-        if let Err(error) = done {
-            warn!("request for control {:?} refused: {error}", id.as_str());
-        }
-    }
-
-    /// A number stands for on or off where the control is a switch: some apps can't send OSC truths.
-    fn as_held(&self, id: &str, value: Value) -> Value {
-        match (self.engine.value(id), value) {
-            (Some(Value::Switch(_)), Value::Number(number)) => Value::Switch(number != 0.0),
-            _ => value,
+        if let Some(sender) = request.sender.filter(|_| told) {
+            self.source.answer(sender, &self.answer);
         }
     }
 }

@@ -12,7 +12,7 @@ use super::written::{Body, Places, Side, Step, Written, read};
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
-use crate::widget::{Axis, Behaviour};
+use crate::widget::Behaviour;
 
 /// A scenario file, read and its numbers checked, not yet tied to a layout.
 ///
@@ -295,17 +295,13 @@ enum Ready {
     Leave(Side),
 }
 
-/// The place a share of the way along a slider, in the middle across it.
+/// The place a share of the way along a slider's track.
 fn along(widget: &Widget, share: f32) -> Result<Vec2, String> {
     let Behaviour::Slider(slider) = widget.behaviour else {
         return Err(format!("Drag needs a slider, and \"{}\" is a {}", widget.id, widget.kind));
     };
-    let (area, middle) = (widget.area, widget.area.centre());
-    let at = area.min + area.size() * share;
-    Ok(match slider.axis {
-        Axis::East => Vec2::new(at.x, middle.y),
-        Axis::North => Vec2::new(middle.x, at.y),
-    })
+    let size = widget.area.size();
+    Ok(widget.area.min + slider.track.place_at(share, size) * size)
 }
 
 #[cfg(test)]
@@ -315,11 +311,11 @@ mod tests {
     use crate::layout::{Colour, CursorRule, Look, Region, Shape};
     use crate::sim::{Foot, FootDriver};
     use crate::units::Instant;
-    use crate::widget::{ButtonSpec, SliderSpec, Thresholds, WidgetId};
+    use crate::widget::{ButtonSpec, Scale, SliderSpec, Thresholds, WidgetId};
 
     fn layout() -> Layout {
         let thresholds = Thresholds::new(Newtons(40.0), Newtons(30.0));
-        let slider = SliderSpec { thresholds, axis: Axis::East, min: 0.0, max: 1.0, step: 0.0, initial: 0.0 };
+        let slider = SliderSpec::new(thresholds, Scale::UNIT);
         let widget = |id, kind: &str, area, behaviour| Widget {
             id: WidgetId::new(id),
             kind: kind.into(),
@@ -335,12 +331,13 @@ mod tests {
                 face: Colour::default(),
                 lit: Colour::default(),
                 ink: Colour::default(),
+                icon: None,
             },
         };
         let tiles = |x: f32, y: f32, w: f32, h: f32| {
             Rect::from_min_size(Vec2::new(x, y) * 0.304, Vec2::new(w, h) * 0.304)
         };
-        let button = Behaviour::Button(ButtonSpec { thresholds });
+        let button = Behaviour::Button(ButtonSpec::new(thresholds));
         Layout {
             title: "Test".into(),
             regions: vec![Region {
@@ -351,7 +348,7 @@ mod tests {
             stances: Vec::new(),
             pages: Vec::new(),
             widgets: vec![
-                widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button),
+                widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button.clone()),
                 widget("layers", "button", tiles(3.4, 1.6, 0.6, 0.6), button),
                 widget("zoom", "slider", tiles(2.2, 2.4, 1.8, 0.5), Behaviour::Slider(slider)),
             ],

@@ -1,5 +1,5 @@
 use super::EventSink;
-use crate::engine::LinkState;
+use crate::engine::{LinkState, PageShown};
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -43,6 +43,10 @@ impl EventSink for Fanout {
 
     fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
         self.sinks.iter_mut().for_each(|sink| sink.contacts(at, contacts));
+    }
+
+    fn page(&mut self, page: &PageShown) {
+        self.sinks.iter_mut().for_each(|sink| sink.page(page));
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {

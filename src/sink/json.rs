@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::worker::Worker;
 use super::{EventSink, SinkError};
-use crate::engine::LinkState;
+use crate::engine::{LinkState, PageShown};
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
@@ -16,6 +16,7 @@ use crate::wire::link_name;
 /// ```json
 /// {"t_s":1.234,"event":"changed","id":"zoom","value":0.5,"force_n":120.5,"x_m":0.61,"y_m":1.2,"contact":3}
 /// {"t_s":9.876,"event":"link","state":"lost"}
+/// {"t_s":9.9,"event":"page","page":"settings"}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
@@ -31,6 +32,7 @@ pub struct JsonSink {
 enum Job {
     Event(WidgetEvent),
     Link(Instant, LinkState),
+    Page(PageShown),
 }
 
 impl JsonSink {
@@ -61,6 +63,10 @@ impl EventSink for JsonSink {
 
     fn contacts(&mut self, _at: Instant, _contacts: &[Contact]) {}
 
+    fn page(&mut self, page: &PageShown) {
+        self.worker.offer(Job::Page(page.clone()));
+    }
+
     fn link(&mut self, at: Instant, state: LinkState) {
         self.worker.offer(Job::Link(at, state));
     }
@@ -87,6 +93,10 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write) -> io::Result<()> {
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
     let mut line = match job {
         Job::Event(event) => serde_json::to_vec(&EventLine::of(event))?,
+        Job::Page(shown) => {
+            let (t_s, page) = (seconds(shown.at), shown.page.as_str());
+            serde_json::to_vec(&PageLine { t_s, event: "page", page })?
+        }
         Job::Link(at, state) => {
             let (t_s, state) = (seconds(*at), link_name(*state));
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
@@ -106,6 +116,13 @@ struct EventLine<'a> {
     x_m: f32,
     y_m: f32,
     contact: Option<ContactId>,
+}
+
+#[derive(Serialize)]
+struct PageLine<'a> {
+    t_s: f64,
+    event: &'static str,
+    page: &'a str,
 }
 
 #[derive(Serialize)]

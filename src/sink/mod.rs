@@ -1,5 +1,6 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+mod beat;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -9,12 +10,14 @@ mod lockstep;
 mod manual;
 mod osc;
 mod silent;
+mod tuio;
+mod udp;
 mod wav;
 mod worker;
 
 use thiserror::Error;
 
-use crate::engine::LinkState;
+use crate::engine::{LinkState, PageShown};
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -27,6 +30,7 @@ pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
 pub use manual::ManualSink;
 pub use osc::OscSink;
 pub use silent::SilentSink;
+pub use tuio::{TuioSink, TuioVersion};
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 
 /// Something that plays the renderer's samples.
@@ -45,6 +49,9 @@ pub trait EventSink: Send {
 
     /// Takes the contacts of one frame; called for every frame, so a sink thins them out itself.
     fn contacts(&mut self, at: Instant, contacts: &[Contact]);
+
+    /// Takes news of the page that has taken the place of another.
+    fn page(&mut self, _page: &PageShown) {}
 
     /// Takes news of the floor's link; called when its state changes.
     fn link(&mut self, _at: Instant, _state: LinkState) {}

@@ -1,47 +1,40 @@
-use std::net::{Ipv4Addr, Ipv6Addr, SocketAddr, UdpSocket};
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
-use std::sync::{Arc, Mutex, PoisonError, TryLockError};
-use std::time::Duration;
 
+use super::beat::{Beat, Latest};
+use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
-use crate::engine::LinkState;
+use crate::engine::{LinkState, PageShown};
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
-use crate::wire::{write_contacts, write_event, write_health};
-
-/// Time between two reports of the contacts: the paper's 100 Hz.
-const CONTACT_PERIOD: Duration = Duration::from_millis(10);
+use crate::widget::WidgetId;
+use crate::wire::{Prefix, write_contacts, write_event, write_health, write_page};
 
 /// Sends events, contacts and the link's state as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
-/// messages are those of [`write_event`], [`write_contacts`] and [`write_health`].
+/// messages are those of [`write_event`], [`write_contacts`],
+/// [`write_page`] and [`write_health`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
-    /// When the next report of the contacts is due; `None` while nobody is on the floor.
-    due: Option<Instant>,
+    beat: Beat,
 }
 
 #[derive(Debug)]
 enum Job {
     Event(WidgetEvent),
     Link(LinkState),
+    Page(WidgetId),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
-}
-
-/// The contacts to be reported next; an older report not yet sent is overwritten.
-#[derive(Debug, Default)]
-struct Latest {
-    contacts: Mutex<Vec<Contact>>,
-    queued: AtomicBool,
 }
 
 impl OscSink {
@@ -50,42 +43,27 @@ impl OscSink {
     /// # Errors
     /// [`SinkError::Output`] if the system gives no socket or no thread.
     pub fn new(target: SocketAddr) -> Result<Self, SinkError> {
-        let failed =
-            |source| SinkError::Output { message: format!("cannot send OSC to {target}: {source}"), source };
-        let any: SocketAddr = match target {
-            SocketAddr::V4(_) => (Ipv4Addr::UNSPECIFIED, 0).into(),
-            SocketAddr::V6(_) => (Ipv6Addr::UNSPECIFIED, 0).into(),
-        };
-        // Never connected: a closed port at the other end must not become an error at ours.
-        let socket = UdpSocket::bind(any).map_err(failed)?;
-        if target.is_ipv4() {
-            socket.set_broadcast(true).map_err(failed)?;
-        }
+        Self::under(target, Prefix::default())
+    }
+
+    /// A sink that sends to `target` and begins addresses with `prefix`.
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no socket or no thread.
+    pub fn under(target: SocketAddr, prefix: Prefix) -> Result<Self, SinkError> {
+        let out = UdpOut::new(target, "OSC")?;
+        let undelivered = out.undelivered();
         let latest = Arc::new(Latest::default());
-        let undelivered = Arc::new(AtomicU64::new(0));
-        let sender = Sender { socket, target, undelivered: undelivered.clone(), bytes: Vec::new() };
+        let sender = Sender { out, prefix, bytes: Vec::new() };
         let worker = Worker::spawn("osc out", {
             let latest = latest.clone();
             move |jobs| sender.run(jobs, &latest)
         })
-        .map_err(failed)?;
-        Ok(Self { worker, latest, undelivered, due: None })
-    }
-
-    /// Stores `contacts` for the next report; false if the worker is reading the last ones just now.
-    fn report(&self, contacts: &[Contact]) -> bool {
-        let mut stored = match self.latest.contacts.try_lock() {
-            Ok(stored) => stored,
-            Err(TryLockError::Poisoned(poisoned)) => poisoned.into_inner(),
-            Err(TryLockError::WouldBlock) => return false,
-        };
-        stored.clear();
-        stored.extend_from_slice(contacts);
-        drop(stored);
-        if !self.latest.queued.swap(true, Ordering::AcqRel) && !self.worker.try_offer(Job::Contacts) {
-            self.latest.queued.store(false, Ordering::Release);
-        }
-        true
+        .map_err(|source| SinkError::Output {
+            message: format!("cannot send OSC to {target}: {source}"),
+            source,
+        })?;
+        Ok(Self { worker, latest, undelivered, beat: Beat::new(None) })
     }
 }
 
@@ -97,17 +75,14 @@ impl EventSink for OscSink {
     }
 
     fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
-        let is_due = self.due.is_none_or(|due| at >= due);
-        if !is_due || (self.due.is_none() && contacts.is_empty()) || !self.report(contacts) {
-            return;
+        let queue = || self.worker.try_offer(Job::Contacts);
+        if self.beat.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+            self.beat.reported(at, contacts);
         }
-        self.due = if contacts.is_empty() {
-            None
-        } else {
-            // Keep the beat, unless it has been missed.
-            let next = self.due.unwrap_or(at) + CONTACT_PERIOD;
-            Some(if next > at { next } else { at + CONTACT_PERIOD })
-        };
+    }
+
+    fn page(&mut self, page: &PageShown) {
+        self.worker.offer(Job::Page(page.page.clone()));
     }
 
     fn link(&mut self, _at: Instant, state: LinkState) {
@@ -122,42 +97,41 @@ impl EventSink for OscSink {
 impl Drop for OscSink {
     /// Says that nobody is on the floor any more, as far as this program can tell.
     fn drop(&mut self) {
-        if self.due.is_some() {
-            self.report(&[]);
+        if self.beat.is_somebody_there() {
+            // The worker holds the last ones for as long as it takes to copy them.
+            while !self.latest.store(Instant::START, &[], || self.worker.try_offer(Job::Contacts)) {
+                std::thread::yield_now();
+            }
         }
     }
 }
 
 /// What the worker thread owns.
 struct Sender {
-    socket: UdpSocket,
-    target: SocketAddr,
-    undelivered: Arc<AtomicU64>,
+    out: UdpOut,
+    prefix: Prefix,
     bytes: Vec<u8>,
 }
 
 impl Sender {
-    fn run(mut self, jobs: &Receiver<Job>, latest: &Latest) {
+    fn run(self, jobs: &Receiver<Job>, latest: &Latest) {
+        let Self { out, prefix, mut bytes } = self;
         for job in jobs {
-            let Self { socket, target, undelivered, bytes } = &mut self;
-            let send = |datagram: &[u8]| {
-                if socket.send_to(datagram, *target).is_err() {
-                    undelivered.fetch_add(1, Ordering::Relaxed);
-                }
-            };
             match job {
                 Job::Event(event) => {
-                    write_event(&event, bytes);
-                    send(bytes);
+                    write_event(&prefix, &event, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Page(page) => {
+                    write_page(&prefix, page.as_str(), &mut bytes);
+                    out.send(&bytes);
                 }
                 Job::Link(state) => {
-                    write_health(state, bytes);
-                    send(bytes);
+                    write_health(&prefix, state, &mut bytes);
+                    out.send(&bytes);
                 }
                 Job::Contacts => {
-                    latest.queued.store(false, Ordering::Release);
-                    let contacts = latest.contacts.lock().unwrap_or_else(PoisonError::into_inner).clone();
-                    write_contacts(&contacts, bytes, send);
+                    write_contacts(&prefix, &latest.fetch().1, &mut bytes, |datagram| out.send(datagram));
                 }
             }
         }

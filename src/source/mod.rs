@@ -8,12 +8,13 @@ pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
 pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;
 
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use thiserror::Error;
 
 use crate::units::Instant;
-use crate::wire::{ControlMessage, LinkCounters, SensorPacket};
+use crate::wire::{LinkCounters, Request, SensorPacket};
 
 /// A floor's stream of sensor packets, with the clock they are stamped by.
 pub trait SensorSource: Send {
@@ -29,10 +30,13 @@ pub trait SensorSource: Send {
     /// The present moment on the clock that stamps [`SensorPacket::received`].
     fn now(&self) -> Instant;
 
-    /// What an app asked of a control over the same wire, oldest first; `None` once all is taken.
-    fn take_control(&mut self) -> Option<ControlMessage> {
+    /// What an app asked over the same wire, oldest first; `None` once all is taken.
+    fn take_request(&mut self) -> Option<Request> {
         None
     }
+
+    /// Sends `datagram` to somebody who asked; where there is no wire, nobody hears it.
+    fn answer(&mut self, _to: SocketAddr, _datagram: &[u8]) {}
 
     /// What the source itself received and refused so far; zero where it can refuse nothing.
     fn counters(&self) -> LinkCounters {

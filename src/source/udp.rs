@@ -13,7 +13,7 @@ use self::log::RefusalLog;
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, ControlMessage, Decoder, LinkCounters, SensorPacket};
+use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, write_error};
 
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
 const BUFFER_BYTES: usize = 8 << 20;
@@ -42,7 +42,8 @@ pub struct UdpSource {
     decoder: Decoder,
     batch: Batch,
     packets: VecDeque<SensorPacket>,
-    controls: VecDeque<ControlMessage>,
+    requests: VecDeque<Request>,
+    answer: Vec<u8>,
     allowed: Vec<IpAddr>,
     counters: LinkCounters,
     drops_read: Instant,
@@ -78,7 +79,8 @@ impl UdpSource {
             decoder,
             batch: Batch::default(),
             packets: VecDeque::new(),
-            controls: VecDeque::new(),
+            requests: VecDeque::new(),
+            answer: Vec::new(),
             allowed: Vec::new(),
             counters: LinkCounters::default(),
             drops_read: Instant::START,
@@ -91,6 +93,13 @@ impl UdpSource {
     #[must_use]
     pub fn allowing(mut self, senders: impl IntoIterator<Item = IpAddr>) -> Self {
         self.allowed = senders.into_iter().collect();
+        self
+    }
+
+    /// Takes requests whose addresses begin with `prefix`.
+    #[must_use]
+    pub fn with_prefix(mut self, prefix: Prefix) -> Self {
+        self.decoder = self.decoder.with_prefix(prefix);
         self
     }
 
@@ -134,13 +143,20 @@ impl UdpSource {
         match self.decoder.decode(&self.buffer[..length], now, &mut self.batch) {
             Ok(()) => {
                 self.packets.extend(self.batch.packets.drain(..));
-                let room = MAX_CONTROLS.saturating_sub(self.controls.len());
+                let room = MAX_CONTROLS.saturating_sub(self.requests.len());
                 self.counters.overflowed += self.batch.controls.len().saturating_sub(room) as u64;
-                self.controls.extend(self.batch.controls.drain(..).take(room));
+                let from = |message| Request { message, sender: Some(sender) };
+                self.requests.extend(self.batch.controls.drain(..).take(room).map(from));
             }
             Err(error) => {
                 error.count(&mut self.counters);
                 self.log.refused(now, sender, &error);
+                if let Some(address) = self.decoder.is_answered(&error) {
+                    let mut answer = std::mem::take(&mut self.answer);
+                    write_error(self.decoder.prefix(), address, &error.to_string(), &mut answer);
+                    self.answer(sender, &answer);
+                    self.answer = answer;
+                }
             }
         }
         Ok(true)
@@ -200,8 +216,15 @@ impl SensorSource for UdpSource {
         Instant::START + self.started.elapsed()
     }
 
-    fn take_control(&mut self) -> Option<ControlMessage> {
-        self.controls.pop_front()
+    fn take_request(&mut self) -> Option<Request> {
+        self.requests.pop_front()
+    }
+
+    /// Whoever asked and went away hears nothing; that is no error of this end.
+    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
+        if let Err(error) = self.socket.send_to(datagram, to) {
+            tracing::debug!(%to, "an answer could not be sent: {error}");
+        }
     }
 
     fn counters(&self) -> LinkCounters {

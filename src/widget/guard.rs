@@ -77,6 +77,11 @@ impl Guarding {
             || (matches!(self.state, State::Acting { .. }) && matches!(self.guard, Guard::Confirm { .. }))
     }
 
+    /// Whether the press that is down will only arm it.
+    pub(super) fn is_arming(&self) -> bool {
+        self.state == State::Arming
+    }
+
     pub(super) fn has_warned(&self) -> bool {
         matches!(self.state, State::Acting { warned: true, .. })
     }

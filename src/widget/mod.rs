@@ -1,29 +1,59 @@
 //! The behaviours of controls: pure state machines fed with one foot's force and place.
 //!
 //! Each step takes the time and one [`Input`] and gives back what happened.
-//! Nothing here knows of floors, layouts or feedback.
+//! Nothing here knows of floors, layouts or feedback. Three layers, the
+//! timeline of each written above it:
+//!
+//! ```text
+//! Input -press-> pressed, released, cancelled -guard-> may it act? -behaviour-> events
+//! ```
 
+mod behaviour;
 mod button;
 mod control;
+mod dial;
 mod event;
 mod guard;
+mod hold;
 mod input;
+mod lean;
 mod moment;
+mod number;
+mod pad;
+mod pedal;
 mod press;
+#[cfg(test)]
+mod random;
+mod scale;
+mod selector;
 mod slider;
+mod stepper;
 mod switch;
+#[cfg(test)]
+mod tests;
 mod thresholds;
+mod track;
 
-pub use button::ButtonSpec;
+pub use behaviour::Behaviour;
+pub use button::{ActsOn, ButtonSpec, Gestures, HardStage};
 pub use control::{Control, Emitted, SetError};
+pub use dial::DialSpec;
 pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
 pub use guard::Guard;
+pub use hold::HoldSpec;
 pub use input::{Indicator, Input};
-pub use slider::SliderSpec;
+pub use lean::LeanSpec;
+pub use pad::PadSpec;
+pub use pedal::PedalSpec;
+pub use scale::Scale;
+pub use selector::SelectorSpec;
+pub use slider::{Mapping, SliderSpec};
+pub use stepper::{Repeat, StepperSpec};
 pub use switch::SwitchSpec;
 pub use thresholds::{Thresholds, WeightShare};
+pub use track::Track;
 
-/// Which way a slider's value grows.
+/// Along which axis of the floor something lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Axis {
     /// Eastwards (to the right).
@@ -31,37 +61,4 @@ pub enum Axis {
     East,
     /// Northwards (away from the user).
     North,
-}
-
-/// What a control does, with its settings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Behaviour {
-    /// A push button.
-    Button(ButtonSpec),
-    /// A switch.
-    Switch(SwitchSpec),
-    /// A slider.
-    Slider(SliderSpec),
-}
-
-impl Behaviour {
-    /// When it engages.
-    #[must_use]
-    pub const fn thresholds(&self) -> Thresholds {
-        match self {
-            Self::Button(spec) => spec.thresholds,
-            Self::Switch(spec) => spec.thresholds,
-            Self::Slider(spec) => spec.thresholds,
-        }
-    }
-
-    /// The word for it in messages: `button`, `switch` or `slider`.
-    #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Button(_) => "button",
-            Self::Switch(_) => "switch",
-            Self::Slider(_) => "slider",
-        }
-    }
 }

@@ -1,5 +1,3 @@
-#![allow(dead_code)]
-
 use std::time::Duration;
 
 use glam::Vec2;
@@ -16,11 +14,11 @@ pub(super) struct Moment {
     pub(super) elapsed: Duration,
     /// What became of the press in this frame.
     pub(super) outcome: Option<Outcome>,
-    /// The foot that presses firmly and can be believed: only it may change a value.
-    pub(super) firm: Option<Foot>,
-    /// Whether the press is down.
-    pub(super) down: bool,
-    /// Whether anything not yet committed is off: sensing was lost, the foot steps, an app stopped the control.
+    /// The foot that presses, if it can be believed.
+    pub(super) foot: Option<Foot>,
+    /// Whether that foot means to stay: a lifting foot rolls, and its place means nothing.
+    pub(super) firm: bool,
+    /// Whether what waits to be done must be forgotten: sensing was lost, the foot steps, an app stopped the control.
     pub(super) broken: bool,
     /// Width and depth of the control, in metres.
     pub(super) size: Vec2,
@@ -37,28 +35,33 @@ pub(super) struct Foot {
 }
 
 impl Moment {
-    /// What `press` makes of `input`, its `outcome` being known.
+    /// What `press` makes of `input`, its `outcome` being known, a time `elapsed` after the last frame.
     pub(super) fn new(
-        (last, now): (Instant, Instant),
+        now: Instant,
+        elapsed: Duration,
         input: Input,
         press: &Press,
         outcome: Option<Outcome>,
         size: Vec2,
     ) -> Self {
-        let firm = match input {
-            Input::Foot { force, trusted: true, place, .. } if press.is_firm() && place.is_finite() => {
+        let foot = match input {
+            Input::Foot { force, trusted: true, place, .. } if press.is_engaged() && place.is_finite() => {
                 Some(Foot { force, place })
             }
             _ => None,
         };
         let broken = matches!(input, Input::Lost | Input::Stepping { .. } | Input::SlidOn { .. });
-        let (elapsed, down, at) = (now.since(last), press.is_engaged(), press.thresholds());
-        Self { now, elapsed, outcome, firm, down, broken, size, at }
+        Self { now, elapsed, outcome, foot, firm: press.is_firm(), broken, size, at: press.thresholds() }
     }
 
-    /// Where the firm foot is, in metres from the control's middle.
+    /// The foot, if it means to stay: only it may change a value by its place.
+    pub(super) fn firm_foot(&self) -> Option<Foot> {
+        self.foot.filter(|_| self.firm)
+    }
+
+    /// Where that foot is, in metres from the control's middle.
     pub(super) fn offset(&self) -> Option<Vec2> {
-        self.firm.map(|foot| (foot.place - 0.5) * self.size)
+        self.firm_foot().map(|foot| (foot.place - 0.5) * self.size)
     }
 
     pub(super) fn is(&self, outcome: Outcome) -> bool {
@@ -66,8 +69,8 @@ impl Moment {
     }
 }
 
-/// What every behaviour does with the press that it is given.
-pub(super) trait Acts {
+/// What a behaviour does with the press that it is given.
+pub(super) trait Machine {
     /// Takes in one frame and appends what happened.
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted);
 
@@ -77,12 +80,11 @@ pub(super) trait Acts {
     }
 
     /// Takes a value from an app.
-    fn set(&mut self, value: Value) -> Result<(), SetError> {
-        let _ = value;
+    fn set(&mut self, _: Value) -> Result<(), SetError> {
         Err(SetError::WrongType)
     }
 
-    /// What a release would make of [`Acts::value`], where that is something else.
+    /// What a release would make of [`Machine::value`], if something else.
     fn pending(&self) -> Option<Value> {
         None
     }
@@ -92,7 +94,7 @@ pub(super) trait Acts {
         false
     }
 
-    /// Whether time alone changes nothing.
+    /// Whether time alone changes nothing while no foot is on it.
     fn is_at_rest(&self) -> bool {
         true
     }

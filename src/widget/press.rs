@@ -14,8 +14,9 @@
 //!  8  above press within `lockout` of a release    -> waits until the lockout is over
 //!  9  already loaded at start, after a loss, or by a foot that slid on
 //!                                                  -> nothing until below release for UNLOAD_TIME
-//! 10  untrusted force while up                     -> nothing; while down it holds and may release
-//! 11  the foot on it takes a step                  -> like 9, while down -> Cancelled
+//! 10  untrusted force while up                     -> nothing; while down it holds
+//! 11  below release while down, but untrusted      -> Cancelled: a doubtful lift commits nothing
+//! 12  the foot on it takes a step                  -> like 9, while down -> Cancelled
 //! ```
 
 use std::time::Duration;
@@ -159,6 +160,9 @@ impl Press {
             Down => (Lifting { since: now }, None),
 
             Lifting { .. } if loaded => (Down, None),
+            Lifting { since } if now.since(since) >= LIFT_TIME && !trusted => {
+                (NEEDS_LIFT, Some(Outcome::Cancelled))
+            }
             Lifting { since } if now.since(since) >= LIFT_TIME => {
                 (Up { ready: now + self.at.lockout }, Some(Outcome::Released))
             }
@@ -284,25 +288,23 @@ mod tests {
     }
 
     #[test]
-    fn line_10_untrusted_force_starts_nothing_but_may_release() {
-        let doubtful = |newtons| Input::Foot {
-            force: Newtons(newtons),
-            trusted: false,
-            place: Vec2::ZERO,
-            weight: None,
-        };
+    fn lines_10_and_11_untrusted_force_starts_nothing_and_commits_nothing() {
+        let doubtful =
+            |force| Input::Foot { force: Newtons(force), trusted: false, place: Vec2::ZERO, weight: None };
         let mut bench = Bench::ready();
         bench.give(doubtful(200.0), 100);
         assert_eq!(bench.outcomes, []);
         bench.force(80.0, 30);
         bench.give(doubtful(80.0), 100);
+        bench.force(80.0, 10);
+        assert_eq!(bench.outcomes.len(), 1, "held through the doubt");
         bench.give(doubtful(0.0), 10);
         let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
-        assert_eq!(kinds, [Outcome::Pressed, Outcome::Released]);
+        assert_eq!(kinds, [Outcome::Pressed, Outcome::Cancelled]);
     }
 
     #[test]
-    fn line_11_a_step_starts_nothing_and_ends_what_was_started() {
+    fn line_12_a_step_starts_nothing_and_ends_what_was_started() {
         let stepping = Input::Stepping { force: Newtons(500.0) };
         let mut bench = Bench::ready();
         bench.give(stepping, 300);

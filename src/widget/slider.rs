@@ -1,109 +1,129 @@
-use glam::Vec2;
+//! A slider: a foot's place along its track is its value, or moves it.
+//!
+//! ```text
+//!  1  press                         -> Pressed
+//!  2  absolute: the foot's place    -> Changed, also where it is pressed
+//!  3  relative: pressing            -> the value stays (clutch); the foot's way moves it by `gain`
+//!  4  relative: lift, press again   -> it goes on from where it was
+//!  5  rate: the way from where it was pressed
+//!                                   -> Changed at a speed that grows with it; none within a tenth of it
+//!  6  off its area                  -> it keeps its foot: nothing ends, values stop at the ends
+//!  7  lifting                       -> the value stays while the force falls (a lifting foot rolls)
+//!  8  release, anywhere             -> Released
+//!  9  a step, loss, an app stops it -> Changed (back to where it was), Cancelled
+//! 10  a force that can't be trusted -> the value stays
+//! 11  steps                         -> only whole steps, with hysteresis between them
+//! 12  an app sets it                -> no event; brought to range and steps
+//! ```
 
-use super::moment::{Acts, Moment};
+use std::time::Duration;
+
+use super::moment::{Machine, Moment};
+use super::number::Number;
 use super::press::Outcome;
-use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
+use super::scale::QUANTUM;
+use super::{Emitted, Scale, SetError, Thresholds, Track, Value};
 
-/// A slider: the foot's place along its axis is its value.
+/// A slider: the foot's place along its track is its value, or moves it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SliderSpec {
     /// When it engages.
     pub thresholds: Thresholds,
-    /// Which way the value grows.
-    pub axis: Axis,
-    /// Value at the low end.
-    pub min: f32,
-    /// Value at the high end; greater than `min`.
-    pub max: f32,
-    /// Distance between the values it may take; 0 for any value.
-    pub step: f32,
+    /// Where its value grows.
+    pub track: Track,
+    /// What the foot's place does to its value.
+    pub mapping: Mapping,
+    /// Its values.
+    pub scale: Scale,
     /// Value to begin with, within the range.
     pub initial: f32,
 }
 
+impl SliderSpec {
+    /// An absolute slider that grows eastwards and begins at its low end.
+    #[must_use]
+    pub const fn new(thresholds: Thresholds, scale: Scale) -> Self {
+        let (track, mapping) = (Track::EAST, Mapping::Absolute);
+        Self { thresholds, track, mapping, scale, initial: scale.min }
+    }
+}
+
+/// What the place of a foot does to a slider's value.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Mapping {
+    /// The place is the value.
+    #[default]
+    Absolute,
+    /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
+    Relative {
+        /// Ranges per length of the track.
+        gain: f32,
+    },
+    /// The way from where it was pressed is the speed at which the value moves.
+    Rate {
+        /// Change per second with the foot half a track away.
+        full_per_s: f32,
+    },
+}
+
+/// Part of the way to full speed within which a rate slider stands still (our choice).
+const DEAD: f32 = 0.1;
+
+/// Longest time that one frame may move a rate slider, however long it was.
+const LONGEST: Duration = Duration::from_millis(20);
+
 /// A slider at work: it keeps its foot until the foot lets go, wherever that slides.
-///
-/// ```text
-/// press               -> Pressed, Changed if the foot is not where the handle was
-/// slide               -> Changed, at least a quantum apart
-/// lifting             -> the value stays while the force falls (a lifting foot rolls)
-/// release, anywhere   -> Released
-/// loss                -> Changed (back to where it was), Cancelled
-/// ```
 #[derive(Clone, Debug)]
 pub(super) struct Slider {
     spec: SliderSpec,
-    value: f32,
-    before: f32,
+    number: Number,
+    /// Where along the track the foot was pressed (rate) or last (relative).
+    anchor: Option<f32>,
 }
-
-/// Smallest change worth an event where the slider has no steps, as a share of its range (our choice).
-const QUANTUM: f32 = 1e-3;
 
 impl Slider {
     pub(super) fn new(spec: SliderSpec) -> Self {
-        Self { value: spec.initial, before: spec.initial, spec }
+        Self { number: Number::new(spec.scale, spec.initial), spec, anchor: None }
     }
 
-    /// The nearest value the slider may take; NaN leaves it where it is.
-    fn settle(&self, value: f32) -> f32 {
-        let SliderSpec { min, max, step, .. } = self.spec;
-        if value.is_nan() {
-            return self.value;
-        }
-        let value = value.clamp(min, max);
-        if step > 0.0 { (min + ((value - min) / step).round() * step).min(max) } else { value }
-    }
-
-    fn follow(&mut self, place: Vec2, emitted: &mut Emitted) {
-        let SliderSpec { axis, min, max, .. } = self.spec;
-        let share = match axis {
-            Axis::East => place.x,
-            Axis::North => place.y,
-        };
-        let value = self.settle(min + (max - min) * share);
-        let at_an_end = value == min || value == max;
-        let moved = (value - self.value).abs();
-        if moved >= QUANTUM * (max - min) || (at_an_end && moved > 0.0) {
-            self.value = value;
-            emitted.push(EventKind::Changed(Value::Number(value)));
+    fn slide(&mut self, share: f32, elapsed: Duration, emitted: &mut Emitted) {
+        let range = self.spec.scale.range();
+        match self.spec.mapping {
+            Mapping::Absolute => self.number.follow(self.spec.scale.at(share), QUANTUM, emitted),
+            Mapping::Relative { gain } => {
+                let way = share - self.anchor.replace(share).unwrap_or(share);
+                self.number.move_by(way * gain * range, emitted);
+            }
+            Mapping::Rate { full_per_s } => {
+                let way = 2.0 * (share - *self.anchor.get_or_insert(share)).clamp(-0.5, 0.5);
+                let speed = (way.abs() - DEAD).max(0.0) / (1.0 - DEAD) * way.signum();
+                self.number.move_by(speed * full_per_s * elapsed.min(LONGEST).as_secs_f32(), emitted);
+            }
         }
     }
 }
 
-impl Acts for Slider {
+impl Machine for Slider {
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
-        match moment.outcome {
-            Some(Outcome::Pressed) => {
-                self.before = self.value;
-                emitted.push(EventKind::Pressed);
-            }
-            Some(Outcome::Released) => emitted.push(EventKind::Released),
-            Some(Outcome::Cancelled) => {
-                if self.value != self.before {
-                    self.value = self.before;
-                    emitted.push(EventKind::Changed(Value::Number(self.value)));
-                }
-                emitted.push(EventKind::Cancelled);
-            }
-            None => {}
+        if moment.is(Outcome::Pressed) {
+            self.anchor = None;
         }
-        if let Some(foot) = moment.firm {
-            self.follow(foot.place, emitted);
+        self.number.follow_press(moment.outcome, emitted);
+        let share = moment.firm_foot().and_then(|foot| self.spec.track.share_at(foot.place, moment.size));
+        match share {
+            Some(share) => self.slide(share, moment.elapsed, emitted),
+            // What happened meanwhile is no way.
+            None if matches!(self.spec.mapping, Mapping::Relative { .. }) => self.anchor = None,
+            None => {}
         }
     }
 
     fn value(&self) -> Option<Value> {
-        Some(Value::Number(self.value))
+        Some(Value::Number(self.number.value()))
     }
 
     fn set(&mut self, value: Value) -> Result<(), SetError> {
-        let Value::Number(number) = value else { return Err(SetError::WrongType) };
-        if !number.is_finite() {
-            return Err(SetError::NotFinite);
-        }
-        self.value = self.settle(number);
-        Ok(())
+        self.number.set(value)
     }
 
     fn captures(&self) -> bool {

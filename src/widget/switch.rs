@@ -1,13 +1,13 @@
 //! A switch: each completed press turns it over.
 //!
 //! ```text
-//!  1  press              -> Pressed
-//!  2  release on itself  -> Released, Changed (turned over)
-//!  3  slide off, loss    -> Cancelled (not turned over)
-//!  4  an app sets it     -> no event
+//!  1  press                              -> Pressed
+//!  2  release on itself                  -> Released, Changed (turned over)
+//!  3  slide off, a step, loss            -> Cancelled (not turned over)
+//!  4  an app sets it                     -> no event
 //! ```
 
-use super::moment::{Acts, Moment};
+use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
 
@@ -24,18 +24,16 @@ pub struct SwitchSpec {
 #[derive(Clone, Debug)]
 pub(super) struct Switch {
     on: bool,
-    down: bool,
 }
 
 impl Switch {
     pub(super) fn new(spec: SwitchSpec) -> Self {
-        Self { on: spec.initial, down: false }
+        Self { on: spec.initial }
     }
 }
 
-impl Acts for Switch {
+impl Machine for Switch {
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
-        self.down = moment.down;
         match moment.outcome {
             Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
             Some(Outcome::Released) => {
@@ -58,6 +56,6 @@ impl Acts for Switch {
     }
 
     fn pending(&self) -> Option<Value> {
-        self.down.then_some(Value::Switch(!self.on))
+        Some(Value::Switch(!self.on))
     }
 }

@@ -41,6 +41,9 @@ pub struct LinkCounters {
     /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
     /// and messages from apps that nobody took in time.
     pub overflowed: u64,
+    /// Requests of apps that were understood and could not be met: no such control or page, a value that doesn't
+    /// suit it, a control that is locked or in use.
+    pub denied: u64,
 }
 
 impl LinkCounters {
@@ -71,6 +74,7 @@ impl Add for LinkCounters {
             foreign: self.foreign + other.foreign,
             bad_readings: self.bad_readings + other.bad_readings,
             overflowed: self.overflowed + other.overflowed,
+            denied: self.denied + other.denied,
         }
     }
 }

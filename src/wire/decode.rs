@@ -4,36 +4,11 @@ use arrayvec::ArrayVec;
 use rosc::{OscMessage, OscPacket, OscType};
 use thiserror::Error;
 
+use super::command::{self, ControlMessage, NoCommand};
 use super::guard::{self, Limits, Malformed};
-use super::{LinkCounters, MAX_CHANNELS, Readings, SensorPacket};
+use super::{LinkCounters, MAX_CHANNELS, Prefix, Readings, SensorPacket};
 use crate::floor::Floor;
 use crate::units::Instant;
-use crate::widget::{Value, WidgetId};
-
-/// What an app asks of one control.
-///
-/// Whether there is such a control, and whether the value suits it, only the
-/// engine knows: it takes a number other than 0 for "on" where the control is a switch.
-#[derive(Clone, Debug, PartialEq)]
-pub enum ControlMessage {
-    /// `/underfoot/widget/<id>/set <value>`: hold this value. The number is finite.
-    Set {
-        /// Which control.
-        id: WidgetId,
-        /// `Switch` if the app sent OSC true or false, `Number` if it sent any number.
-        value: Value,
-    },
-    /// `/underfoot/widget/<id>/enable`: react to feet again.
-    Enable {
-        /// Which control.
-        id: WidgetId,
-    },
-    /// `/underfoot/widget/<id>/disable`: react to feet no more.
-    Disable {
-        /// Which control.
-        id: WidgetId,
-    },
-}
 
 /// Why a datagram is refused as a whole.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
@@ -94,6 +69,7 @@ impl Batch {
 #[derive(Clone, Debug)]
 pub struct Decoder {
     boards: HashMap<String, BoardShape>,
+    prefix: Prefix,
     limits: Limits,
 }
 
@@ -112,7 +88,7 @@ impl Decoder {
             let shape = BoardShape { number, channels: board.channels.len() };
             boards.entry(board.address.clone()).or_insert(shape);
         }
-        Self { boards, limits: Limits::SENSORS }
+        Self { boards, prefix: Prefix::default(), limits: Limits::SENSORS }
     }
 
     /// The same decoder with other limits.
@@ -120,6 +96,19 @@ impl Decoder {
     pub fn with_limits(mut self, limits: Limits) -> Self {
         self.limits = limits;
         self
+    }
+
+    /// The same decoder for requests whose addresses begin otherwise.
+    #[must_use]
+    pub fn with_prefix(mut self, prefix: Prefix) -> Self {
+        self.prefix = prefix;
+        self
+    }
+
+    /// What requests' addresses begin with.
+    #[must_use]
+    pub const fn prefix(&self) -> &Prefix {
+        &self.prefix
     }
 
     /// What a datagram may hold.
@@ -170,9 +159,36 @@ impl Decoder {
         if let Some(&shape) = self.boards.get(&message.addr) {
             batch.packets.push(sensor_packet(message, shape, received)?);
         } else {
-            batch.controls.push(control(message)?);
+            batch.controls.push(self.control(message)?);
         }
         Ok(())
+    }
+
+    fn control(&self, message: &OscMessage) -> Result<ControlMessage, WireError> {
+        let address = || message.addr.clone();
+        let path = self.prefix.path(&message.addr);
+        let path = path.ok_or_else(|| WireError::UnknownAddress { address: address() })?;
+        command::read(path, &message.args).map_err(|error| match error {
+            NoCommand::Unknown => WireError::UnknownAddress { address: address() },
+            NoCommand::Takes(expected) => WireError::WrongShape {
+                address: address(),
+                expected: expected.into(),
+                found: type_tags(&message.args),
+            },
+        })
+    }
+
+    /// Whether the sender of something that was refused for this reason hears why.
+    ///
+    /// Only those who meant a control or a page: whoever else sends here
+    /// by mistake, such as another floor its events, could take an answer for an answer.
+    #[must_use]
+    pub fn is_answered<'e>(&self, error: &'e WireError) -> Option<&'e str> {
+        let address = match error {
+            WireError::WrongShape { address, .. } if !self.boards.contains_key(address) => address,
+            _ => return None,
+        };
+        Some(address)
     }
 }
 
@@ -230,45 +246,6 @@ fn counts_from_blob(blob: &[u8]) -> Option<Readings> {
     Some(Readings::Counts(counts))
 }
 
-fn control(message: &OscMessage) -> Result<ControlMessage, WireError> {
-    let unknown = || WireError::UnknownAddress { address: message.addr.clone() };
-    let wrong = |expected: &str| WireError::WrongShape {
-        address: message.addr.clone(),
-        expected: expected.into(),
-        found: type_tags(&message.args),
-    };
-    let (id, verb) = message
-        .addr
-        .strip_prefix("/underfoot/widget/")
-        .and_then(|rest| rest.split_once('/'))
-        .filter(|(id, _)| !id.is_empty())
-        .ok_or_else(unknown)?;
-    let id = || WidgetId::new(id);
-    match (verb, message.args.as_slice()) {
-        ("set", [argument]) => {
-            let value = value(argument).ok_or_else(|| wrong("one finite number, true or false"))?;
-            Ok(ControlMessage::Set { id: id(), value })
-        }
-        ("set", _) => Err(wrong("one finite number, true or false")),
-        ("enable", []) => Ok(ControlMessage::Enable { id: id() }),
-        ("disable", []) => Ok(ControlMessage::Disable { id: id() }),
-        ("enable" | "disable", _) => Err(wrong("no argument")),
-        _ => Err(unknown()),
-    }
-}
-
-fn value(argument: &OscType) -> Option<Value> {
-    let number = match *argument {
-        OscType::Bool(on) => return Some(Value::Switch(on)),
-        OscType::Int(number) => number as f32,
-        OscType::Long(number) => number as f32,
-        OscType::Float(number) => number,
-        OscType::Double(number) => number as f32,
-        _ => return None,
-    };
-    number.is_finite().then_some(Value::Number(number))
-}
-
 /// The type tags of `args` as OSC writes them, shortened to what fits in a log line.
 fn type_tags(args: &[OscType]) -> String {
     const SHOWN: usize = 40;
@@ -307,6 +284,7 @@ mod tests {
 
     use super::*;
     use crate::floor::Geometry;
+    use crate::widget::{Value, WidgetId};
 
     const NOW: Instant = Instant::from_millis(7);
 
@@ -427,6 +405,8 @@ mod tests {
         assert_eq!(control(address, vec![OscType::Float(0.5)]), set(Value::Number(0.5)));
         assert_eq!(control(address, vec![OscType::Int(1)]), set(Value::Number(1.0)));
         assert_eq!(control(address, vec![OscType::Bool(true)]), set(Value::Switch(true)));
+        let pair = vec![OscType::Float(0.5), OscType::Int(-1)];
+        assert_eq!(control(address, pair), set(Value::Pair(glam::Vec2::new(0.5, -1.0))));
         let enable = control("/underfoot/widget/zoom/enable", vec![]);
         assert_eq!(enable, Ok(ControlMessage::Enable { id: id.clone() }));
         let disable = control("/underfoot/widget/zoom/disable", vec![]);

@@ -1,22 +1,23 @@
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 
+use super::Prefix;
 use super::encode::write;
 use crate::engine::LinkState;
 use crate::sense::Contact;
-use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
 const CONTACTS_PER_DATAGRAM: usize = 20;
 
 /// Writes one event as an OSC message into `bytes`, replacing what was there.
 ///
-/// The address is `/underfoot/widget/<id>/<kind>`. For `changed` the value
+/// The address is `/underfoot/widget/<id>/<kind>`, beginning with `prefix`. For `changed` the value
 /// comes first: a float for a number, two floats for a pair, the number of a
 /// choice (int), or 0 or 1 (int) for what is off or on, since some receivers
 /// stumble over OSC's true and false; for `swiped` the direction (string).
 /// Then always force (newtons), x and y (floor metres), as floats. Characters
 /// of the id that OSC addresses may not have are written as `_`.
-pub fn write_event(event: &WidgetEvent, bytes: &mut Vec<u8>) {
+pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
     let mut args = Vec::with_capacity(5);
     match event.kind {
         EventKind::Changed(value) => write_value(value, &mut args),
@@ -36,7 +37,7 @@ pub fn write_event(event: &WidgetEvent, bytes: &mut Vec<u8>) {
         | EventKind::Refused => {}
     }
     args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
-    let address = format!("/underfoot/widget/{}/{}", address_part(&event.id), event.kind.name());
+    let address = of_widget(prefix, &event.id, event.kind.name());
     bytes.clear();
     write(&message(address, args), bytes);
 }
@@ -57,13 +58,18 @@ fn write_value(value: Value, args: &mut Vec<OscType>) {
 /// x, y (floor metres), force (newtons), and velocity x, y (metres per second)
 /// as floats. A receiver drops the contacts it no longer hears of, at the
 /// latest when the count is 0. More than 20 contacts take several datagrams.
-pub fn write_contacts(contacts: &[Contact], bytes: &mut Vec<u8>, mut send: impl FnMut(&[u8])) {
+pub fn write_contacts(
+    prefix: &Prefix,
+    contacts: &[Contact],
+    bytes: &mut Vec<u8>,
+    mut send: impl FnMut(&[u8]),
+) {
     let count = i32::try_from(contacts.len()).unwrap_or(i32::MAX);
     let mut rest = contacts;
     loop {
         let (now, later) = rest.split_at(rest.len().min(CONTACTS_PER_DATAGRAM));
-        let mut content = vec![message("/underfoot/contacts".into(), vec![OscType::Int(count)])];
-        content.extend(now.iter().map(contact));
+        let mut content = vec![message(prefix.address("contacts"), vec![OscType::Int(count)])];
+        content.extend(now.iter().map(|each| contact(prefix, each)));
         // The time tag that means "at once".
         let timetag = OscTime { seconds: 0, fractional: 1 };
         bytes.clear();
@@ -78,10 +84,68 @@ pub fn write_contacts(contacts: &[Contact], bytes: &mut Vec<u8>, mut send: impl 
 
 /// Writes the state of the floor's link as the OSC message `/underfoot/health` with one
 /// string: `waiting`, `live`, `partial` or `lost`.
-pub fn write_health(state: LinkState, bytes: &mut Vec<u8>) {
+pub fn write_health(prefix: &Prefix, state: LinkState, bytes: &mut Vec<u8>) {
     bytes.clear();
     let args = vec![OscType::String(link_name(state).into())];
-    write(&message("/underfoot/health".into(), args), bytes);
+    write(&message(prefix.address("health"), args), bytes);
+}
+
+/// Writes which page is shown as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
+pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
+    bytes.clear();
+    write(&message(prefix.address("page"), vec![OscType::String(page.into())]), bytes);
+}
+
+/// Writes why a request was refused as the OSC message `/underfoot/error`: the address it came to, and a sentence.
+pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8>) {
+    bytes.clear();
+    let args = vec![OscType::String(address.into()), OscType::String(why.into())];
+    write(&message(prefix.address("error"), args), bytes);
+}
+
+/// How a control is, for those who ask.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Readback<'a> {
+    /// Which control.
+    pub id: &'a WidgetId,
+    /// What it holds; `None` for what holds nothing.
+    pub value: Option<Value>,
+    /// Whether it reacts to feet.
+    pub enabled: bool,
+    /// Whether it keeps its value.
+    pub locked: bool,
+    /// Whether a foot has it pressed.
+    pub pressed: bool,
+    /// Whether a first press has armed it.
+    pub armed: bool,
+    /// What its lamp shows.
+    pub indicator: Indicator,
+    /// What is written on it.
+    pub label: &'a str,
+}
+
+/// Writes how a control is as an OSC bundle: `/underfoot/widget/<id>/value` with what it holds, if
+/// anything, as `changed` has it; and `/underfoot/widget/<id>/state` with enabled, locked, pressed,
+/// armed (ints, 0 or 1), indicator and label (strings).
+pub fn write_readback(prefix: &Prefix, readback: &Readback<'_>, bytes: &mut Vec<u8>) {
+    let Readback { id, value, enabled, locked, pressed, armed, indicator, label } = *readback;
+    let mut content = Vec::new();
+    if let Some(value) = value {
+        let mut args = Vec::new();
+        write_value(value, &mut args);
+        content.push(message(of_widget(prefix, id, "value"), args));
+    }
+    let mut args: Vec<OscType> =
+        [enabled, locked, pressed, armed].into_iter().map(|flag| OscType::Int(flag.into())).collect();
+    args.extend([indicator.name(), label].map(|text| OscType::String(text.into())));
+    content.push(message(of_widget(prefix, id, "state"), args));
+    let timetag = OscTime { seconds: 0, fractional: 1 };
+    bytes.clear();
+    write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);
+}
+
+fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
+    prefix.address(&format!("widget/{}/{what}", address_part(id)))
 }
 
 /// The word for a link's state in OSC and JSON.
@@ -98,12 +162,12 @@ fn message(addr: String, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr, args })
 }
 
-fn contact(contact: &Contact) -> OscPacket {
+fn contact(prefix: &Prefix, contact: &Contact) -> OscPacket {
     let floats =
         [contact.centroid.x, contact.centroid.y, contact.force.0, contact.velocity.x, contact.velocity.y];
     let id = OscType::Int(contact.id.0.cast_signed());
     let args = std::iter::once(id).chain(floats.map(OscType::Float)).collect();
-    message("/underfoot/contact".into(), args)
+    message(prefix.address("contact"), args)
 }
 
 fn address_part(id: &WidgetId) -> String {
@@ -140,7 +204,7 @@ mod tests {
 
     fn event_message(event: &WidgetEvent) -> (String, Vec<OscType>) {
         let mut bytes = vec![1, 2, 3];
-        write_event(event, &mut bytes);
+        write_event(&Prefix::default(), event, &mut bytes);
         let OscPacket::Message(message) = decoded(&bytes) else { panic!("not a message") };
         (message.addr, message.args)
     }
@@ -193,7 +257,7 @@ mod tests {
         for count in [0, 1, 20, 21, 100] {
             let mut ids = Vec::new();
             let mut datagrams = 0;
-            write_contacts(&feet(count), &mut Vec::new(), |bytes| {
+            write_contacts(&Prefix::default(), &feet(count), &mut Vec::new(), |bytes| {
                 datagrams += 1;
                 assert!(bytes.len() < 1400, "{}", bytes.len());
                 let OscPacket::Bundle(bundle) = decoded(bytes) else { panic!("not a bundle") };
@@ -217,7 +281,7 @@ mod tests {
     #[test]
     fn health_is_one_word() {
         let mut bytes = Vec::new();
-        write_health(LinkState::Lost, &mut bytes);
+        write_health(&Prefix::default(), LinkState::Lost, &mut bytes);
         let args = vec![OscType::String("lost".into())];
         assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
     }

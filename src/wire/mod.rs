@@ -5,6 +5,7 @@
 //! back, for simulated boards; [`write_event`] and its kin speak to other
 //! programs.
 
+mod command;
 mod counters;
 mod decode;
 mod encode;
@@ -12,11 +13,22 @@ mod event;
 pub mod garble;
 mod guard;
 mod packet;
+mod prefix;
+mod tuio;
+mod tuio1;
+mod tuio2;
 
+pub use command::{COMMANDS, Command, ControlMessage, MAX_LABEL, Request, Takes};
 pub use counters::LinkCounters;
-pub use decode::{Batch, ControlMessage, Decoder, WireError};
+pub use decode::{Batch, Decoder, WireError};
 pub use encode::{EncodeError, SensorEncoder, SensorFormat};
 pub(crate) use event::link_name;
-pub use event::{write_contacts, write_event, write_health};
+pub use event::{
+    Readback, write_contacts, write_error, write_event, write_health, write_page, write_readback,
+};
 pub use guard::{Limits, Malformed, check};
 pub use packet::{MAX_CHANNELS, Readings, SensorPacket};
+pub use prefix::{BadPrefix, Prefix};
+pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM};
+pub use tuio1::Tuio1;
+pub use tuio2::{TUIO_FULL_FORCE_N, Tuio2};

@@ -7,7 +7,7 @@ use underfoot::feel::Cue;
 use underfoot::floor::{Floor, Geometry, SensorId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Assembler, Contact, Method, Quality, Tare, TareRules};
-use underfoot::sim::{self, Foot, Sensing, SimConfig, SimFloor};
+use underfoot::sim::{self, Foot, Load, Sensing, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::EventKind;
 use underfoot::wire::{Readings, SensorPacket};
@@ -30,9 +30,14 @@ pub struct Bench {
 
 impl Bench {
     pub fn new(sensing: Sensing) -> Self {
+        Self::new_seed(sensing, 3)
+    }
+
+    /// As [`Bench::new`], with other parts out of the box.
+    pub fn new_seed(sensing: Sensing, seed: u64) -> Self {
         let wired = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
-        let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, 3);
-        let floor = sim::calibrated(&wired, &sim, 3).unwrap();
+        let sim = SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, seed);
+        let floor = sim::calibrated(&wired, &sim, seed).unwrap();
         Self::with_floor(&floor, sim)
     }
 
@@ -72,6 +77,16 @@ impl Bench {
 
     pub fn run(&mut self, millis: u64) {
         self.run_with(millis, |_, _, _| {});
+    }
+
+    /// A millisecond under loads that are no feet; what the controls make of it is not looked at.
+    pub fn run_under(&mut self, loads: &[Load]) {
+        self.now = self.now + Duration::from_millis(1);
+        let (sequence, received) = ((self.now.micros() / 1000) as u32, self.now);
+        for (board, readings) in (0..).zip(self.sim.step_under(loads.iter().copied())) {
+            self.assembler.take(&SensorPacket { board, sequence, received, readings: readings.clone() });
+        }
+        while self.assembler.ready().is_some() {}
     }
 
     /// Lets time pass; `disturb` may change what channel (board, number) sends, in newtons.

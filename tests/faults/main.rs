@@ -15,3 +15,6 @@ mod long_run;
 mod loop_gain;
 mod lost;
 mod people;
+mod scenes;
+mod taps;
+mod visits;

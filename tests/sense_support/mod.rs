@@ -13,7 +13,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use underfoot::floor::{Corner, Geometry};
 use underfoot::glam::Vec2;
-use underfoot::sense::{Contact, ForceFrame, Method, Sensing};
+use underfoot::sense::{Contact, ForceFrame, Method, Sensing, SensingConfig, SensorDoubt};
 use underfoot::units::Instant;
 
 /// Where one foot truly is at one instant.
@@ -316,7 +316,10 @@ const LIGHT_N: f32 = 30.0;
 impl Score {
     /// Runs `method` over `scene` and adds what comes out.
     pub fn add(&mut self, scene: &Scene, method: Method) {
-        let mut sensing = Sensing::new(scene.geometry, method);
+        // What is known of these sensors is how they were made.
+        let doubt = SensorDoubt { offset_n: 0.5, gain: 0.05 };
+        let config = SensingConfig { doubt, ..SensingConfig::default() };
+        let mut sensing = Sensing::with_config(scene.geometry, method, config);
         let mut last: HashMap<usize, u32> = HashMap::new();
         for (ms, (frame, truth)) in scene.frames.iter().zip(&scene.truth).enumerate() {
             let contacts = sensing.update(frame);

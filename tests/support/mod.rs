@@ -48,6 +48,8 @@ pub struct Walker {
     foot: Option<Foot>,
     /// Whether boards are heard.
     pub connected: bool,
+    /// Whether no tile's forces may be believed.
+    pub doubtful: bool,
     /// Whether what boards send is kept back on its way, until it is released.
     pub hold_back: bool,
     held_back: Vec<SensorPacket>,
@@ -86,6 +88,7 @@ impl Walker {
             stance: None,
             foot: None,
             connected: true,
+            doubtful: false,
             hold_back: false,
             held_back: Vec::new(),
             watched: true,
@@ -252,7 +255,13 @@ impl Walker {
             self.assembler.poll(self.now);
         }
         while let Some(frame) = self.assembler.ready() {
-            take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+            if self.doubtful {
+                let mut frame = frame.clone();
+                frame.may_start.fill(false);
+                take(&mut self.engine, &frame, &mut self.events, &mut self.cues);
+            } else {
+                take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+            }
         }
         if !self.watched {
             return;

@@ -28,11 +28,11 @@ impl App {
                         commands.push(PreviewCommand::Enable { id: id.clone(), enabled: works });
                     }
                     ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                        match (&widget.behaviour, state.value) {
-                            (Behaviour::Slider(slider), Some(Value::Number(value))) => {
+                        match (widget.behaviour.scale(), state.value) {
+                            (Some(scale), Some(Value::Number(value))) => {
                                 let mut wanted = value;
-                                let speed = 0.005 * (slider.max - slider.min);
-                                let range = slider.min..=slider.max;
+                                let speed = 0.005 * (scale.range());
+                                let range = scale.min..=scale.max;
                                 let drag = ui.add(DragValue::new(&mut wanted).range(range).speed(speed));
                                 drag.widget_info(|| {
                                     WidgetInfo::slider(true, f64::from(value), format!("{id} value"))
@@ -42,7 +42,8 @@ impl App {
                                     commands.push(PreviewCommand::Set { id: id.clone(), value });
                                 }
                             }
-                            (Behaviour::Switch(_), Some(Value::Switch(on))) => {
+                            _ if matches!(widget.behaviour, Behaviour::Switch(_)) => {
+                                let on = state.value == Some(Value::Switch(true));
                                 let mut wanted = on;
                                 let tick = ui.checkbox(&mut wanted, if on { "on" } else { "off" });
                                 tick.widget_info(|| {

@@ -43,6 +43,7 @@ impl Channel {
         match count {
             Calibration::SATURATED.. => End::High,
             ..=NOTHING if self.tare > self.calibration.a_n + RESTS_N => End::Low,
+            ..=NOTHING => End::Bare,
             _ => End::Within,
         }
     }

@@ -83,7 +83,7 @@ impl Drift {
             if moved.abs() > limit {
                 sensor.find(Trouble::Drifted, block.means[corner]);
             } else if sensor.trouble() == Some(Trouble::Drifted) {
-                sensor.review(block.means[corner], zero.abs() < 0.95 * limit, block.seconds);
+                sensor.review(block.means[corner], zero.abs() < 0.95 * limit, true, block.seconds);
             }
         }
     }
@@ -98,7 +98,7 @@ impl Drift {
                 sensor.find(Trouble::Noisy, block.means[corner]);
             }
             if sensor.trouble() == Some(Trouble::Noisy) {
-                sensor.review(block.means[corner], !scatters, block.seconds);
+                sensor.review(block.means[corner], !scatters, true, block.seconds);
             }
         }
     }

@@ -3,6 +3,8 @@
 //! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ
 //! from it in one bit of its number, its diagonal in both.
 
+use super::End;
+
 /// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
 const ALONE_N: f32 = 8.0;
 
@@ -35,35 +37,73 @@ pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
 
 /// The sensor that alone reads a load (or the lack of one), if no foot could press like that.
 ///
-/// Sensors that are `out` say nothing; with fewer than two others left there is no telling.
+/// Sensors that are `out` say nothing; with one of its two neighbours among them there is no telling,
+/// for a load on the edge between may have no other answer.
 pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
     let known = || (0..4).filter(|&corner| !out[corner]);
     let loudest = known().max_by(|&a, &b| forces[a].abs().total_cmp(&forces[b].abs()))?;
     let force = forces[loudest].abs();
     let answer = (ANSWER * force).clamp(LEAST_ANSWER_N, MOST_ANSWER_N);
-    let others = known().filter(|&corner| corner != loudest);
-    let quiet = others.clone().all(|corner| forces[corner].abs() < answer);
-    (force > ALONE_N && others.count() >= 2 && quiet).then_some(loudest)
+    let quiet = known().filter(|&corner| corner != loudest).all(|corner| forces[corner].abs() < answer);
+    let answerable = !out[loudest ^ 1] && !out[loudest ^ 2];
+    (force > ALONE_N && answerable && quiet).then_some(loudest)
 }
 
-/// Whether a corner other than `corner` has lifted off, so that the plate tips and [`expected`] says nothing.
-pub(super) fn tips(forces: [f32; 4], corner: usize) -> bool {
-    (0..4).any(|other| other != corner && forces[other] < LIFTED_N)
+/// How [`expected`] of a corner is to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Evidence {
+    /// As it is, but for unequal supports and gains.
+    Exact,
+    /// The diagonal is in the air: this corner carries that much or more.
+    AtLeast,
+    /// The plate tips over this corner's neighbours, or one of the others bears more than it can read.
+    None,
 }
 
-/// Whether `corner`, which reads nothing at all, should read more: half of what it reads on
-/// the empty floor is there by what the others carry, all errors allowed for.
+/// What the other three say about `corner`.
 ///
-/// A corner that a foot on the far side has lifted off reads nothing as well, rightly; so
-/// where the plate may tip, or a sensor is out, only a tile that carries nothing tells.
-pub(super) fn should_bear_more(forces: [f32; 4], out: [bool; 4], corner: usize) -> bool {
+/// A corner in the air would have to pull for [`expected`] to hold: of the diagonal that makes it a lower
+/// bound, of a neighbour an upper one. A part that misses its law where it is light may read no less in
+/// the air than at rest; that it reads next to nothing tells all the same.
+pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Evidence {
+    let mut others = (0..4).filter(|&other| other != corner);
+    let tips = [corner ^ 1, corner ^ 2].into_iter().any(|other| has_lifted(forces, ends, other));
+    if tips || others.any(|other| ends[other] == End::High) {
+        Evidence::None
+    } else if has_lifted(forces, ends, corner ^ 3) {
+        Evidence::AtLeast
+    } else {
+        Evidence::Exact
+    }
+}
+
+fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
+    forces[corner] < LIFTED_N || ends[corner].reads_nothing()
+}
+
+/// Whether `corner`, which reads nothing at all, should read more; `fell` says that it came to do so
+/// from one millisecond to the next.
+///
+/// On a tile that carries nothing it should. On one that does, a foot on the far side may have lifted it
+/// off, rightly; so it must have fallen faster than any foot lifts a corner, and half of what it reads on
+/// the empty floor must be there by what the others carry, all errors allowed for. (If the far side's own
+/// sensor is dead, and that is not known yet, the others seem to say so of a lifted corner, too.)
+pub(super) fn should_bear_more(
+    forces: [f32; 4],
+    ends: [End; 4],
+    out: [bool; 4],
+    corner: usize,
+    fell: bool,
+) -> bool {
     let others = [corner ^ 1, corner ^ 2, corner ^ 3];
-    if others.iter().any(|&other| out[other]) || tips(forces, corner) {
-        let tells = |other: usize| !out[other] && forces[other] >= LIFTED_N;
-        return others.iter().all(|&other| !tells(other) || forces[other].abs() < LEAST_ANSWER_N);
+    let tells = |other: usize| !out[other] && !has_lifted(forces, ends, other);
+    if others.iter().all(|&other| !tells(other) || forces[other].abs() < LEAST_ANSWER_N) {
+        return true;
     }
     let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
-    expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
+    fell && !others.iter().any(|&other| out[other])
+        && evidence(forces, ends, corner) == Evidence::Exact
+        && expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
 }
 
 #[cfg(test)]
@@ -92,16 +132,39 @@ mod tests {
         }
         assert_eq!(unanswered([4.0, 0.0, 0.0, 0.0], NONE_OUT), None, "too light to tell");
         assert_eq!(unanswered([50.0, 0.0, 0.0, 0.0], [true, false, false, false]), None, "known to be out");
+        assert_eq!(
+            unanswered([50.0, 0.0, 0.0, 0.0], [false, true, false, false]),
+            None,
+            "a foot on the south edge"
+        );
+        assert_eq!(unanswered([50.0, 0.0, 0.0, 0.0], [false, false, false, true]), Some(0));
         assert_eq!(unanswered([f32::NAN; 4], NONE_OUT), None);
     }
 
     #[test]
     fn a_lifted_corner_is_no_broken_one() {
         // sw reads nothing, 11 N less than at rest.
-        assert!(should_bear_more([-11.0, 0.1, -0.2, 0.3], NONE_OUT, 0), "nobody there");
-        assert!(should_bear_more([-11.0, 150.0, 160.0, 140.0], NONE_OUT, 0), "a foot in the middle");
-        assert!(!should_bear_more([-11.0, 10.0, 10.0, 280.0], NONE_OUT, 0), "a foot on ne");
-        assert!(!should_bear_more([-11.0, 300.0, -11.0, -10.0], NONE_OUT, 0), "tipped over se");
-        assert!(should_bear_more([-11.0, -11.0, -11.0, -11.0], NONE_OUT, 0), "the whole tile unplugged");
+        let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0, true);
+        let alone = [End::Low, End::Within, End::Within, End::Within];
+        assert!(sw_of([-11.0, 0.1, -0.2, 0.3], alone), "nobody there");
+        assert!(sw_of([-11.0, 150.0, 160.0, 140.0], alone), "a foot in the middle");
+        assert!(!should_bear_more([-11.0, 150.0, 160.0, 140.0], alone, NONE_OUT, 0, false), "slowly");
+        assert!(!sw_of([-11.0, 10.0, 10.0, 280.0], alone), "a foot on ne");
+        assert!(!sw_of([-11.0, 300.0, -11.0, -10.0], alone), "tipped over se");
+        assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [End::Low; 4]), "the whole tile unplugged");
+        // The part at nw reads 1.5 N at rest where 11 N press it, and nothing in the air.
+        let east = [End::Low, End::Within, End::Bare, End::Within];
+        assert!(!sw_of([-11.0, 190.0, -1.5, 90.0], east), "tipped over the east edge");
+        // ne is at the end of its range: nobody knows how much it bears.
+        let beyond = [End::Low, End::Within, End::Within, End::High];
+        assert!(!sw_of([-11.0, 190.0, 180.0, 260.0], beyond), "a very heavy foot on ne");
+    }
+
+    #[test]
+    fn a_diagonal_in_the_air_is_evidence_that_a_corner_bears_much() {
+        let within = [End::Within; 4];
+        assert_eq!(evidence([0.0, 80.0, 90.0, -11.0], within, 0), Evidence::AtLeast);
+        assert_eq!(evidence([0.0, -11.0, 90.0, 10.0], within, 0), Evidence::None);
+        assert_eq!(evidence([0.0, 80.0, 90.0, 70.0], within, 0), Evidence::Exact);
     }
 }

@@ -1,4 +1,5 @@
 use super::drift::Drift;
+use super::plate::Evidence;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
 use crate::units::Instant;
@@ -102,8 +103,9 @@ impl Slow {
         Some(Block { means, spreads, seconds })
     }
 
-    /// Finds stuck sensors, and gives those in trouble the chance to be found right again.
-    pub(super) fn judge(&mut self, block: &Block, ends: [End; 4], sensors: &mut [Sensor; 4]) {
+    /// Finds stuck sensors, and gives those in trouble the chance to be found right again; `alone` says
+    /// that no tile around carries anything.
+    pub(super) fn judge(&mut self, block: &Block, ends: [End; 4], alone: bool, sensors: &mut [Sensor; 4]) {
         let out = sensors.map(|sensor| sensor.is_out());
         let means = block.means;
         for corner in 0..4 {
@@ -114,23 +116,24 @@ impl Slow {
                 self.tracks[corner] = Track::default();
                 // No telling what it should read, but on an empty tile.
                 let empty = others.iter().all(|&other| out[other] || means[other].abs() <= RIGHT_N);
-                sensor.review(
-                    own,
-                    empty && own.abs() <= RIGHT_N && ends[corner] == End::Within,
-                    block.seconds,
-                );
+                let is_right = empty && own.abs() <= RIGHT_N && !ends[corner].is_odd();
+                sensor.review(own, is_right, alone, block.seconds);
                 continue;
             }
             let lifted = own < plate::LIFTED_N && sensor.trouble().is_none();
-            if lifted || plate::tips(means, corner) {
+            let evidence = plate::evidence(means, ends, corner);
+            if lifted || evidence == Evidence::None {
                 // Neither evidence for it nor against it.
                 continue;
             }
             let expected = plate::expected(means, corner).max(0.0);
-            let is_right = (own - expected).abs() <= RIGHT_N + plate::SLACK * load;
+            let slack = RIGHT_N + plate::SLACK * load;
+            let is_right =
+                own >= expected - slack && (own <= expected + slack || evidence == Evidence::AtLeast);
             match sensor.trouble() {
                 None | Some(Trouble::Drifted | Trouble::Noisy) => {}
-                Some(_) => sensor.review(own, is_right && ends[corner] == End::Within, block.seconds),
+                Some(_) if is_right && !sensor.shows(slack) => {}
+                Some(_) => sensor.review(own, is_right && !ends[corner].is_odd(), alone, block.seconds),
             }
             // A reading at the end of the range stands still rightly under a heavy foot.
             if ends[corner] == End::High || sensor.is_out() {

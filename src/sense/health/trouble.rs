@@ -46,6 +46,8 @@ pub(super) struct Sensor {
     good_for: f32,
     /// Whether it has moved since.
     moved: bool,
+    /// Whether it came to read so from one millisecond to the next, faster than any foot.
+    sudden: bool,
 }
 
 impl Sensor {
@@ -88,17 +90,33 @@ impl Sensor {
         is_news
     }
 
-    /// Takes in what it read on average over `seconds`, and whether that is what it should read.
+    /// Whether what is wrong with it would show where the plate's demand is known to within `slack` newtons:
+    /// under a heavy foot a load that is not on the plate goes unnoticed.
+    pub(super) fn shows(&self, slack: f32) -> bool {
+        self.trouble != Some(Trouble::Offset) || slack < 0.5 * self.found_at.abs()
+    }
+
+    /// Notes that its trouble came from one millisecond to the next.
+    pub(super) fn struck(&mut self) {
+        self.sudden = true;
+    }
+
+    /// Takes in what it read on average over `seconds`, and whether that is what it should read; `alone` says
+    /// that nobody stands on the tiles around.
     ///
-    /// Only this improves its quality, and only after a second of evidence.
-    pub(super) fn review(&mut self, mean: f32, is_good: bool, seconds: f32) {
+    /// Only this improves its quality, and only after a second of evidence. A load without answer is
+    /// not held against it while it may be the edge of a foot on the next tile, beside a sensor
+    /// that is dead and not yet known to be.
+    pub(super) fn review(&mut self, mean: f32, is_good: bool, alone: bool, seconds: f32) {
         if self.trouble.is_none() {
             return;
         }
         self.moved |= (mean - self.found_at).abs() > LOOSE_N;
         if !is_good {
             self.good_for = 0.0;
-            self.bad_for = (self.bad_for + seconds).min(DOUBT_S);
+            if alone || self.sudden {
+                self.bad_for = (self.bad_for + seconds).min(DOUBT_S);
+            }
         } else if self.moved || self.trouble != Some(Trouble::Stuck) {
             self.good_for += seconds;
             if self.good_for >= PROBATION_S {
@@ -122,12 +140,12 @@ mod tests {
         let mut sensor = Sensor::default();
         sensor.find(Trouble::Stuck, 0.0);
         for _ in 0..100 {
-            sensor.review(0.0, true, 0.064);
+            sensor.review(0.0, true, true, 0.064);
         }
         assert_eq!(sensor.trouble(), Some(Trouble::Stuck));
-        sensor.review(40.0, true, 0.064);
+        sensor.review(40.0, true, true, 0.064);
         for _ in 0..16 {
-            sensor.review(0.0, true, 0.064);
+            sensor.review(0.0, true, true, 0.064);
         }
         assert_eq!(sensor.trouble(), None);
     }
@@ -138,9 +156,24 @@ mod tests {
         assert!(sensor.find(Trouble::Offset, 50.0));
         assert!(sensor.forbids_start() && sensor.quality() == Quality::Degraded);
         for _ in 0..8 {
-            sensor.review(50.0, false, 0.064);
+            sensor.review(50.0, false, true, 0.064);
         }
         assert!(sensor.is_out() && !sensor.forbids_start());
+    }
+
+    #[test]
+    fn beside_a_standing_foot_only_a_sudden_load_without_answer_is_wrong() {
+        for sudden in [false, true] {
+            let mut sensor = Sensor::default();
+            sensor.find(Trouble::Offset, 50.0);
+            if sudden {
+                sensor.struck();
+            }
+            for _ in 0..100 {
+                sensor.review(50.0, false, false, 0.064);
+            }
+            assert_eq!(sensor.is_out(), sudden);
+        }
     }
 
     proptest! {
@@ -158,7 +191,7 @@ mod tests {
                 }
                 let before = sensor.quality();
                 good = if is_good { good + 1 } else { 0 };
-                sensor.review(mean, is_good, 0.064);
+                sensor.review(mean, is_good, true, 0.064);
                 prop_assert!(sensor.quality() >= before || good >= 15, "{good} good blocks");
             }
         }

@@ -4,12 +4,25 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::Tracker;
-use super::foot::{FORCE, Foot};
+use super::foot::{FORCE, Foot, LANDS_S};
+use super::landing::Landing;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 /// Least distance between the centres of pressure of two feet: side by side, touching.
 pub(super) const APART_M: f64 = 0.08;
+
+/// Load that a tile must gain to show a newcomer, in newtons and as a share of what already stands there.
+const ADDED_N: f64 = 10.0;
+const ADDED_SHARE: f64 = 0.02;
+
+/// How far, in metres, and how fast, in metres per second, weight that is shifted to another foot moves the
+/// common centre of pressure at least.
+const SHIFT_M: f64 = 0.035;
+const SHIFT_M_S: f64 = 0.36;
+
+/// Distance between two feet that stand, before anything is known of it, in metres.
+const STANCE_M: f64 = 0.2;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]
@@ -27,14 +40,15 @@ impl Tracker {
         let list = tiles.list();
         for which in 0..self.feet.len() {
             let foot = &self.feet[which];
-            if foot.age == 0.0 || foot.shared {
+            if foot.age <= LANDS_S || foot.shared {
                 continue;
             }
             let Some(newcomer) = self.newcomer(foot, list) else { continue };
             let others = self.feet.iter().enumerate().filter(|&(other, _)| other != which);
             let nearest = others
                 .map(|(other, foot)| {
-                    (other, foot.beyond(newcomer.place), foot.centre().distance(newcomer.place))
+                    let beyond = foot.beyond(newcomer.place).min(foot.lands_about(newcomer.place));
+                    (other, beyond, foot.centre().distance(newcomer.place))
                 })
                 .filter(|&(_, beyond, distance)| beyond < 0.0 || distance < APART_M)
                 .min_by(|a, b| a.2.total_cmp(&b.2));
@@ -51,9 +65,11 @@ impl Tracker {
             if foot.centre().distance(newcomer.place) < APART_M {
                 continue;
             }
+            let landing = foot.stands().then_some(Landing { host: foot.id, from: foot.home });
             let mut newborn = Foot::new(self.name(), newcomer.force, newcomer.place, newcomer.deviation);
             newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
             newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
+            newborn.landing = landing;
             newborn.reach(tiles, self.cells.pitch);
             for &position in &newcomer.tiles {
                 if !newborn.tiles.contains(&position) {
@@ -81,7 +97,7 @@ impl Tracker {
             let slow = foot.slow_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
-            if added < 10.0 {
+            if added < (ADDED_SHARE * foot.past.force).max(ADDED_N) {
                 continue;
             }
             let moment = (centroid - centre) * force - slow.moment;
@@ -102,6 +118,19 @@ impl Tracker {
         }
         if found.force > 0.0 {
             return Some(found);
+        }
+        // Weight that is shifted slowly: a foot that stood still does not begin to roll as fast, nor to the side.
+        let shift = sum / whole - foot.home;
+        if foot.stands()
+            && foot.calm <= 0.0
+            && whole > 120.0
+            && foot.may_have_partner_towards(shift)
+            && shift.length() > SHIFT_M
+            && shift.length() > SHIFT_M_S * foot.away
+        {
+            let place = foot.home + shift.normalize() * STANCE_M;
+            let force = whole * shift.length() / STANCE_M;
+            return Some(Newcomer { force, place, deviation: 0.08, ..Newcomer::default() });
         }
         let leap = sum / whole - foot.past.centre;
         if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 {

@@ -3,6 +3,7 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::landing::Landing;
 use super::lines::{Axis, Habit, Lines};
 use super::patch::PatchOnTile;
 use crate::sense::contact::ContactId;
@@ -30,7 +31,33 @@ const ASIDE_M: f64 = 0.11;
 /// How far from its centre of pressure a foot that has come down flat presses.
 const AROUND_M: f64 = 0.17;
 /// After which time a foot has come down flat, in seconds.
-const FLAT_S: f64 = 0.3;
+pub(super) const FLAT_S: f64 = 0.3;
+
+/// How long a foot takes to land: until then more of it may touch the floor anywhere under its shoe, in seconds.
+pub(super) const LANDS_S: f64 = 0.25;
+
+/// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
+/// while another one lands, in metres.
+const STRAY_LEAST_M: f64 = 0.012;
+const STRAY_MOST_M: f64 = 0.06;
+/// How far it strays per speed, in seconds: as long as two feet are down while one walks.
+const STRAY_S: f64 = 0.15;
+/// How soon a foot that shares tiles has another home, in seconds.
+const HOME_S: f64 = 1.0;
+/// How soon one that stands still alone has.
+const STILL_HOME_S: f64 = 0.03;
+
+/// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
+const RESTLESS_M_S: f64 = 0.03;
+
+/// Speed of its centre of pressure below which a foot stands still, in metres per second.
+const STILL_M_S: f64 = 0.12;
+/// How long it must have done so, and how long it may then move before it rolls, in seconds.
+const STILL_S: f64 = 0.08;
+const AWAY_S: f64 = 0.15;
+
+/// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
+const PARTNER_S: f64 = 1.2;
 
 /// Time constant of a foot's habits, in seconds.
 const HABIT_S: f64 = 0.08;
@@ -49,6 +76,10 @@ pub(super) struct Foot {
     pub tiles: SmallVec<[u32; 12]>,
     /// Seconds for which it has been too light to be there.
     pub faint: f64,
+    /// The most it has pressed with.
+    pub peak: f64,
+    /// Seconds for which another foot alone has been enough.
+    pub spare: f64,
     /// Seconds for which its own sway is not to be taken for a newcomer.
     pub calm: f64,
     /// Which group of feet it is estimated with.
@@ -69,6 +100,16 @@ pub(super) struct Foot {
     pub restless: f64,
     /// Where it was when last seen alone; `None` if it never was.
     pub alone_at: Option<DVec2>,
+    /// Where its centre of pressure rests while it shares tiles, and how far it strays from there.
+    pub home: DVec2,
+    pub stray: f64,
+    /// Seconds for which it stood still there, and since when it has moved.
+    pub still: f64,
+    pub away: f64,
+    /// Where the other foot of the same person was last seen near it, and how long ago.
+    pub partner: Option<(DVec2, f64)>,
+    /// Beside whom it has landed.
+    pub landing: Option<Landing>,
     /// Its centre of pressure when it landed, and the one farthest from there since.
     pub landed: DVec2,
     pub farthest: DVec2,
@@ -106,6 +147,8 @@ impl Foot {
             past: Past { force, centre, ..Past::default() },
             tiles: SmallVec::new(),
             faint: 0.0,
+            peak: 0.0,
+            spare: 0.0,
             calm: 0.0,
             group: 0,
             crowded: false,
@@ -116,6 +159,12 @@ impl Foot {
             surprise: 0.0,
             restless: 0.4,
             alone_at: None,
+            home: centre,
+            still: 0.0,
+            away: 0.0,
+            partner: None,
+            landing: None,
+            stray: STRAY_MOST_M,
             landed: centre,
             farthest: centre,
         };
@@ -191,15 +240,81 @@ impl Foot {
         beyond
     }
 
+    /// Whether it stands still alone, or has only just begun to move.
+    pub(super) fn stands(&self) -> bool {
+        self.age > FLAT_S && self.still > STILL_S
+    }
+
+    /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
+    /// been seen; negative within, infinite for every other foot.
+    pub(super) fn lands_about(&self, point: DVec2) -> f64 {
+        if self.age < LANDS_S { point.distance(self.centre()) - SHOE_M } else { f64::INFINITY }
+    }
+
+    /// Whether it was put down beside `host` while that one stood still.
+    pub(super) fn has_landed_beside(&self, host: &Self) -> bool {
+        self.landing.is_some_and(|landing| landing.host == host.id)
+    }
+
+    /// Its tiles and those of `other`, each once.
+    pub(super) fn tiles_with(&self, other: &Self) -> SmallVec<[u32; 12]> {
+        let mut both = self.tiles.clone();
+        both.extend(other.tiles.iter().copied().filter(|position| !self.tiles.contains(position)));
+        both
+    }
+
+    /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.
+    pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
+        // A foot that shares its tiles is itself known only roughly.
+        let (share, reach) = if self.shared { (0.08, 0.25) } else { (0.02, 0.22) };
+        if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
+    }
+
+    /// Whether the other foot of its person may be landing on the side that `way` points to: not while
+    /// that foot is elsewhere, and not ahead of a foot that rolls after that one has left.
+    pub(super) fn may_have_partner_towards(&self, way: DVec2) -> bool {
+        self.partner.is_none_or(|(place, ago)| {
+            let side = place - self.home;
+            ago > 0.0 && way.dot(side) > 0.5 * way.length() * side.length()
+        })
+    }
+
     /// Remembers where the foot has been.
     pub(super) fn roll(&mut self, dt: f64) {
         let centre = self.centre();
-        self.restless += (1.0 - (-dt / 0.25).exp()) * (self.velocity().length().min(1.0) - self.restless);
+        self.peak = self.peak.max(self.force());
+        let rolls = !self.shared || self.age < FLAT_S;
+        let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
+        self.restless += (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
+        if rolls {
+            self.stray = (STRAY_LEAST_M + STRAY_S * self.restless).min(STRAY_MOST_M);
+        }
+        self.rest(dt, rolls);
         if self.age < 0.01 {
             self.landed = centre;
             self.farthest = centre;
         } else if centre.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
             self.farthest = centre;
+        }
+    }
+
+    /// Notes where the foot rests, and for how long it has stood still or been on the move.
+    fn rest(&mut self, dt: f64, rolls: bool) {
+        let centre = self.centre();
+        let drift = |time_s: f64| 1.0 - (-dt / time_s).exp();
+        if self.shared {
+            (self.still, self.away) = (0.0, 0.0);
+            let soon = if rolls { 1.0 } else { drift(HOME_S) };
+            self.home += (centre - self.home) * soon;
+        } else if self.velocity().length() < STILL_M_S {
+            self.still += dt;
+            self.away = 0.0;
+            self.home += (centre - self.home) * drift(STILL_HOME_S);
+        } else {
+            self.away += dt;
+            if self.away > AWAY_S {
+                (self.still, self.home) = (0.0, centre);
+            }
         }
     }
 
@@ -360,6 +475,7 @@ impl Foot {
     pub(super) fn foretell(&mut self, dt: f64) {
         self.age += dt;
         self.calm = (self.calm - dt).max(0.0);
+        self.partner = self.partner.map(|(place, ago)| (place, ago + dt)).filter(|&(_, ago)| ago < PARTNER_S);
         self.past.centre += self.past.velocity * dt;
         self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
     }
@@ -380,8 +496,13 @@ impl Foot {
         self.past.force_rate += beta * gain;
     }
 
+    /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.
+    pub(super) fn start_over(&mut self) {
+        self.past = Past { force: self.force(), centre: self.centre(), ..Past::default() };
+    }
+
     /// Lets the slow load of one tile learn; `force` and `moment` are the foot's own part of it.
-    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64) {
+    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64, fresh: bool) {
         let weight = 1.0 - (-dt / PAST_S).exp();
         let loads = &mut self.past.loads;
         let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
@@ -389,6 +510,7 @@ impl Foot {
             loads.len() - 1
         });
         let load = &mut loads[position];
+        let weight = if fresh { 1.0 } else { weight };
         load.force += weight * (force - load.force);
         load.moment += weight * (moment - load.moment);
         load.seen = true;
@@ -399,9 +521,23 @@ impl Foot {
         self.past.loads.retain(|load| std::mem::take(&mut load.seen));
     }
 
+    /// Whether the tile at `index` was among its tiles in the last frame.
+    pub(super) fn had(&self, index: u32) -> bool {
+        self.past.loads.iter().any(|load| load.index == index)
+    }
+
     /// The slow load of one tile, nothing if it had none.
     pub(super) fn slow_load(&self, index: u32) -> SlowLoad {
         self.past.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
+    }
+
+    /// Stands alone with this force and centre of pressure from now on.
+    pub(super) fn stand(&mut self, force: f64, centre: DVec2) {
+        self.state[FORCE] = force;
+        self.state[EAST] = centre.x;
+        self.state[NORTH] = centre.y;
+        self.home = centre;
+        self.be_sure(0.01);
     }
 
     /// Goes back to where its past foretold it: somebody else is to blame for the difference.

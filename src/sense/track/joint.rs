@@ -1,5 +1,7 @@
 //! The feet that share tiles, estimated together.
 
+use glam::DVec2;
+
 use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, NORTH, STATES};
 
 /// Most feet that are estimated together.
@@ -133,10 +135,13 @@ impl Joint {
     }
 
     /// Keeps every state where a foot can be.
-    pub(super) fn confine(&mut self) {
+    pub(super) fn confine(&mut self, (low, high): (DVec2, DVec2)) {
         for at in (0..self.states).step_by(STATES) {
             let state = &mut self.x[at..at + STATES];
             state[FORCE] = state[FORCE].max(0.0);
+            // Where hardly any force is left, its place is what rounding makes of it.
+            state[EAST] = state[EAST].clamp(low.x, high.x);
+            state[NORTH] = state[NORTH].clamp(low.y, high.y);
             state[EAST + 1] = state[EAST + 1].clamp(-2.0, 2.0);
             state[NORTH + 1] = state[NORTH + 1].clamp(-2.0, 2.0);
             for half in [HALF_EAST, HALF_NORTH] {

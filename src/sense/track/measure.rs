@@ -3,7 +3,7 @@
 use arrayvec::ArrayVec;
 
 use super::Cells;
-use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
+use super::foot::{EAST, FLAT_S, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
 use super::joint::{Joint, MOST_FEET, Slope};
 use super::lines::{Axis, Lines};
 use crate::sense::tile::LoadedTile;
@@ -11,23 +11,38 @@ use crate::sense::tile::LoadedTile;
 /// How far force that strays over a seam is spread along it, as a standard deviation.
 const SPREAD_M: f64 = 0.05;
 
+/// What a patch may divide otherwise over two tiles than a foot does, as a share of its force: one seen
+/// standing there alone, and in addition one that was not.
+const STRANGE: f64 = 0.01;
+const STRANGER: f64 = 0.08;
+
 /// Lets `dt` seconds pass for the feet in `members`.
 pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64) {
     const FORCE_FADE_S: f64 = 0.03;
     const FORCE_RATE: f64 = 5000.0;
     const PLACE_FADE_S: f64 = 0.08;
     const SPEED: f64 = 0.4;
+    const SPEED_LEAST: f64 = 0.05;
     const HALF_FADE_S: f64 = 0.3;
     const HALF_SPREAD: f64 = 0.04;
     for (which, &member) in members.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
-        let speed = (2.0 * feet[member as usize].restless).clamp(0.05, SPEED);
+        let foot = &feet[member as usize];
+        let speed = (2.0 * foot.restless).clamp(SPEED_LEAST, SPEED);
         for (value, fade_s, rate) in
             [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
         {
             let fade = (-dt / fade_s).exp();
             joint.drift(at + value, fade_s * (1.0 - fade), fade, rate * rate * (1.0 - fade * fade));
+        }
+        if foot.age > FLAT_S && dt > 0.0 {
+            // A foot that has come down flat strays about its home: in the long run no further than `stray`.
+            let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
+            let variance = foot.stray.powi(4) / spread;
+            for (place, home) in [(EAST, foot.home.x), (NORTH, foot.home.y)] {
+                joint.observe(home - joint.x[at + place], &[(at + place, 1.0)], variance);
+            }
         }
         // What a foot is known to be shaped like, it keeps while it stays where it is.
         let loose = 1.0 - feet[member as usize].habit_strength();
@@ -47,8 +62,6 @@ pub(super) fn observe(
     cells: &Cells,
     dt: f64,
 ) -> f64 {
-    // Errors of the patch model last for tens of milliseconds: many frames see the same one.
-    let frames = (0.03 / dt.max(1e-4)).max(1.0);
     let mut seen: ArrayVec<u32, 64> = ArrayVec::new();
     for &member in members {
         for &position in &feet[member as usize].tiles {
@@ -129,8 +142,10 @@ pub(super) fn observe(
             let strength = foot.habit_strength();
             let straddle =
                 4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
-            let strange = 0.01 + 0.08 * (1.0 - strength);
-            let strayed = frames * (f * strange).powi(2) * straddle;
+            let strange = STRANGE + STRANGER * (1.0 - strength);
+            // Errors of the patch model last as long as the foot is there: many frames see the same one.
+            let frames = foot.age.clamp(0.1, 1.0) / dt.max(1e-4);
+            let strayed = frames.max(1.0) * (f * strange).powi(2) * straddle;
             let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
             for (row, values) in doubt.iter_mut().enumerate() {
                 for (column, value) in values.iter_mut().enumerate() {

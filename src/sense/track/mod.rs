@@ -15,18 +15,20 @@
 //! weight is taken over. None is fitted to a recording.
 
 mod birth;
+mod death;
 mod describe;
 mod foot;
 mod joint;
+mod landing;
 mod lines;
 mod measure;
 mod patch;
 
 use glam::DVec2;
 
-use self::birth::APART_M;
-use self::foot::{EAST, FORCE, Foot, NORTH, SHOE_M, STATES};
+use self::foot::{EAST, FORCE, Foot, NORTH, STATES};
 use self::joint::{Joint, MOST_FEET};
+use self::landing::Landing;
 use self::lines::{Axis, Lines};
 use self::measure::{observe, predict};
 use super::contact::ContactId;
@@ -54,6 +56,12 @@ pub(super) struct Tracker {
 
 const NOBODY: u32 = u32::MAX;
 
+/// Largest distance between the feet of one person, in metres.
+const STRIDE_M: f64 = 1.0;
+
+/// Largest distance between the feet of somebody who stands, in metres.
+const ASTRIDE_M: f64 = 0.5;
+
 /// The covariance between two feet that are estimated together.
 #[derive(Clone, Copy, Debug)]
 struct Link {
@@ -64,15 +72,6 @@ struct Link {
 
 /// Over which time surprise is averaged, in seconds.
 const SURPRISE_S: f64 = 0.05;
-
-/// Force below which a foot that shares its tiles may be gone, in newtons.
-const FAINT_N: f64 = 4.0;
-
-/// How long a foot must have seemed to be gone before it is, in seconds.
-const FAINT_S: f64 = 0.01;
-
-/// How long after a companion has gone a foot's own sway is not taken for a new one, in seconds.
-const CALM_S: f64 = 0.25;
 
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
@@ -88,6 +87,11 @@ impl Cells {
             Axis::East => self.columns.into(),
             Axis::North => self.rows.into(),
         }
+    }
+
+    /// South-west and north-east corner of the floor.
+    fn bounds(&self) -> (DVec2, DVec2) {
+        (DVec2::ZERO, DVec2::new(self.columns.into(), self.rows.into()) * self.pitch)
     }
 
     fn of(&self, tile: &LoadedTile) -> (DVec2, DVec2) {
@@ -126,12 +130,29 @@ impl Tracker {
         }
         self.adopt(tiles.list());
         self.find_newcomers(tiles);
+        self.note_partners();
         self.feet.retain(|foot| !foot.tiles.is_empty());
         self.group(tiles.list().len());
         self.estimate(tiles, dt);
         self.bury(tiles, dt);
         self.learn(tiles, dt);
         self.describe(tiles, pool);
+    }
+
+    /// Lets each foot remember where others near it are.
+    fn note_partners(&mut self) {
+        for which in 0..self.feet.len() {
+            let here = self.feet[which].centre();
+            let others =
+                self.feet.iter().enumerate().filter(|&(other, foot)| other != which && foot.age > 0.1);
+            let nearest = others
+                .map(|(_, foot)| (foot.centre(), foot.centre().distance(here)))
+                .filter(|&(_, distance)| distance < STRIDE_M)
+                .min_by(|a, b| a.1.total_cmp(&b.1));
+            if let Some((place, _)) = nearest {
+                self.feet[which].partner = Some((place, 0.0));
+            }
+        }
     }
 
     fn name(&mut self) -> ContactId {
@@ -162,13 +183,16 @@ impl Tracker {
             let tile = &list[position as usize];
             let centroid = tile.centroid.as_dvec2();
             let force = f64::from(tile.wrench.force);
-            let nearest = self
-                .feet
-                .iter()
-                .enumerate()
-                .map(|(which, foot)| (which, foot.beyond(centroid)))
-                .min_by(|a, b| a.1.total_cmp(&b.1))
-                .filter(|&(_, beyond)| beyond < 0.0);
+            // What was loaded already is no newcomer: it stays with the nearest of those who had it.
+            let keeper = self.feet.iter().enumerate().filter(|(_, foot)| foot.had(tile.index));
+            let keeper = keeper.map(|(which, foot)| (which, foot.centre().distance(centroid)));
+            let nearest = keeper.min_by(|a, b| a.1.total_cmp(&b.1)).or_else(|| {
+                let beyond = |foot: &Foot| {
+                    foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
+                };
+                let feet = self.feet.iter().enumerate().map(|(which, foot)| (which, beyond(foot)));
+                feet.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, beyond)| beyond < 0.0)
+            });
             match nearest {
                 Some((which, _)) => {
                     let foot = &mut self.feet[which];
@@ -185,12 +209,21 @@ impl Tracker {
                 }
                 None => {
                     let mut foot = Foot::new(self.name(), force, centroid, 0.02);
+                    foot.landing = self.landing_at(centroid);
                     foot.tiles.push(position);
                     self.owner[position as usize] = self.feet.len() as u32;
                     self.feet.push(foot);
                 }
             }
         }
+    }
+
+    /// Beside whom a foot that lands at `place` does so, if somebody stands still there.
+    fn landing_at(&self, place: DVec2) -> Option<Landing> {
+        let near = self.feet.iter().map(|foot| (foot, foot.centre().distance(place)));
+        let (host, _) =
+            near.filter(|&(_, distance)| distance < ASTRIDE_M).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        (host.stands() && !host.shared).then_some(Landing { host: host.id, from: host.home })
     }
 
     /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
@@ -229,8 +262,12 @@ impl Tracker {
                 continue;
             }
             if !self.feet[which].crowded {
-                self.feet[which].shared = false;
-                self.feet[which].alone(tiles.list(), dt);
+                let foot = &mut self.feet[which];
+                let until_now = std::mem::replace(&mut foot.shared, false);
+                foot.alone(tiles.list(), dt);
+                if until_now {
+                    foot.start_over();
+                }
                 continue;
             }
             self.members.clear();
@@ -248,9 +285,34 @@ impl Tracker {
                     self.members.push(other as u32);
                 }
             }
-            self.estimate_together(tiles, dt);
+            if !self.place_landing(tiles.list()) {
+                self.estimate_together(tiles, dt);
+            }
         }
         std::mem::swap(&mut self.links, &mut self.new_links);
+    }
+
+    /// Places a foot that was put down beside a standing one; false if there is none, or nothing to be said.
+    fn place_landing(&mut self, list: &[LoadedTile]) -> bool {
+        let &[a, b] = self.members.as_slice() else { return false };
+        let Some((before, after)) = self.feet.split_at_mut_checked(b as usize) else { return false };
+        let (Some(first), Some(second)) = (before.get_mut(a as usize), after.first_mut()) else {
+            return false;
+        };
+        let (host, guest) = if second.has_landed_beside(first) {
+            (first, second)
+        } else if first.has_landed_beside(second) {
+            (second, first)
+        } else {
+            return false;
+        };
+        let Some(landing) = guest.landing else { return false };
+        if landing::is_seen_alone(host, guest, list, &self.cells) {
+            return false;
+        }
+        let both = host.tiles_with(guest);
+        let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        landing::place(host, guest, landing.from, lines, &self.cells)
     }
 
     /// One step of the joint filter over the feet in `members`.
@@ -271,12 +333,12 @@ impl Tracker {
             }
         }
         predict(joint, members, &self.feet, dt);
-        joint.confine();
+        joint.confine(self.cells.bounds());
         for (which, &member) in members.iter().enumerate() {
             joint.take(which, &mut self.feet[member as usize]);
         }
         let surprise = observe(joint, members, &self.feet, list, &self.cells, dt);
-        joint.confine();
+        joint.confine(self.cells.bounds());
         let weight = 1.0 - (-dt / SURPRISE_S).exp();
         for (which, &member) in members.iter().enumerate() {
             let foot = &mut self.feet[member as usize];
@@ -294,59 +356,6 @@ impl Tracker {
         }
     }
 
-    /// Takes away feet that are not there: too light for too long, or no longer needed to
-    /// explain what the tiles carry.
-    fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
-        for which in 0..self.feet.len() {
-            let foot = &self.feet[which];
-            let gone = foot.shared && (foot.force() < FAINT_N || self.superfluous(which, tiles.list()));
-            let foot = &mut self.feet[which];
-            foot.faint = if gone { foot.faint + dt } else { 0.0 };
-            if foot.faint >= FAINT_S {
-                let group = foot.group;
-                for mate in self.feet.iter_mut().filter(|mate| mate.group == group) {
-                    mate.calm = CALM_S;
-                }
-            }
-        }
-        self.feet.retain(|foot| foot.faint < FAINT_S);
-    }
-
-    /// Whether the tiles carry what the foot that shares them with foot `which` presses
-    /// on them when alone, as if `which` were not there.
-    fn superfluous(&self, which: usize, list: &[LoadedTile]) -> bool {
-        let foot = &self.feet[which];
-        let mut others =
-            self.feet.iter().enumerate().filter(|&(other, o)| other != which && o.group == foot.group);
-        let (Some((_, host)), None) = (others.next(), others.next()) else { return false };
-        if host.centre().distance(foot.centre()) < 0.6 * APART_M {
-            return host.age >= foot.age;
-        }
-        if foot.centre().distance(foot.landed) > SHOE_M {
-            // Too far from where it landed to be the same foot still.
-            return true;
-        }
-        let Some(home) = host.alone_at else { return false };
-        if foot.force() > 0.4 * host.force() && foot.age > host.age {
-            return false;
-        }
-        let mut seen = host.tiles.clone();
-        for &position in &foot.tiles {
-            if !seen.contains(&position) {
-                seen.push(position);
-            }
-        }
-        let pitch = self.cells.pitch;
-        let lines = Lines::of(seen.iter().map(|&position| &list[position as usize]), pitch);
-        lines.middle.distance(home) < 0.012
-            && lines.lines.iter().all(|line| {
-                let axis = line.axis;
-                let slice = line.slice(pitch, axis.along(lines.middle), axis.along(host.half()));
-                let habit = host.habit_at(axis, line.number, 1.0);
-                (line.force / lines.force - slice.share - habit.share).abs() < 0.012
-            })
-    }
-
     /// Lets each foot's slow past learn from this frame.
     fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
@@ -356,6 +365,8 @@ impl Tracker {
             if !foot.shared {
                 foot.learn_habits(list, self.cells.pitch, dt);
             }
+            // A foot that has just come to stand alone starts from what is measured.
+            let fresh = !foot.shared && foot.past.loads.is_empty();
             for at in 0..foot.tiles.len() {
                 let tile = &list[foot.tiles[at] as usize];
                 let (force, moment) = if foot.shared {
@@ -365,7 +376,7 @@ impl Tracker {
                     let force = f64::from(tile.wrench.force);
                     (force, (tile.centroid - tile.centre).as_dvec2() * force)
                 };
-                foot.learn_load(tile.index, force, moment, dt);
+                foot.learn_load(tile.index, force, moment, dt, fresh && foot.age > 0.0);
             }
             foot.forget_loads();
         }

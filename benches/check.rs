@@ -1,0 +1,54 @@
+//! How long a layout takes to be read and judged: what somebody waits for who saves a file.
+
+use std::hint::black_box;
+
+use criterion::{Criterion, criterion_group, criterion_main};
+use underfoot::ergonomics;
+use underfoot::floor::{Floor, Geometry};
+use underfoot::schema::{Kinds, parse_layout};
+
+/// A layout of 500 controls on 24 x 24 tiles, each written by itself; `wrong` makes something wrong with each.
+fn page(wrong: bool) -> String {
+    let kinds = ["button", "heavy_button", "round_button", "soft_button", "slider", "fader", "switch"];
+    let mut text =
+        String::from("Layout(version: 1, regions: [(id: \"all\", at: (0, 0), size: (24, 24))], widgets: [\n");
+    for index in 0..500 {
+        let (column, row) = (index % 23, index / 23);
+        let size = if wrong { 0.3 } else { 0.7 };
+        let kind = kinds[index % kinds.len()];
+        let at = format!("({column}.1, {row}.1)");
+        text.push_str(&format!(
+            "    (id: \"control_{index}\", kind: \"{kind}\", at: {at}, size: ({size}, {size}), label: \"No. {index}\"),\n"
+        ));
+    }
+    text + "])\n"
+}
+
+/// Everything that `underfoot check` does with one file that has been read.
+fn check(text: &str, kinds: &Kinds, floor: &Floor) -> usize {
+    match parse_layout(text, "page.ron", kinds, &floor.geometry) {
+        Ok(loaded) => {
+            let mut problems = loaded.warnings;
+            problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+            problems.to_string().len()
+        }
+        Err(problems) => problems.to_string().len(),
+    }
+}
+
+fn checks(c: &mut Criterion) {
+    let floor = Floor::of(Geometry::of_paper_tiles(24, 24).unwrap_or_default());
+    let kinds = Kinds::builtin();
+    let (good, poor) = (page(false), page(true));
+    assert_eq!(check(&good, &kinds, &floor), 0, "nothing to say of the good one");
+    assert!(check(&poor, &kinds, &floor) > 500, "much to say of the poor one");
+    let mut group = c.benchmark_group("check");
+    group.bench_function("500 controls, all well", |b| b.iter(|| check(black_box(&good), &kinds, &floor)));
+    group.bench_function("500 controls, each too small", |b| {
+        b.iter(|| check(black_box(&poor), &kinds, &floor));
+    });
+    group.finish();
+}
+
+criterion_group!(benches, checks);
+criterion_main!(benches);

@@ -1,0 +1,56 @@
+use underfoot::serve::{Direction, Entry, Reference};
+
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
+use super::layout_args::LayoutArgs;
+use super::outputs::PrefixArg;
+
+/// What `underfoot addresses` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    layout: LayoutArgs,
+    #[command(flatten)]
+    floor: FloorArgs,
+    #[command(flatten)]
+    prefix: PrefixArg,
+    /// Print one JSON array on standard output.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Lists every OSC address that the floor understands or says, with its arguments.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let layout = args.layout.load(&floor.geometry)?;
+    let reference = Reference::of(&layout, &floor, &args.prefix.osc_prefix);
+    if args.json {
+        let json = serde_json::to_string(&reference).map_err(|error| Failure::Other(error.to_string()))?;
+        anstream::println!("{json}");
+        return Ok(());
+    }
+    for entry in &reference.entries {
+        anstream::println!("{}", line(entry));
+    }
+    Ok(())
+}
+
+/// One address on a line: which way, address, arguments, what it says.
+fn line(entry: &Entry) -> String {
+    let way = match entry.direction {
+        Direction::In => "in",
+        Direction::Out => "out",
+        Direction::Answer => "answer",
+    };
+    let arguments: Vec<String> = entry
+        .arguments
+        .iter()
+        .map(|argument| {
+            let range =
+                if argument.range.is_empty() { String::new() } else { format!(" ({})", argument.range) };
+            format!("{} {}{range}", argument.tag, argument.name)
+        })
+        .collect();
+    let arguments = if arguments.is_empty() { "-".to_owned() } else { arguments.join(", ") };
+    format!("{way:6} {}  {arguments}\n         {}", entry.address, entry.says)
+}

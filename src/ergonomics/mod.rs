@@ -1,0 +1,133 @@
+//! Whether feet and eyes can use a layout: rules with numbers and sources, tried on a checked layout.
+//!
+//! ```
+//! use underfoot::ergonomics;
+//! use underfoot::floor::Floor;
+//! use underfoot::schema::{self, Kinds};
+//!
+//! let floor = Floor::default();
+//! let text = schema::builtin_layout("map").unwrap_or_default();
+//! let loaded = schema::parse_layout(text, "map", &Kinds::builtin(), &floor.geometry)?;
+//! let findings = ergonomics::review(&loaded.layout, &floor);
+//! // At their places in the text, with carets.
+//! println!("{}", loaded.places.locate(&findings));
+//! # assert!(findings.is_empty());
+//! # Ok::<(), schema::Diagnostics>(())
+//! ```
+
+mod force;
+mod place_error;
+mod rules;
+mod sight;
+mod space;
+
+pub use place_error::{Zone, predicted_error_m};
+pub use rules::{RULES, Rule, rule};
+
+use crate::floor::Floor;
+use crate::layout::{Layout, Widget};
+use crate::schema::Severity;
+
+/// What of a control a finding is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The control as a whole.
+    Id,
+    /// Where it is.
+    Place,
+    /// How large it is.
+    Size,
+    /// The force that presses it.
+    Press,
+    /// The step between its values.
+    Step,
+    /// What is written on it.
+    Label,
+    /// Its colours.
+    Look,
+}
+
+/// One thing about one control that feet or eyes will have trouble with.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Finding {
+    /// The rule.
+    pub rule: &'static Rule,
+    /// How bad it is.
+    pub severity: Severity,
+    /// Index in [`Layout::widgets`].
+    pub widget: usize,
+    /// What of the control it is about.
+    pub part: Part,
+    /// What is wrong, in one clause.
+    pub message: String,
+    /// The measure found, and the one wanted; beside the carets.
+    pub expected: String,
+    /// What to do about it.
+    pub help: Option<String>,
+}
+
+/// Everything about `layout` on `floor` that feet or eyes will have trouble with, control by control.
+///
+/// A checked layout has finite numbers only; NaN in one made by hand finds nothing.
+#[must_use]
+pub fn review(layout: &Layout, floor: &Floor) -> Vec<Finding> {
+    let mut findings = Vec::new();
+    let cut = sight::cut_labels(layout, floor);
+    for (index, widget) in layout.widgets.iter().enumerate() {
+        let mut subject = Subject { layout, floor, index, widget, findings: &mut findings };
+        space::review(&mut subject);
+        force::review(&mut subject);
+        sight::review(&mut subject, cut.contains(&index));
+    }
+    findings
+}
+
+/// The control that is looked at, and what was found so far.
+struct Subject<'a> {
+    layout: &'a Layout,
+    floor: &'a Floor,
+    index: usize,
+    widget: &'a Widget,
+    findings: &'a mut Vec<Finding>,
+}
+
+impl Subject<'_> {
+    fn error(&mut self, code: &str, part: Part, message: String, expected: String) {
+        self.find(Severity::Error, code, part, message, expected);
+    }
+
+    fn warning(&mut self, code: &str, part: Part, message: String, expected: String) {
+        self.find(Severity::Warning, code, part, message, expected);
+    }
+
+    fn find(&mut self, severity: Severity, code: &str, part: Part, message: String, expected: String) {
+        // Codes are written in this module only; that each has its rule is tested.
+        let Some(rule) = rule(code) else { return };
+        let help = Some(rule.remedy.to_owned());
+        self.findings.push(Finding { rule, severity, widget: self.index, part, message, expected, help });
+    }
+
+    /// The control's name for messages.
+    fn name(&self) -> String {
+        format!("\"{}\"", self.widget.id)
+    }
+
+    /// Other controls that are ever there at the same time.
+    fn others(&self) -> impl Iterator<Item = &Widget> {
+        let own = self.widget.page;
+        let meets = move |other: &Widget| own.is_none() || other.page.is_none() || other.page == own;
+        let index = self.index;
+        self.layout
+            .widgets
+            .iter()
+            .enumerate()
+            .filter(move |(other, widget)| *other != index && meets(widget))
+            .map(|(_, widget)| widget)
+    }
+}
+
+/// A length in centimetres as people say it.
+fn cm(metres: f32) -> String {
+    let cm = metres * 100.0;
+    if cm < 9.95 { format!("{cm:.1} cm") } else { format!("{cm:.0} cm") }
+}

@@ -1,0 +1,198 @@
+//! Room for shoes: sizes, gaps, reach, and how exactly the floor finds a foot.
+
+use glam::Vec2;
+
+use super::{Part, Subject, cm, predicted_error_m};
+use crate::floor::{Geometry, Rect, TileId};
+use crate::layout::{Stance, Widget};
+use crate::widget::{Axis, Behaviour, Guard, Mapping};
+
+/// Below this side feet miss.
+const MISSED_M: f32 = 0.05;
+/// Below this side shoes cover it.
+const SMALL_M: f32 = 0.10;
+/// Half of a foot's width.
+const HALF_FOOT_M: f32 = 0.055;
+/// Between pedals for one foot, one after the other.
+const SEQUENTIAL_M: f32 = 0.05;
+/// Between pedals for one foot, in any order.
+const RANDOM_M: f32 = 0.10;
+/// As far as a foot reaches without the body.
+const REACH_M: f32 = 0.8;
+/// Beyond a long step.
+const STEP_AWAY_M: f32 = 1.2;
+/// Half of a shoe's width and length: the middle of a foot keeps as far from a stance zone's edges.
+const HALF_SHOE: Vec2 = Vec2::new(0.06, 0.13);
+/// From one value of a slider to the next.
+const STEP_M: f32 = 0.01;
+/// What rounding may add or take.
+const SLACK_M: f32 = 1e-4;
+
+pub(super) fn review(subject: &mut Subject<'_>) {
+    size(subject);
+    neighbours(subject);
+    reach(subject);
+    stance_tiles(subject);
+    place_error(subject);
+    steps(subject);
+}
+
+fn size(subject: &mut Subject<'_>) {
+    let (size, part) = target(subject.widget);
+    let side = size.min_element();
+    let expected = format!("it is {} x {}", cm(size.x), cm(size.y));
+    if side < MISSED_M - SLACK_M {
+        let message = format!("{part}{} is smaller than feet can hit", subject.name());
+        subject.error("U101", Part::Size, message, expected);
+    } else if side < SMALL_M - SLACK_M {
+        let message = format!("{part}{} is smaller than a shoe is wide", subject.name());
+        subject.warning("U101", Part::Size, message, expected);
+    }
+}
+
+/// What a guard is called, and the gaps below which there is an error and a warning.
+fn gaps(guard: Guard) -> (&'static str, f32, f32) {
+    match guard {
+        Guard::Free => ("", 0.0, SEQUENTIAL_M),
+        Guard::Confirm { .. } => ("`Confirm` ", 0.0, HALF_FOOT_M),
+        Guard::HoldToRun { .. } => ("`HoldToRun` ", HALF_FOOT_M, RANDOM_M),
+    }
+}
+
+fn neighbours(subject: &mut Subject<'_>) {
+    let area = subject.widget.area;
+    let (word, least, wanted) = gaps(subject.widget.behaviour.thresholds().guard);
+    let distance = |other: &Rect| (other.min - area.max).max(area.min - other.max).max(Vec2::ZERO).length();
+    let nearest = subject
+        .others()
+        .map(|other| (distance(&other.area), other))
+        .filter(|(gap, _)| *gap < wanted - SLACK_M)
+        .min_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((gap, other)) = nearest else { return };
+    // Of two that are alike, the later one is told of.
+    let (_, other_least, other_wanted) = gaps(other.behaviour.thresholds().guard);
+    let is_theirs = (other_least, other_wanted) > (least, wanted);
+    let is_later =
+        subject.layout.widgets.iter().position(|widget| widget.id == other.id) > Some(subject.index);
+    if is_theirs || (is_later && (other_least, other_wanted) == (least, wanted)) {
+        return;
+    }
+    let message = format!("{} is too close to \"{}\"", subject.name(), other.id);
+    let expected = format!("{} apart; {word}controls need {}", cm(gap), cm(wanted));
+    if gap < least - SLACK_M {
+        subject.error("U102", Part::Place, message, expected);
+    } else {
+        subject.warning("U102", Part::Place, message, expected);
+    }
+}
+
+/// Where the middle of a foot can be that stands within the zone.
+fn footing(stance: &Stance) -> Rect {
+    let margin = HALF_SHOE.min(0.5 * stance.area.size());
+    Rect::new(stance.area.min + margin, stance.area.max - margin)
+}
+
+fn reach(subject: &mut Subject<'_>) {
+    let centre = subject.widget.area.centre();
+    let distances = subject.layout.stances.iter().map(|stance| footing(stance).distance(centre));
+    let Some(reach) = distances.min_by(f32::total_cmp) else { return };
+    if reach <= REACH_M + SLACK_M {
+        return;
+    }
+    let expected = format!("{reach:.2} m from the nearest place to stand");
+    if reach > STEP_AWAY_M {
+        let message = format!("{} is beyond a step from every stance zone", subject.name());
+        subject.error("U103", Part::Place, message, expected);
+    } else {
+        let message = format!("{} is out of reach of a foot from every stance zone", subject.name());
+        subject.warning("U103", Part::Place, message, expected);
+    }
+}
+
+/// Columns and rows of the tiles under `area`: the first and the last.
+fn tiles(geometry: &Geometry, area: Rect) -> (TileId, TileId) {
+    let inset = Vec2::splat(1e-3);
+    let tile = |corner: Vec2| {
+        let side = Vec2::new(f32::from(geometry.columns()) - 1.0, f32::from(geometry.rows()) - 1.0);
+        let at = (corner / geometry.pitch_m()).floor().clamp(Vec2::ZERO, side);
+        TileId::new(at.x as u16, at.y as u16)
+    };
+    (tile(area.min + inset), tile(area.max - inset))
+}
+
+fn stance_tiles(subject: &mut Subject<'_>) {
+    let geometry = subject.floor.geometry;
+    let (first, last) = tiles(&geometry, subject.widget.area);
+    let apart = |low: u16, high: u16, other_low: u16, other_high: u16| {
+        // Rows or columns between the two.
+        i32::from(other_low.max(low)) - i32::from(other_high.min(high)) - 1
+    };
+    let too_near = |stance: &&Stance| {
+        let (south_west, north_east) = tiles(&geometry, stance.area);
+        let columns = apart(first.column, last.column, south_west.column, north_east.column);
+        let rows = apart(first.row, last.row, south_west.row, north_east.row);
+        // Overlapping is told of by another rule.
+        columns.max(rows) < 1 && !stance.area.overlaps(subject.widget.area)
+    };
+    let Some(stance) = subject.layout.stances.iter().find(too_near) else { return };
+    let zone = if stance.label.is_empty() { String::new() } else { format!(" \"{}\"", stance.label) };
+    let message = format!("{} has no free tile between it and the stance zone{zone}", subject.name());
+    subject.warning("U104", Part::Place, message, "the two feet share sensors".into());
+}
+
+fn place_error(subject: &mut Subject<'_>) {
+    let widget = subject.widget;
+    let press = widget.behaviour.thresholds().press;
+    let error = predicted_error_m(subject.floor, widget.area, press);
+    let (size, part) = target(widget);
+    let half = 0.5 * size.min_element();
+    let expected = format!(
+        "found within {} in 95 of 100 cases at {:.0} N, its edge is {} from its middle",
+        cm(error),
+        press.0,
+        cm(half)
+    );
+    if error > half + SLACK_M {
+        let message = format!("{part}{} is smaller than the error of finding a foot here", subject.name());
+        subject.error("U105", Part::Size, message, expected);
+    } else if error > 0.5 * half + SLACK_M {
+        let message = format!("{part}{} is small for the error of finding a foot here", subject.name());
+        subject.warning("U105", Part::Size, message, expected);
+    }
+}
+
+fn steps(subject: &mut Subject<'_>) {
+    let size = subject.widget.area.size();
+    let step = match &subject.widget.behaviour {
+        Behaviour::Slider(slider) if slider.mapping == Mapping::Absolute => {
+            let share = slider.scale.step / slider.scale.range();
+            // Measured in the middle, where a straight track and an arc are alike.
+            let [from, to] = [0.5, 0.5 + share].map(|share| slider.track.place_at(share, size) * size);
+            (slider.scale.step > 0.0).then(|| from.distance(to))
+        }
+        Behaviour::Pad(pad) => {
+            let axes = [(pad.x, size.x), (pad.y, size.y)].into_iter().filter(|(scale, _)| scale.step > 0.0);
+            axes.map(|(scale, length)| length * scale.step / scale.range()).min_by(f32::total_cmp)
+        }
+        _ => None,
+    };
+    let Some(step) = step.filter(|step| *step < STEP_M - SLACK_M) else { return };
+    let message = format!("{} has steps finer than a foot can hold", subject.name());
+    subject.warning("U106", Part::Step, message, format!("{} from one value to the next", cm(step)));
+}
+
+/// The smallest part of a control that a foot must hit, and what it is.
+fn target(widget: &Widget) -> (Vec2, &'static str) {
+    let size = widget.area.size();
+    let split = |axis: Axis, parts: f32| match axis {
+        Axis::East => Vec2::new(size.x / parts, size.y),
+        Axis::North => Vec2::new(size.x, size.y / parts),
+    };
+    match &widget.behaviour {
+        Behaviour::Selector(selector) => {
+            (split(selector.axis, selector.options.len().max(1) as f32), "each option of ")
+        }
+        Behaviour::Stepper(stepper) => (split(stepper.axis, 2.0), "each half of "),
+        _ => (size, ""),
+    }
+}

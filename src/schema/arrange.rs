@@ -1,0 +1,234 @@
+//! Entries of `widgets` to controls with places: neighbours, groups and grids resolved.
+//!
+//! Neighbours are entries of the same list, so that a list can be arranged by
+//! itself, in coordinates of its own: the floor's, or those of its group.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::area::{Area, Placed};
+use super::chain::Chains;
+use super::control::{Control, Grid, Size};
+use super::inherit::Choice;
+use super::node::Node;
+use super::page::MAX_WIDGETS;
+use super::place::{Beside, Placing, Spot};
+use super::problem::Problem;
+use super::suggest::{did_you_mean, nearest};
+
+/// The controls that the list at `node` stands for, in its own coordinates; `room` is how many there may be.
+pub(super) fn read(node: Node<'_>, kinds: &Choice<'_>, room: &mut usize) -> Vec<Control> {
+    let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
+    let entries: Vec<Entry<'_>> =
+        nodes.into_iter().filter_map(|node| Entry::read(node, kinds, room)).collect();
+    arrange(entries)
+}
+
+/// One entry of a list: controls that keep together, and where they go.
+struct Entry<'r> {
+    placing: Placing<'r>,
+    /// What others of the list may stand beside.
+    name: Option<&'r str>,
+    body: Body<'r>,
+}
+
+enum Body<'r> {
+    Grid(Grid<'r>),
+    /// Controls that have their places within the group, and what those cover.
+    Group(Vec<Control>, Option<Area>),
+}
+
+impl<'r> Entry<'r> {
+    fn read(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
+        if node.is_called("Group") || node.peek("Group", "widgets").is_some() {
+            return Self::group(node, kinds, room);
+        }
+        let mut grid = Grid::read(node, kinds, *room)?;
+        *room = room.saturating_sub(grid.controls.len());
+        let placing =
+            std::mem::replace(&mut grid.placing, Placing { spot: None, at: 0..0, is_relative: false });
+        Some(Self { placing, name: None, body: Body::Grid(grid) })
+    }
+
+    fn group(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
+        let mut fields = node.fields("Group")?;
+        let name = fields.read("id", Some(None), |node| node.id().map(Some)).flatten();
+        let placing = Placing::read(&mut fields);
+        let inside = fields.read("widgets", None, |node| Some(read(node, kinds, room)));
+        fields.finish();
+        let controls = inside.unwrap_or_default();
+        let areas = controls.iter().filter_map(|control| Some(control.place.as_ref()?.area));
+        let bounds = areas.reduce(|all, one| all.around(&one));
+        Some(Self { placing, name, body: Body::Group(controls, bounds) })
+    }
+
+    /// What it covers before it has a place; `None` if that can't be known.
+    fn extent(&self, neighbour: Option<&Area>) -> Option<Area> {
+        match &self.body {
+            Body::Grid(grid) => {
+                let cell = grid.cell_size(neighbour)?;
+                let side = |axis: usize, count: u32| {
+                    f64::from(count) * cell[axis] + f64::from(count - 1) * grid.gap[axis]
+                };
+                Some(Area::new([0.0; 2], [side(0, grid.columns), side(1, grid.rows)]))
+            }
+            Body::Group(_, bounds) => *bounds,
+        }
+    }
+
+    /// Gives all of its controls their places; `by` is how far it is moved.
+    fn move_by(&mut self, by: [f64; 2], neighbour: Option<&Area>) {
+        let at = self.placing.at.clone();
+        match &mut self.body {
+            Body::Grid(grid) => {
+                let Some(size) = grid.cell_size(neighbour) else { return };
+                for (cell, control) in &mut grid.controls {
+                    let (column, row) = (f64::from(cell.column), f64::from(grid.rows - 1 - cell.row));
+                    let corner =
+                        [by[0] + column * (size[0] + grid.gap[0]), by[1] + row * (size[1] + grid.gap[1])];
+                    control.place = Some(Placed { area: Area::new(corner, size), at: at.clone() });
+                }
+            }
+            Body::Group(controls, bounds) => {
+                for place in controls.iter_mut().filter_map(|control| control.place.as_mut()) {
+                    place.area = place.area.moved_by(by);
+                }
+                *bounds = bounds.map(|bounds| bounds.moved_by(by));
+            }
+        }
+    }
+
+    /// Where the neighbour called `name` is, which is all of this or part of it.
+    fn area_of(&self, name: &str) -> Option<Area> {
+        match &self.body {
+            Body::Grid(grid) => {
+                let found = grid.controls.iter().find(|(_, control)| control.id.as_deref() == Some(name))?;
+                Some(found.1.place.as_ref()?.area)
+            }
+            Body::Group(_, bounds) => *bounds,
+        }
+    }
+
+    fn names(&self) -> impl Iterator<Item = &str> {
+        let controls = match &self.body {
+            Body::Grid(grid) => grid.controls.as_slice(),
+            Body::Group(..) => &[],
+        };
+        self.name.into_iter().chain(controls.iter().filter_map(|(_, control)| control.id.as_deref()))
+    }
+
+    fn into_controls(self) -> Vec<Control> {
+        match self.body {
+            Body::Grid(grid) => grid.controls.into_iter().map(|(_, control)| control).collect(),
+            Body::Group(controls, _) => controls,
+        }
+    }
+}
+
+impl Grid<'_> {
+    fn cell_size(&self, neighbour: Option<&Area>) -> Option<[f64; 2]> {
+        match self.size? {
+            Size::Written(size) => Some(size),
+            Size::Neighbours => neighbour.map(Area::size),
+        }
+    }
+}
+
+/// The controls of all entries, each at its place; without one where that can't be known, which has been reported.
+fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
+    let follows = neighbours(&entries);
+    let chains = Chains::of(&follows);
+    for circle in &chains.circles {
+        report_circle(circle, &entries);
+    }
+    for &index in chains.order.iter().filter(|&&index| !chains.is_circular(index)) {
+        let Some(entry) = entries.get(index) else { continue };
+        let moved = match entry.placing.spot {
+            Some(Spot::At(at)) => Some((at, None)),
+            Some(Spot::Beside(beside)) => {
+                beside_neighbour(&beside, entry, follows[index].map(|at| &entries[at]))
+            }
+            None => None,
+        };
+        if let (Some((by, neighbour)), Some(entry)) = (moved, entries.get_mut(index)) {
+            entry.move_by(by, neighbour.as_ref());
+        } else if let Some(Entry { body: Body::Group(controls, bounds), .. }) = entries.get_mut(index) {
+            // Places within a group that is nowhere are none.
+            controls.iter_mut().for_each(|control| control.place = None);
+            *bounds = None;
+        }
+    }
+    for &index in chains.circles.iter().flatten() {
+        if let Some(Entry { body: Body::Group(controls, _), .. }) = entries.get_mut(index) {
+            controls.iter_mut().for_each(|control| control.place = None);
+        }
+    }
+    entries.into_iter().flat_map(Entry::into_controls).collect()
+}
+
+/// How far `entry` is to be moved, and the area of the neighbour it stands beside.
+fn beside_neighbour(
+    beside: &Beside<'_>,
+    entry: &Entry<'_>,
+    neighbour: Option<&Entry<'_>>,
+) -> Option<([f64; 2], Option<Area>)> {
+    let area = neighbour?.area_of(beside.neighbour)?;
+    let extent = entry.extent(Some(&area))?;
+    let corner = beside.corner(&area, extent.size());
+    Some(([corner[0] - extent.min()[0], corner[1] - extent.min()[1]], Some(area)))
+}
+
+/// Of each entry, the index of the one that holds its neighbour.
+fn neighbours(entries: &[Entry<'_>]) -> Vec<Option<usize>> {
+    let mut owners: HashMap<&str, usize> = HashMap::new();
+    for (index, entry) in entries.iter().enumerate() {
+        for name in entry.names() {
+            owners.entry(name).or_insert(index);
+        }
+    }
+    let owner = |entry: &Entry<'_>| {
+        let Some(Spot::Beside(beside)) = entry.placing.spot else { return None };
+        let found = owners.get(beside.neighbour).copied();
+        if found.is_none() {
+            let others = owners.keys().copied().filter(|name| entry.names().all(|own| own != *name));
+            report_unknown(&beside, others.collect());
+        }
+        found
+    };
+    entries.iter().map(owner).collect()
+}
+
+/// Most names that a message lists.
+const LISTED: usize = 8;
+
+fn report_unknown(beside: &Beside<'_>, mut names: Vec<&str>) {
+    names.sort_unstable();
+    let help = if names.len() <= LISTED || nearest(beside.neighbour, names.iter().copied()).is_some() {
+        did_you_mean(beside.neighbour, &names, '"')
+    } else {
+        None
+    };
+    let problem =
+        Problem::error(beside.node.span(), format!("there is no \"{}\" beside this", beside.neighbour));
+    beside.node.report(problem.expected("expected the id of something in the same list").help_if(help));
+}
+
+fn report_circle(circle: &[usize], entries: &[Entry<'_>]) {
+    let beside = |&index: &usize| match entries.get(index)?.placing.spot {
+        Some(Spot::Beside(beside)) => Some(beside),
+        _ => None,
+    };
+    let members: Vec<Beside<'_>> = circle.iter().filter_map(beside).collect();
+    let Some(first) = members.first() else { return };
+    let span: Range<usize> = first.node.span();
+    let message = match members.as_slice() {
+        [_] => "nothing can stand beside itself".to_owned(),
+        [_, _] => "these two stand beside each other".to_owned(),
+        more => format!("these {} stand beside each other in a circle", more.len()),
+    };
+    let names: Vec<String> =
+        members.iter().take(LISTED).map(|beside| format!("\"{}\"", beside.neighbour)).collect();
+    let problem = Problem::error(span, message).expected(format!("beside {}", names.join(", beside ")));
+    let which = if members.len() == 1 { "it" } else { "one of them" };
+    first.node.report(problem.help(format!("give {which} a place of its own: at: (2, 3)")));
+}

@@ -1,0 +1,251 @@
+//! One entry of a layout's `widgets`: a control, or a grid of alike ones.
+
+use std::ops::Range;
+
+use super::area::Placed;
+use super::behaviour;
+use super::feel;
+use super::fields::Fields;
+use super::inherit::Choice;
+use super::kind::Kind;
+use super::look;
+use super::node::{Node, is_id};
+use super::pages::Goto;
+use super::place::Placing;
+use super::problem::Problem;
+use super::repeat::{self, Cell, Repeat};
+use crate::layout::Icon;
+
+/// One control. What could not be read is `None` and has been reported.
+pub(super) struct Control {
+    pub(super) id: Option<String>,
+    pub(super) place: Option<Placed>,
+    pub(super) label: Option<String>,
+    /// The number of its page; `None` if it is on all of them.
+    pub(super) page: Option<usize>,
+    pub(super) goto: Option<Goto>,
+    /// Its kind with everything that it overrides.
+    pub(super) kind: Option<Kind>,
+    pub(super) written: Written,
+}
+
+/// Where a control is written.
+#[derive(Clone, Debug)]
+pub(super) struct Written {
+    pub(super) id: Range<usize>,
+    /// `at`, or what stands for it.
+    pub(super) at: Range<usize>,
+    pub(super) size: Option<Range<usize>>,
+    pub(super) press: Option<Range<usize>>,
+    pub(super) step: Option<Range<usize>>,
+    pub(super) label: Option<Range<usize>>,
+    pub(super) look: Option<Range<usize>>,
+    pub(super) kind: Range<usize>,
+    /// Where the grid is written that it is part of.
+    pub(super) repeat: Option<Range<usize>>,
+}
+
+/// How large a control is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Size {
+    Written([f64; 2]),
+    /// As large as the neighbour that it stands beside.
+    Neighbours,
+}
+
+/// An entry of `widgets` that stands for one control or a grid of them.
+pub(super) struct Grid<'r> {
+    pub(super) placing: Placing<'r>,
+    pub(super) size: Option<Size>,
+    /// Between columns and between rows.
+    pub(super) gap: [f64; 2],
+    pub(super) rows: u32,
+    pub(super) columns: u32,
+    /// The controls, which have no places yet.
+    pub(super) controls: Vec<(Cell, Control)>,
+}
+
+impl<'r> Grid<'r> {
+    /// The entry at `node`, of at most `room` controls.
+    pub(super) fn read(node: Node<'r>, kinds: &Choice<'_>, room: usize) -> Option<Self> {
+        let mut fields = node.fields("Widget")?;
+        let repeat = fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node).map(Some)));
+        let base = fields.read("kind", None, |node| kinds.named(node));
+        let placing = Placing::read(&mut fields);
+        let size = size(&mut fields, placing.is_relative);
+        let goto = Goto::read(&mut fields);
+        let repeat_at = fields.written_span("repeat");
+        // A grid that can't be read says nothing of its ids, which may well be patterns.
+        let names = match &repeat {
+            Some(Some(Some(repeat))) => names_of_grid(&mut fields, repeat, room),
+            Some(Some(None)) => {
+                let id = fields.read("id", None, |node| node.id().map(str::to_owned));
+                let label = fields.read("label", Some(""), |node| node.text(64));
+                let cell = Cell { index: 0, column: 0, row: 0 };
+                vec![(cell, id, label.map(str::to_owned))]
+            }
+            _ => {
+                let _ = (fields.take("id"), fields.take("label"));
+                Vec::new()
+            }
+        };
+        let span_of = |field| fields.written_span(field);
+        let id_at = span_of("id").or_else(|| span_of("repeat")).unwrap_or_else(|| fields.start());
+        let written = Written {
+            id: id_at,
+            at: placing.at.clone(),
+            size: span_of("size"),
+            press: span_of("press_n"),
+            step: span_of("step"),
+            label: span_of("label"),
+            look: span_of("look"),
+            kind: fields.span("kind"),
+            repeat: repeat_at,
+        };
+        let kind = match base {
+            Some(base) => {
+                fields.call(format!("widget of the kind \"{}\"", base.name));
+                let kind = overridden(&mut fields, base);
+                fields.finish();
+                kind
+            }
+            // Which other fields it may have, only its kind could tell.
+            None => {
+                fields.finish_leniently();
+                None
+            }
+        };
+        let control = |(cell, id, label)| {
+            let (kind, goto, written) = (kind.clone(), goto.clone(), written.clone());
+            (cell, Control { id, label, place: None, page: None, goto, kind, written })
+        };
+        let controls = names.into_iter().map(control).collect();
+        let repeat = repeat.flatten().flatten().unwrap_or_else(Repeat::single);
+        Some(Self { placing, size, gap: repeat.gap, rows: repeat.rows, columns: repeat.columns, controls })
+    }
+}
+
+fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
+    let (least, most) = (fields.units().shortest(), fields.units().furthest());
+    fields.read("size", is_relative.then_some(Size::Neighbours), |node| {
+        node.pair(least..=most).map(Size::Written)
+    })
+}
+
+type Names = Vec<(Cell, Option<String>, Option<String>)>;
+
+/// The ids and labels of all places of a grid; none if they would be more than `room`.
+fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> Names {
+    let label = match fields.take("label") {
+        Some(node) if repeat.has_labels() => {
+            twice(node, "labels");
+            None
+        }
+        Some(node) => node.text(64).map(|text| (node, text)),
+        None => None,
+    };
+    let id = match fields.take("id") {
+        Some(node) if repeat.has_ids() => {
+            twice(node, "ids");
+            None
+        }
+        Some(node) => node.text(64).map(|text| (node, text)),
+        None if repeat.has_ids() => None,
+        // Reports that it is missing.
+        None => fields.read("id", None, |_| None),
+    };
+    let cells: Vec<Cell> = repeat.cells().collect();
+    if cells.len() > room {
+        let problem = Problem::error(fields.span("repeat"), "too many controls");
+        let expected = format!("{} more, with room for {room} of {}", cells.len(), super::page::MAX_WIDGETS);
+        fields.report(problem.expected(expected));
+        return Names::new();
+    }
+    // A pattern that is none is told of first.
+    let first = cells.first().copied();
+    let sound = |(node, pattern): (Node<'_>, &str)| {
+        first.is_none_or(|cell| fill(node, pattern, cell, Some("")).is_some())
+    };
+    if !id.is_none_or(sound) {
+        return Names::new();
+    }
+    if let Some((node, pattern)) = id
+        && cells.len() > 1
+        && !repeat::varies(pattern)
+    {
+        let message = format!("all {} controls would have the id \"{pattern}\"", cells.len());
+        let problem = Problem::error(node.span(), message).expected("expected a pattern");
+        node.report(problem.help(format!("number them: \"{pattern}_{{n}}\"")));
+        return Names::new();
+    }
+    let mut sound = true;
+    let mut names = Names::new();
+    for cell in cells {
+        // What is wrong with a pattern is said once.
+        if !sound {
+            names.push((cell, None, None));
+            continue;
+        }
+        let label = match (repeat.label(cell), label) {
+            (Some(node), _) => node.text(64).map(str::to_owned),
+            (None, Some((node, pattern))) => fill(node, pattern, cell, None),
+            (None, None) => Some(String::new()),
+        };
+        sound &= label.is_some() || repeat.has_labels();
+        let id = match (repeat.id(cell), id) {
+            (Some(node), _) => node.id().map(str::to_owned),
+            (None, Some((node, pattern))) => {
+                let id = fill(node, pattern, cell, label.as_deref()).filter(|id| is_fit(node, id));
+                sound &= id.is_some() || label.is_none();
+                id
+            }
+            (None, None) => None,
+        };
+        names.push((cell, id, label));
+    }
+    names
+}
+
+fn twice(node: Node<'_>, list: &str) {
+    let message = format!("`{}` is given twice", node.what);
+    let problem = Problem::error(node.span(), message).expected(format!("`{list}` of `repeat` gives it"));
+    node.report(problem.help(format!("leave out `{}` or `{list}`", node.what)));
+}
+
+fn fill(node: Node<'_>, pattern: &str, cell: Cell, label: Option<&str>) -> Option<String> {
+    match repeat::filled(pattern, cell, label) {
+        Ok(text) => Some(text),
+        Err((message, help)) => {
+            node.report(Problem::error(node.span(), message).expected("in this pattern").help_if(help));
+            None
+        }
+    }
+}
+
+/// Whether an id made of a pattern is one; says so if not.
+fn is_fit(node: Node<'_>, id: &str) -> bool {
+    let fits = is_id(id);
+    if !fits {
+        let problem = Problem::error(node.span(), format!("this pattern gives the id \"{id}\""));
+        node.report(problem.expected("expected 1 to 64 of the characters a-z, 0-9 and _"));
+    }
+    fits
+}
+
+/// `base` with the fields that this widget overrides.
+fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
+    let behaviour = behaviour::read_over(fields, &base.behaviour);
+    let look = fields.read("look", Some(base.look), |node| look::read_over(node, base.look));
+    if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.written_span("look"))
+        && look.icon.is_some()
+        && base.look.icon != look.icon
+        && !Icon::is_shown_on(behaviour)
+    {
+        let problem = Problem::warning(span, "no icon is shown on this control");
+        fields.report(
+            problem.expected("its face shows its value").help("buttons, holds and switches show icons"),
+        );
+    }
+    let feel = fields.read("feel", Some(base.feel.clone()), |node| feel::read_over(node, &base.feel));
+    Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
+}

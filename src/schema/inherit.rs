@@ -1,0 +1,248 @@
+//! Kinds made from other kinds: `Kind(name: "big_button", from: "button", press_n: 80)`.
+//!
+//! Kinds come in layers: those that come with underfoot, those of a folder,
+//! those of a layout. A kind may be made from any kind of its own layer or the
+//! ones below; one of its own name is that of a layer below, which it replaces.
+
+use std::borrow::Cow;
+use std::collections::{HashMap, HashSet};
+use std::path::Path;
+
+use super::chain::Chains;
+use super::diagnostic::Diagnostics;
+use super::kind::{self, Kind, Kinds};
+use super::node::Node;
+use super::pairs::Limits;
+use super::problem::Problem;
+use super::reader::Reader;
+use super::source::{Source, read_text};
+use super::suggest::did_you_mean;
+use super::version;
+
+/// What a kind is made from.
+#[derive(Clone, Copy)]
+enum Parent<'k> {
+    /// From nothing.
+    None,
+    /// A kind of a layer below.
+    Below(&'k Kind),
+    /// Another one of this layer.
+    Here(usize),
+    /// One that can't be used, which has been reported.
+    Unusable,
+}
+
+/// The kinds that `nodes` describe, on top of those `below`; `None` for each that can't be used, which has been reported.
+pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
+    let mut here: HashMap<&str, usize> = HashMap::new();
+    for (index, node) in nodes.iter().enumerate() {
+        let Some(name) = node.peek("Kind", "name") else { continue };
+        let Some(text) = name.peek_text() else { continue };
+        match here.get(text) {
+            Some(&first) => report_twice(name, text, nodes.get(first)),
+            None => drop(here.insert(text, index)),
+        }
+    }
+    let parents: Vec<Parent<'_>> = nodes.iter().map(|node| parent(*node, &here, below)).collect();
+    let follows: Vec<Option<usize>> = parents
+        .iter()
+        .map(|parent| match parent {
+            Parent::Here(index) => Some(*index),
+            Parent::None | Parent::Below(_) | Parent::Unusable => None,
+        })
+        .collect();
+    let chains = Chains::of(&follows);
+    for circle in &chains.circles {
+        report_circle(circle, nodes);
+    }
+    let mut kinds: Vec<Option<Kind>> = vec![None; nodes.len()];
+    for &index in &chains.order {
+        let parent = match parents[index] {
+            _ if chains.is_circular(index) => continue,
+            Parent::None => None,
+            Parent::Below(kind) => Some(Cow::Borrowed(kind)),
+            Parent::Here(parent) => match &kinds[parent] {
+                Some(kind) => Some(Cow::Owned(kind.clone())),
+                None => continue,
+            },
+            Parent::Unusable => continue,
+        };
+        kinds[index] = kind::read(nodes[index], parent.as_deref());
+    }
+    kinds
+}
+
+fn parent<'k>(node: Node<'_>, here: &HashMap<&str, usize>, below: &'k Kinds) -> Parent<'k> {
+    let Some(from) = node.peek("Kind", "from") else { return Parent::None };
+    let Some(wanted) = from.text(64) else { return Parent::Unusable };
+    let own = node.peek("Kind", "name").and_then(|name| name.peek_text());
+    if own != Some(wanted)
+        && let Some(&index) = here.get(wanted)
+    {
+        return Parent::Here(index);
+    }
+    if let Some(kind) = below.get(wanted) {
+        return Parent::Below(kind);
+    }
+    let problem = if own == Some(wanted) {
+        Problem::error(from.span(), "a kind can't be made from itself")
+            .expected("there is no other kind of this name to replace")
+    } else {
+        let known: Vec<&str> =
+            here.keys().copied().filter(|name| own != Some(name)).chain(below.names()).collect();
+        Problem::error(from.span(), format!("unknown kind \"{wanted}\""))
+            .expected("no kind is called so")
+            .help_if(suggestion(wanted, known))
+    };
+    from.report(problem);
+    Parent::Unusable
+}
+
+fn suggestion(wanted: &str, mut known: Vec<&str>) -> Option<String> {
+    known.sort_unstable();
+    known.dedup();
+    did_you_mean(wanted, &known, '"')
+}
+
+fn report_twice(name: Node<'_>, text: &str, first: Option<&Node<'_>>) {
+    let place = first.and_then(|first| first.peek("Kind", "name")).map(|first| {
+        let line = first.reader.line(&first.span());
+        if std::ptr::eq(first.reader, name.reader) {
+            format!("the first is on line {line}")
+        } else {
+            format!("there is a kind \"{text}\" in {}:{line}", first.reader.name())
+        }
+    });
+    let problem = Problem::error(name.span(), format!("two kinds are called \"{text}\""));
+    name.report(problem.expected(place.unwrap_or_default()).help("give one of them another name"));
+}
+
+fn report_circle(circle: &[usize], nodes: &[Node<'_>]) {
+    let from = |&index: &usize| {
+        let node = nodes.get(index)?.peek("Kind", "from")?;
+        Some((node, node.peek_text()?))
+    };
+    let members: Vec<_> = circle.iter().filter_map(from).collect();
+    let Some((first, _)) = members.first() else { return };
+    let names: Vec<String> = members.iter().take(8).map(|(_, name)| format!("\"{name}\"")).collect();
+    let problem = Problem::error(first.span(), "these kinds are made from each other");
+    first.report(problem.expected(format!("from {}", names.join(", from "))));
+}
+
+/// The kinds in the files at `paths`, on top of those `below`, and warnings.
+///
+/// # Errors
+/// Everything wrong with any of the files.
+pub(super) fn read_files<P: AsRef<Path>>(
+    paths: &[P],
+    below: &Kinds,
+) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+    let mut problems = Diagnostics::default();
+    let mut texts = Vec::new();
+    for path in paths {
+        let path = path.as_ref();
+        match read_text(path) {
+            Ok(text) => texts.push((path.display().to_string(), text)),
+            Err(unreadable) => problems.append(unreadable),
+        }
+    }
+    let texts: Vec<(&str, &str)> = texts.iter().map(|(name, text)| (name.as_str(), text.as_str())).collect();
+    match read_texts(&texts, below) {
+        Ok((kinds, warnings)) => {
+            problems.append(warnings);
+            if problems.errors() > 0 { Err(problems) } else { Ok((kinds, problems)) }
+        }
+        Err(errors) => {
+            problems.append(errors);
+            Err(problems)
+        }
+    }
+}
+
+/// The kinds that `texts` describe, given with the names that diagnostics use, on top of those `below`, and warnings.
+///
+/// # Errors
+/// Everything wrong with any of the texts.
+pub(super) fn read_texts(
+    texts: &[(&str, &str)],
+    below: &Kinds,
+) -> Result<(Vec<Kind>, Diagnostics), Diagnostics> {
+    let mut problems = Diagnostics::default();
+    let mut sources = Vec::new();
+    for (name, text) in texts {
+        match Source::new(name, text) {
+            Ok(source) => sources.push(source),
+            Err(too_large) => problems.append(too_large),
+        }
+    }
+    let mut readers = Vec::new();
+    for source in &sources {
+        let reader = Reader::new(source, "Kind", Limits::LAYOUT);
+        match version::newer(&reader, "Kind") {
+            Some(newer) => problems.append(newer),
+            None => readers.push(reader),
+        }
+    }
+    let roots: Vec<Option<Node<'_>>> = readers.iter().map(|reader| reader.root("kind")).collect();
+    let nodes: Vec<Node<'_>> = roots.iter().flatten().copied().collect();
+    let mut read = layer(&nodes, below).into_iter();
+    let kinds: Vec<Option<Kind>> =
+        roots.iter().map(|root| root.and_then(|_| read.next().flatten())).collect();
+    // A kind that only lacks its parent is told of at the parent's place.
+    let several = texts.len() > 1;
+    drop(nodes);
+    drop(roots);
+    let mut good = Vec::new();
+    for (reader, kind) in readers.into_iter().zip(kinds) {
+        if kind.is_none() && several && reader.is_sound() {
+            problems.append(reader.into_diagnostics());
+            continue;
+        }
+        match reader.conclude(kind) {
+            Ok((kind, warnings)) => {
+                good.push(kind);
+                problems.append(warnings);
+            }
+            Err(errors) => problems.append(errors),
+        }
+    }
+    if problems.errors() > 0 { Err(problems) } else { Ok((good, problems)) }
+}
+
+/// The kinds that the controls of a layout may be of.
+pub(super) struct Choice<'k> {
+    kinds: Cow<'k, Kinds>,
+    /// Names of kinds of the layout itself that can't be used, which has been reported.
+    unusable: HashSet<String>,
+}
+
+impl<'k> Choice<'k> {
+    /// Those in `kinds`, and on top of them those that the layout's list of kinds describes, if it has one.
+    pub(super) fn new(kinds: &'k Kinds, list: Option<Node<'_>>) -> Self {
+        let mut choice = Self { kinds: Cow::Borrowed(kinds), unusable: HashSet::new() };
+        let nodes = list.and_then(|node| node.list("kind", super::page::MAX_WIDGETS)).unwrap_or_default();
+        for (node, kind) in nodes.iter().zip(layer(&nodes, kinds)) {
+            match kind {
+                Some(kind) => choice.kinds.to_mut().insert(kind),
+                None => choice
+                    .unusable
+                    .extend(node.peek("Kind", "name").and_then(|name| name.peek_text()).map(str::to_owned)),
+            }
+        }
+        choice
+    }
+
+    /// The kind that `node` names; `None` if it can't be used, which has been reported.
+    pub(super) fn named(&self, node: Node<'_>) -> Option<&Kind> {
+        let name = node.text(64)?;
+        if self.unusable.contains(name) {
+            return None;
+        }
+        self.kinds.get(name).or_else(|| {
+            let known = self.kinds.names().chain(self.unusable.iter().map(String::as_str)).collect();
+            let problem = Problem::error(node.span(), format!("unknown kind \"{name}\""));
+            node.report(problem.expected("no kind is called so").help_if(suggestion(name, known)));
+            None
+        })
+    }
+}

@@ -1,0 +1,58 @@
+use super::node::Node;
+use crate::floor::Geometry;
+
+/// What the places, sizes and gaps of a layout count in.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Units {
+    /// The floor's pitch: a layout keeps its arrangement on a floor with other tiles.
+    #[default]
+    Tiles,
+    /// Metres: a layout keeps its measures on a floor with other tiles.
+    Metres,
+}
+
+impl Units {
+    pub(super) fn read(node: Node<'_>) -> Option<Self> {
+        node.choice(&[("Tiles", Self::Tiles), ("Metres", Self::Metres)])
+    }
+
+    /// Written behind a number.
+    pub(super) const fn suffix(self) -> &'static str {
+        match self {
+            Self::Tiles => " tiles",
+            Self::Metres => " m",
+        }
+    }
+
+    /// The word for them in a sentence.
+    pub(super) const fn name(self) -> &'static str {
+        match self {
+            Self::Tiles => "tiles",
+            Self::Metres => "metres",
+        }
+    }
+
+    /// How long one of them is on a floor of this `geometry`, in metres.
+    pub(super) fn metres(self, geometry: &Geometry) -> f64 {
+        match self {
+            Self::Tiles => geometry.pitch_m().into(),
+            Self::Metres => 1.0,
+        }
+    }
+
+    /// Furthest a place may be from its origin, well beyond any floor.
+    pub(super) const fn furthest(self) -> f64 {
+        match self {
+            Self::Tiles => Geometry::MAX_SIDE as f64,
+            Self::Metres => 1000.0,
+        }
+    }
+
+    /// Shortest side of anything; far below any foot.
+    pub(super) const fn shortest(self) -> f64 {
+        match self {
+            Self::Tiles => 0.05,
+            Self::Metres => 0.01,
+        }
+    }
+}

@@ -1,0 +1,230 @@
+//! Feet that have left, and feet that never were.
+
+use super::Tracker;
+use super::birth::APART_M;
+use super::foot::{Foot, LANDS_S, SHOE_M};
+use super::lines::{Axis, Lines};
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::tile::LoadedTile;
+
+/// Force below which a foot that shares its tiles may be gone, in newtons.
+const FAINT_N: f64 = 4.0;
+
+/// How long a foot must have seemed to be gone before it is, in seconds.
+const FAINT_S: f64 = 0.01;
+
+/// How long a foot must seem to have handed its weight over to be gone, in seconds.
+const HANDED_S: f64 = 0.04;
+
+/// Shares of what it once pressed with, and of what all feet there press with, below which a foot may have
+/// handed its weight over.
+const OF_ITS_MOST: f64 = 0.5;
+const OF_ALL: f64 = 0.2;
+
+/// How far the centre of pressure may then be from where the foot that has taken over rests, in metres.
+const TAKEN_OVER_M: f64 = 0.05;
+
+/// How far beyond the other feet's centres of pressure a tile is proof that a foot is there, in metres: for
+/// one that seems to have handed over, and for one too light to be seen otherwise.
+const OWN_M: f64 = 0.17;
+const OWN_OF_FAINT_M: f64 = 0.23;
+
+/// A light load this near to a heavy foot, as a share of it, may be that foot's rim.
+const RIM_SHARE: f64 = 0.08;
+const RIM_M: f64 = 0.22;
+
+/// How far no foot's centre of pressure moves by itself as its load goes, in metres.
+const FAR_M: f64 = 0.12;
+
+/// How long one foot must have been enough before two become one, in seconds.
+const ENOUGH_S: f64 = 0.06;
+
+/// How long a foot that has just landed is not doubted, in seconds.
+const FRESH_S: f64 = 0.08;
+
+/// How long after a companion has gone a foot's own sway is not taken for a new one, in seconds.
+const CALM_S: f64 = 0.25;
+
+/// How far from its home the centre of pressure of a foot that stands alone may lie, in metres.
+const AT_HOME_M: f64 = 0.04;
+
+/// Distance below which two feet may be two halves of one, in metres: side by side they are farther apart.
+const HALVES_M: f64 = 0.12;
+
+/// Half widths that the pressed patch of one whole foot may have, in metres.
+const HALVES: [f64; 5] = [0.045, 0.065, 0.085, 0.11, 0.14];
+
+/// What one foot's division over the tiles may differ from a patch's, as a share of its force.
+const UNLIKE: f64 = 0.05;
+
+impl Tracker {
+    /// Takes away feet that are not there: too light for too long, or no longer needed to
+    /// explain what the tiles carry.
+    pub(super) fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for which in 0..self.feet.len() {
+            let foot = &self.feet[which];
+            let gone = if foot.shared {
+                !self.has_own(foot, tiles.list(), OWN_OF_FAINT_M)
+                    && (foot.force() < FAINT_N || self.superfluous(which, tiles.list()))
+            } else {
+                self.is_rim(foot)
+            };
+            let haste = if gone {
+                1.0
+            } else if foot.shared && self.handed_over(foot, tiles.list()) {
+                FAINT_S / HANDED_S
+            } else {
+                0.0
+            };
+            let foot = &mut self.feet[which];
+            foot.faint = if haste > 0.0 { foot.faint + haste * dt } else { 0.0 };
+            if foot.faint >= FAINT_S {
+                let group = foot.group;
+                for mate in self.feet.iter_mut().filter(|mate| mate.group == group) {
+                    mate.calm = CALM_S;
+                }
+            }
+        }
+        self.feet.retain(|foot| foot.faint < FAINT_S);
+        self.unite(tiles, dt);
+    }
+
+    /// Whether a foot has handed its weight over to the others: what little is left to it may as well be what
+    /// is not known of them.
+    fn handed_over(&self, foot: &Foot, list: &[LoadedTile]) -> bool {
+        let all: f64 = self.feet.iter().filter(|mate| mate.group == foot.group).map(Foot::force).sum();
+        if foot.force() > OF_ITS_MOST * foot.peak || foot.force() > OF_ALL * all {
+            return false;
+        }
+        let mut others = self.mates(foot);
+        if let (Some(other), None) = (others.next(), others.next()) {
+            let both = foot.tiles_with(other);
+            let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+            if lines.middle.distance(other.home) > TAKEN_OVER_M {
+                return false;
+            }
+        }
+        !self.has_own(foot, list, OWN_M)
+    }
+
+    /// The other feet of its group.
+    fn mates(&self, foot: &Foot) -> impl Iterator<Item = &Foot> {
+        let (id, group) = (foot.id, foot.group);
+        self.feet.iter().filter(move |mate| mate.group == group && mate.id != id)
+    }
+
+    /// Whether it is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both pressed.
+    fn is_rim(&self, foot: &Foot) -> bool {
+        let (place, force) = (foot.centre(), foot.force());
+        foot.home.distance(place).max(foot.landed.distance(place)) > FAR_M
+            && self.feet.iter().any(|other| {
+                other.id != foot.id
+                    && force < RIM_SHARE * other.force()
+                    && other.centre().distance(place) < RIM_M
+            })
+    }
+
+    /// Whether it presses a tile that none of the others can reach: proof that it is still there.
+    fn has_own(&self, foot: &Foot, list: &[LoadedTile], reach: f64) -> bool {
+        foot.tiles.iter().any(|&position| {
+            let place = list[position as usize].centroid.as_dvec2();
+            self.mates(foot).all(|other| other.centre().distance(place) > reach)
+        })
+    }
+
+    /// Makes one foot of two where one has been enough for some time.
+    fn unite(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for a in 0..self.feet.len() {
+            let foot = &self.feet[a];
+            let mut mates = (0..self.feet.len()).filter(|&b| b != a && self.feet[b].group == foot.group);
+            let (Some(b), None) = (mates.next(), mates.next()) else {
+                self.feet[a].spare = 0.0;
+                continue;
+            };
+            if b < a || !foot.shared {
+                continue;
+            }
+            let both = foot.tiles_with(&self.feet[b]);
+            let list = tiles.list();
+            let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+            let stay = self.enough(a, b, &lines);
+            for which in [a, b] {
+                let foot = &mut self.feet[which];
+                foot.spare = if stay.is_some_and(|stay| stay != which) { foot.spare + dt } else { 0.0 };
+            }
+            if let Some(stay) = stay {
+                let gone = if stay == a { b } else { a };
+                if self.feet[gone].spare > ENOUGH_S {
+                    let foot = &mut self.feet[stay];
+                    foot.stand(lines.force, lines.middle);
+                    foot.tiles = both;
+                    foot.calm = CALM_S;
+                }
+            }
+        }
+        self.feet.retain(|foot| foot.spare <= ENOUGH_S);
+    }
+
+    /// Whether the tiles carry what the foot that shares them with foot `which` presses
+    /// on them when alone, as if `which` were not there.
+    fn superfluous(&self, which: usize, list: &[LoadedTile]) -> bool {
+        let foot = &self.feet[which];
+        if foot.age < FRESH_S {
+            return false;
+        }
+        let mut others =
+            self.feet.iter().enumerate().filter(|&(other, o)| other != which && o.group == foot.group);
+        let (Some((_, host)), None) = (others.next(), others.next()) else { return false };
+        if host.centre().distance(foot.centre()) < 0.6 * APART_M {
+            return host.age >= foot.age;
+        }
+        if foot.centre().distance(foot.landed) > SHOE_M {
+            // Too far from where it landed to be the same foot still.
+            return true;
+        }
+        let Some(home) = host.alone_at else { return false };
+        if foot.force() > 0.4 * host.force() && foot.age > host.age {
+            return false;
+        }
+        let both = host.tiles_with(foot);
+        let pitch = self.cells.pitch;
+        let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), pitch);
+        lines.middle.distance(home) < 0.012
+            && lines.lines.iter().all(|line| {
+                let axis = line.axis;
+                let slice = line.slice(pitch, axis.along(lines.middle), axis.along(host.half()));
+                let habit = host.habit_at(axis, line.number, 1.0);
+                (line.force / lines.force - slice.share - habit.share).abs() < 0.012
+            })
+    }
+
+    /// Which of the two feet `a` and `b`, if either, is enough to explain what their tiles carry.
+    fn enough(&self, a: usize, b: usize, lines: &Lines) -> Option<usize> {
+        let (first, second) = (&self.feet[a], &self.feet[b]);
+        // Of a foot put down beside a standing one more is known than what one frame's tiles carry.
+        if first.has_landed_beside(second) || second.has_landed_beside(first) {
+            return None;
+        }
+        if first.age.min(second.age) < LANDS_S {
+            return None;
+        }
+        let apart = [first, second].map(|foot| foot.home.distance(lines.middle));
+        let (near, stay) = if apart[0] <= apart[1] { (apart[0], a) } else { (apart[1], b) };
+        let close = first.centre().distance(second.centre()) < HALVES_M;
+        ((near < AT_HOME_M || close) && one_patch(lines, self.cells.pitch)).then_some(stay)
+    }
+}
+
+/// Whether one foot's patch can divide over the lines as their loads do.
+fn one_patch(lines: &Lines, pitch: f64) -> bool {
+    Axis::BOTH.into_iter().all(|axis| {
+        HALVES.into_iter().any(|half| {
+            lines.lines.iter().filter(|line| line.axis == axis).all(|line| {
+                let slice = line.slice(pitch, axis.along(lines.middle), half);
+                let share = line.force / lines.force - slice.share;
+                let moment = line.moment / lines.force - slice.moment;
+                share.abs() < UNLIKE && moment.abs() < UNLIKE * 0.5 * pitch
+            })
+        })
+    })
+}

@@ -1,0 +1,213 @@
+//! A foot that is put down beside one that stands still.
+//!
+//! While weight is shifted to the new foot, the common centre of pressure c moves
+//! from the standing foot's place a straight towards the new one's. Force times
+//! way is known at once, `F_b d = F |c - a|`, but neither the new foot's force
+//! F_b nor its distance d alone. How the tiles divide the load tells them apart,
+//! for what the standing foot presses on each is known from when it stood alone.
+//! A Kalman filter cannot follow that: its slopes hold near one guess, and here
+//! the guess may be tens of centimetres off. So every distance that two feet may
+//! have is tried, and each weighs as much as it is likely.
+
+use glam::DVec2;
+
+use super::Cells;
+use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH};
+use super::lines::{Axis, Line, Lines};
+use crate::sense::contact::ContactId;
+use crate::sense::tile::LoadedTile;
+
+/// Distances that are tried, in metres: from feet that touch to a wide stance.
+const NEAREST_M: f64 = 0.09;
+const STEP_M: f64 = 0.02;
+const TRIED: usize = 22;
+
+/// Distance one expects before anything is seen, and how much it varies (as a factor).
+const USUAL_M: f64 = 0.22;
+const USUAL_SPREAD: f64 = 0.5;
+
+/// A foot as light as this, as a share of both, that presses mostly where the standing one does not, is
+/// better measured there: the way of the common centre of pressure is lost in the other's sway.
+const LIGHT: f64 = 0.25;
+const MOSTLY: f64 = 0.8;
+/// Share of the standing foot below which a tile is none of its own.
+const NOT_ITS_OWN: f64 = 0.02;
+
+/// Half widths that the new foot's patch may have along an axis, in metres, and how much they vary.
+const HALVES: [f64; 4] = [0.045, 0.075, 0.105, 0.135];
+const HALF_SPREAD_M: f64 = 0.03;
+
+/// Least moment that shows where a new foot lies, in newton metres, and as a way of the common
+/// centre of pressure, in metres: more than a standing foot sways in a moment.
+const LEAST_MOMENT: f64 = 1.0;
+const LEAST_WAY_M: f64 = 0.006;
+
+/// What is not known of how a foot divides over two tiles, as a share of its force.
+const UNLIKE: f64 = 0.08;
+
+/// The least of it, as a share of a foot that lies on one tile.
+const UNLIKE_LEAST: f64 = 0.02;
+
+/// How far the standing foot sways meanwhile, and how well the new one is known across the way, in metres.
+const SWAY_M: f64 = 0.025;
+const PLACE_M: f64 = 0.012;
+
+/// What forces are misread by, in newtons.
+const MISREAD_N: f64 = 2.0;
+
+/// Beside whom a foot has landed, and where that one stood before.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Landing {
+    pub host: ContactId,
+    pub from: DVec2,
+}
+
+/// Two feet that are tried: where, and with what force.
+struct Pair<'a> {
+    host: &'a Foot,
+    from: DVec2,
+    host_force: f64,
+    place: DVec2,
+    guest_force: f64,
+}
+
+/// Whether `guest` is light and presses mostly on tiles that `host` does not press.
+pub(super) fn is_seen_alone(host: &Foot, guest: &Foot, list: &[LoadedTile], cells: &Cells) -> bool {
+    let tiles = guest.tiles.iter().map(|&position| &list[position as usize]);
+    let own = tiles.filter(|tile| host.on(cells.of(tile)).share() < NOT_ITS_OWN);
+    let own: f64 = own.map(|tile| f64::from(tile.wrench.force)).sum();
+    guest.force() < LIGHT * (host.force() + guest.force()) && own > MOSTLY * guest.force()
+}
+
+/// Places `guest` beside `host`, which stands still at `from`; `lines` is what the tiles of both carry.
+///
+/// False if nothing can be said yet: the common centre of pressure has hardly moved.
+pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: Lines, cells: &Cells) -> bool {
+    let (force, way) = (lines.force, lines.middle - from);
+    let moment = force * way.length();
+    if moment < LEAST_MOMENT.max(LEAST_WAY_M * force) {
+        return false;
+    }
+    let ahead = way / way.length();
+    // Lines that the feet would reach but that carry nothing speak too.
+    for axis in Axis::BOTH {
+        for point in [from, from + ahead * 0.3] {
+            let number = (axis.along(point) / cells.pitch).floor() as i32;
+            if (0..cells.count(axis)).contains(&number) {
+                lines.line(axis, number);
+            }
+        }
+    }
+    let mut against = [f64::INFINITY; TRIED];
+    for (misfit, distance) in against.iter_mut().zip(distances()) {
+        let guest_force = moment / distance;
+        if guest_force > 1.03 * force {
+            continue;
+        }
+        let host_force = (force - guest_force).max(0.0);
+        let pair = Pair { host, from, host_force, place: from + ahead * distance, guest_force };
+        let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
+        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual;
+    }
+    let Some(distance) = Distance::among(&against) else { return false };
+    let part = (moment / distance.mean).min(force);
+    host.put(force - part, from);
+    guest.put(part, from + ahead * distance.mean);
+    // The farther away it lies, the less it presses.
+    let force_variance = distance.variance * (part / distance.mean).powi(2) + 9.0;
+    host.covariance[FORCE][FORCE] = force_variance;
+    guest.covariance[FORCE][FORCE] = force_variance;
+    let aside = (0.01 * force / part.max(1.0)).min(0.1).powi(2);
+    guest.covariance[EAST][EAST] += distance.variance * ahead.x * ahead.x + aside * ahead.y * ahead.y;
+    guest.covariance[NORTH][NORTH] += distance.variance * ahead.y * ahead.y + aside * ahead.x * ahead.x;
+    guest.covariance[EAST][NORTH] += (distance.variance - aside) * ahead.x * ahead.y;
+    guest.covariance[NORTH][EAST] = guest.covariance[EAST][NORTH];
+    let lean = -distance.variance * part / distance.mean;
+    for (state, way) in [(EAST, ahead.x), (NORTH, ahead.y)] {
+        guest.covariance[FORCE][state] = lean * way;
+        guest.covariance[state][FORCE] = lean * way;
+    }
+    true
+}
+
+fn distances() -> impl Iterator<Item = f64> {
+    (0..TRIED).map(|step| NEAREST_M + STEP_M * step as f64)
+}
+
+/// How far apart the two feet are, as far as it is known.
+struct Distance {
+    mean: f64,
+    variance: f64,
+}
+
+impl Distance {
+    /// Weighs each distance by its likelihood; `None` if none is possible.
+    fn among(against: &[f64; TRIED]) -> Option<Self> {
+        let least = against.iter().copied().min_by(f64::total_cmp).filter(|least| least.is_finite())?;
+        let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
+        for (misfit, distance) in against.iter().zip(distances()) {
+            let weight = (-0.5 * (misfit - least)).exp();
+            sum += weight;
+            first += weight * distance;
+            second += weight * distance * distance;
+        }
+        let mean = first / sum;
+        let between = STEP_M * STEP_M / 12.0;
+        Some(Self { mean, variance: (second / sum - mean * mean).max(0.0) + between })
+    }
+}
+
+impl Foot {
+    /// Is there with this force, standing still.
+    fn put(&mut self, force: f64, centre: DVec2) {
+        self.state[FORCE] = force;
+        self.state[EAST] = centre.x;
+        self.state[NORTH] = centre.y;
+        self.state[EAST + 1] = 0.0;
+        self.state[NORTH + 1] = 0.0;
+        self.be_sure(PLACE_M);
+        self.surprise = 0.0;
+    }
+}
+
+impl Pair<'_> {
+    /// How badly all lines fit, with the half widths of the new foot that fit best.
+    fn misfit(&self, lines: &Lines, pitch: f64) -> f64 {
+        let of_axis = |axis: Axis| {
+            let with = |half: f64| -> f64 {
+                let unusual = (half - HALF_REST) / HALF_SPREAD_M;
+                let along = lines.lines.iter().filter(|line| line.axis == axis);
+                unusual * unusual
+                    + along.map(|line| self.misfit_on(line, half, lines.middle, pitch)).sum::<f64>()
+            };
+            HALVES.into_iter().map(with).fold(f64::INFINITY, f64::min)
+        };
+        Axis::BOTH.into_iter().map(of_axis).sum()
+    }
+
+    /// Twice the negative logarithm of the likelihood of one line's load, but for a constant.
+    ///
+    /// Who expects little must be right, who expects anything gains nothing.
+    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> f64 {
+        let axis = line.axis;
+        let old = line.slice(pitch, axis.along(self.from), axis.along(self.host.half()));
+        let habit = self.host.habit_at(axis, line.number, 1.0);
+        let new = line.slice(pitch, axis.along(self.place), half);
+        let share = (old.share + habit.share).clamp(0.0, 1.0);
+        let missing = [
+            line.force - self.host_force * share - self.guest_force * new.share,
+            line.moment - self.host_force * (old.moment + habit.moment) - self.guest_force * new.moment,
+            line.cross
+                - self.host_force * (share * axis.across(self.from - middle) + habit.cross)
+                - self.guest_force * new.share * axis.across(self.place - middle),
+        ];
+        let unlike = |force: f64, straddle: f64| (UNLIKE * force).powi(2) * (straddle + UNLIKE_LEAST);
+        let unsure = MISREAD_N * MISREAD_N
+            + unlike(self.host_force, share * (1.0 - share))
+            + unlike(self.guest_force, 4.0 * new.share * (1.0 - new.share));
+        let lever = 0.5 * pitch;
+        let swaying = unsure + (SWAY_M * self.host_force * share / lever).powi(2);
+        let moments = (missing[1] * missing[1] + missing[2] * missing[2]) / (lever * lever);
+        missing[0] * missing[0] / unsure + moments / swaying + unsure.ln() + 2.0 * swaying.ln()
+    }
+}

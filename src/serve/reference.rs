@@ -1,0 +1,286 @@
+//! Every OSC address of a floor with a layout, in and out: made from the table that the decoder goes by.
+
+use serde::Serialize;
+
+use crate::floor::Floor;
+use crate::layout::{Layout, Widget};
+use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
+use crate::wire::{COMMANDS, Command, Prefix, Takes};
+
+/// Which way a message goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Direction {
+    /// To the floor's own port.
+    In,
+    /// From the floor to those who listen.
+    Out,
+    /// From the floor to whoever asked.
+    Answer,
+}
+
+/// One argument.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Argument {
+    /// What it is.
+    pub name: String,
+    /// Its OSC type tag; several that are taken are separated by `|`.
+    pub tag: &'static str,
+    /// Its unit, range or choices; may be empty.
+    pub range: String,
+}
+
+/// One address.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Entry {
+    /// Which way.
+    pub direction: Direction,
+    /// The address as it stands in messages.
+    pub address: String,
+    /// Its arguments, in order.
+    pub arguments: Vec<Argument>,
+    /// What it says, in a sentence.
+    pub says: String,
+}
+
+/// All addresses of one floor, those of the floor first, then control by control.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Reference {
+    /// The addresses.
+    pub entries: Vec<Entry>,
+}
+
+impl Reference {
+    /// The addresses of `layout` on `floor`, beginning with `prefix` apart from those of the boards.
+    #[must_use]
+    pub fn of(layout: &Layout, floor: &Floor, prefix: &Prefix) -> Self {
+        let mut maker = Maker { prefix, entries: Vec::new() };
+        maker.floor(layout, floor);
+        for widget in &layout.widgets {
+            maker.control(widget, layout);
+        }
+        Self { entries: maker.entries }
+    }
+}
+
+struct Maker<'a> {
+    prefix: &'a Prefix,
+    entries: Vec<Entry>,
+}
+
+impl Maker<'_> {
+    fn add(&mut self, direction: Direction, path: &str, arguments: Vec<Argument>, says: &str) {
+        let address = self.prefix.address(path);
+        self.entries.push(Entry { direction, address, arguments, says: says.into() });
+    }
+
+    fn floor(&mut self, layout: &Layout, floor: &Floor) {
+        for (number, board) in floor.boards.iter().enumerate() {
+            let channels = board.channels.len();
+            let arguments = vec![
+                argument("sequence", "i", "counts packets, wraps"),
+                argument(
+                    "readings",
+                    "i|f|b",
+                    &format!(
+                        "{channels} counts 0 to 65535, {channels} newtons, or one blob of 16-bit counts"
+                    ),
+                ),
+            ];
+            let says = format!("What board {number} reads, once a millisecond.");
+            let address = board.address.clone();
+            self.entries.push(Entry { direction: Direction::In, address, arguments, says });
+        }
+        for command in COMMANDS.iter().filter(|command| !command.is_of_a_control()) {
+            // Without pages there is none to show.
+            if command.takes != Takes::Page || !layout.pages.is_empty() {
+                let arguments = taken(command, None, layout);
+                self.add(Direction::In, command.path, arguments, command.says);
+            }
+        }
+        let place = || [argument("x", "f", "m, eastwards"), argument("y", "f", "m, northwards")];
+        let mut contact = vec![argument("id", "i", "one for as long as it stays down")];
+        contact.extend(place());
+        contact.push(argument("force", "f", "N"));
+        contact.extend([argument("x_velocity", "f", "m/s"), argument("y_velocity", "f", "m/s")]);
+        let count = vec![argument("count", "i", "0 or more")];
+        self.add(Direction::Out, "contacts", count, "How many contacts follow; 100 times a second at most.");
+        self.add(Direction::Out, "contact", contact, "One contact, in the bundle of `contacts`.");
+        let states = vec![argument("state", "s", "waiting, live, partial or lost")];
+        self.add(Direction::Out, "health", states, "Whether the boards send, when that changes.");
+        let page = |range: &str| vec![argument("page", "s", range)];
+        if !layout.pages.is_empty() {
+            self.add(Direction::Out, "page", page(&pages(layout)), "Another page is shown.");
+        }
+        self.add(Direction::Answer, "page", page("empty without pages"), "The page that is shown.");
+        let error = vec![argument("address", "s", "as it was asked"), argument("why", "s", "")];
+        self.add(Direction::Answer, "error", error, "A request was refused.");
+    }
+
+    fn control(&mut self, widget: &Widget, layout: &Layout) {
+        let id = widget.id.as_str();
+        let control = Control::new(&widget.behaviour, widget.area.size());
+        for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
+            // What only a foot can hold, no app can set.
+            let settable = control.value().is_some_and(|value| control.clone().set_value(value).is_ok());
+            if command.takes != Takes::Value || settable {
+                let arguments = taken(command, Some(widget), layout);
+                self.add(Direction::In, &command.path_of(id), arguments, command.says);
+            }
+        }
+        let held = control.value().map(|value| values(&widget.behaviour, value)).unwrap_or_default();
+        for (name, what, says) in events(&widget.behaviour) {
+            let mut arguments = match what {
+                Carries::Nothing => Vec::new(),
+                Carries::Value => held.clone(),
+                Carries::Direction => vec![argument("direction", "s", "north, east, south or west")],
+            };
+            arguments.extend([
+                argument("force", "f", "N"),
+                argument("x", "f", "m, eastwards"),
+                argument("y", "f", "m, northwards"),
+            ]);
+            self.add(Direction::Out, &format!("widget/{id}/{name}"), arguments, says);
+        }
+        if !held.is_empty() {
+            self.add(Direction::Answer, &format!("widget/{id}/value"), held, "What it holds.");
+        }
+        let flag = |name| argument(name, "i", "0 or 1");
+        let state = vec![
+            flag("enabled"),
+            flag("locked"),
+            flag("pressed"),
+            flag("armed"),
+            argument("indicator", "s", &indicators()),
+            argument("label", "s", ""),
+        ];
+        self.add(Direction::Answer, &format!("widget/{id}/state"), state, "How it is.");
+    }
+}
+
+fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
+    Argument { name: name.into(), tag, range: range.into() }
+}
+
+/// What a command takes; of a value, what the control holds.
+fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout) -> Vec<Argument> {
+    match command.takes {
+        Takes::Nothing => Vec::new(),
+        Takes::Label => vec![argument("label", "s", "64 characters at most")],
+        Takes::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
+        Takes::Page => vec![argument("page", "s", &pages(layout))],
+        Takes::Value => {
+            let Some(widget) = widget else { return Vec::new() };
+            let held = Control::new(&widget.behaviour, widget.area.size()).value();
+            let mut arguments = held.map(|value| values(&widget.behaviour, value)).unwrap_or_default();
+            for taken in &mut arguments {
+                taken.tag = match held {
+                    Some(Value::Switch(_)) => "i|f|T|F",
+                    _ => "f|i",
+                };
+            }
+            arguments
+        }
+    }
+}
+
+/// What a control of this behaviour holds, as messages carry it.
+fn values(behaviour: &Behaviour, held: Value) -> Vec<Argument> {
+    let number = |name: &str, scale: Option<&Scale>| {
+        argument(name, "f", &scale.map_or_else(|| "-1 to 1".to_owned(), range))
+    };
+    match (held, behaviour) {
+        (Value::Switch(_), _) => vec![argument("on", "i", "0 or 1")],
+        (Value::Choice(_), Behaviour::Selector(selector)) => {
+            let options = selector.options.iter().enumerate();
+            let options: Vec<String> =
+                options.map(|(number, option)| format!("{number}: {option}")).collect();
+            vec![argument("choice", "i", &options.join(", "))]
+        }
+        (Value::Choice(_), _) => vec![argument("choice", "i", "0 or more")],
+        (Value::Number(_), Behaviour::Slider(slider)) => vec![number("value", Some(&slider.scale))],
+        (Value::Number(_), Behaviour::Pedal(pedal)) => vec![number("value", Some(&pedal.scale))],
+        (Value::Number(_), Behaviour::Dial(dial)) => vec![number("value", Some(&dial.scale))],
+        (Value::Number(_), Behaviour::Stepper(stepper)) => vec![number("value", Some(&stepper.scale))],
+        (Value::Number(_), _) => vec![number("value", None)],
+        (Value::Pair(_), Behaviour::Pad(pad)) => {
+            vec![number("x_value", Some(&pad.x)), number("y_value", Some(&pad.y))]
+        }
+        (Value::Pair(_), _) => vec![number("x_value", None), number("y_value", None)],
+    }
+}
+
+fn range(scale: &Scale) -> String {
+    let steps = if scale.step > 0.0 { format!(", steps of {}", scale.step) } else { String::new() };
+    format!("{} to {}{steps}", scale.min, scale.max)
+}
+
+fn indicators() -> String {
+    Indicator::ALL.map(Indicator::name).join(", ")
+}
+
+fn pages(layout: &Layout) -> String {
+    let ids: Vec<&str> = layout.pages.iter().map(|page| page.id.as_str()).collect();
+    ids.join(", ")
+}
+
+/// What an event carries besides force and place.
+#[derive(Clone, Copy)]
+enum Carries {
+    Nothing,
+    Value,
+    Direction,
+}
+
+/// The events that a control of this behaviour may cause: name, what they carry, and what they say.
+fn events(behaviour: &Behaviour) -> Vec<(&'static str, Carries, &'static str)> {
+    use Carries::{Direction, Nothing, Value};
+    let mut events = vec![
+        ("pressed", Nothing, "A foot engaged it."),
+        ("released", Nothing, "The foot let go; the press counts."),
+        ("cancelled", Nothing, "The press ended without counting."),
+        ("refused", Nothing, "A foot pressed it while it is locked."),
+    ];
+    match behaviour {
+        Behaviour::Button(button) => {
+            let when = match button.acts_on {
+                ActsOn::Press => "It was pressed.",
+                ActsOn::Release => "It was pressed and released.",
+            };
+            events.push(("clicked", Nothing, when));
+            let gestures = &button.gestures;
+            let mut offer = |offered: bool, event| {
+                if offered {
+                    events.push(event);
+                }
+            };
+            offer(gestures.double_tap.is_some(), ("double_tapped", Nothing, "It was tapped twice."));
+            offer(gestures.long_press.is_some(), ("long_pressed", Nothing, "It has been held for long."));
+            offer(gestures.swipe_m.is_some(), ("swiped", Direction, "The foot swiped over it."));
+            offer(gestures.hard.is_some(), ("hard_pressed", Nothing, "The press reached the second stage."));
+            offer(gestures.hard.is_some(), ("hard_released", Nothing, "It came back from the second stage."));
+        }
+        Behaviour::Selector(_) => {
+            events.push(("ticked", Nothing, "The foot passed to another option; nothing has changed yet."));
+            events.push(("changed", Value, "It holds another value."));
+        }
+        Behaviour::Hold(_)
+        | Behaviour::Switch(_)
+        | Behaviour::Slider(_)
+        | Behaviour::Pedal(_)
+        | Behaviour::Pad(_)
+        | Behaviour::Dial(_)
+        | Behaviour::Stepper(_)
+        | Behaviour::Lean(_) => events.push(("changed", Value, "It holds another value.")),
+    }
+    match behaviour.thresholds().guard {
+        Guard::Free => {}
+        Guard::Confirm { .. } => {
+            events.push(("armed", Nothing, "A first press armed it: the next one acts."));
+            events.push(("disarmed", Nothing, "It is armed no longer."));
+        }
+        Guard::HoldToRun { .. } => events.push(("warned", Nothing, "It will soon stop by itself.")),
+    }
+    events
+}

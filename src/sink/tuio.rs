@@ -1,0 +1,148 @@
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::Receiver;
+use std::time::{Duration, SystemTime};
+
+use rosc::OscTime;
+
+use super::beat::{Beat, Latest};
+use super::udp::UdpOut;
+use super::worker::Worker;
+use super::{EventSink, SinkError};
+use crate::engine::LinkState;
+use crate::floor::Geometry;
+use crate::sense::Contact;
+use crate::units::Instant;
+use crate::widget::WidgetEvent;
+use crate::wire::{Tuio1, Tuio2};
+
+/// How often an empty floor is told of: clients that came late learn that it is there.
+const IDLE: Duration = Duration::from_secs(1);
+
+/// How often a goodbye is sent: one datagram may be lost.
+const GOODBYES: usize = 2;
+
+/// Which TUIO is spoken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TuioVersion {
+    /// TUIO 1.1: cursors and blobs, each in bundles of its own.
+    One,
+    /// TUIO 2.0: pointers with pressure.
+    Two,
+}
+
+/// Sends the contacts as TUIO over UDP.
+///
+/// They go out 100 times a second while there are any, always the latest, and
+/// once a second while there are none. When the sink ends, and when the floor is
+/// lost, it says that nobody is there: clients have no time-out of their own.
+/// Events of controls are not TUIO's business.
+#[derive(Debug)]
+pub struct TuioSink {
+    worker: Worker<Job>,
+    latest: Arc<Latest>,
+    undelivered: Arc<AtomicU64>,
+    beat: Beat,
+}
+
+#[derive(Debug)]
+enum Job {
+    /// Whatever the latest contacts are when it is its turn.
+    Contacts,
+    /// Nobody is there, as far as anybody can tell.
+    Lost(Instant),
+}
+
+impl TuioSink {
+    /// A sink that sends the contacts on a floor of this `geometry` to `target`.
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no socket or no thread.
+    pub fn new(target: SocketAddr, geometry: &Geometry, version: TuioVersion) -> Result<Self, SinkError> {
+        let out = UdpOut::new(target, "TUIO")?;
+        let undelivered = out.undelivered();
+        let latest = Arc::new(Latest::default());
+        let speaker = Speaker::new(version, geometry, &out.own_name());
+        let worker = Worker::spawn("tuio out", {
+            let latest = latest.clone();
+            move |jobs| run(jobs, &latest, speaker, &out)
+        })
+        .map_err(|source| SinkError::Output {
+            message: format!("cannot send TUIO to {target}: {source}"),
+            source,
+        })?;
+        Ok(Self { worker, latest, undelivered, beat: Beat::new(Some(IDLE)) })
+    }
+}
+
+impl EventSink for TuioSink {
+    fn events(&mut self, _events: &[WidgetEvent]) {}
+
+    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
+        let queue = || self.worker.try_offer(Job::Contacts);
+        if self.beat.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+            self.beat.reported(at, contacts);
+        }
+    }
+
+    fn link(&mut self, at: Instant, state: LinkState) {
+        if state == LinkState::Lost {
+            self.worker.offer(Job::Lost(at));
+            self.beat.reported(at, &[]);
+        }
+    }
+
+    fn dropped(&self) -> u64 {
+        self.worker.dropped() + self.undelivered.load(Ordering::Relaxed)
+    }
+}
+
+/// Sends until there is nothing more to send, then says goodbye.
+fn run(jobs: &Receiver<Job>, latest: &Latest, mut speaker: Speaker, out: &UdpOut) {
+    let mut now = Instant::START;
+    for job in jobs {
+        match job {
+            Job::Contacts => {
+                let (at, contacts) = latest.fetch();
+                now = at;
+                speaker.say(at, &contacts, out);
+            }
+            Job::Lost(at) => {
+                now = at;
+                speaker.say(at, &[], out);
+            }
+        }
+    }
+    for _ in 0..GOODBYES {
+        speaker.say(now, &[], out);
+    }
+}
+
+/// An encoder of either version.
+enum Speaker {
+    One(Tuio1),
+    Two(Tuio2),
+}
+
+impl Speaker {
+    fn new(version: TuioVersion, geometry: &Geometry, host: &str) -> Self {
+        match version {
+            TuioVersion::One => Self::One(Tuio1::new(geometry, &format!("underfoot@{host}"))),
+            TuioVersion::Two => Self::Two(Tuio2::new(geometry, &format!("underfoot:0@{host}"))),
+        }
+    }
+
+    fn say(&mut self, at: Instant, contacts: &[Contact], out: &UdpOut) {
+        let send = |datagram: &[u8]| out.send(datagram);
+        let left_out = match self {
+            Self::One(tuio) => tuio.write(at, contacts, send),
+            Self::Two(tuio) => {
+                // Only told, never used for a decision.
+                let clock = OscTime::try_from(SystemTime::now());
+                tuio.write(at, clock.unwrap_or(OscTime { seconds: 0, fractional: 1 }), contacts, send)
+            }
+        };
+        out.count(left_out);
+    }
+}

@@ -1,0 +1,96 @@
+use super::{
+    ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
+    StepperSpec, SwitchSpec, Thresholds, Value,
+};
+
+/// What a control does, with its settings.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Behaviour {
+    /// A push button.
+    Button(ButtonSpec),
+    /// On while it is held.
+    Hold(HoldSpec),
+    /// A switch.
+    Switch(SwitchSpec),
+    /// One of several.
+    Selector(SelectorSpec),
+    /// A slider.
+    Slider(SliderSpec),
+    /// Force to value.
+    Pedal(PedalSpec),
+    /// A pair of numbers.
+    Pad(PadSpec),
+    /// A rotary dial.
+    Dial(DialSpec),
+    /// Up and down by steps.
+    Stepper(StepperSpec),
+    /// A direction by leaning.
+    Lean(LeanSpec),
+}
+
+impl Behaviour {
+    /// When it engages.
+    #[must_use]
+    pub const fn thresholds(&self) -> Thresholds {
+        match self {
+            Self::Button(spec) => spec.thresholds,
+            Self::Hold(spec) => spec.thresholds,
+            Self::Switch(spec) => spec.thresholds,
+            Self::Selector(spec) => spec.thresholds,
+            Self::Slider(spec) => spec.thresholds,
+            Self::Pedal(spec) => spec.thresholds,
+            Self::Pad(spec) => spec.thresholds,
+            Self::Dial(spec) => spec.thresholds,
+            Self::Stepper(spec) => spec.thresholds,
+            Self::Lean(spec) => spec.thresholds,
+        }
+    }
+
+    /// The word for it in messages, such as `button` or `slider`.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Button(_) => "button",
+            Self::Hold(_) => "hold",
+            Self::Switch(_) => "switch",
+            Self::Selector(_) => "selector",
+            Self::Slider(_) => "slider",
+            Self::Pedal(_) => "pedal",
+            Self::Pad(_) => "pad",
+            Self::Dial(_) => "dial",
+            Self::Stepper(_) => "stepper",
+            Self::Lean(_) => "lean",
+        }
+    }
+
+    /// Whether a foot should feel something when the control comes to `value`: a step, or a detent.
+    #[must_use]
+    pub fn is_stop(&self, value: Value) -> bool {
+        match (self, value) {
+            (Self::Slider(spec), Value::Number(number)) => spec.scale.is_stop(number),
+            (Self::Pedal(spec), Value::Number(number)) => spec.scale.is_stop(number),
+            (Self::Dial(spec), Value::Number(number)) => spec.scale.is_stop(number),
+            (Self::Stepper(_), Value::Number(_)) => true,
+            // With one axis free, the other's stops would be felt all the time.
+            (Self::Pad(spec), Value::Pair(pair)) => spec.x.is_stop(pair.x) && spec.y.is_stop(pair.y),
+            _ => false,
+        }
+    }
+
+    /// The values of a control that holds one number and takes one from an app; `None` for others.
+    #[must_use]
+    pub const fn scale(&self) -> Option<&Scale> {
+        match self {
+            Self::Slider(spec) => Some(&spec.scale),
+            Self::Dial(spec) => Some(&spec.scale),
+            Self::Stepper(spec) => Some(&spec.scale),
+            _ => None,
+        }
+    }
+
+    /// What the control holds before anybody has touched it; `None` for a button.
+    #[must_use]
+    pub fn initial(&self) -> Option<Value> {
+        super::Control::new(self, glam::Vec2::ONE).value()
+    }
+}

@@ -1,0 +1,81 @@
+//! A dial: a foot that goes round its middle turns it.
+//!
+//! ```text
+//!  1  press                          -> Pressed; the value stays, wherever the dial is touched
+//!  2  clockwise round the middle     -> Changed, growing
+//!  3  counter-clockwise              -> Changed, falling
+//!  4  lift, press again              -> it goes on from where it was
+//!  5  too near the middle            -> the value stays, and the turn goes on from where the foot comes out
+//!  6  beyond either end              -> the value stops there, and comes back at once
+//!  7  lifting                        -> the value stays while the force falls
+//!  8  release, anywhere              -> Released
+//!  9  a step, loss, an app stops it  -> Changed (back to where it was), Cancelled
+//! 10  a force that can't be trusted  -> the value stays
+//! 11  an app sets it                 -> no event; brought to range and steps
+//! ```
+
+use super::moment::{Machine, Moment};
+use super::number::Number;
+use super::press::Outcome;
+use super::track::wrapped;
+use super::{Emitted, Scale, SetError, Thresholds, Value};
+
+/// A dial.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct DialSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+    /// Its values; they grow clockwise.
+    pub scale: Scale,
+    /// How far it is from the least to the greatest value, in degrees; may be several turns.
+    pub turn_degrees: f32,
+    /// Value to begin with, within the range.
+    pub initial: f32,
+}
+
+/// Part of the way from middle to edge within which a foot is at no angle to speak of
+/// (our choice: a centimetre of error there turns the dial by 20 degrees).
+const HUB: f32 = 0.2;
+
+/// A dial at work.
+#[derive(Clone, Debug)]
+pub(super) struct Dial {
+    spec: DialSpec,
+    number: Number,
+    /// Where the foot was, in radians.
+    angle: Option<f32>,
+}
+
+impl Dial {
+    pub(super) fn new(spec: DialSpec) -> Self {
+        Self { number: Number::new(spec.scale, spec.initial), spec, angle: None }
+    }
+}
+
+impl Machine for Dial {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        if moment.is(Outcome::Pressed) {
+            self.angle = None;
+        }
+        self.number.follow_press(moment.outcome, emitted);
+        let hub = HUB * 0.5 * moment.size.min_element();
+        let angle = moment.offset().filter(|offset| offset.length() >= hub).map(|offset| offset.to_angle());
+        if let (Some(before), Some(now)) = (self.angle, angle) {
+            let turned = -wrapped(now - before).to_degrees();
+            self.number.move_by(turned / self.spec.turn_degrees * self.spec.scale.range(), emitted);
+        }
+        self.angle = angle;
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Number(self.number.value()))
+    }
+
+    fn set(&mut self, value: Value) -> Result<(), SetError> {
+        self.number.set(value)
+    }
+
+    fn captures(&self) -> bool {
+        true
+    }
+}

@@ -1,0 +1,49 @@
+//! A control that acts for as long as it is held: momentary, a dead-man's switch.
+//!
+//! ```text
+//!  1  press                                  -> Pressed, Changed (on)
+//!  2  the foot lets go                       -> Changed (off), Released
+//!  3  slide off, a step, loss, an app stops  -> Changed (off), Cancelled
+//!  4  an app sets it                         -> refused: only a foot can hold it
+//! ```
+//!
+//! With the guard `HoldToRun` it is off on any doubt as well, and after a time.
+
+use super::moment::{Machine, Moment};
+use super::press::Outcome;
+use super::{Emitted, EventKind, SetError, Thresholds, Value};
+
+/// A control that is on while a foot holds it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct HoldSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+}
+
+/// A momentary control at work.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Hold {
+    on: bool,
+}
+
+impl Machine for Hold {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        let (on, kind) = match moment.outcome {
+            Some(Outcome::Pressed) => (true, EventKind::Pressed),
+            Some(Outcome::Released) => (false, EventKind::Released),
+            Some(Outcome::Cancelled) => (false, EventKind::Cancelled),
+            None => return,
+        };
+        self.on = on;
+        let changed = EventKind::Changed(Value::Switch(on));
+        emitted.extend(if on { [kind, changed] } else { [changed, kind] });
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Switch(self.on))
+    }
+
+    fn set(&mut self, _: Value) -> Result<(), SetError> {
+        Err(SetError::Momentary)
+    }
+}

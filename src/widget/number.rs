@@ -1,0 +1,70 @@
+use super::press::Outcome;
+use super::{Emitted, EventKind, Scale, SetError, Value};
+
+/// A number that feet move, and that goes back to where it was if the press is cancelled.
+#[derive(Clone, Debug)]
+pub(super) struct Number {
+    scale: Scale,
+    value: f32,
+    /// The value before the press.
+    before: f32,
+    /// The value as the foot moves it, before steps and detents.
+    raw: f32,
+}
+
+impl Number {
+    pub(super) fn new(scale: Scale, initial: f32) -> Self {
+        let value = scale.settle(initial);
+        Self { scale, value, before: value, raw: value }
+    }
+
+    pub(super) fn value(&self) -> f32 {
+        self.value
+    }
+
+    /// Says what became of the press, and takes back what a cancelled one did.
+    pub(super) fn follow_press(&mut self, outcome: Option<Outcome>, emitted: &mut Emitted) {
+        match outcome {
+            Some(Outcome::Pressed) => {
+                self.before = self.value;
+                self.raw = self.value;
+                emitted.push(EventKind::Pressed);
+            }
+            Some(Outcome::Released) => emitted.push(EventKind::Released),
+            Some(Outcome::Cancelled) => {
+                if self.value != self.before {
+                    self.value = self.before;
+                    emitted.push(EventKind::Changed(Value::Number(self.value)));
+                }
+                emitted.push(EventKind::Cancelled);
+            }
+            None => {}
+        }
+    }
+
+    /// Goes to `wanted` as far as steps and detents let it.
+    pub(super) fn follow(&mut self, wanted: f32, quantum: f32, emitted: &mut Emitted) {
+        if let Some(value) = self.scale.follow(self.value, wanted, quantum) {
+            self.value = value;
+            emitted.push(EventKind::Changed(Value::Number(value)));
+        }
+    }
+
+    /// Moves by `way`; what steps swallow is kept for later, what goes beyond an end is not.
+    pub(super) fn move_by(&mut self, way: f32, emitted: &mut Emitted) {
+        if way.is_finite() {
+            self.raw = (self.raw + way).clamp(self.scale.min, self.scale.max);
+            self.follow(self.raw, super::scale::QUANTUM, emitted);
+        }
+    }
+
+    /// Takes a value from an app.
+    pub(super) fn set(&mut self, value: Value) -> Result<(), SetError> {
+        let Value::Number(number) = value else { return Err(SetError::WrongType) };
+        if !number.is_finite() {
+            return Err(SetError::NotFinite);
+        }
+        self.value = self.scale.settle(number);
+        Ok(())
+    }
+}

@@ -1,0 +1,87 @@
+//! A pedal: the harder it is pressed, the greater its value.
+//!
+//! ```text
+//!  1  press                                  -> Pressed
+//!  2  force above the dead band              -> Changed, growing with it
+//!  3  force at `full` and beyond             -> Changed (the greatest value)
+//!  4  force between release and dead band    -> Changed (the least value), still pressed
+//!  5  the foot lets go                       -> Changed (the least value), Released
+//!  6  slide off, a step, loss                -> Changed (the least value), Cancelled
+//!  7  a force that can't be trusted          -> the value stays (with HoldToRun: 6)
+//!  8  an app sets it                         -> refused: only a foot can hold it
+//! ```
+
+use super::moment::{Machine, Moment};
+use super::press::Outcome;
+use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
+use crate::units::Newtons;
+
+/// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the weight.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PedalSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+    /// Its values; the least at rest.
+    pub scale: Scale,
+    /// Force up to which the value is the least.
+    pub deadband: Newtons,
+    /// Force from which on the value is the greatest; more than `deadband`.
+    pub full: Newtons,
+    /// Exponent of the curve between: 1 is straight, more gives finer control of light presses.
+    pub curve: f32,
+}
+
+/// Smallest change worth an event, as a part of the range (our choice: a foot's force trembles by as much).
+const QUANTUM: f32 = 0.01;
+
+/// A pedal at work.
+#[derive(Clone, Debug)]
+pub(super) struct Pedal {
+    spec: PedalSpec,
+    value: f32,
+}
+
+impl Pedal {
+    pub(super) fn new(spec: PedalSpec) -> Self {
+        Self { value: spec.scale.min, spec }
+    }
+
+    fn change(&mut self, value: Option<f32>, emitted: &mut Emitted) {
+        if let Some(value) = value.filter(|value| *value != self.value) {
+            self.value = value;
+            emitted.push(EventKind::Changed(Value::Number(value)));
+        }
+    }
+}
+
+impl Machine for Pedal {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        let PedalSpec { thresholds, scale, deadband, full, curve } = self.spec;
+        match moment.outcome {
+            Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
+            Some(Outcome::Released) => {
+                self.change(Some(scale.min), emitted);
+                emitted.push(EventKind::Released);
+            }
+            Some(Outcome::Cancelled) => {
+                self.change(Some(scale.min), emitted);
+                emitted.push(EventKind::Cancelled);
+            }
+            None => {}
+        }
+        if let Some(foot) = moment.foot {
+            let grown = moment.at.press / thresholds.press;
+            let share = (foot.force - deadband * grown) / ((full - deadband) * grown);
+            let wanted = scale.at(share.clamp(0.0, 1.0).powf(curve));
+            self.change(scale.follow(self.value, wanted, QUANTUM), emitted);
+        }
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Number(self.value))
+    }
+
+    fn set(&mut self, _: Value) -> Result<(), SetError> {
+        Err(SetError::Momentary)
+    }
+}

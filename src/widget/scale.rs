@@ -1,0 +1,165 @@
+/// The values that a control's number may take.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Scale {
+    /// The least.
+    pub min: f32,
+    /// The greatest; more than `min`.
+    pub max: f32,
+    /// Distance between the values it may take, counted from `min`; 0 for any value. `max` may always be taken.
+    pub step: f32,
+    /// Distance between values that draw the number to them, counted from `min`; 0 for none.
+    pub detent: f32,
+}
+
+/// How far beyond the middle between two steps the foot must be before the number follows, in steps
+/// (our choice: a foot that rests between two steps sways by less).
+const HYSTERESIS: f32 = 0.15;
+
+/// How near a value must come to a detent to be drawn to it: in detents, and at most this part of the range.
+const PULL: (f32, f32) = (0.15, 0.04);
+
+/// How much farther than that a value must go to leave its detent.
+const GRIP: f32 = 1.5;
+
+/// Smallest change worth an event where there are no steps, as a part of the range (our choice).
+pub(super) const QUANTUM: f32 = 1e-3;
+
+impl Scale {
+    /// Any value from 0 to 1.
+    pub const UNIT: Self = Self::new(0.0, 1.0);
+
+    /// Any value from `min` to `max`.
+    #[must_use]
+    pub const fn new(min: f32, max: f32) -> Self {
+        Self { min, max, step: 0.0, detent: 0.0 }
+    }
+
+    /// `max - min`.
+    #[must_use]
+    pub fn range(&self) -> f32 {
+        self.max - self.min
+    }
+
+    /// How far along the scale `value` is: 0 at `min`, 1 at `max`, at most that; 0 for NaN.
+    #[must_use]
+    pub fn share(&self, value: f32) -> f32 {
+        let share = ((value - self.min) / self.range()).clamp(0.0, 1.0);
+        if share.is_nan() { 0.0 } else { share }
+    }
+
+    /// The value a `share` (0 to 1) of the way along the scale, before steps and detents.
+    #[must_use]
+    pub fn at(&self, share: f32) -> f32 {
+        self.min + self.range() * share
+    }
+
+    /// The nearest value that may be taken; `min` for NaN.
+    #[must_use]
+    pub fn settle(&self, value: f32) -> f32 {
+        if value.is_nan() {
+            return self.min;
+        }
+        let value = value.clamp(self.min, self.max);
+        if self.step > 0.0 { nearest(value, self.min, self.step).min(self.max) } else { value }
+    }
+
+    /// Whether a foot should feel something when the number comes to `value`: a step, or a detent.
+    #[must_use]
+    pub fn is_stop(&self, value: f32) -> bool {
+        self.step > 0.0
+            || (self.detent > 0.0
+                && (nearest(value, self.min, self.detent) - value).abs() <= 1e-5 * self.range())
+    }
+
+    /// Whether it has steps or detents at all.
+    #[must_use]
+    pub fn has_stops(&self) -> bool {
+        self.step > 0.0 || self.detent > 0.0
+    }
+
+    /// The value that follows `current` when the foot asks for `wanted`; `None` if it stays.
+    ///
+    /// Changes of less than `quantum` (a part of the range) are left out where there are no steps.
+    pub(super) fn follow(&self, current: f32, wanted: f32, quantum: f32) -> Option<f32> {
+        if wanted.is_nan() {
+            return None;
+        }
+        let wanted = wanted.clamp(self.min, self.max);
+        let at_an_end = wanted == self.min || wanted == self.max;
+        let next = if self.step > 0.0 {
+            let held = (wanted - current).abs() < (0.5 + HYSTERESIS) * self.step;
+            if held && !at_an_end { current } else { self.settle(wanted) }
+        } else {
+            let next = self.drawn(current, wanted);
+            let little = (next - current).abs() < quantum * self.range();
+            if little && !at_an_end && next == wanted { current } else { next }
+        };
+        (next != current).then_some(next)
+    }
+
+    /// `wanted`, or the detent that it is near enough to.
+    fn drawn(&self, current: f32, wanted: f32) -> f32 {
+        if self.detent <= 0.0 {
+            return wanted;
+        }
+        let detent = nearest(wanted, self.min, self.detent).min(self.max);
+        let pull = (PULL.0 * self.detent).min(PULL.1 * self.range());
+        let reach = if current == detent { GRIP * pull } else { pull };
+        if (wanted - detent).abs() <= reach { detent } else { wanted }
+    }
+}
+
+fn nearest(value: f32, from: f32, step: f32) -> f32 {
+    from + ((value - from) / step).round() * step
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_foot_between_two_steps_does_not_make_them_chatter() {
+        let scale = Scale { step: 1.0, ..Scale::new(0.0, 10.0) };
+        let mut value = 3.0;
+        let mut changes = 0;
+        for millis in 0..1000 {
+            // Sways by a tenth of a step to either side of the middle.
+            let wanted = 3.5 + 0.1 * (millis as f32 / 20.0).sin();
+            if let Some(next) = scale.follow(value, wanted, QUANTUM) {
+                value = next;
+                changes += 1;
+            }
+        }
+        assert!(changes <= 1, "{changes}");
+        assert_eq!(scale.follow(3.0, 3.7, QUANTUM), Some(4.0));
+    }
+
+    #[test]
+    fn both_ends_can_be_reached_however_the_steps_fall() {
+        let scale = Scale { step: 4.0, ..Scale::new(0.0, 10.0) };
+        assert_eq!(scale.follow(8.0, 10.0, QUANTUM), Some(10.0));
+        assert_eq!(scale.follow(10.0, 8.9, QUANTUM), None);
+        assert_eq!(scale.follow(10.0, 7.0, QUANTUM), Some(8.0));
+        assert_eq!(scale.follow(4.0, -3.0, QUANTUM), Some(0.0));
+        assert_eq!(scale.follow(4.0, f32::NAN, QUANTUM), None);
+    }
+
+    #[test]
+    fn a_detent_draws_the_value_and_holds_it() {
+        // A balance: left, middle, right.
+        let scale = Scale { detent: 1.0, ..Scale::new(-1.0, 1.0) };
+        assert_eq!(scale.follow(0.3, 0.07, QUANTUM), Some(0.0));
+        assert_eq!(scale.follow(0.0, 0.1, QUANTUM), None, "held");
+        assert_eq!(scale.follow(0.0, 0.13, QUANTUM), Some(0.13));
+        assert!(scale.is_stop(0.0) && !scale.is_stop(0.13) && scale.is_stop(-1.0));
+    }
+
+    #[test]
+    fn nonsense_is_brought_into_the_range() {
+        let scale = Scale::new(-2.0, 2.0);
+        assert_eq!(scale.settle(f32::NAN), -2.0);
+        assert_eq!(scale.settle(f32::INFINITY), 2.0);
+        assert_eq!(scale.share(f32::NAN), 0.0);
+        assert_eq!(scale.share(99.0), 1.0);
+    }
+}

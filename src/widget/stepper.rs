@@ -1,0 +1,127 @@
+//! A stepper: one half counts up, the other down, repeating while held.
+//!
+//! ```text
+//!  1  press on the east (north) half     -> Pressed, Changed (a step up)
+//!  2  press on the west (south) half     -> Pressed, Changed (a step down)
+//!  3  held for `repeat_after`            -> Changed, again and again, ever faster down to `fastest`
+//!  4  on the other half, or lifting      -> no more repeats until it is back for `repeat_after`
+//!  5  at either end                      -> nothing more
+//!  6  release                            -> Released
+//!  7  slide off, a step, loss            -> Changed (back to where it was), Cancelled
+//!  8  a force that can't be trusted      -> as 4
+//!  9  an app sets it                     -> no event; brought to range and steps
+//! ```
+
+use std::time::Duration;
+
+use super::moment::{Foot, Machine, Moment};
+use super::number::Number;
+use super::press::Outcome;
+use super::{Axis, Emitted, Scale, SetError, Thresholds, Value};
+use crate::units::Instant;
+
+/// A stepper.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct StepperSpec {
+    /// When it engages.
+    pub thresholds: Thresholds,
+    /// Which half counts up: the eastern or the northern one.
+    pub axis: Axis,
+    /// Its values; its step is not 0.
+    pub scale: Scale,
+    /// Value to begin with, within the range.
+    pub initial: f32,
+    /// How long a press must last before it repeats; `None` for never.
+    pub repeat: Option<Repeat>,
+}
+
+/// How a held stepper repeats.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Repeat {
+    /// How long after the first step the second follows.
+    pub after: Duration,
+    /// How long after the second the third follows.
+    pub every: Duration,
+    /// Shortest time between two steps, at most `every`.
+    pub fastest: Duration,
+}
+
+/// How much shorter each pause is than the one before.
+const ACCELERATION: f32 = 0.85;
+
+/// A stepper at work.
+#[derive(Clone, Debug)]
+pub(super) struct Stepper {
+    spec: StepperSpec,
+    number: Number,
+    held: Option<Held>,
+}
+
+/// A press under way.
+#[derive(Clone, Copy, Debug)]
+struct Held {
+    up: bool,
+    /// When the next step is due, and how long the one after that will wait.
+    next: Option<(Instant, Duration)>,
+}
+
+impl Stepper {
+    pub(super) fn new(spec: StepperSpec) -> Self {
+        Self { number: Number::new(spec.scale, spec.initial), spec, held: None }
+    }
+
+    fn is_up(&self, foot: Foot) -> bool {
+        match self.spec.axis {
+            Axis::East => foot.place.x >= 0.5,
+            Axis::North => foot.place.y >= 0.5,
+        }
+    }
+
+    fn first(&self, now: Instant) -> Option<(Instant, Duration)> {
+        self.spec.repeat.map(|repeat| (now + repeat.after, repeat.every))
+    }
+
+    fn step(&mut self, up: bool, emitted: &mut Emitted) {
+        let step = self.spec.scale.step;
+        let wanted = self.number.value() + if up { step } else { -step };
+        self.number.follow(wanted, 0.0, emitted);
+    }
+}
+
+impl Machine for Stepper {
+    fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
+        self.number.follow_press(moment.outcome, emitted);
+        if moment.outcome.is_some() {
+            self.held = None;
+        }
+        if moment.is(Outcome::Pressed)
+            && let Some(foot) = moment.foot
+        {
+            let up = self.is_up(foot);
+            self.held = Some(Held { up, next: self.first(moment.now) });
+            self.step(up, emitted);
+            return;
+        }
+        let Some(held) = self.held else { return };
+        let again = self.first(moment.now);
+        let stays = moment.firm_foot().is_some_and(|foot| self.is_up(foot) == held.up);
+        let next = match held.next {
+            Some((due, pause)) if stays && moment.now >= due => {
+                self.step(held.up, emitted);
+                let fastest = self.spec.repeat.map_or(pause, |repeat| repeat.fastest);
+                Some((moment.now + pause, pause.mul_f32(ACCELERATION).max(fastest)))
+            }
+            waiting if stays => waiting,
+            _ => again,
+        };
+        self.held = Some(Held { next, ..held });
+    }
+
+    fn value(&self) -> Option<Value> {
+        Some(Value::Number(self.number.value()))
+    }
+
+    fn set(&mut self, value: Value) -> Result<(), SetError> {
+        self.number.set(value)
+    }
+}

@@ -1,0 +1,312 @@
+//! What apps may ask, as the wire spells it. The decoder, the reference and the tests go by one table.
+
+use std::net::SocketAddr;
+
+use glam::Vec2;
+use rosc::OscType;
+
+use crate::widget::{Indicator, Value, WidgetId};
+
+/// Most characters of a label, as in layouts.
+pub const MAX_LABEL: usize = 64;
+
+/// What an app asks of a control or of the floor.
+///
+/// Whether there is such a control or page, and whether the value suits it, only
+/// the engine knows: it takes a number other than 0 for "on" where the control
+/// is a switch, and a whole number for a choice where it is a selector.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ControlMessage {
+    /// Hold this value; its numbers are finite.
+    Set {
+        /// Which control.
+        id: WidgetId,
+        /// `Switch` if the app sent OSC true or false, `Number` if it sent any number, `Pair` for two.
+        value: Value,
+    },
+    /// React to feet again.
+    Enable {
+        /// Which control.
+        id: WidgetId,
+    },
+    /// React to feet no more.
+    Disable {
+        /// Which control.
+        id: WidgetId,
+    },
+    /// Keep the value, whatever feet and apps do.
+    Lock {
+        /// Which control.
+        id: WidgetId,
+    },
+    /// Change the value again.
+    Unlock {
+        /// Which control.
+        id: WidgetId,
+    },
+    /// Carry another label.
+    Label {
+        /// Which control.
+        id: WidgetId,
+        /// At most [`MAX_LABEL`] characters.
+        text: String,
+    },
+    /// Switch the lamp.
+    Indicate {
+        /// Which control.
+        id: WidgetId,
+        /// What it shows.
+        indicator: Indicator,
+    },
+    /// Tell the sender how the control is.
+    Get {
+        /// Which control.
+        id: WidgetId,
+    },
+    /// Show another page, as soon as no foot is engaged.
+    ShowPage {
+        /// Which page.
+        page: WidgetId,
+    },
+    /// Tell the sender which page is shown.
+    GetPage,
+}
+
+impl ControlMessage {
+    /// The address behind the prefix that says so, such as `widget/zoom/set`.
+    #[must_use]
+    pub fn path(&self) -> String {
+        let (verb, id) = match self {
+            Self::Set { id, .. } => ("set", id),
+            Self::Enable { id } => ("enable", id),
+            Self::Disable { id } => ("disable", id),
+            Self::Lock { id } => ("lock", id),
+            Self::Unlock { id } => ("unlock", id),
+            Self::Label { id, .. } => ("label", id),
+            Self::Indicate { id, .. } => ("indicator", id),
+            Self::Get { id } => ("get", id),
+            Self::ShowPage { .. } => return "page/set".into(),
+            Self::GetPage => return "page/get".into(),
+        };
+        format!("widget/{id}/{verb}")
+    }
+}
+
+/// A request and who made it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Request {
+    /// What is asked.
+    pub message: ControlMessage,
+    /// Where an answer goes; `None` if nobody can be answered.
+    pub sender: Option<SocketAddr>,
+}
+
+impl From<ControlMessage> for Request {
+    /// A request that nobody waits for an answer to.
+    fn from(message: ControlMessage) -> Self {
+        Self { message, sender: None }
+    }
+}
+
+/// What a command takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Takes {
+    /// No argument.
+    Nothing,
+    /// What the control holds: one number (or OSC true or false), two for a pair.
+    Value,
+    /// A string of at most [`MAX_LABEL`] characters.
+    Label,
+    /// A string: `off`, `on`, `busy` or `attention`; or 0 or 1.
+    Indicator,
+    /// A string: the id of a page.
+    Page,
+}
+
+/// One thing that apps may ask.
+#[derive(Clone, Copy, Debug)]
+pub struct Command {
+    /// The address behind the prefix; `<id>` stands for a control's id.
+    pub path: &'static str,
+    /// Its arguments.
+    pub takes: Takes,
+    /// What it does, in a sentence.
+    pub says: &'static str,
+    make: fn(WidgetId, Argument) -> Option<ControlMessage>,
+}
+
+/// An argument as read.
+enum Argument {
+    Nothing,
+    Value(Value),
+    Text(String),
+    Indicator(Indicator),
+}
+
+/// Everything that apps may ask.
+pub const COMMANDS: [Command; 10] = [
+    Command {
+        path: "widget/<id>/set",
+        takes: Takes::Value,
+        says: "Hold this value; refused while a foot uses the control, while it is locked, and for what only a foot holds.",
+        make: |id, argument| match argument {
+            Argument::Value(value) => Some(ControlMessage::Set { id, value }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "widget/<id>/get",
+        takes: Takes::Nothing,
+        says: "Answer with value and state.",
+        make: |id, _| Some(ControlMessage::Get { id }),
+    },
+    Command {
+        path: "widget/<id>/enable",
+        takes: Takes::Nothing,
+        says: "React to feet again.",
+        make: |id, _| Some(ControlMessage::Enable { id }),
+    },
+    Command {
+        path: "widget/<id>/disable",
+        takes: Takes::Nothing,
+        says: "React to feet no more; a press under way is cancelled.",
+        make: |id, _| Some(ControlMessage::Disable { id }),
+    },
+    Command {
+        path: "widget/<id>/lock",
+        takes: Takes::Nothing,
+        says: "Keep the value, whatever feet and apps do; a press under way is cancelled.",
+        make: |id, _| Some(ControlMessage::Lock { id }),
+    },
+    Command {
+        path: "widget/<id>/unlock",
+        takes: Takes::Nothing,
+        says: "Change the value again.",
+        make: |id, _| Some(ControlMessage::Unlock { id }),
+    },
+    Command {
+        path: "widget/<id>/label",
+        takes: Takes::Label,
+        says: "Carry this label.",
+        make: |id, argument| match argument {
+            Argument::Text(text) => Some(ControlMessage::Label { id, text }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "widget/<id>/indicator",
+        takes: Takes::Indicator,
+        says: "Switch the lamp.",
+        make: |id, argument| match argument {
+            Argument::Indicator(indicator) => Some(ControlMessage::Indicate { id, indicator }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "page/set",
+        takes: Takes::Page,
+        says: "Show this page, as soon as no foot is engaged.",
+        make: |_, argument| match argument {
+            Argument::Text(text) => Some(ControlMessage::ShowPage { page: WidgetId::new(&text) }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "page/get",
+        takes: Takes::Nothing,
+        says: "Answer with the page that is shown.",
+        make: |_, _| Some(ControlMessage::GetPage),
+    },
+];
+
+/// Why a message is no command.
+pub(super) enum NoCommand {
+    /// No command has such an address.
+    Unknown,
+    /// The command takes something else: this.
+    Takes(&'static str),
+}
+
+impl Command {
+    /// The id that `path` has where this command's has `<id>`, empty if it has none; `None` if it is another address.
+    fn id_in<'a>(&self, path: &'a str) -> Option<&'a str> {
+        match self.path.split_once("<id>") {
+            Some((before, after)) => {
+                let id = path.strip_prefix(before)?.strip_suffix(after)?;
+                (!id.is_empty() && !id.contains('/')).then_some(id)
+            }
+            None => (path == self.path).then_some(""),
+        }
+    }
+
+    /// The address behind the prefix for the control named `id`.
+    #[must_use]
+    pub fn path_of(&self, id: &str) -> String {
+        self.path.replace("<id>", id)
+    }
+
+    /// Whether it is about one control.
+    #[must_use]
+    pub fn is_of_a_control(&self) -> bool {
+        self.path.contains("<id>")
+    }
+}
+
+/// The command at `path`, the address behind the prefix, with these arguments.
+pub(super) fn read(path: &str, args: &[OscType]) -> Result<ControlMessage, NoCommand> {
+    let found = COMMANDS.iter().find_map(|command| Some((command, command.id_in(path)?)));
+    let (command, id) = found.ok_or(NoCommand::Unknown)?;
+    let argument = command.takes.read(args);
+    let made = argument.and_then(|argument| (command.make)(WidgetId::new(id), argument));
+    made.ok_or(NoCommand::Takes(command.takes.expected()))
+}
+
+impl Takes {
+    fn read(self, args: &[OscType]) -> Option<Argument> {
+        match (self, args) {
+            (Self::Nothing, []) => Some(Argument::Nothing),
+            (Self::Value, [one]) => value(one).map(Argument::Value),
+            (Self::Value, [x, y]) => match (value(x)?, value(y)?) {
+                (Value::Number(x), Value::Number(y)) => Some(Argument::Value(Value::Pair(Vec2::new(x, y)))),
+                _ => None,
+            },
+            (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
+                Some(Argument::Text(text.clone()))
+            }
+            (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
+            (Self::Indicator, [OscType::String(text)]) => {
+                let found = Indicator::ALL.into_iter().find(|indicator| indicator.name() == text);
+                found.map(Argument::Indicator)
+            }
+            (Self::Indicator, [one]) => match value(one)? {
+                Value::Switch(true) | Value::Number(1.0) => Some(Argument::Indicator(Indicator::On)),
+                Value::Switch(false) | Value::Number(0.0) => Some(Argument::Indicator(Indicator::Off)),
+                _ => None,
+            },
+            _ => None,
+        }
+    }
+
+    /// What is expected, for those who sent something else.
+    const fn expected(self) -> &'static str {
+        match self {
+            Self::Nothing => "no argument",
+            Self::Value => "one finite number, true or false, or two numbers for a pair",
+            Self::Label => "one string of at most 64 characters",
+            Self::Indicator => "off, on, busy or attention, or 0 or 1",
+            Self::Page => "one string: the id of a page",
+        }
+    }
+}
+
+fn value(argument: &OscType) -> Option<Value> {
+    let number = match *argument {
+        OscType::Bool(on) => return Some(Value::Switch(on)),
+        OscType::Int(number) => number as f32,
+        OscType::Long(number) => number as f32,
+        OscType::Float(number) => number,
+        OscType::Double(number) => number as f32,
+        _ => return None,
+    };
+    number.is_finite().then_some(Value::Number(number))
+}

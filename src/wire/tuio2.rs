@@ -1,0 +1,98 @@
+use rosc::{OscPacket, OscTime, OscType};
+
+use super::tuio::{Memory, SHOE_M, Surface, Told, heaviest, message, send_frame, session};
+use crate::floor::Geometry;
+use crate::sense::{Contact, ContactId};
+use crate::units::Instant;
+
+/// Force that is told as pressure 1, in newtons: a person of 100 kg on one foot. More is told as 1.
+pub const TUIO_FULL_FORCE_N: f32 = 1000.0;
+
+/// Contacts as TUIO 2.0 pointers, with their force as pressure.
+///
+/// Positions run from 0 to 1, from the floor's north-west corner, y towards the
+/// south; the floor's dimension is told in millimetres. Pressure is force over
+/// [`TUIO_FULL_FORCE_N`]. Type, user and component are 0: the floor knows feet, not whose.
+///
+/// # Source
+/// TUIO 2.0 protocol specification (tuio.org).
+#[derive(Debug)]
+pub struct Tuio2 {
+    memory: Memory,
+    /// Width and height in millimetres, 16 bits each.
+    dimension: i32,
+    /// Half a shoe's width, where the floor is 1 wide.
+    radius: f32,
+    source: String,
+    frame: i32,
+}
+
+impl Tuio2 {
+    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot:0@10.0.0.5`.
+    #[must_use]
+    pub fn new(geometry: &Geometry, source: &str) -> Self {
+        let surface = Surface::of(geometry);
+        let millimetres = (surface.size() * 1000.0).round();
+        // Beyond 65 m a side is told as 65 m.
+        let dimension = (u32::from(millimetres.x as u16) << 16) | u32::from(millimetres.y as u16);
+        Self {
+            memory: Memory::of(surface),
+            dimension: dimension.cast_signed(),
+            radius: 0.5 * SHOE_M.y / surface.size().x,
+            source: source.into(),
+            frame: 0,
+        }
+    }
+
+    /// Gives each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`];
+    /// gives back how many contacts had no room.
+    ///
+    /// A bundle holds `/tuio2/frm` with the frame's number and `clock`, `/tuio2/ptr` for the contacts
+    /// that have changed (all of them once a second) and `/tuio2/alv` with all contacts; a frame that
+    /// is too large takes several bundles with the same `frm` and `alv`. Without contacts `alv` is
+    /// empty: that is also the goodbye.
+    pub fn write(
+        &mut self,
+        at: Instant,
+        clock: OscTime,
+        contacts: &[Contact],
+        send: impl FnMut(&[u8]),
+    ) -> usize {
+        self.frame = if self.frame == i32::MAX { 1 } else { self.frame + 1 };
+        let (contacts, left_out) = heaviest(contacts);
+        let news = self.memory.news(at, &contacts);
+        let frm = vec![
+            OscType::Int(self.frame),
+            OscType::Time(clock),
+            OscType::Int(self.dimension),
+            OscType::String(self.source.clone()),
+        ];
+        let pointers = news.iter().map(|(id, told)| self.pointer(*id, told)).collect();
+        let alv = contacts.iter().map(|contact| session(contact.id)).collect();
+        send_frame(&[message("/tuio2/frm", frm)], pointers, &[message("/tuio2/alv", alv)], send);
+        left_out
+    }
+
+    /// `ptr s_id tu_id c_id x_pos y_pos angle shear radius press x_vel y_vel p_vel m_acc p_acc`.
+    fn pointer(&self, id: ContactId, told: &Told) -> OscPacket {
+        let pressure = |force: f32| force / TUIO_FULL_FORCE_N;
+        let (type_and_user, component) = (OscType::Int(0), OscType::Int(0));
+        let (shear, pressure_acceleration) = (0.0, 0.0);
+        let floats = [
+            told.place.x,
+            told.place.y,
+            told.angle,
+            shear,
+            self.radius,
+            pressure(told.force).clamp(0.0, 1.0),
+            told.velocity.x,
+            told.velocity.y,
+            pressure(told.force_change),
+            told.acceleration,
+            pressure_acceleration,
+        ];
+        let mut args = vec![session(id), type_and_user, component];
+        args.extend(floats.map(OscType::Float));
+        message("/tuio2/ptr", args)
+    }
+}
