@@ -1,6 +1,7 @@
 //! What one frame costs: `cargo bench --bench engine --no-default-features`.
 //!
-//! Two people walk on the paper's floor with the map layout; frames are recorded first, so that only the engine is
+//! Also what 500 controls cost against 20, on a floor of 24 x 24 tiles with ten people. Elsewhere
+//! two people walk on the paper's floor with the map layout; frames are recorded first, so that only the engine is
 //! measured. The whole path adds decoding six datagrams and assembling them.
 #![allow(missing_docs, clippy::unwrap_used)]
 
@@ -8,11 +9,12 @@ use std::hint::black_box;
 
 use criterion::{BatchSize, Criterion, Throughput, criterion_group, criterion_main};
 use underfoot::engine::Engine;
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, Geometry};
+use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::sense::{Assembler, ForceFrame, Method};
-use underfoot::sim::{self, FootDriver, Scenario, SimConfig, SimFloor};
+use underfoot::sim::{self, FootDriver, Performance, Person, Scenario, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::wire::{Batch, Decoder, SensorEncoder, SensorFormat, SensorPacket};
 
@@ -110,5 +112,74 @@ fn engine(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, engine);
+/// Tiles each way of the large floor, people on it, and milliseconds of their walk.
+const SIDE: u16 = 24;
+const PEOPLE: usize = 10;
+const WALKED_MS: u32 = 3000;
+
+/// Buttons of six tenths of a tile in rows over the whole floor, so many of them, all in one region of each contact.
+fn page_of(controls: usize, geometry: &Geometry) -> Layout {
+    let mut text = format!(
+        "Layout(version: 1, title: \"{controls} controls\",
+         regions: [(id: \"all\", at: (0, 0), size: ({SIDE}, {SIDE}), cursor: Each)], widgets: ["
+    );
+    for number in 0..controls {
+        // Spread over the floor's tiles, the same density everywhere.
+        let tile = number * usize::from(SIDE) * usize::from(SIDE) / controls;
+        let (column, row) = (tile % usize::from(SIDE), tile / usize::from(SIDE));
+        text.push_str(&format!(
+            "(id: \"c{number}\", kind: \"button\", at: ({column}.2, {row}.2), size: (0.6, 0.6)),"
+        ));
+    }
+    text.push_str("])");
+    schema::parse_layout(&text, "bench", &Kinds::builtin(), geometry).unwrap().layout
+}
+
+/// Ten people who walk over 24 x 24 tiles with 20 and with 500 controls: the same frames for both.
+fn large(criterion: &mut Criterion) {
+    let geometry = Geometry::of_paper_tiles(SIDE, SIDE).unwrap();
+    let cast = (0..PEOPLE).map(|number| {
+        let column = 0.9 + 0.6 * number as f32;
+        let (from, to) = (Vec2::new(column, 1.0), Vec2::new(column, 6.3));
+        let mut person = Performance::new(Person::default(), number as u64);
+        person.appear(from, 0.0).unwrap();
+        person.walk(&[to]).unwrap();
+        person
+    });
+    let script = Script::new(cast.collect(), geometry.bounds());
+    let mut feet = Vec::new();
+    let frames: Vec<ForceFrame> = (0..WALKED_MS)
+        .map(|millis| {
+            let at = Instant::from_millis(millis.into());
+            feet.clear();
+            script.feet_at(at, &mut feet);
+            let mut frame = ForceFrame::empty(&geometry);
+            (frame.at, frame.received) = (at, at);
+            for load in feet.iter().flat_map(|foot| foot.on_tiles(&geometry)) {
+                frame.add_load(&geometry, load.centroid, load.force);
+            }
+            frame
+        })
+        .collect();
+    let mut group = criterion.benchmark_group("24x24, ten walkers");
+    group.sample_size(10);
+    group.throughput(Throughput::Elements(frames.len() as u64));
+    for controls in [20, 500] {
+        let layout = page_of(controls, &geometry);
+        group.bench_function(format!("engine, {controls} controls, per frame"), |bencher| {
+            bencher.iter_batched_ref(
+                || Engine::new(geometry, layout.clone(), Method::Tracker),
+                |engine| {
+                    frames.iter().for_each(|frame| {
+                        black_box(engine.step(frame));
+                    });
+                },
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, engine, large);
 criterion_main!(benches);

@@ -245,6 +245,7 @@ impl Foot {
             share,
             age: now.since(self.landed),
             travelled: self.place.distance(self.landed_at),
+            vouched: self.vouched,
         };
         self.step |= self.watch.is_step(&burden, now);
     }
