@@ -1,7 +1,7 @@
 use glam::Vec2;
 
 use crate::feel::FeelCounters;
-use crate::sense::{Contact, Cursor, Quality};
+use crate::sense::{Contact, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::Value;
 use crate::wire::LinkCounters;
@@ -26,6 +26,8 @@ pub struct Snapshot {
     pub link: LinkState,
     /// What came in and what was refused.
     pub counters: LinkCounters,
+    /// How the sensors are doing.
+    pub health: SensorHealth,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
     /// Events that other programs could not be told.

@@ -7,7 +7,7 @@ use std::time::Duration;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::LinkState;
-use crate::sense::Contact;
+use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::wire::{write_contacts, write_event, write_health};
@@ -15,7 +15,7 @@ use crate::wire::{write_contacts, write_event, write_health};
 /// Time between two reports of the contacts: the paper's 100 Hz.
 const CONTACT_PERIOD: Duration = Duration::from_millis(10);
 
-/// Sends events, contacts and the link's state as OSC over UDP.
+/// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
@@ -27,12 +27,15 @@ pub struct OscSink {
     undelivered: Arc<AtomicU64>,
     /// When the next report of the contacts is due; `None` while nobody is on the floor.
     due: Option<Instant>,
+    /// What was last heard of link and sensors: each message tells of both.
+    link: LinkState,
+    health: SensorHealth,
 }
 
 #[derive(Debug)]
 enum Job {
     Event(WidgetEvent),
-    Link(LinkState),
+    Health(LinkState, SensorHealth),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -69,7 +72,8 @@ impl OscSink {
             move |jobs| sender.run(jobs, &latest)
         })
         .map_err(failed)?;
-        Ok(Self { worker, latest, undelivered, due: None })
+        let (link, health) = (LinkState::default(), SensorHealth::default());
+        Ok(Self { worker, latest, undelivered, due: None, link, health })
     }
 
     /// Stores `contacts` for the next report; false if the worker is reading the last ones just now.
@@ -111,7 +115,13 @@ impl EventSink for OscSink {
     }
 
     fn link(&mut self, _at: Instant, state: LinkState) {
-        self.worker.offer(Job::Link(state));
+        self.link = state;
+        self.worker.offer(Job::Health(state, self.health.clone()));
+    }
+
+    fn health(&mut self, _at: Instant, health: &SensorHealth) {
+        self.health.clone_from(health);
+        self.worker.offer(Job::Health(self.link, health.clone()));
     }
 
     fn dropped(&self) -> u64 {
@@ -150,8 +160,8 @@ impl Sender {
                     write_event(&event, bytes);
                     send(bytes);
                 }
-                Job::Link(state) => {
-                    write_health(state, bytes);
+                Job::Health(state, health) => {
+                    write_health(state, &health, bytes);
                     send(bytes);
                 }
                 Job::Contacts => {

@@ -41,6 +41,8 @@ pub struct LinkCounters {
     /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
     /// and messages from apps that nobody took in time.
     pub overflowed: u64,
+    /// Times a sensor was found in trouble: broken, stuck, drifted too far, noisy.
+    pub sensor_troubles: u64,
 }
 
 impl LinkCounters {
@@ -71,6 +73,7 @@ impl Add for LinkCounters {
             foreign: self.foreign + other.foreign,
             bad_readings: self.bad_readings + other.bad_readings,
             overflowed: self.overflowed + other.overflowed,
+            sensor_troubles: self.sensor_troubles + other.sensor_troubles,
         }
     }
 }
