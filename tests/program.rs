@@ -259,3 +259,30 @@ fn completions_know_every_command() {
         assert!(said(&output).contains(command));
     }
 }
+
+#[test]
+fn sense_goes_by_the_floor_file_s_geometry_and_maps() {
+    let folder = tempfile::tempdir().unwrap();
+    let (table, floor) = (folder.path().join("table.csv"), folder.path().join("floor.ron"));
+    // 100 N in the middle of the second tile.
+    std::fs::write(&table, "t_s,col,row,f_sw,f_se,f_nw,f_ne\n0.000,1,0,25,25,25,25\n").unwrap();
+    // Tiles of half a metre; the second one's map moves everything east by a tenth of half a pitch.
+    let rest = ", 0".repeat(9);
+    let map = format!("(tile: (1, 0), bends: [[0.1{rest}], [0{rest}]])");
+    let text = format!("Floor(version: 1, columns: 2, rows: 1, tile_m: 0.5, maps: [{map}])");
+    std::fs::write(&floor, text).unwrap();
+    let sense = |arguments: &[&std::ffi::OsStr]| {
+        let output = underfoot().arg("sense").arg(&table).args(arguments).output().unwrap();
+        (output.status.code(), said(&output))
+    };
+    let (status, line) = sense(&["--floor".as_ref(), floor.as_os_str()]);
+    assert_eq!(status, Some(0), "{line}");
+    let line: Value = serde_json::from_str(&line).unwrap();
+    let x_m = line["contacts"][0]["x_m"].as_f64().unwrap();
+    assert!((x_m - 0.775).abs() < 1e-4, "{line}");
+    let (_, line) = sense(&["--grid".as_ref(), "2x1".as_ref()]);
+    let line: Value = serde_json::from_str(&line).unwrap();
+    assert!((line["contacts"][0]["x_m"].as_f64().unwrap() - 0.456).abs() < 1e-4, "{line}");
+    let (status, told) = sense(&["--floor".as_ref(), table.as_os_str()]);
+    assert_eq!(status, Some(1), "{told}");
+}

@@ -100,7 +100,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
-        Some(Command::Sense(args)) => sense::run(&args).map_err(|error| Failure::Other(error.to_string())),
+        Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
         Some(Command::Experiment(args)) => experiment::run(&args),

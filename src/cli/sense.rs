@@ -1,16 +1,17 @@
 //! `underfoot sense`: contacts and cursor from a force table.
 
-use std::error::Error;
 use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use underfoot::floor::Geometry;
 use underfoot::sense::{
     Contact, ContactId, Covariance, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Quality, Sensing,
 };
+
+use super::failure::Failure;
+use super::floor_args::FloorArgs;
 
 /// What `underfoot sense` is asked to do.
 #[derive(Args, Clone, Debug)]
@@ -18,9 +19,9 @@ pub(crate) struct SenseArgs {
     /// Force table: CSV with the header `t_s,col,row,f_sw,f_se,f_nw,f_ne`
     file: PathBuf,
 
-    /// Columns and rows of the floor, such as 8x4
-    #[arg(long, value_name = "CxR", default_value = "6x6", value_parser = parse_grid)]
-    grid: Geometry,
+    /// Geometry and position maps are those of this floor; a force table needs no calibration.
+    #[command(flatten)]
+    floor: FloorArgs,
 
     /// The paper's plain method: one contact per group of touching tiles
     #[arg(long)]
@@ -33,44 +34,40 @@ pub(crate) struct SenseArgs {
 /// nobody reads the output any more.
 ///
 /// # Errors
-/// If the file can't be opened or read, or a line of it breaks the format; the
+/// If the floor file is refused, the table can't be opened or read, or a line of it breaks the format; the
 /// instants before that line have then been printed.
-pub(crate) fn run(args: &SenseArgs) -> Result<(), Box<dyn Error>> {
-    let file = File::open(&args.file).map_err(|error| format!("{}: {error}", args.file.display()))?;
+pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let geometry = floor.geometry;
+    let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", args.file.display()));
+    let unwritten = |error: io::Error| Failure::Other(format!("standard output: {error}"));
+    let file = File::open(&args.file).map_err(|error| failed(&error))?;
     let method = if args.eq4 { Method::Eq4 } else { Method::Tracker };
-    let mut table = ForceTable::new(BufReader::new(file), args.grid)
-        .map_err(|error| format!("{}: {error}", args.file.display()))?;
-    let mut sensing = Sensing::new(args.grid, method);
+    let mut table = ForceTable::new(BufReader::new(file), geometry).map_err(|error| failed(&error))?;
+    let mut sensing = Sensing::new(geometry, method).with_maps(&floor.position_maps);
     let mut picker = CursorPicker::default();
-    let mut frame = ForceFrame::empty(&args.grid);
+    let mut frame = ForceFrame::empty(&geometry);
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     loop {
         let t_s = match table.next_frame(&mut frame) {
             Ok(Some(t_s)) => t_s,
             Ok(None) => break,
             Err(error) => {
-                out.flush()?;
-                return Err(format!("{}: {error}", args.file.display()).into());
+                out.flush().map_err(unwritten)?;
+                return Err(failed(&error));
             }
         };
         let contacts = sensing.update(&frame);
-        let cursor = picker.update(args.grid.bounds(), contacts, frame.at);
+        let cursor = picker.update(geometry.bounds(), contacts, frame.at);
         match write_line(&mut out, t_s, contacts, cursor) {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-            written => written?,
+            written => written.map_err(unwritten)?,
         }
     }
     match out.flush() {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        flushed => Ok(flushed?),
+        flushed => flushed.map_err(unwritten),
     }
-}
-
-fn parse_grid(text: &str) -> Result<Geometry, String> {
-    let (columns, rows) = text.split_once(['x', 'X']).ok_or("expected columns x rows, such as 8x4")?;
-    let side =
-        |text: &str| text.trim().parse::<u16>().map_err(|_| format!("{text:?} is not a number of tiles"));
-    Geometry::of_paper_tiles(side(columns)?, side(rows)?).map_err(|error| error.to_string())
 }
 
 #[derive(Serialize)]
@@ -163,12 +160,5 @@ mod tests {
         let mut out = Vec::new();
         write_line(&mut out, 1.25, &[], None).unwrap();
         assert_eq!(String::from_utf8(out).unwrap(), "{\"t_s\":1.25,\"contacts\":[],\"cursor\":null}\n");
-    }
-
-    #[test]
-    fn grids_are_columns_by_rows() {
-        assert_eq!(parse_grid("8x4").unwrap(), Geometry::of_paper_tiles(8, 4).unwrap());
-        assert!(parse_grid("8").is_err());
-        assert!(parse_grid("0x4").unwrap_err().contains("1 to 256"));
     }
 }

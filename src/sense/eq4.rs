@@ -35,6 +35,8 @@ pub(super) struct Eq4 {
     /// The clusters of this frame, heaviest first.
     found: Vec<Found>,
     owned: Vec<u32>,
+    /// The last time between two frames, and the smoothing that goes with it.
+    smoothing: (f32, f32),
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,6 +67,7 @@ impl Eq4 {
             now: Vec::with_capacity(room),
             found: Vec::with_capacity(room),
             owned: Vec::with_capacity(room),
+            smoothing: (0.0, 0.0),
         }
     }
 
@@ -78,6 +81,9 @@ impl Eq4 {
     ) {
         self.weigh(tiles, clusters);
         pool.clear();
+        if self.smoothing.0 != dt {
+            self.smoothing = (dt, smoothing(dt));
+        }
         self.now.clear();
         for position in 0..self.found.len() {
             let found = self.found[position];
@@ -86,7 +92,7 @@ impl Eq4 {
             let (id, velocity) = match past {
                 Some(past) => {
                     let moved = (found.centroid - past.centroid) / dt.max(1e-6);
-                    let velocity = past.velocity + (moved - past.velocity) * smoothing(dt);
+                    let velocity = past.velocity + (moved - past.velocity) * self.smoothing.1;
                     (past.id, if dt > 0.0 { velocity } else { past.velocity })
                 }
                 None => (self.name(), Vec2::ZERO),

@@ -1,8 +1,9 @@
 use std::time::Duration;
 
 use glam::Vec2;
+use multiversion::multiversion;
 
-use super::tile::{Lag, LoadedTile, TileReading, Wrench, at_least, counted, known_corners};
+use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading, Wrench, counted, is_possible, known_corners};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap};
 use crate::units::{Instant, Newtons};
@@ -43,12 +44,18 @@ pub(super) struct LoadedTiles {
     threshold: LoadThreshold,
     /// How far from a tile's centre its centroid may lie for load on the far side's neighbours to be its own.
     astray_m: f32,
+    /// Which tile each one is, and its centre.
+    places: Vec<Place>,
     /// Per tile of the floor; none for the tiles past the end.
     maps: Vec<Option<PositionMap>>,
     sums: Vec<f32>,
     /// Position in `list` per tile of the floor, or `NONE`.
     place: Vec<u32>,
     list: Vec<LoadedTile>,
+    /// The list of the last frame.
+    last: Vec<LoadedTile>,
+    /// Per block of tiles, whether one of them is worth a closer look: 1 if one is loaded, [`LOST`] if a sensor is lost.
+    blocks: Vec<u8>,
     /// Indices that pass the lower threshold, reused.
     candidates: Vec<u32>,
     at: Option<Instant>,
@@ -63,10 +70,13 @@ impl LoadedTiles {
             geometry,
             threshold,
             astray_m: REACH_M - 0.5 * geometry.pitch_m(),
+            places: (0..tiles).map(|index| Place::of(&geometry, index)).collect(),
             maps: Vec::new(),
             sums: vec![0.0; tiles],
             place: vec![NONE; tiles],
             list: Vec::with_capacity(tiles.min(4096)),
+            last: Vec::with_capacity(tiles.min(4096)),
+            blocks: vec![0; tiles.div_ceil(BLOCK)],
             candidates: Vec::with_capacity(tiles),
             at: None,
             dt: Duration::ZERO,
@@ -117,24 +127,23 @@ impl LoadedTiles {
         if let Some(rest) = self.sums.get_mut(missing..) {
             rest.fill(0.0);
         }
-        let blocks = self.sums.chunks_mut(BLOCK);
-        let readings = frame.forces.chunks(BLOCK).zip(frame.quality.chunks(BLOCK));
-        for (block, (sums, (forces, quality))) in blocks.zip(readings).enumerate() {
-            // Without branches, so that whole blocks of an empty floor are passed over at once.
-            let mut loaded = false;
-            let mut doubt = 0;
-            for (sum, (forces, quality)) in sums.iter_mut().zip(forces.iter().zip(quality)) {
-                let [sw, se, nw, ne] = *forces;
-                *sum = (sw + se) + (nw + ne);
-                loaded |= *sum >= off;
-                doubt |= quality.iter().fold(0, |worst, &quality| worst | quality as u8);
-            }
-            if !loaded && doubt & LOST == 0 {
+        survey(&mut self.sums, &frame.forces, &frame.quality, off, &mut self.blocks);
+        for (block, &worth) in self.blocks.iter().enumerate() {
+            if worth == 0 {
                 continue;
             }
-            for (at, (sum, quality)) in sums.iter().zip(quality).enumerate() {
-                if *sum >= off || quality.iter().any(|&quality| quality >= Quality::Stale) {
-                    self.candidates.push((block * BLOCK + at) as u32);
+            let from = block * BLOCK;
+            let upto = (from + BLOCK).min(missing);
+            let sums = self.sums.get(from..upto).unwrap_or_default();
+            if worth & LOST == 0 {
+                let loaded = (from as u32..).zip(sums).filter(|(_, sum)| **sum >= off);
+                self.candidates.extend(loaded.map(|(index, _)| index));
+                continue;
+            }
+            for (index, sum) in (from..).zip(sums) {
+                let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
+                if *sum >= off || is_lost {
+                    self.candidates.push(index as u32);
                 }
             }
         }
@@ -144,37 +153,43 @@ impl LoadedTiles {
     /// From candidates to loaded tiles.
     fn sift(&mut self, frame: &ForceFrame) {
         // Which tiles were loaded in the last frame must be known until the new list stands.
-        let mut list = std::mem::take(&mut self.list);
-        let previous = list.len();
+        std::mem::swap(&mut self.list, &mut self.last);
+        self.list.clear();
         for &index in &self.candidates {
             let index = index as usize;
-            let before = list[..previous].get(self.place[index] as usize);
+            let (forces, quality) = (frame.forces[index], frame.quality[index]);
+            let before = self.last.get(self.place[index] as usize);
             let least = if before.is_some() { self.threshold.off } else { self.threshold.on };
-            let lag = Lag::new(frame.quality[index], before, || self.dt.as_secs_f32());
             let map = self.maps.get(index).and_then(Option::as_ref);
-            let may_start = frame.may_start.get(index) == Some(&true);
-            let known = known_corners(frame.forces[index], frame.quality[index]);
-            if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
-                // What a lost sensor reads is no load.
-                self.sums[index] = known.map_or(0.0, |(corners, _)| corners.iter().sum());
+            if quality == [Quality::Live; 4] && before.is_none_or(LoadedTile::is_settled) {
+                if is_possible(&forces) {
+                    self.list.extend(LoadedTile::new(self.places[index], &self.geometry, forces, least, map));
+                }
+                continue;
             }
-            list.extend(
-                known
-                    .map(|(corners, quality)| (if may_start { corners } else { at_least(corners) }, quality))
-                    .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map, lag))
-                    .map(|tile| match tile.quality {
-                        Quality::Live => tile,
-                        _ => tile.judged(frame.quality[index], may_start),
-                    }),
+            let may_start = frame.may_start.get(index) == Some(&true);
+            let dt = self.dt.as_secs_f32();
+            let (carried, tile) = LoadedTile::in_doubt(
+                self.places[index],
+                &self.geometry,
+                (forces, quality, may_start),
+                least,
+                map,
+                before,
+                dt,
             );
+            if let Some(carried) = carried {
+                // What a lost sensor reads is no load.
+                self.sums[index] = carried;
+            }
+            self.list.extend(tile);
         }
-        for old in list.drain(..previous) {
+        for old in &self.last {
             self.place[old.index as usize] = NONE;
         }
-        for (position, loaded) in list.iter().enumerate() {
+        for (position, loaded) in self.list.iter().enumerate() {
             self.place[loaded.index as usize] = position as u32;
         }
-        self.list = list;
         self.gather(frame);
     }
 
@@ -197,7 +212,7 @@ impl LoadedTiles {
             for row in around {
                 for column in along.clone() {
                     let index = (row * columns + column) as usize;
-                    if self.place[index] == NONE && counted(self.sums[index]) > 0.0 {
+                    if self.place[index] == NONE && self.sums[index] > NO_WEIGHT {
                         self.give(index, position, frame);
                     }
                 }
@@ -238,6 +253,44 @@ impl LoadedTiles {
             self.list[position].add_strayed(force, centre + rim.lerp(wrench.arm(half), sure));
         }
     }
+}
+
+/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more (1), or lacks a
+/// sensor ([`LOST`]).
+///
+/// Without branches, over plain arrays: compiled for what the processor offers.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
+fn survey(sums: &mut [f32], forces: &[[f32; 4]], quality: &[[Quality; 4]], off: f32, blocks: &mut [u8]) {
+    blocks.fill(0);
+    let tiles = sums.chunks_mut(BLOCK).zip(forces.chunks(BLOCK).zip(quality.chunks(BLOCK)));
+    for (worth, (sums, (forces, quality))) in blocks.iter_mut().zip(tiles) {
+        if let (Ok(sums), Ok(forces), Ok(quality)) = (
+            <&mut [f32; BLOCK]>::try_from(&mut *sums),
+            <&[[f32; 4]; BLOCK]>::try_from(forces),
+            <&[[Quality; 4]; BLOCK]>::try_from(quality),
+        ) {
+            *worth = survey_block(sums, forces, quality, off);
+            continue;
+        }
+        for (sum, (forces, quality)) in sums.iter_mut().zip(forces.iter().zip(quality)) {
+            *worth |= survey_block(std::array::from_mut(sum), &[*forces], &[*quality], off);
+        }
+    }
+}
+
+#[inline(always)]
+fn survey_block<const TILES: usize>(
+    sums: &mut [f32; TILES],
+    forces: &[[f32; 4]; TILES],
+    quality: &[[Quality; 4]; TILES],
+    off: f32,
+) -> u8 {
+    for (sum, [sw, se, nw, ne]) in sums.iter_mut().zip(forces) {
+        *sum = (sw + se) + (nw + ne);
+    }
+    let loaded = sums.iter().fold(0, |loaded, sum| loaded | u8::from(*sum >= off));
+    let doubt = quality.as_flattened().iter().fold(0, |worst, &quality| worst | quality as u8);
+    loaded | (doubt & LOST)
 }
 
 /// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which

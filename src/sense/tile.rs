@@ -59,6 +59,11 @@ impl Wrench {
     }
 }
 
+/// Whether a floor can produce such forces: no NaN, none above 1 MN.
+pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
+    forces.iter().all(|force| force.abs() <= 1e6)
+}
+
 /// The forces of a tile's sensors, one unknown filled in, and how far they can be trusted.
 ///
 /// With one sensor out, its force is estimated from the other three: four equal
@@ -66,7 +71,11 @@ impl Wrench {
 /// [`Quality::Degraded`]. With two out, or numbers no floor can produce (NaN,
 /// above 1 MN), `None`: such a tile carries no contact.
 #[must_use]
+#[inline]
 pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4], Quality)> {
+    if quality == [Quality::Live; 4] {
+        return is_possible(&forces).then_some((forces, Quality::Live));
+    }
     let mut forces = forces;
     let mut out = None;
     let mut worst = Quality::Live;
@@ -83,7 +92,7 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
         forces[corner] = (sides - forces[corner ^ 3]).max(0.0);
         worst = Quality::Degraded;
     }
-    forces.iter().all(|force| force.abs() <= 1e6).then_some((forces, worst))
+    is_possible(&forces).then_some((forces, worst))
 }
 
 /// The forces of a tile whose heaviest loaded sensor reads "at least": no less than the plate demands by the other three.
@@ -134,7 +143,7 @@ pub struct LoadedTile {
 
 /// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
 /// choice: one and four deviations of what four sensors with half a newton of offset each add up to).
-const NO_WEIGHT: f32 = 1.0;
+pub(super) const NO_WEIGHT: f32 = 1.0;
 const FULL_WEIGHT: f32 = 4.0;
 
 /// What `force` on one tile counts for in a centroid over several.
@@ -177,14 +186,14 @@ const NO_LAG_N: f32 = 0.05;
 
 impl Lag {
     /// The lag of a tile whose sensors have `quality`, `dt` seconds after it was as `before`.
-    pub(super) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: impl FnOnce() -> f32) -> Self {
+    pub(super) fn new(quality: [Quality; 4], before: Option<&LoadedTile>, dt: f32) -> Self {
         let bit = |(corner, quality): (usize, Quality)| u8::from(quality >= Quality::Stale) << corner;
         let lost = quality.into_iter().enumerate().map(bit).sum();
-        let before = before.filter(|tile| tile.lost != lost || tile.lag != [0.0; 4]);
+        let before = before.filter(|tile| tile.lost != lost || !tile.is_settled());
         Self {
             lost,
             before: before.map(|tile| (tile.corners, tile.lag, tile.lost)),
-            fade: before.map_or(0.0, |_| (-dt() / LAG_S).exp()),
+            fade: before.map_or(0.0, |_| (-dt / LAG_S).exp()),
         }
     }
 
@@ -235,8 +244,8 @@ impl LoadedTile {
         self.wrench.moment = (self.centroid - self.centre) * self.wrench.force;
     }
 
-    /// This tile, its vagueness judged by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
-    pub(super) fn judged(mut self, sensors: [Quality; 4], may_start: bool) -> Self {
+    /// Judges its vagueness by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
+    pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
         for (vague, (corner, quality)) in self.vague.iter_mut().zip(sensors.into_iter().enumerate()) {
             *vague = match quality {
                 Quality::Live => 0.0,
@@ -249,53 +258,109 @@ impl LoadedTile {
                 }
             };
         }
-        self
     }
 
-    /// The tile at `index` of the floor, with sensors that read `corners`; `None` unless
-    /// they add up to at least `least` and more than nothing. `map` corrects them and the place.
+    /// Whether nothing of its past has to be remembered: every sensor was live, and none has just been found or lost.
+    #[inline]
+    pub(super) fn is_settled(&self) -> bool {
+        self.lost == 0 && self.lag == [0.0; 4]
+    }
+
+    /// The tile at `place` with live sensors that read `corners`; `None` unless they add up to at
+    /// least `least` and more than nothing. `map` corrects them and the place.
+    #[inline]
     pub(super) fn new(
+        place: Place,
         geometry: &Geometry,
-        index: usize,
-        (corners, quality): ([f32; 4], Quality),
+        corners: [f32; 4],
         least: Newtons,
         map: Option<&PositionMap>,
-        lag: Lag,
     ) -> Option<Self> {
-        let mut corners = map.map_or(corners, |map| map.trimmed(corners));
-        let lag_n = lag.of(corners);
-        for (corner, lag) in corners.iter_mut().zip(lag_n) {
-            *corner += lag;
+        match map {
+            Some(map) => Self::of_corners(place, geometry, map.trimmed(corners), least, Some(map)),
+            None => Self::of_corners(place, geometry, corners, least, None),
         }
+    }
+
+    /// As [`Self::new`], with sensors of any quality, `dt` seconds after it was as `before`; beside it
+    /// what the tile carries, if some of what its sensors read is not to be counted.
+    #[cold]
+    #[inline(never)]
+    pub(super) fn in_doubt(
+        place: Place,
+        geometry: &Geometry,
+        (forces, quality, may_start): ([f32; 4], [Quality; 4], bool),
+        least: Newtons,
+        map: Option<&PositionMap>,
+        before: Option<&Self>,
+        dt: f32,
+    ) -> (Option<f32>, Option<Self>) {
+        let known = known_corners(forces, quality);
+        let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
+        let carried = is_lost.then(|| known.map_or(0.0, |(corners, _)| corners.iter().sum()));
+        let Some((corners, worst)) = known else { return (carried, None) };
+        let corners = if may_start { corners } else { at_least(corners) };
+        let corners = map.map_or(corners, |map| map.trimmed(corners));
+        let lag = Lag::new(quality, before, dt);
+        let lag_n = lag.of(corners);
+        let corners = std::array::from_fn(|corner| corners[corner] + lag_n[corner]);
+        let tile = Self::of_corners(place, geometry, corners, least, map).map(|mut tile| {
+            (tile.quality, tile.lost, tile.lag) = (worst, lag.lost, lag_n);
+            tile.judge(quality, may_start);
+            tile
+        });
+        (carried, tile)
+    }
+
+    #[inline(always)]
+    fn of_corners(
+        Place { tile, index, centre }: Place,
+        geometry: &Geometry,
+        corners: [f32; 4],
+        least: Newtons,
+        map: Option<&PositionMap>,
+    ) -> Option<Self> {
         let mut wrench = Wrench::of_corners(corners, geometry.sensor_reach_m());
         if wrench.force < least.0.max(f32::MIN_POSITIVE) {
             return None;
         }
-        let tile = geometry.tile_at_index(index);
-        let centre = geometry.centre(tile);
         let mut arm = wrench.arm(0.5 * geometry.pitch_m());
         if let Some(map) = map {
             let unbent = map.unbent(arm, geometry);
             wrench.moment += (unbent - arm) * wrench.force;
             arm = unbent;
         }
-        let centroid = centre + arm;
         Some(Self {
             tile,
-            index: index as u32,
+            index,
             centre,
             corners,
             wrench,
             vague: [0.0; 4],
-            centroid,
-            quality,
+            centroid: centre + arm,
+            quality: Quality::Live,
             weight: counted(wrench.force),
             strayed: 0.0,
             mapped_m: map.map(|map| map.residual_m / P95_PER_DEVIATION),
             strayed_m2: 0.0,
-            lost: lag.lost,
-            lag: lag_n,
+            lost: 0,
+            lag: [0.0; 4],
         })
+    }
+}
+
+/// Which tile, and where.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    tile: TileId,
+    index: u32,
+    centre: Vec2,
+}
+
+impl Place {
+    pub(super) fn of(geometry: &Geometry, index: usize) -> Self {
+        let tile = geometry.tile_at_index(index);
+        Self { tile, index: index as u32, centre: geometry.centre(tile) }
     }
 }
 
