@@ -29,7 +29,10 @@ fn every_control_of_every_shipped_layout_works_and_standing_beside_it_does_nothi
             for _ in 0..taps {
                 // Part of a foot rests on the tile behind.
                 walker.step_at(place, at.press * 2.5);
-                walker.wait(150 + at.dwell.as_millis() as u64);
+                // What must not start by accident, or is stood upon, waits until the foot has shown that it stays.
+                let stays = matches!(at.guard, Guard::HoldToRun { .. })
+                    || matches!(widget.behaviour, Behaviour::Lean(_));
+                walker.wait(if stays { 450 } else { 150 } + at.dwell.as_millis() as u64);
                 walker.lift();
                 walker.wait(100);
             }

@@ -241,7 +241,7 @@ impl Engine {
         snapshot.contacts.clear();
         snapshot.contacts.extend_from_slice(self.sensing.contacts());
         snapshot.feet.clear();
-        snapshot.feet.extend(self.interaction.feet());
+        snapshot.feet.extend(self.interaction.feet(self.last_frame.at));
         snapshot.labels.clear();
         snapshot.labels.extend(self.labels.iter(&self.layout));
         snapshot.page = self.interaction.page();
