@@ -18,7 +18,7 @@ fn page(wrong: bool) -> String {
         let kind = kinds[index % kinds.len()];
         let at = format!("({column}.1, {row}.1)");
         text.push_str(&format!(
-            "    (id: \"control_{index}\", kind: \"{kind}\", at: {at}, size: ({size}, {size}), label: \"No. {index}\"),\n"
+            "    (id: \"control_{index}\", kind: \"{kind}\", at: {at}, size: ({size}, {size}), label: \"{index}\"),\n"
         ));
     }
     text + "])\n"

@@ -29,7 +29,7 @@ fn free_port() -> u16 {
 fn events(lines: &str) -> Vec<(f64, String, String, Value)> {
     let parsed = lines.lines().map(|line| serde_json::from_str::<Value>(line).unwrap());
     parsed
-        .filter(|event| event["event"] != "link")
+        .filter(|event| event["id"].is_string())
         .map(|event| {
             let text = |field: &str| event[field].as_str().unwrap().to_string();
             (event["t_s"].as_f64().unwrap(), text("id"), text("event"), event["value"].clone())
@@ -247,6 +247,9 @@ fn a_layout_is_drawn_without_a_display() {
         assert!(output.status.success(), "{}", said(&output));
         assert!(std::fs::metadata(&path).unwrap().len() > 2000);
     }
+    // At rest, which is not the moment after the program was started.
+    let drawn = std::fs::read_to_string(folder.path().join("map.svg")).unwrap();
+    assert!(drawn.contains("Satellite") && !drawn.contains("lift foot"));
 }
 
 #[test]

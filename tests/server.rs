@@ -10,10 +10,10 @@ use std::time::Duration;
 use support::layout;
 use underfoot::engine::{LinkState, Snapshot};
 use underfoot::feel::{RendererConfig, renderer};
-use underfoot::floor::Floor;
-use underfoot::sense::{Contact, Method};
+use underfoot::floor::{Corner, Floor, SensorId, TileId};
+use underfoot::sense::{Contact, Method, Quality, SensorHealth};
 use underfoot::serve::{Command, Ended, Server};
-use underfoot::sim::{self, Foot, SimConfig, SimFloor};
+use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::sink::{ActuatorSink, EventSink, ManualSink, SinkError};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
@@ -29,6 +29,8 @@ struct Visit {
     waiting: VecDeque<SensorPacket>,
     foot: Foot,
     requests: VecDeque<ControlMessage>,
+    /// Sensors that break, and when.
+    breaks: VecDeque<(u32, SensorId, Option<SensorFault>)>,
 }
 
 impl SensorSource for Visit {
@@ -43,6 +45,9 @@ impl SensorSource for Visit {
             self.acts.pop_front();
         }
         self.millis += 1;
+        while let Some((_, sensor, fault)) = self.breaks.pop_front_if(|(at, ..)| *at <= self.millis) {
+            self.sim.set_fault(sensor, fault);
+        }
         let Some(force) = force else { return Ok(None) };
         self.foot.force = Newtons(force);
         let received = self.now();
@@ -77,6 +82,10 @@ impl EventSink for Notes {
     fn link(&mut self, at: Instant, state: LinkState) {
         self.0.send((at.micros() / 1000, format!("link {state:?}"))).unwrap();
     }
+
+    fn health(&mut self, at: Instant, health: &SensorHealth) {
+        self.0.send((at.micros() / 1000, format!("health {health}"))).unwrap();
+    }
 }
 
 fn server(
@@ -86,6 +95,16 @@ fn server(
     let wired = Floor::default();
     let sim = SimFloor::new(&wired, SimConfig::default(), 9);
     let floor = sim::calibrated(&wired, &sim, 9).unwrap();
+    server_on(&floor, sim, acts, requests, &[])
+}
+
+fn server_on(
+    floor: &Floor,
+    sim: SimFloor,
+    acts: &[(u32, Option<f32>)],
+    requests: &[ControlMessage],
+    breaks: &[(u32, SensorId, Option<SensorFault>)],
+) -> (Server, mpsc::Receiver<(u64, String)>) {
     let page = layout("map");
     let home = page.widgets[page.widget_index("home").unwrap()].area.centre();
     let mut foot = Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6 };
@@ -97,10 +116,11 @@ fn server(
         waiting: VecDeque::new(),
         foot,
         requests: requests.iter().cloned().collect(),
+        breaks: breaks.iter().copied().collect(),
     };
     let (tell, told) = mpsc::channel();
     let server =
-        Server::new(&floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
+        Server::new(floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
     (server, told)
 }
 
@@ -214,4 +234,44 @@ fn a_click_starts_with_the_sample_of_its_press() {
         told.iter().find(|(_, what)| *what == format!("home {}", EventKind::Pressed.name())).unwrap().0;
     let first = onsets.iter().next().unwrap().0;
     assert_eq!(first, pressed * 48, "48 samples a millisecond");
+}
+
+#[test]
+fn the_sensors_health_is_told_when_it_changes_and_once_a_second_at_most() {
+    let wired = Floor::default();
+    let sim = SimFloor::new(&wired, SimConfig::default(), 9);
+    let floor = sim::calibrated(&wired, &sim, 9).unwrap();
+    let sensor = |column| SensorId { tile: TileId::new(column, 1), corner: Corner::SouthWest };
+    // Two break in the first second, one of them is repaired later.
+    let open = Some(SensorFault::Open);
+    let breaks = [(1500, sensor(0), open), (1700, sensor(3), open), (4000, sensor(0), None)];
+    let (mut server, told) = server_on(&floor, sim, &[(8000, Some(0.0))], &[], &breaks);
+    play(&mut server);
+    let mut snapshot = Snapshot::default();
+    server.snapshot(&mut snapshot);
+    assert_eq!((snapshot.health.count(Quality::Faulty), snapshot.counters.sensor_troubles), (1, 2));
+    drop(server);
+    let told: Vec<_> = told.iter().filter(|(_, what)| what.starts_with("health")).collect();
+    let what: Vec<_> = told.iter().map(|(_, what)| what.trim_start_matches("health ")).collect();
+    // That all is well at first is no news.
+    assert_eq!(what, ["1 faulty, 143 live", "2 faulty, 142 live", "1 faulty, 143 live"]);
+    assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 1000), "{told:?}");
+    assert!((1500..1650).contains(&told[0].0), "at once, if the last was a second ago: {told:?}");
+}
+
+#[test]
+fn s9_the_floor_file_of_another_floor_is_noticed_and_nothing_is_trusted() {
+    let wired = Floor::default();
+    for (seed, foreign) in [(9, false), (10, true), (11, true), (12, true)] {
+        let sim = SimFloor::new(&wired, SimConfig::default(), 9);
+        let other = SimFloor::new(&wired, SimConfig::default(), seed);
+        let floor = sim::calibrated(&wired, &other, seed).unwrap();
+        let (mut server, _told) = server_on(&floor, sim, &[(1000, Some(0.0))], &[], &[]);
+        play(&mut server);
+        let mut snapshot = Snapshot::default();
+        server.snapshot(&mut snapshot);
+        assert_eq!(snapshot.health.foreign, foreign, "floor {seed}");
+        let degraded = if foreign { 144 } else { 0 };
+        assert_eq!(snapshot.health.counts, [144 - degraded, degraded, 0, 0], "floor {seed}");
+    }
 }

@@ -9,7 +9,7 @@ use rosc::{OscPacket, OscType};
 use underfoot::engine::LinkState;
 use underfoot::floor::TileId;
 use underfoot::glam::Vec2;
-use underfoot::sense::{Contact, ContactId, Covariance, Quality, TileLoad};
+use underfoot::sense::{Contact, ContactId, Covariance, Quality, SensorHealth, TileLoad};
 use underfoot::sink::{EventSink, OscSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
@@ -64,11 +64,15 @@ fn events_arrive_in_order_up_to_the_last() {
         position: Vec2::ZERO,
     };
     sink.link(Instant::START, LinkState::Live);
+    sink.health(Instant::START, &SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() });
     for number in 0..100 {
         sink.events(&[event(number)]);
     }
     drop(sink);
-    assert_eq!(hear(&listener), [("/underfoot/health".into(), Some(OscType::String("live".into())))]);
+    // News of the link and news of the sensors both tell of both.
+    for _ in 0..2 {
+        assert_eq!(hear(&listener), [("/underfoot/health".into(), Some(OscType::String("live".into())))]);
+    }
     for number in 0..100 {
         assert_eq!(hear(&listener)[0].0, format!("/underfoot/widget/button_{number}/clicked"));
     }

@@ -3,11 +3,15 @@ use std::path::PathBuf;
 use underfoot::engine::{Engine, Snapshot};
 use underfoot::picture;
 use underfoot::scene::{self, Scene, Show, Theme, View};
-use underfoot::sense::Method;
+use underfoot::sense::{ForceFrame, Method};
+use underfoot::units::Instant;
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+
+/// How long the floor is empty before the picture is taken, in milliseconds: longer than any control wants to see it so.
+const EMPTY_MS: u64 = 100;
 
 /// What `underfoot render` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -32,7 +36,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = args.floor.load()?.geometry;
     let layout = args.layout.load(&geometry)?;
     let mut snapshot = Snapshot::default();
-    let engine = Engine::new(geometry, layout, Method::default());
+    let mut engine = Engine::new(geometry, layout, Method::default());
+    // A floor that has been seen empty for a while: no control waits for a foot to lift.
+    let mut frame = ForceFrame::empty(&geometry);
+    for millis in 1..=EMPTY_MS {
+        frame.at = Instant::from_millis(millis);
+        engine.step(&frame);
+    }
     engine.snapshot(&mut snapshot);
     let show = if args.bare { Show::PROJECTOR } else { Show::LAYOUT };
     let mut scene = Scene::new();

@@ -3,7 +3,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use crate::feel::FeelCounters;
-use crate::sense::{Contact, ContactId, Cursor, Quality};
+use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Value};
 use crate::wire::LinkCounters;
@@ -35,6 +35,8 @@ pub struct Snapshot {
     pub link: LinkState,
     /// What came in and what was refused.
     pub counters: LinkCounters,
+    /// How the sensors are doing.
+    pub health: SensorHealth,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
     /// Events that other programs could not be told.

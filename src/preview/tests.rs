@@ -11,7 +11,7 @@ use glam::Vec2;
 use super::app::App;
 use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
 use crate::engine::{LinkState, Snapshot};
-use crate::floor::{Floor, TileId};
+use crate::floor::{Corner, Floor, SensorId, TileId};
 use crate::layout::Layout;
 use crate::scene::sample::{at_rest, map, pressing};
 use crate::sense::ContactId;
@@ -320,6 +320,22 @@ fn the_panel_follows_the_foot_and_lists_its_sensors() {
     assert!(room.says("Contact 6 : 520 newtons"));
     let pressed = room.window.get_by_label("Zoom in");
     assert_eq!(pressed.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+}
+
+#[test]
+fn the_panel_says_in_one_line_how_the_sensors_are_and_names_those_in_trouble() {
+    let mut room = Room::simulated();
+    let mut snapshot = pressing(&map());
+    snapshot.health.counts = [144, 0, 0, 0];
+    room.write(snapshot.clone());
+    assert!(room.says("Sensors: all 144 live"));
+    snapshot.health.counts = [143, 0, 0, 1];
+    let sensor = SensorId { tile: TileId::new(2, 1), corner: Corner::SouthWest };
+    snapshot.health.troubles.push((sensor, crate::sense::Trouble::Stuck));
+    room.write(snapshot);
+    room.window.get_by_label("Sensors: 1 faulty, 143 live").click();
+    room.run(20);
+    assert!(room.says("tile (2, 1) sw: stuck"));
 }
 
 #[test]

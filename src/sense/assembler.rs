@@ -13,7 +13,7 @@ pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
-use super::health::{Health, Trouble};
+use super::health::{Health, SensorHealth, Trouble};
 use super::{ForceFrame, Quality};
 use crate::engine::LinkState;
 use crate::floor::{Floor, SensorId};
@@ -281,6 +281,25 @@ impl Assembler {
         self.boards.iter().map(BoardTrack::uncalibrated).sum()
     }
 
+    /// Whether the empty floor, at the start, read otherwise than the floor's tare says on most of its tiles:
+    /// it is the file of another floor, or one from long ago. All sensors are [`Quality::Degraded`] then.
+    #[must_use]
+    pub fn is_foreign(&self) -> bool {
+        self.health.is_foreign()
+    }
+
+    /// Writes how the sensors are doing, as of the last frame, into `health`.
+    pub fn health(&self, health: &mut SensorHealth) {
+        health.recount(self.frame.quality.iter());
+        health.uncalibrated = u32::try_from(self.uncalibrated()).unwrap_or(u32::MAX);
+        health.foreign = self.is_foreign();
+        health.troubles.clear();
+        health.troubles.extend(self.troubles());
+        health
+            .troubles
+            .sort_by_key(|(sensor, _)| (sensor.tile.row, sensor.tile.column, sensor.corner.index()));
+    }
+
     /// The sensors that are in trouble, as of the last frame.
     pub fn troubles(&self) -> impl Iterator<Item = (SensorId, Trouble)> + '_ {
         self.health.troubles()
@@ -302,7 +321,7 @@ impl Assembler {
     /// What came in and what was dropped; datagrams and refusals are counted by the source.
     #[must_use]
     pub const fn counters(&self) -> LinkCounters {
-        self.counters
+        LinkCounters { sensor_troubles: self.health.found(), ..self.counters }
     }
 
     /// Moves time on and notices silence, at most once a millisecond.

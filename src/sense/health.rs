@@ -12,6 +12,7 @@
 
 mod drift;
 mod plate;
+mod report;
 mod slow;
 mod trouble;
 
@@ -19,6 +20,7 @@ use crate::floor::{Corner, Floor, Geometry, SensorId};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
 
+pub use report::SensorHealth;
 pub use trouble::Trouble;
 
 use self::slow::{SHARES, Slow};
@@ -87,7 +89,18 @@ pub(super) struct Health {
     read: Vec<[f32; 4]>,
     number: u32,
     changes: u64,
+    found: u64,
+    /// Tiles judged by their first block, and how many of them read what no empty tile of this floor should.
+    judged: usize,
+    strange: usize,
+    seen: Vec<bool>,
 }
+
+/// How much a sensor may read at first, in newtons, on a floor that is the file's: far more than zeros drift in a day.
+const STRANGE_N: f32 = 2.0;
+
+/// The share of tiles that must read strangely for the floor to be another one: people stand on a few.
+const MOST_TILES: f32 = 0.4;
 
 impl Health {
     pub(super) fn new(floor: &Floor) -> Self {
@@ -111,6 +124,10 @@ impl Health {
             read: vec![[0.0; 4]; tiles],
             number: 0,
             changes: 0,
+            found: 0,
+            judged: 0,
+            strange: 0,
+            seen: vec![false; tiles],
         }
     }
 
@@ -158,12 +175,13 @@ impl Health {
 
     /// Looks at one tile; true if it must be looked at again in the next frame.
     fn look(&mut self, tile: usize, frame: &mut ForceFrame) -> bool {
+        let foreign = self.is_foreign();
         let (forces, ends, sensors) = (frame.forces[tile], self.ends[tile], &mut self.sensors[tile]);
         let quality = &mut frame.quality[tile];
         if is_heard(quality, sensors) {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
-            let measured = !self.guessed[tile];
+            let measured = !self.guessed[tile] && !foreign;
             let before = self.read[tile];
             for (corner, sensor) in sensors.iter_mut().enumerate() {
                 let found = match ends[corner] {
@@ -184,7 +202,9 @@ impl Health {
                     _ => None,
                 };
                 if let Some(found) = found {
-                    self.changes += u64::from(sensor.find(found, forces[corner]));
+                    let is_news = sensor.find(found, forces[corner]);
+                    self.changes += u64::from(is_news);
+                    self.found += u64::from(is_news);
                     if (forces[corner] - before[corner]).abs() > SUDDEN_N {
                         sensor.struck();
                     }
@@ -217,11 +237,17 @@ impl Health {
 
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
+        let foreign = self.is_foreign();
         let Self { zeros, limits, ends, guessed, sensors, slow, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
-            if !guessed[tile] {
+            if !std::mem::replace(&mut self.seen[tile], true) {
+                self.judged += 1;
+                let strange = block.means.iter().filter(|mean| mean.abs() > STRANGE_N).count() > 1;
+                self.strange += usize::from(strange);
+            }
+            if !guessed[tile] && !foreign {
                 slow.judge(&block, ends[tile], alone, sensors);
             }
             slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
@@ -229,6 +255,9 @@ impl Health {
         let has_trouble = sensors.map(|sensor| sensor.trouble());
         if had_trouble != has_trouble {
             self.changes += 1;
+            let fell_ill =
+                had_trouble.iter().zip(has_trouble).filter(|(had, has)| has.is_some() && **had != *has);
+            self.found += fell_ill.count() as u64;
             if !self.watched.contains(&(tile as u32)) {
                 self.watched.push(tile as u32);
             }
@@ -251,6 +280,16 @@ impl Health {
     /// How often a sensor has fallen ill or got well.
     pub(super) const fn changes(&self) -> u64 {
         self.changes
+    }
+
+    /// How often a sensor has fallen ill.
+    pub(super) const fn found(&self) -> u64 {
+        self.found
+    }
+
+    /// Whether most tiles read what no empty tile of the file's floor should, at the start.
+    pub(super) fn is_foreign(&self) -> bool {
+        self.judged == self.seen.len() && self.strange as f32 > MOST_TILES * self.judged as f32
     }
 
     /// The sensors in trouble.

@@ -153,8 +153,13 @@ impl LoadedTiles {
             let lag = Lag::new(frame.quality[index], before, || self.dt.as_secs_f32());
             let map = self.maps.get(index).and_then(Option::as_ref);
             let may_start = frame.may_start.get(index) == Some(&true);
+            let known = known_corners(frame.forces[index], frame.quality[index]);
+            if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
+                // What a lost sensor reads is no load.
+                self.sums[index] = known.map_or(0.0, |(corners, _)| corners.iter().sum());
+            }
             list.extend(
-                known_corners(frame.forces[index], frame.quality[index])
+                known
                     .map(|(corners, quality)| (if may_start { corners } else { at_least(corners) }, quality))
                     .and_then(|known| LoadedTile::new(&self.geometry, index, known, least, map, lag))
                     .map(|tile| match tile.quality {
@@ -277,6 +282,10 @@ mod tests {
         tiles.update(&frame);
         assert_eq!(tiles.reading(3).force, Newtons(100.0));
         assert_eq!(tiles.reading(3).quality, Quality::Degraded);
+        frame.forces[7][1] = 400.0;
+        frame.quality[7][1] = Quality::Faulty;
+        tiles.update(&frame);
+        assert_eq!(tiles.reading(7).force, Newtons::ZERO, "a short circuit is no load");
         frame.quality[3][0] = Quality::Stale;
         tiles.update(&frame);
         assert!(tiles.list().is_empty());

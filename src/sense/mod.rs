@@ -42,7 +42,7 @@ pub use cursor::{Cursor, CursorPicker, Stickiness};
 pub use doubt::SensorDoubt;
 pub use force_table::{ForceTable, ForceTableError};
 pub use frame::ForceFrame;
-pub use health::Trouble;
+pub use health::{SensorHealth, Trouble};
 pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
 pub use loaded::LoadThreshold;
 pub use position_map::{Errors, MapError, MapFit, Press, Sighting};

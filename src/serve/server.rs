@@ -10,7 +10,7 @@ use crate::engine::{Engine, LinkState, Snapshot};
 use crate::feel::CueSender;
 use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare, TareOutcome, Trouble};
+use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
@@ -33,6 +33,10 @@ const TAIL: Duration = Duration::from_millis(300);
 
 /// How long only some boards must have been heard for this to be news; controls on the others are long released.
 const SETTLING: Duration = Duration::from_millis(100);
+
+/// How often the sensors' health is looked at, and how often at most it is told.
+const HEALTH_LOOK: Duration = Duration::from_millis(100);
+const HEALTH_PERIOD: Duration = Duration::from_secs(1);
 
 /// Something an app or a window asks of a floor at work.
 #[derive(Clone, Debug)]
@@ -71,6 +75,14 @@ pub struct Server {
     trouble_changes: u64,
     /// Sensors without calibration, as far as that has been said.
     uncalibrated: usize,
+    /// What was last told of the sensors, and when; `None` before the first time.
+    told: Option<(Instant, SensorHealth)>,
+    /// How they are, for comparing.
+    health: SensorHealth,
+    /// Until when nothing new is looked for.
+    looked: Instant,
+    /// Whether it has been said that this seems to be another floor.
+    said_foreign: bool,
     shown: Instant,
     /// What addresses in answers begin with.
     prefix: Prefix,
@@ -101,6 +113,10 @@ impl Server {
             troubles: Vec::new(),
             trouble_changes: 0,
             uncalibrated: 0,
+            told: None,
+            health: SensorHealth::default(),
+            looked: Instant::START,
+            said_foreign: false,
             shown: Instant::START,
             prefix: Prefix::default(),
             answer: Vec::new(),
@@ -168,6 +184,7 @@ impl Server {
         self.engine.snapshot(snapshot);
         snapshot.link = self.link;
         snapshot.counters = self.counters();
+        self.assembler.health(&mut snapshot.health);
         snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
         snapshot.unsent_events = self.unsent_events();
     }
@@ -208,6 +225,7 @@ impl Server {
         self.note_link();
         while self.step() {}
         self.note_troubles();
+        self.note_health();
         Ok(Ended::No)
     }
 
@@ -339,6 +357,56 @@ impl Server {
             }
         }
         self.troubles = now;
+    }
+
+    /// Tells how the sensors are doing when that has changed, once a second at most.
+    fn note_health(&mut self) {
+        let now = self.source.now();
+        if now < self.looked {
+            return;
+        }
+        // Qualities come and go with single readings: what is told is looked at some times a second.
+        self.looked = now + HEALTH_LOOK;
+        self.note_foreign();
+        self.assembler.health(&mut self.health);
+        let known = self.told.as_ref();
+        let is_due =
+            known.is_none_or(|(at, told)| now.since(*at) >= HEALTH_PERIOD && self.health.is_news_after(told));
+        if !is_due || self.link == LinkState::Waiting {
+            return;
+        }
+        // That all is well at first is no news.
+        let is_news = known.is_some() || self.health.is_news_after(&SensorHealth::default());
+        if let Some(events) = self.events.as_mut().filter(|_| is_news) {
+            events.health(now, &self.health);
+        }
+        match &mut self.told {
+            Some((at, told)) => {
+                *at = now;
+                told.clone_from(&self.health);
+            }
+            None => self.told = Some((now, self.health.clone())),
+        }
+    }
+
+    /// Says once that the floor file seems to be another floor's.
+    fn note_foreign(&mut self) {
+        if self.said_foreign {
+            return;
+        }
+        let counters = self.counters();
+        if self.assembler.is_foreign() {
+            self.said_foreign = true;
+            warn!(
+                "most tiles read otherwise than the floor file says of the empty floor: is it the file of another \
+                 floor, or was it tared long ago? No force can be trusted; `underfoot calibrate tare` measures it anew"
+            );
+        } else if counters.packets == 0 && counters.wrong_shape > 100 {
+            self.said_foreign = true;
+            warn!(
+                "the boards send another number of readings than the floor file says: is it the file of another floor?"
+            );
+        }
     }
 
     fn obey(&mut self) {

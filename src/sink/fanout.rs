@@ -1,6 +1,6 @@
 use super::EventSink;
 use crate::engine::{LinkState, PageShown};
-use crate::sense::Contact;
+use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
@@ -53,6 +53,10 @@ impl EventSink for Fanout {
         self.sinks.iter_mut().for_each(|sink| sink.link(at, state));
     }
 
+    fn health(&mut self, at: Instant, health: &SensorHealth) {
+        self.sinks.iter_mut().for_each(|sink| sink.health(at, health));
+    }
+
     fn dropped(&self) -> u64 {
         self.sinks.iter().map(|sink| sink.dropped()).sum()
     }
@@ -79,6 +83,10 @@ mod tests {
             self.1.send(format!("{} {state:?}", self.0)).unwrap();
         }
 
+        fn health(&mut self, _: Instant, health: &SensorHealth) {
+            self.1.send(format!("{} {health}", self.0)).unwrap();
+        }
+
         fn dropped(&self) -> u64 {
             3
         }
@@ -91,9 +99,11 @@ mod tests {
         fanout.events(&[]);
         fanout.contacts(Instant::from_micros(5), &[]);
         fanout.link(Instant::START, LinkState::Live);
+        fanout.health(Instant::START, &SensorHealth { counts: [3, 0, 0, 1], ..SensorHealth::default() });
         assert_eq!(fanout.dropped(), 6);
         drop(fanout);
         let expected = ["a 0 events", "b 0 events", "a contacts at 5", "b contacts at 5", "a Live", "b Live"];
-        assert_eq!(heard.iter().collect::<Vec<_>>(), expected);
+        let sick = ["a 1 faulty, 3 live", "b 1 faulty, 3 live"];
+        assert_eq!(heard.iter().collect::<Vec<_>>(), [&expected[..], &sick].concat());
     }
 }

@@ -6,7 +6,8 @@ use serde::Serialize;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
-use crate::sense::{Contact, ContactId};
+use crate::floor::SensorId;
+use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
 use crate::wire::link_name;
@@ -17,6 +18,7 @@ use crate::wire::link_name;
 /// {"t_s":1.234,"event":"changed","id":"zoom","value":0.5,"force_n":120.5,"x_m":0.61,"y_m":1.2,"contact":3}
 /// {"t_s":9.876,"event":"link","state":"lost"}
 /// {"t_s":9.9,"event":"page","page":"settings"}
+/// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
@@ -33,6 +35,7 @@ enum Job {
     Event(WidgetEvent),
     Link(Instant, LinkState),
     Page(PageShown),
+    Health(Instant, SensorHealth),
 }
 
 impl JsonSink {
@@ -71,6 +74,10 @@ impl EventSink for JsonSink {
         self.worker.offer(Job::Link(at, state));
     }
 
+    fn health(&mut self, at: Instant, health: &SensorHealth) {
+        self.worker.offer(Job::Health(at, health.clone()));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped()
     }
@@ -101,6 +108,7 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
             let (t_s, state) = (seconds(*at), link_name(*state));
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
         }
+        Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,
     };
     line.push(b'\n');
     out.write_all(&line)
@@ -130,6 +138,52 @@ struct LinkLine {
     t_s: f64,
     event: &'static str,
     state: &'static str,
+}
+
+#[derive(Serialize)]
+struct HealthLine {
+    t_s: f64,
+    event: &'static str,
+    live: u32,
+    degraded: u32,
+    stale: u32,
+    faulty: u32,
+    uncalibrated: u32,
+    foreign: bool,
+    troubles: Vec<TroubleEntry>,
+}
+
+#[derive(Serialize)]
+struct TroubleEntry {
+    col: u16,
+    row: u16,
+    corner: String,
+    trouble: Trouble,
+}
+
+impl HealthLine {
+    fn of(at: Instant, health: &SensorHealth) -> Self {
+        let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
+            *health;
+        let entry = |&(SensorId { tile, corner }, trouble): &(SensorId, Trouble)| TroubleEntry {
+            col: tile.column,
+            row: tile.row,
+            corner: corner.to_string(),
+            trouble,
+        };
+        let troubles = troubles.iter().map(entry).collect();
+        Self {
+            t_s: seconds(at),
+            event: "health",
+            live,
+            degraded,
+            stale,
+            faulty,
+            uncalibrated,
+            foreign,
+            troubles,
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -239,6 +293,11 @@ mod tests {
         sink.events(&[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
         sink.events(&[event(EventKind::Cancelled, None)]);
         sink.link(Instant::from_millis(9876), LinkState::Lost);
+        let sensor =
+            SensorId { tile: crate::floor::TileId::new(2, 1), corner: crate::floor::Corner::SouthWest };
+        let troubles = vec![(sensor, Trouble::Stuck)];
+        let sick = SensorHealth { counts: [143, 0, 0, 1], troubles, ..SensorHealth::default() };
+        sink.health(Instant::from_millis(9900), &sick);
         drop(sink);
         let text: String = lines.iter().collect();
         let rest = r#""force_n":120.5,"x_m":0.61,"y_m":1.2,"contact""#;
@@ -249,6 +308,7 @@ mod tests {
             format!(r#"{{"t_s":1.234001,"event":"swiped","id":"say \"hi\"","value":"north",{rest}:3}}"#),
             format!(r#"{{"t_s":1.234001,"event":"cancelled","id":"say \"hi\"","value":null,{rest}:null}}"#),
             r#"{"t_s":9.876,"event":"link","state":"lost"}"#.into(),
+            r#"{"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}"#.into(),
         ];
         assert_eq!(text.lines().collect::<Vec<_>>(), expected);
     }

@@ -18,7 +18,7 @@ mod worker;
 use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
-use crate::sense::Contact;
+use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
@@ -55,6 +55,9 @@ pub trait EventSink: Send {
 
     /// Takes news of the floor's link; called when its state changes.
     fn link(&mut self, _at: Instant, _state: LinkState) {}
+
+    /// Takes news of the floor's sensors; called when something has changed, once a second at most.
+    fn health(&mut self, _at: Instant, _health: &SensorHealth) {}
 
     /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {

@@ -8,13 +8,13 @@ use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
-use crate::sense::Contact;
+use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::widget::WidgetId;
 use crate::wire::{Prefix, write_contacts, write_event, write_health, write_page};
 
-/// Sends events, contacts and the link's state as OSC over UDP.
+/// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
@@ -26,13 +26,16 @@ pub struct OscSink {
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
     beat: Beat,
+    /// What was last heard of link and sensors: each message tells of both.
+    link: LinkState,
+    health: SensorHealth,
 }
 
 #[derive(Debug)]
 enum Job {
     Event(WidgetEvent),
-    Link(LinkState),
     Page(WidgetId),
+    Health(LinkState, SensorHealth),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -63,7 +66,8 @@ impl OscSink {
             message: format!("cannot send OSC to {target}: {source}"),
             source,
         })?;
-        Ok(Self { worker, latest, undelivered, beat: Beat::new(None) })
+        let (link, health) = (LinkState::default(), SensorHealth::default());
+        Ok(Self { worker, latest, undelivered, beat: Beat::new(None), link, health })
     }
 }
 
@@ -86,7 +90,13 @@ impl EventSink for OscSink {
     }
 
     fn link(&mut self, _at: Instant, state: LinkState) {
-        self.worker.offer(Job::Link(state));
+        self.link = state;
+        self.worker.offer(Job::Health(state, self.health.clone()));
+    }
+
+    fn health(&mut self, _at: Instant, health: &SensorHealth) {
+        self.health.clone_from(health);
+        self.worker.offer(Job::Health(self.link, health.clone()));
     }
 
     fn dropped(&self) -> u64 {
@@ -126,8 +136,8 @@ impl Sender {
                     write_page(&prefix, page.as_str(), &mut bytes);
                     out.send(&bytes);
                 }
-                Job::Link(state) => {
-                    write_health(&prefix, state, &mut bytes);
+                Job::Health(state, health) => {
+                    write_health(&prefix, state, &health, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {

@@ -44,6 +44,8 @@ pub struct LinkCounters {
     /// Requests of apps that were understood and could not be met: no such control or page, a value that doesn't
     /// suit it, a control that is locked or in use.
     pub denied: u64,
+    /// Times a sensor was found in trouble: broken, stuck, drifted too far, noisy.
+    pub sensor_troubles: u64,
 }
 
 impl LinkCounters {
@@ -75,6 +77,7 @@ impl Add for LinkCounters {
             bad_readings: self.bad_readings + other.bad_readings,
             overflowed: self.overflowed + other.overflowed,
             denied: self.denied + other.denied,
+            sensor_troubles: self.sensor_troubles + other.sensor_troubles,
         }
     }
 }

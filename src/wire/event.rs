@@ -3,7 +3,7 @@ use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 use super::Prefix;
 use super::encode::write;
 use crate::engine::LinkState;
-use crate::sense::Contact;
+use crate::sense::{Contact, SensorHealth};
 use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
@@ -82,11 +82,21 @@ pub fn write_contacts(
     }
 }
 
-/// Writes the state of the floor's link as the OSC message `/underfoot/health` with one
-/// string: `waiting`, `live`, `partial` or `lost`.
-pub fn write_health(prefix: &Prefix, state: LinkState, bytes: &mut Vec<u8>) {
+/// Most sensors that one message names.
+const NAMED_SENSORS: usize = 8;
+
+/// Writes how the floor is doing as the OSC message `/underfoot/health`.
+///
+/// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of
+/// sensors (ints): degraded, silent, faulty, and those that nobody has calibrated. Then the sensors in
+/// trouble, a string each (`tile (2, 1) sw: stuck`), eight at most.
+pub fn write_health(prefix: &Prefix, state: LinkState, health: &SensorHealth, bytes: &mut Vec<u8>) {
+    let SensorHealth { counts: [_, degraded, stale, faulty], uncalibrated, troubles, .. } = health;
+    let mut args = vec![OscType::String(link_name(state).into())];
+    args.extend([degraded, stale, faulty, uncalibrated].map(|&count| OscType::Int(count.cast_signed())));
+    let named = troubles.iter().take(NAMED_SENSORS);
+    args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
     bytes.clear();
-    let args = vec![OscType::String(link_name(state).into())];
     write(&message(prefix.address("health"), args), bytes);
 }
 
@@ -180,7 +190,8 @@ mod tests {
     use glam::Vec2;
 
     use super::*;
-    use crate::floor::TileId;
+    use crate::floor::{Corner, SensorId, TileId};
+    use crate::sense::Trouble;
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
     use crate::units::{Instant, Newtons};
     use crate::widget::Direction;
@@ -279,10 +290,16 @@ mod tests {
     }
 
     #[test]
-    fn health_is_one_word() {
+    fn health_is_the_links_state_four_numbers_and_a_few_sensors() {
         let mut bytes = Vec::new();
-        write_health(&Prefix::default(), LinkState::Lost, &mut bytes);
-        let args = vec![OscType::String("lost".into())];
+        let sensor = |column| SensorId { tile: TileId::new(column, 1), corner: Corner::SouthWest };
+        let troubles = (0..20).map(|column| (sensor(column), Trouble::Stuck)).collect();
+        let health =
+            SensorHealth { counts: [120, 3, 1, 20], uncalibrated: 2, troubles, ..SensorHealth::default() };
+        write_health(&Prefix::default(), LinkState::Partial, &health, &mut bytes);
+        let mut args = vec![OscType::String("partial".into())];
+        args.extend([3, 1, 20, 2].map(OscType::Int));
+        args.extend((0..8).map(|column| OscType::String(format!("tile ({column}, 1) sw: stuck"))));
         assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
     }
 }

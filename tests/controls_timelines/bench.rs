@@ -12,7 +12,10 @@ pub const FIRM: Newtons = Newtons(150.0);
 /// How fast a foot slides unless it says otherwise, in metres per second.
 const SPEED: f32 = 0.3;
 
-/// One control named `it`, alone on the floor, and a foot for it.
+/// What a person of 70 kg has on the standing foot.
+const WEIGHT: Newtons = Newtons(690.0);
+
+/// One control named `it`, alone on the floor, and somebody who stands before it with a foot to spare.
 pub struct Bench {
     pub walker: Walker,
     middle: Vec2,
@@ -23,13 +26,16 @@ impl Bench {
     /// The control written as `fields`, 1.2 tiles (36 cm) wide and one (30 cm) deep.
     pub fn with(fields: &str) -> Self {
         let text = format!(
-            "Layout(version: 1, regions: [(id: \"all\", at: (0, 0), size: (6, 6))],
+            "Layout(version: 1, regions: [(id: \"all\", at: (0, 2), size: (6, 4))],
+                stances: [(at: (2.1, 0), size: (1.2, 1))],
                 widgets: [(id: \"it\", at: (2.1, 2.6), size: (1.2, 1), {fields})])"
         );
         let layout = page(&text);
         let area = layout.widgets[0].area;
         let mut walker = Walker::on(layout);
-        walker.wait(50);
+        // Somebody who has come to stand there, and is no longer about to walk on.
+        walker.stand(WEIGHT);
+        walker.wait(3000);
         Self { walker, middle: area.centre(), size: area.size() }
     }
 

@@ -83,9 +83,12 @@ const OFF: Value = Value::Switch(false);
 /// Runs for 2 s at most, warns half a second before.
 const RUN: &str = r#"kind: "dead_man", guard: HoldToRun(max_s: 2, warn_s: 0.5)"#;
 
+/// Long enough for a foot that means it to have settled, and for the dwell.
+const SETTLED: u64 = 600;
+
 fn run(bench: &mut Bench) {
     bench.press();
-    bench.wait(250);
+    bench.wait(SETTLED);
     assert_eq!(bench.events(), [Pressed, Changed(ON)]);
 }
 
@@ -149,7 +152,7 @@ fn hold_to_run_a_foot_that_crosses_runs_nothing() {
 fn a_pedal_can_run_on_a_hold_too() {
     let mut bench = Bench::with(r#"kind: "pedal", dwell_ms: 250, guard: HoldToRun(max_s: 2)"#);
     bench.press();
-    bench.wait(250);
+    bench.wait(SETTLED);
     assert!(bench.number() > 0.0);
     bench.walker.doubtful = true;
     bench.wait(1);

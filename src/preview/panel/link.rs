@@ -3,11 +3,46 @@ use eframe::egui::{CollapsingHeader, Ui};
 
 use super::super::app::App;
 use super::super::painter::color;
-use super::super::style::row;
+use super::super::style::{quiet, row};
+use crate::engine::LinkState;
 use crate::scene::Theme;
+use crate::sense::Quality;
 use crate::wire::LinkCounters;
 
 impl App {
+    /// How the sensors are doing, and which are in trouble.
+    pub(super) fn health_part(&mut self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let snapshot = self.snapshots.output_buffer();
+        if snapshot.link == LinkState::Waiting {
+            return;
+        }
+        let health = &snapshot.health;
+        let colour = match health {
+            health if health.count(Quality::Faulty) > 0 => theme.fault,
+            health if health.is_well() => theme.ink,
+            _ => theme.warning,
+        };
+        ui.add_space(2.0);
+        let title = egui::RichText::new(format!("Sensors: {health}")).color(color(colour));
+        CollapsingHeader::new(title).id_salt("health").show_unindented(ui, |ui| {
+            for (sensor, trouble) in &health.troubles {
+                let line = row(ui, 17.0, 12.5, &format!("{sensor}: {trouble}"));
+                line.left(0.04, 0.3, &sensor.to_string(), color(theme.ink));
+                line.right(1.0, &trouble.to_string(), color(theme.warning));
+            }
+            if health.uncalibrated > 0 {
+                ui.label(quiet(theme, format!("{} never calibrated: nominal parts", health.uncalibrated)));
+            }
+            if health.foreign {
+                ui.label(quiet(theme, "the floor file seems to be another floor's"));
+            }
+            if health.is_well() {
+                ui.label(quiet(theme, "every one answers as its plate demands"));
+            }
+        });
+    }
+
     /// What came over the wire and what was refused, by reason.
     pub(super) fn link_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
@@ -39,7 +74,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 16] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 17] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
@@ -57,6 +92,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 16] {
         ("refused: foreign sender", counters.foreign, true),
         ("bad readings", counters.bad_readings, true),
         ("dropped by the system", counters.overflowed, true),
+        ("sensors found in trouble", counters.sensor_troubles, true),
     ]
 }
 

@@ -32,6 +32,7 @@ impl App {
                 self.events_part(ui, events);
                 self.scopes_part(ui);
                 self.controls_part(ui);
+                self.health_part(ui);
                 self.link_part(ui);
                 self.other_parts = ui.cursor().top() - top - events;
             });

@@ -184,6 +184,7 @@ impl BoardTrack {
         health: &mut Health,
     ) -> u64 {
         let mut bad = 0;
+        let foreign = health.is_foreign();
         let mut put = |channel: &Channel, force: f32, end: End, guessed: bool| {
             let (tile, corner) = (channel.tile as usize, channel.corner.index());
             let force = force - channel.tare - health.zero(tile, corner);
@@ -193,7 +194,7 @@ impl BoardTrack {
             } else {
                 frame.forces[tile][corner] = force;
                 health.note(channel.tile, corner, force, end, guessed);
-                if end == End::High || guessed { Quality::Degraded } else { Quality::Live }
+                if end == End::High || guessed || foreign { Quality::Degraded } else { Quality::Live }
             };
             frame.quality[tile][corner] = own.max(quality);
         };

@@ -12,9 +12,8 @@ use crate::sense::tile::LoadedTile;
 /// Least distance between the centres of pressure of two feet: side by side, touching.
 pub(super) const APART_M: f64 = 0.08;
 
-/// Load that a tile must gain to show a newcomer, in newtons and as a share of what already stands there.
+/// Load that a tile must gain to show a newcomer, in newtons.
 const ADDED_N: f64 = 10.0;
-const ADDED_SHARE: f64 = 0.02;
 
 /// How far, in metres, and how fast, in metres per second, weight that is shifted to another foot moves the
 /// common centre of pressure at least.
@@ -97,7 +96,7 @@ impl Tracker {
             let slow = foot.slow_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
-            if added < (ADDED_SHARE * foot.past.force).max(ADDED_N) {
+            if added < ADDED_N {
                 continue;
             }
             let moment = (centroid - centre) * force - slow.moment;

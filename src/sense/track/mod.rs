@@ -183,13 +183,13 @@ impl Tracker {
             let tile = &list[position as usize];
             let centroid = tile.centroid.as_dvec2();
             let force = f64::from(tile.wrench.force);
+            let beyond = |foot: &Foot| {
+                foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
+            };
             // What was loaded already is no newcomer: it stays with the nearest of those who had it.
             let keeper = self.feet.iter().enumerate().filter(|(_, foot)| foot.had(tile.index));
             let keeper = keeper.map(|(which, foot)| (which, foot.centre().distance(centroid)));
             let nearest = keeper.min_by(|a, b| a.1.total_cmp(&b.1)).or_else(|| {
-                let beyond = |foot: &Foot| {
-                    foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
-                };
                 let feet = self.feet.iter().enumerate().map(|(which, foot)| (which, beyond(foot)));
                 feet.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, beyond)| beyond < 0.0)
             });

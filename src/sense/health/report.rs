@@ -1,0 +1,85 @@
+use crate::floor::SensorId;
+use crate::sense::Quality;
+
+use super::Trouble;
+
+/// How the sensors of a floor are doing, in numbers and by name.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct SensorHealth {
+    /// Sensors of each quality: live, degraded, stale, faulty.
+    pub counts: [u32; 4],
+    /// Sensors that count as nominal parts, since nobody has calibrated them.
+    pub uncalibrated: u32,
+    /// Whether the empty floor reads otherwise than its file says on most tiles.
+    pub foreign: bool,
+    /// The sensors in trouble, and what is wrong with each.
+    pub troubles: Vec<(SensorId, Trouble)>,
+}
+
+impl SensorHealth {
+    /// How many sensors have this quality.
+    #[must_use]
+    pub const fn count(&self, quality: Quality) -> u32 {
+        self.counts[quality as usize]
+    }
+
+    /// Whether every sensor is live.
+    #[must_use]
+    pub fn is_well(&self) -> bool {
+        self.counts[1..].iter().all(|&count| count == 0) && self.troubles.is_empty()
+    }
+
+    /// Whether it is worth telling after `told`: more than that a foot saturates a tile's sensors for a moment.
+    #[must_use]
+    pub fn is_news_after(&self, told: &Self) -> bool {
+        let [_, degraded, ..] = self.counts;
+        degraded.abs_diff(told.counts[1]) > 4
+            || self.counts[2..] != told.counts[2..]
+            || (self.uncalibrated, self.foreign) != (told.uncalibrated, told.foreign)
+            || self.troubles != told.troubles
+    }
+
+    /// Counts the sensors of `qualities`, one entry per tile, in place of those counted before.
+    pub(crate) fn recount<'a>(&mut self, qualities: impl Iterator<Item = &'a [Quality; 4]>) {
+        self.counts = [0; 4];
+        for quality in qualities.flatten() {
+            self.counts[*quality as usize] += 1;
+        }
+    }
+}
+
+/// One sentence: how many sensors are not live, and the first that are in trouble.
+impl std::fmt::Display for SensorHealth {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let [live, degraded, stale, faulty] = self.counts;
+        if self.is_well() {
+            return write!(f, "all {live} live");
+        }
+        let counts = [(faulty, "faulty"), (stale, "silent"), (degraded, "degraded"), (live, "live")];
+        for (number, (count, name)) in counts.into_iter().filter(|(count, _)| *count > 0).enumerate() {
+            write!(f, "{}{count} {name}", if number > 0 { ", " } else { "" })?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_worst_comes_first() {
+        let mut health = SensorHealth::default();
+        health.recount([[Quality::Live; 4]; 36].iter());
+        assert_eq!(health.to_string(), "all 144 live");
+        let mut tiles = [[Quality::Live; 4]; 36];
+        tiles[3] = [Quality::Stale, Quality::Degraded, Quality::Faulty, Quality::Stale];
+        health.recount(tiles.iter());
+        assert_eq!(health.to_string(), "1 faulty, 2 silent, 1 degraded, 140 live");
+        assert_eq!(health.count(Quality::Stale), 2);
+        let saturated = SensorHealth { counts: [139, 2, 2, 1], ..health.clone() };
+        assert!(!saturated.is_news_after(&health));
+        let lossy = SensorHealth { counts: [116, 25, 2, 1], ..health.clone() };
+        assert!(lossy.is_news_after(&health));
+    }
+}
