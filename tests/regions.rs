@@ -120,10 +120,12 @@ fn each_foot_is_a_cursor_of_its_own_where_the_region_says_so() {
 
 #[test]
 fn a_control_is_held_by_one_foot_and_the_next_one_needs_a_fresh_press() {
-    let mut floor = Floor::with(&buttons(", cursor: Each"));
-    let beside = ((1.9, 3.1), 100.0);
-    floor.stand(&[((1.1, 3.9), 90.0)], 200);
-    floor.stand(&[((1.1, 3.9), 90.0), beside], 500);
+    // A button as wide as two tiles.
+    let page = buttons(", cursor: Each").replace("at: (1, 3), size: (1, 1)", "at: (0, 3), size: (3, 1)");
+    let mut floor = Floor::with(&page);
+    let (first, beside) = (((0.4, 3.5), 90.0), ((2.6, 3.5), 100.0));
+    floor.stand(&[first], 200);
+    floor.stand(&[first, beside], 500);
     floor.stand(&[beside], 500);
     use EventKind::{Clicked, Pressed, Released};
     let west = |kind| ("west".to_string(), kind);

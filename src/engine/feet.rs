@@ -65,6 +65,17 @@ struct Past {
     others: f32,
 }
 
+/// What a control wants of a foot.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Takes {
+    /// A press that is over soon.
+    Tap,
+    /// A press that may last.
+    Hold,
+    /// Somebody who stands on it.
+    Body,
+}
+
 /// One contact with its past.
 #[derive(Clone, Debug)]
 pub(super) struct Foot {
@@ -134,14 +145,13 @@ impl Foot {
         !self.in_stance && !self.is_object()
     }
 
-    /// Whether it walks or stands there, and presses nothing on purpose.
-    pub(super) fn is_step(&self) -> bool {
-        self.step
-    }
-
-    /// Whether it rests there for longer than anybody taps.
-    pub(super) fn rests(&self, now: Instant) -> bool {
-        self.watch.rests(now)
+    /// Whether it walks, stands or rests on a control that takes something else, and so presses nothing on purpose.
+    pub(super) fn is_step_on(&self, takes: Takes, now: Instant) -> bool {
+        match takes {
+            Takes::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
+            Takes::Hold => self.step || self.watch.stands(now) && self.took_weight_over(),
+            Takes::Body => false,
+        }
     }
 
     fn update(&mut self, contact: &Contact, now: Instant) {
@@ -195,14 +205,16 @@ impl Foot {
 
     /// Whether it may start a press of a control with this `guard`, as far as its past tells.
     ///
-    /// What must not start by accident waits until the foot has shown that it takes no step. What only
+    /// What is stood upon waits until somebody stands there. What must not start by accident waits until the foot has shown that it takes no step. What only
     /// asks waits so where nobody is known to stand there who can have meant it. What is free never waits.
-    pub(super) fn is_meant(&self, guard: Guard, now: Instant) -> bool {
-        let settled = || now.since(self.landed) >= SETTLED && self.is_steady() && !self.took_weight_over();
-        match guard {
-            Guard::Free => true,
-            Guard::Confirm { .. } => self.vouched || settled(),
-            Guard::HoldToRun { .. } => settled(),
+    pub(super) fn is_meant(&self, takes: Takes, guard: Guard, now: Instant) -> bool {
+        let stays = || now.since(self.landed) >= SETTLED && self.is_steady();
+        let settled = || stays() && !self.took_weight_over();
+        match (takes, guard) {
+            (Takes::Body, _) => stays(),
+            (Takes::Tap | Takes::Hold, Guard::Free) => true,
+            (Takes::Tap | Takes::Hold, Guard::Confirm { .. }) => self.vouched || settled(),
+            (Takes::Tap | Takes::Hold, Guard::HoldToRun { .. }) => settled(),
         }
     }
 
@@ -250,12 +262,12 @@ impl Foot {
         self.step |= self.watch.is_step(&burden, now);
     }
 
-    fn role(&self) -> FootRole {
+    fn role(&self, now: Instant) -> FootRole {
         if self.is_object() {
             FootRole::Object
         } else if self.in_stance {
             FootRole::Stance
-        } else if self.step {
+        } else if self.is_step_on(Takes::Tap, now) {
             FootRole::Step
         } else {
             FootRole::Free
@@ -338,10 +350,10 @@ impl Feet {
     }
 
     /// What there is to show of each contact, in their order.
-    pub(super) fn states(&self) -> impl Iterator<Item = FootState> + '_ {
-        self.feet.iter().map(|foot| FootState {
+    pub(super) fn states(&self, now: Instant) -> impl Iterator<Item = FootState> + '_ {
+        self.feet.iter().map(move |foot| FootState {
             contact: foot.id,
-            role: foot.role(),
+            role: foot.role(now),
             person: foot.person,
             weight: self.weight(foot.id),
         })

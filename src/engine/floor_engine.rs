@@ -108,7 +108,7 @@ impl Engine {
         }
         let interaction = &self.interaction;
         self.last_spots.update(contacts, |id| interaction.holds(id));
-        self.last_frame.clone_from(frame);
+        keep(&mut self.last_frame, frame);
         self.follow_clicks();
         self.take_waiting_layout();
         self.take_waiting_page();
@@ -241,7 +241,7 @@ impl Engine {
         snapshot.contacts.clear();
         snapshot.contacts.extend_from_slice(self.sensing.contacts());
         snapshot.feet.clear();
-        snapshot.feet.extend(self.interaction.feet());
+        snapshot.feet.extend(self.interaction.feet(self.last_frame.at));
         snapshot.labels.clear();
         snapshot.labels.extend(self.labels.iter(&self.layout));
         snapshot.page = self.interaction.page();
@@ -342,6 +342,15 @@ impl Engine {
         self.labels.apply(&mut self.layout);
         self.layout_revision = revision;
     }
+}
+
+/// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
+fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
+    let ForceFrame { at, received, forces, quality, may_start } = frame;
+    (kept.at, kept.received) = (*at, *received);
+    kept.forces.clone_from(forces);
+    kept.quality.clone_from(quality);
+    kept.may_start.clone_from(may_start);
 }
 
 fn has_like(layout: &Layout, id: &str, behaviour: &Behaviour) -> bool {

@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::feet::{Feet, Foot};
+use super::feet::{Feet, Foot, Takes};
 use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
@@ -128,8 +128,8 @@ impl Interaction {
     }
 
     /// What there is to show of each contact.
-    pub(super) fn feet(&self) -> impl Iterator<Item = FootState> + '_ {
-        self.feet.states()
+    pub(super) fn feet(&self, now: Instant) -> impl Iterator<Item = FootState> + '_ {
+        self.feet.states(now)
     }
 
     fn held(&self) -> impl Iterator<Item = Held> + '_ {
@@ -211,15 +211,14 @@ impl Interaction {
             return;
         };
         let (feet, hits, page) = (&self.feet, &self.hits, self.page);
-        let works = |contact: &Contact| {
+        let works = |contact: &Contact, foot: &Foot| {
             let widget = hits.widget_at(at.layout, page, contact.centroid);
-            widget.and_then(|widget| at.layout.widgets.get(widget)).is_some_and(|spec| spec.region == index)
+            let spec = widget.and_then(|widget| at.layout.widgets.get(widget));
+            spec.is_some_and(|spec| spec.region == index && !foot.is_step_on(Takes::of(spec), at.now()))
         };
         let may = |contact: &Contact| {
-            feet.of(contact.id).is_none_or(|foot| {
-                foot.may_lead()
-                    && (region.cursor != CursorRule::Working || (!foot.is_step() && works(contact)))
-            })
+            let all = region.cursor != CursorRule::Working;
+            feet.of(contact.id).is_none_or(|foot| foot.may_lead() && (all || works(contact, foot)))
         };
         state.point(region, at.contacts, may, at.now());
         // Taken out while the rest of the interaction works with them.
@@ -290,19 +289,19 @@ impl Interaction {
             return;
         };
         let (foot, weight) = (self.feet.of(contact.id), self.feet.weight(contact.id));
+        let (takes, thresholds) = (Takes::of(spec), spec.behaviour.thresholds().for_weight(weight));
         let slid_on = is_new
-            && contact.force >= spec.behaviour.thresholds().release
+            && contact.force >= thresholds.release
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
-        let unbelieved = contact.force >= spec.behaviour.thresholds().press && !may_start(contact, at.frame);
-        let thresholds = spec.behaviour.thresholds();
-        let input = if foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+        let unbelieved = contact.force >= thresholds.press && !may_start(contact, at.frame);
+        let input = if foot.is_some_and(|foot| foot.is_step_on(takes, now) || foot.is_object()) {
             Input::Stepping { force: contact.force }
         } else if slid_on || unbelieved {
             Input::SlidOn { force: contact.force }
         } else {
             let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
-            let meant = foot.is_none_or(|foot| foot.is_meant(thresholds.guard, now));
+            let meant = foot.is_none_or(|foot| foot.is_meant(takes, thresholds.guard, now));
             self::foot(contact, spec, at.frame, weight, risen && meant && !rivals)
         };
         let emitted = control.step(now, input);
@@ -338,9 +337,9 @@ impl Interaction {
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 let guard = spec.behaviour.thresholds().guard;
-                let rests = is_tapped(spec) && foot.is_some_and(|foot| foot.rests(at.now()));
                 let falls = guard != Guard::Free && foot.is_some_and(Foot::falls);
-                if rests || falls || foot.is_some_and(|foot| foot.is_step() || foot.is_object()) {
+                let is_step = |foot: &Foot| foot.is_step_on(Takes::of(spec), at.now()) || foot.is_object();
+                if falls || foot.is_some_and(is_step) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
                     Input::SlidOff
@@ -444,10 +443,24 @@ fn holds_to_run(layout: &Layout, widget: usize) -> bool {
     spec.is_some_and(|spec| matches!(spec.behaviour.thresholds().guard, Guard::HoldToRun { .. }))
 }
 
-/// Whether a press of it lasts no longer than a tap: what a foot at rest does to it is not meant.
-fn is_tapped(widget: &Widget) -> bool {
-    let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
-    matches!(widget.behaviour, Behaviour::Button(_) | Behaviour::Switch(_)) && !held
+impl Takes {
+    fn of(widget: &Widget) -> Self {
+        let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
+        match &widget.behaviour {
+            Behaviour::Lean(_) => Self::Body,
+            Behaviour::Button(button) if button.gestures.long_press.is_none() && !held => Self::Tap,
+            Behaviour::Switch(_) | Behaviour::Selector(_) if !held => Self::Tap,
+            Behaviour::Button(_)
+            | Behaviour::Switch(_)
+            | Behaviour::Selector(_)
+            | Behaviour::Hold(_)
+            | Behaviour::Slider(_)
+            | Behaviour::Pedal(_)
+            | Behaviour::Pad(_)
+            | Behaviour::Dial(_)
+            | Behaviour::Stepper(_) => Self::Hold,
+        }
+    }
 }
 
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {

@@ -155,7 +155,7 @@ pub(super) struct StepWatch {
 }
 
 impl StepWatch {
-    /// Takes in what the foot carries now; whether it is a step (lines 3 to 6).
+    /// Takes in what the foot carries now; whether it is a step (lines 3, 5 and 6).
     pub(super) fn is_step(&mut self, burden: &Burden, now: Instant) -> bool {
         let Burden { force, share, age, travelled, vouched } = *burden;
         let above = |least: f32, newtons: f32| force >= newtons && share.is_none_or(|share| share >= least);
@@ -163,10 +163,15 @@ impl StepWatch {
         // Of a foot alone on the floor nobody knows whether it is at rest or held there.
         self.rests.note(share.is_some() && above(RESTS, RESTS_N), now);
         let rolls = above(ROLLS, ROLLS_N) && travelled >= ROLLED_M && age <= ROLLED_WITHIN;
+        self.stands.note(above(STANDS, STANDS_N), now);
         self.carries.note(carries, now) >= Some(CARRIES_FOR)
-            || self.stands.note(above(STANDS, STANDS_N), now) >= Some(STANDS_FOR)
             || rolls
             || !vouched && force >= IMPACT_N && age <= IMPACT_WITHIN
+    }
+
+    /// Whether the foot has carried about half of the body for longer than a press lasts (line 4).
+    pub(super) fn stands(&self, now: Instant) -> bool {
+        self.stands.0.is_some_and(|since| now.since(since) >= STANDS_FOR)
     }
 
     /// Whether the foot has been at rest for longer than anybody taps.
@@ -230,7 +235,8 @@ mod tests {
                 travelled: travelled(ms),
                 vouched: true,
             };
-            watch.is_step(&burden, Instant::from_millis(ms))
+            let now = Instant::from_millis(ms);
+            watch.is_step(&burden, now) || watch.stands(now)
         })
     }
 

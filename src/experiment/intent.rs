@@ -175,7 +175,10 @@ impl IntentTable {
             while pressed < effort.presses.div_ceil(3) {
                 let page = trial.engine.layout().clone();
                 let wanted = |widget: &Widget| {
-                    widget.goto.is_none() && widget.is_on(0) && Guarded::of(widget) == guard
+                    widget.goto.is_none()
+                        && widget.is_on(0)
+                        && !is_stood_upon(widget)
+                        && Guarded::of(widget) == guard
                 };
                 let act = body.make_use(&page, wanted, PRESSES)?;
                 if act.intended.is_empty() {
@@ -395,12 +398,18 @@ impl Trial {
     }
 }
 
+/// Whether people stand on it, rather than press it.
+fn is_stood_upon(widget: &Widget) -> bool {
+    matches!(widget.behaviour, Behaviour::Lean(_))
+}
+
 /// Whether a control of this kind has acted.
 fn acts(kind: EventKind, widget: &Widget) -> bool {
     let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
     match widget.behaviour {
         Behaviour::Button(_) if !held => kind == EventKind::Clicked,
         Behaviour::Switch(_) if !held => matches!(kind, EventKind::Changed(_)),
+        Behaviour::Selector(_) if !held => kind == EventKind::Released,
         _ => kind == EventKind::Pressed,
     }
 }

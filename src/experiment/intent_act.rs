@@ -60,7 +60,9 @@ pub(super) struct Act {
 }
 
 /// How long after a press what comes of it may still be told.
-const AFTER: Duration = Duration::from_millis(120);
+///
+/// A click is told only when it can no longer become a double tap.
+const AFTER: Duration = Duration::from_millis(450);
 
 /// Somebody made up from a seed.
 #[derive(Debug)]
