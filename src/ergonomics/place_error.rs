@@ -56,16 +56,16 @@ impl Zone {
 /// Measured on 60 simulated floors of the paper's parts, calibrated, each sensor's zero off by half a
 /// newton: `underfoot experiment place --floors 60`.
 const P95_CM: [[f32; 6]; 3] = [
-    [2.84, 2.15, 1.88, 1.72, 1.65, 1.43],
-    [3.15, 2.19, 1.96, 1.87, 1.84, 1.59],
-    [2.24, 2.14, 2.07, 2.12, 2.06, 1.74],
+    [2.36, 1.96, 1.79, 1.66, 1.63, 1.43],
+    [2.34, 1.99, 1.89, 1.83, 1.81, 1.60],
+    [2.09, 2.04, 2.04, 2.08, 2.07, 1.74],
 ];
 
 /// The same with position maps.
 const MAPPED_P95_CM: [[f32; 6]; 3] = [
-    [2.41, 1.61, 1.21, 0.78, 0.53, 0.33],
-    [2.63, 1.54, 1.18, 0.76, 0.50, 0.36],
-    [1.46, 1.03, 0.80, 0.55, 0.33, 0.35],
+    [2.03, 1.38, 1.07, 0.75, 0.50, 0.33],
+    [1.69, 1.19, 0.94, 0.65, 0.45, 0.34],
+    [1.11, 0.83, 0.61, 0.47, 0.32, 0.35],
 ];
 
 /// The error that 95 in 100 feet keep to which press somewhere in `area` with `force`, in metres:

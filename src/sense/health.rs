@@ -102,6 +102,9 @@ const STRANGE_N: f32 = 2.0;
 /// The share of tiles that must read strangely for the floor to be another one: people stand on a few.
 const MOST_TILES: f32 = 0.4;
 
+/// Floors of fewer tiles are never judged so: two people may stand on most of one.
+const FEWEST_TILES: usize = 16;
+
 impl Health {
     pub(super) fn new(floor: &Floor) -> Self {
         let tiles = floor.geometry.tile_count();
@@ -289,7 +292,9 @@ impl Health {
 
     /// Whether most tiles read what no empty tile of the file's floor should, at the start.
     pub(super) fn is_foreign(&self) -> bool {
-        self.judged == self.seen.len() && self.strange as f32 > MOST_TILES * self.judged as f32
+        self.judged == self.seen.len()
+            && self.judged >= FEWEST_TILES
+            && self.strange as f32 > MOST_TILES * self.judged as f32
     }
 
     /// The sensors in trouble.

@@ -105,7 +105,7 @@ fn lean_lines_1_to_5_a_foot_that_settles_and_leans() {
     assert!(west.x < -0.9 && west.y.abs() < 0.4, "{west}");
     bench.walker.slide_to(there, 0.1);
     bench.wait(50);
-    assert!(bench.pair().length() < 0.2, "{}", bench.pair());
+    assert!(bench.pair().length() < 0.3, "{}", bench.pair());
 }
 
 #[test]

@@ -42,6 +42,12 @@ impl Tracker {
             if foot.age <= LANDS_S || foot.shared {
                 continue;
             }
+            // A sensor that is no longer believed moves what its tile says: that is nobody's doing.
+            let quality = foot.tiles.iter().map(|&position| list[position as usize].quality).max();
+            if quality.is_some_and(|quality| quality != foot.quality) {
+                self.feet[which].startle(quality.unwrap_or_default());
+                continue;
+            }
             let Some(newcomer) = self.newcomer(foot, list) else { continue };
             let others = self.feet.iter().enumerate().filter(|&(other, _)| other != which);
             let nearest = others

@@ -2,7 +2,7 @@
 
 use super::Tracker;
 use super::birth::APART_M;
-use super::foot::{Foot, LANDS_S, SHOE_M};
+use super::foot::{CALM_S, Foot, LANDS_S, SHOE_M};
 use super::lines::{Axis, Lines};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -41,9 +41,6 @@ const ENOUGH_S: f64 = 0.06;
 
 /// How long a foot that has just landed is not doubted, in seconds.
 const FRESH_S: f64 = 0.08;
-
-/// How long after a companion has gone a foot's own sway is not taken for a new one, in seconds.
-const CALM_S: f64 = 0.25;
 
 /// How far from its home the centre of pressure of a foot that stands alone may lie, in metres.
 const AT_HOME_M: f64 = 0.04;

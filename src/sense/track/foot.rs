@@ -6,6 +6,7 @@ use smallvec::SmallVec;
 use super::landing::Landing;
 use super::lines::{Axis, Habit, Lines};
 use super::patch::PatchOnTile;
+use crate::sense::Quality;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -46,6 +47,9 @@ const STRAY_S: f64 = 0.15;
 const HOME_S: f64 = 1.0;
 /// How soon one that stands still alone has.
 const STILL_HOME_S: f64 = 0.03;
+
+/// How long its own sway is not taken for a newcomer after a companion has gone or a sensor was lost, in seconds.
+pub(super) const CALM_S: f64 = 0.25;
 
 /// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
 const RESTLESS_M_S: f64 = 0.03;
@@ -108,6 +112,9 @@ pub(super) struct Foot {
     pub away: f64,
     /// Where the other foot of the same person was last seen near it, and how long ago.
     pub partner: Option<(DVec2, f64)>,
+    /// The worst quality of its tiles, and whether that has just changed.
+    pub quality: Quality,
+    pub startled: bool,
     /// Beside whom it has landed.
     pub landing: Option<Landing>,
     /// Its centre of pressure when it landed, and the one farthest from there since.
@@ -163,6 +170,8 @@ impl Foot {
             still: 0.0,
             away: 0.0,
             partner: None,
+            quality: Quality::Live,
+            startled: false,
             landing: None,
             stray: STRAY_MOST_M,
             landed: centre,
@@ -494,6 +503,13 @@ impl Foot {
         self.past.velocity += beta * offset;
         self.past.force += alpha * gain;
         self.past.force_rate += beta * gain;
+    }
+
+    /// Notes that its sensors are believed more or less than before, and takes nothing of the change for a newcomer.
+    pub(super) fn startle(&mut self, quality: Quality) {
+        self.quality = quality;
+        self.startled = true;
+        self.calm = CALM_S;
     }
 
     /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.

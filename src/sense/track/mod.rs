@@ -265,8 +265,12 @@ impl Tracker {
                 let foot = &mut self.feet[which];
                 let until_now = std::mem::replace(&mut foot.shared, false);
                 foot.alone(tiles.list(), dt);
-                if until_now {
+                let startled = std::mem::take(&mut foot.startled);
+                if until_now || startled {
                     foot.start_over();
+                }
+                if startled {
+                    foot.home = foot.centre();
                 }
                 continue;
             }
