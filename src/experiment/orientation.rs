@@ -202,10 +202,11 @@ impl Figure for Orientation {
         for (shape, colour) in SHAPES.into_iter().zip(COLOURS) {
             let expected = (0..=85).map(|deg| Vec2::new(deg as f32, shape.expected(deg as f32)));
             plot.curve(&mut page, expected, Stroke::new(LINE_M, Ink::faint(colour, 0.55)));
-            for row in self.of(shape, true) {
+            // At 0 degrees all of them point along the normal, and their marks would cover the axes.
+            for row in self.of(shape, true).filter(|row| row.true_deg > 0.0) {
                 page.dot(plot.at(Vec2::new(row.true_deg, row.measured_deg)), colour);
             }
-            for row in self.of(shape, false).filter(|row| row.measured_deg >= 0.0) {
+            for row in self.of(shape, false).filter(|row| row.true_deg > 0.0 && row.measured_deg >= 0.0) {
                 page.cross(plot.at(Vec2::new(row.true_deg, row.measured_deg)), colour);
             }
         }

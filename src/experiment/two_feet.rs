@@ -185,15 +185,22 @@ impl TwoFeet {
                 page.scene.add_circle(at, 0.0006 + 0.00014 * force.max(0.0).sqrt(), dot);
                 // The number stands on the tile's inner side of its sensor.
                 let offset = Vec2::new(0.0, -corner.direction().y * 0.0044 - 0.0010);
-                let kind = Type { size_m: 0.0027, ..Type::PLAIN }.middle();
-                page.text(at + offset, kind, format_args!("{force:.0}"));
+                // Readable also where a shoe's outline runs through it.
+                let middle = at + offset + Vec2::new(0.0, 0.0010);
+                page.scene.add_badge(middle, 0.0024, Ink::solid(THEME.ink), HALO, format_args!("{force:.0}"));
             }
         }
         for (_, force, at) in &self.tiles {
             let at = map.at(*at);
             page.cross(at, THEME.contact);
-            let kind = Type { colour: THEME.contact, size_m: 0.0027, ..Type::PLAIN };
-            page.text(at + Vec2::new(0.0024, -0.0010), kind, format_args!("{:.0} N", force.0));
+            let ink = Ink::solid(THEME.contact);
+            page.scene.add_badge(
+                at + Vec2::new(0.0064, 0.0),
+                0.0024,
+                ink,
+                HALO,
+                format_args!("{:.0} N", force.0),
+            );
         }
         self.draw_truth(page, map);
         for contact in &self.eq4 {
@@ -214,6 +221,9 @@ impl TwoFeet {
         }
     }
 }
+
+/// What numbers stand on.
+const HALO: Paint = Paint { fill: Some(Ink::faint(THEME.plate, 0.75)), stroke: None };
 
 /// Its 95 % ellipse, a cross, and its force on a plate `badge` page metres north of it.
 fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
