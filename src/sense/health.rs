@@ -94,16 +94,32 @@ pub(super) struct Health {
     judged: usize,
     strange: usize,
     seen: Vec<bool>,
+    /// How many tiles of those carried something, which says nothing of their zeros.
+    laden: usize,
+    /// Whether boards make the newtons themselves: then the file says nothing of them.
+    by_boards: bool,
+}
+
+/// By whose law a reading became a force.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Law {
+    /// The one measured and kept in the floor file.
+    Measured,
+    /// The nominal part's: nobody has measured its own.
+    Nominal,
+    /// The board's, which sends newtons.
+    Board,
 }
 
 /// How much a sensor may read at first, in newtons, on a floor that is the file's: far more than zeros drift in a day.
 const STRANGE_N: f32 = 2.0;
 
-/// The share of tiles that must read strangely for the floor to be another one: people stand on a few.
-const MOST_TILES: f32 = 0.4;
+/// From which force on a tile is taken to carry a foot: more than another floor's zeros add up to.
+const LADEN_N: f32 = 25.0;
 
-/// Floors of fewer tiles are never judged so: two people may stand on most of one.
-const FEWEST_TILES: usize = 16;
+/// The share of empty tiles that must read strangely for the floor to be another one, and how many there must be.
+const MOST_TILES: f32 = 0.4;
+const FEWEST_TILES: usize = 4;
 
 impl Health {
     pub(super) fn new(floor: &Floor) -> Self {
@@ -131,6 +147,8 @@ impl Health {
             judged: 0,
             strange: 0,
             seen: vec![false; tiles],
+            laden: 0,
+            by_boards: false,
         }
     }
 
@@ -139,11 +157,12 @@ impl Health {
         self.zeros[tile][corner]
     }
 
-    /// Notes that a sensor has read `force` newtons (tared, zero taken off), at this end of its
-    /// converter; `guessed` if nobody has measured its law.
-    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, guessed: bool) {
+    /// Notes that a sensor has read `force` newtons (tared, zero taken off) by this law, at this end of its
+    /// converter.
+    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, law: Law) {
         self.ends[tile as usize][corner] = end;
-        self.guessed[tile as usize] |= guessed;
+        self.guessed[tile as usize] |= law == Law::Nominal;
+        self.by_boards |= law == Law::Board;
         let is_loud = force.abs() > LOUD_N || end.is_odd();
         // A tile may come four times if its sensors are on boards of their own, never more often.
         if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
@@ -247,8 +266,10 @@ impl Health {
         if let Some(block) = slow.finish(at) {
             if !std::mem::replace(&mut self.seen[tile], true) {
                 self.judged += 1;
+                let laden = block.means.iter().sum::<f32>().abs() > LADEN_N;
                 let strange = block.means.iter().filter(|mean| mean.abs() > STRANGE_N).count() > 1;
-                self.strange += usize::from(strange);
+                self.laden += usize::from(laden);
+                self.strange += usize::from(strange && !laden);
             }
             if !guessed[tile] && !foreign {
                 slow.judge(&block, ends[tile], alone, sensors);
@@ -292,9 +313,9 @@ impl Health {
 
     /// Whether most tiles read what no empty tile of the file's floor should, at the start.
     pub(super) fn is_foreign(&self) -> bool {
-        self.judged == self.seen.len()
-            && self.judged >= FEWEST_TILES
-            && self.strange as f32 > MOST_TILES * self.judged as f32
+        let empty = self.judged - self.laden;
+        let all_seen = self.judged == self.seen.len() && !self.by_boards;
+        all_seen && empty >= FEWEST_TILES && self.strange as f32 > MOST_TILES * empty as f32
     }
 
     /// The sensors in trouble.

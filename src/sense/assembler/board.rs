@@ -1,7 +1,7 @@
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
-use crate::sense::health::{End, Health};
+use crate::sense::health::{End, Health, Law};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
@@ -185,7 +185,7 @@ impl BoardTrack {
     ) -> u64 {
         let mut bad = 0;
         let foreign = health.is_foreign();
-        let mut put = |channel: &Channel, force: f32, end: End, guessed: bool| {
+        let mut put = |channel: &Channel, force: f32, end: End, law: Law| {
             let (tile, corner) = (channel.tile as usize, channel.corner.index());
             let force = force - channel.tare - health.zero(tile, corner);
             let own = if !force.is_finite() {
@@ -193,8 +193,12 @@ impl BoardTrack {
                 Quality::Faulty
             } else {
                 frame.forces[tile][corner] = force;
-                health.note(channel.tile, corner, force, end, guessed);
-                if end == End::High || guessed || foreign { Quality::Degraded } else { Quality::Live }
+                health.note(channel.tile, corner, force, end, law);
+                if end == End::High || law == Law::Nominal || foreign {
+                    Quality::Degraded
+                } else {
+                    Quality::Live
+                }
             };
             frame.quality[tile][corner] = own.max(quality);
         };
@@ -204,13 +208,14 @@ impl BoardTrack {
                     let Some(channel) = channel else { continue };
                     let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
                     let end = count.map_or(End::Within, |count| channel.end(count));
-                    put(channel, force, end, channel.calibration == Calibration::NOMINAL);
+                    let is_nominal = channel.calibration == Calibration::NOMINAL;
+                    put(channel, force, end, if is_nominal { Law::Nominal } else { Law::Measured });
                 }
             }
             Readings::Newtons(forces) => {
                 for (channel, &force) in self.channels.iter().zip(forces) {
                     let Some(channel) = channel else { continue };
-                    put(channel, force, End::Within, false);
+                    put(channel, force, End::Within, Law::Board);
                 }
             }
         }
