@@ -13,7 +13,7 @@ use crate::floor::Rect;
 use crate::layout::{Layout, Widget};
 use crate::sim::{MoveError, Performance, Person, Script};
 use crate::units::Newtons;
-use crate::widget::Guard;
+use crate::widget::{Behaviour, Guard};
 
 /// Walking speeds, in metres per second: slow, usual, brisk.
 ///
@@ -59,10 +59,8 @@ pub(super) struct Act {
     pub(super) intended: Vec<Intended>,
 }
 
-/// How long after a press what comes of it may still be told.
-///
-/// A click is told only when it can no longer become a double tap.
-const AFTER: Duration = Duration::from_millis(450);
+/// How long after a press what comes of it may still be told; besides the time in which a tap may become a double tap.
+const AFTER: Duration = Duration::from_millis(120);
 
 /// Somebody made up from a seed.
 #[derive(Debug)]
@@ -139,9 +137,10 @@ impl Somebody {
             for _ in 0..times {
                 let widget = choice[self.rng.random_range(0..choice.len())];
                 let from = user.duration();
+                let after = AFTER + double_tap(&layout.widgets[widget]);
                 self.operate(&mut user, &layout.widgets[widget])?;
-                intended.push(Intended { widget, from, to: user.duration() + AFTER });
-                user.wait(AFTER + self.millis(200, 1200));
+                intended.push(Intended { widget, from, to: user.duration() + after });
+                user.wait(after + self.millis(150, 700));
             }
         }
         let away = self.rng.random_range(PI..TAU);
@@ -244,4 +243,12 @@ fn stance(layout: &Layout, bounds: Rect) -> Vec2 {
         .stances
         .first()
         .map_or(Vec2::new(bounds.centre().x, bounds.min.y + 0.15), |stance| stance.area.centre())
+}
+
+/// How long a click waits for a second tap.
+fn double_tap(widget: &Widget) -> Duration {
+    match &widget.behaviour {
+        Behaviour::Button(button) => button.gestures.double_tap.unwrap_or_default(),
+        _ => Duration::ZERO,
+    }
 }
