@@ -103,7 +103,13 @@ impl Guarded {
                 continue;
             }
             match &mut widget.behaviour {
-                Behaviour::Button(button) => button.thresholds.guard = guard,
+                Behaviour::Button(button) => {
+                    button.thresholds.guard = guard;
+                    if self == Self::Confirm {
+                        // As in a layout: two presses are what the guard takes.
+                        button.gestures.double_tap = None;
+                    }
+                }
                 Behaviour::Switch(switch) if self == Self::Confirm => switch.thresholds.guard = guard,
                 _ => {}
             }

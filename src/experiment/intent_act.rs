@@ -35,6 +35,9 @@ const FORCE_AT_LEAST: f32 = 1.2;
 
 const MOST_OF_WEIGHT: f32 = 0.5;
 
+/// From the middle of a shoe to its side, and a little more, in metres.
+const HALF_SHOE_M: f32 = 0.07;
+
 /// How near to a control people stand who did not reach it from where they stood, in metres.
 const NEAR_M: f32 = 0.60;
 
@@ -191,7 +194,11 @@ impl Somebody {
                 // Stands before the control then, and near enough to it.
                 let place = user.place().unwrap_or_default();
                 let nearer = place.y.max(aim.y - NEAR_M);
-                user.sidestep(Vec2::new(aim.x + 0.05 * self.sign(), nearer))?;
+                // With both feet on it: nobody stands over the edge of a floor.
+                let edge = 0.5 * self.person.stand_width_m + HALF_SHOE_M;
+                let beside =
+                    (aim.x + 0.05 * self.sign()).clamp(self.bounds.min.x + edge, self.bounds.max.x - edge);
+                user.sidestep(Vec2::new(beside, nearer))?;
                 user.wait(self.millis(800, 1500));
                 aim
             }
