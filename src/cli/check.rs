@@ -19,6 +19,9 @@ pub(crate) struct Args {
     /// Folder of control kinds to add; without it, a `widgets` folder beside each layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     widgets: Option<PathBuf>,
+    /// Folder of effects to add; without it, an `effects` folder beside each layout or beside its folder.
+    #[arg(long, value_name = "DIR")]
+    effects: Option<PathBuf>,
     /// Print the diagnostics as one JSON array on standard output.
     #[arg(long)]
     json: bool,
@@ -67,7 +70,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// Everything there is to say of the layout at `path`.
 fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
-    let files = LayoutArgs { layout: Some(path.to_path_buf()), widgets: args.widgets.clone() };
+    let files = LayoutArgs {
+        layout: Some(path.to_path_buf()),
+        widgets: args.widgets.clone(),
+        effects: args.effects.clone(),
+    };
     let read = files.kinds().and_then(|kinds| schema::load_layout(path, &kinds, &floor.geometry));
     match read {
         Ok(loaded) => {

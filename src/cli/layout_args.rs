@@ -3,7 +3,7 @@ use std::path::{Path, PathBuf};
 use clap::Args;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
-use underfoot::schema::{self, Diagnostics, Kinds};
+use underfoot::schema::{self, Diagnostics, Effects, Kinds};
 
 use super::failure::Failure;
 
@@ -16,6 +16,9 @@ pub(crate) struct LayoutArgs {
     /// Folder of control kinds to add; without it, a `widgets` folder beside the layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     pub(crate) widgets: Option<PathBuf>,
+    /// Folder of effects to add; without it, an `effects` folder beside the layout or beside its folder.
+    #[arg(long, value_name = "DIR")]
+    pub(crate) effects: Option<PathBuf>,
 }
 
 /// The layout that stands for none: the main job's.
@@ -48,7 +51,11 @@ impl LayoutArgs {
 
     /// The shipped kinds and the user's.
     pub(crate) fn kinds(&self) -> Result<Kinds, Diagnostics> {
-        let mut kinds = Kinds::builtin();
+        let mut effects = Effects::builtin();
+        if let Some(folder) = self.effects_folder() {
+            effects.read_folder(&folder)?;
+        }
+        let mut kinds = Kinds::shipped(effects)?;
         if let Some(folder) = self.kinds_folder() {
             kinds.read_folder(&folder)?;
         }
@@ -60,7 +67,20 @@ impl LayoutArgs {
         if let Some(folder) = &self.widgets {
             return Some(folder.clone());
         }
+        self.beside("widgets")
+    }
+
+    /// The folder with the user's effects, if there is one.
+    pub(crate) fn effects_folder(&self) -> Option<PathBuf> {
+        // A built-in layout lies nowhere: what is here is the user's.
+        let here =
+            || Some(PathBuf::from("effects")).filter(|folder| self.path().is_none() && folder.is_dir());
+        self.effects.clone().or_else(|| self.beside("effects")).or_else(here)
+    }
+
+    /// The folder of this name beside the layout or beside its folder.
+    fn beside(&self, name: &str) -> Option<PathBuf> {
         let home = std::path::absolute(self.path()?).ok()?;
-        home.ancestors().skip(1).take(2).map(|folder| folder.join("widgets")).find(|folder| folder.is_dir())
+        home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
     }
 }

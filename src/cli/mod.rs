@@ -8,6 +8,7 @@ mod calibrate;
 mod check;
 mod experiment;
 mod failure;
+mod feel;
 mod floor_args;
 mod layout_args;
 mod measure;
@@ -59,6 +60,8 @@ enum Command {
     Check(check::Args),
     /// Every OSC address of a layout, in and out, with its arguments.
     Addresses(addresses::Args),
+    /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
+    Feel(feel::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
@@ -99,6 +102,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Session(args)) => session::run(&args),
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Feel(args)) => feel::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),

@@ -88,7 +88,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let desk = Desk::new(commands.clone(), news);
     let _watch = watch(&args.layout, floor.geometry, &desk)?;
     let choices = args.choices();
-    obey(wished, args.layout.clone(), choices.clone(), floor.geometry, desk, commands);
+    let told = Obeyed {
+        files: args.layout.clone(),
+        choices: choices.clone(),
+        geometry: floor.geometry,
+        desk,
+        commands,
+    };
+    told.obey(wished, notice_sender.clone());
 
     let mut told = args.outputs.open(&floor.geometry)?;
     told.push(ToWindow { events: event_sender, missed: 0 });
@@ -127,6 +134,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         scopes,
         feet: stage.feet,
         choices,
+        effects: args.layout.kinds()?.effects().iter().cloned().collect(),
         commands: wishes,
     };
     let shown = preview::run(input, &PreviewOptions::default());
@@ -258,33 +266,80 @@ fn watch(files: &LayoutArgs, geometry: Geometry, desk: &Desk) -> Result<Option<W
     Watch::start(files, geometry, move |read| desk.take(&name, read.map_err(|wrong| wrong.to_string())))
 }
 
-/// Does what the person at the window wants, on a thread that ends with the window.
-fn obey(
-    wished: Receiver<PreviewCommand>,
+/// What the wishes of the person at the window need.
+struct Obeyed {
     files: LayoutArgs,
     choices: Vec<String>,
     geometry: Geometry,
     desk: Desk,
     commands: Sender<Command>,
-) {
-    thread::spawn(move || {
-        for wish in wished {
-            let control = match wish {
-                PreviewCommand::Open(choice) => {
-                    let name = choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str);
-                    let chosen = LayoutArgs { layout: Some(name.into()), widgets: files.widgets.clone() };
-                    desk.take(name, chosen.load(&geometry).map_err(|failure| failure.to_string()));
-                    continue;
+}
+
+impl Obeyed {
+    /// Does what the person at the window wants, on a thread that ends with the window.
+    fn obey(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
+        thread::spawn(move || {
+            for wish in wished {
+                let command = match wish {
+                    PreviewCommand::Open(choice) => {
+                        self.open(choice);
+                        continue;
+                    }
+                    PreviewCommand::SaveEffect { name, text } => {
+                        // A window that is closed already need not know.
+                        let _ = notices.send(self.save(&name, &text));
+                        continue;
+                    }
+                    PreviewCommand::Enable { id, enabled: true } => {
+                        Command::Control(ControlMessage::Enable { id })
+                    }
+                    PreviewCommand::Enable { id, enabled: false } => {
+                        Command::Control(ControlMessage::Disable { id })
+                    }
+                    PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
+                    PreviewCommand::Feel { effect, gesture, tile } => {
+                        let tile = u16::try_from(tile).unwrap_or(u16::MAX);
+                        Command::Audition { effect, gesture: Box::new(gesture), tile }
+                    }
+                };
+                if self.commands.send(command).is_err() {
+                    break;
                 }
-                PreviewCommand::Enable { id, enabled: true } => ControlMessage::Enable { id },
-                PreviewCommand::Enable { id, enabled: false } => ControlMessage::Disable { id },
-                PreviewCommand::Set { id, value } => ControlMessage::Set { id, value },
-            };
-            if commands.send(Command::Control(control)).is_err() {
-                break;
             }
+        });
+    }
+
+    fn open(&mut self, choice: usize) {
+        let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
+        self.files.layout = Some(PathBuf::from(&name));
+        self.show(&name);
+    }
+
+    fn show(&self, name: &str) {
+        self.desk.take(name, self.files.load(&self.geometry).map_err(|failure| failure.to_string()));
+    }
+
+    /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
+    fn save(&self, name: &str, text: &str) -> String {
+        let folder = self.files.effects_folder().unwrap_or_else(|| {
+            let beside = self.files.path().and_then(std::path::Path::parent);
+            beside.map_or_else(|| PathBuf::from("effects"), |folder| folder.join("effects"))
+        });
+        let path = folder.join(format!("{name}.ron"));
+        if let Err(error) = std::fs::create_dir_all(&folder) {
+            return format!("{} can't be made: {error}", folder.display());
         }
-    });
+        match schema::save_text(text, &path) {
+            Ok(_) => {
+                let layout = self.files.layout.as_ref();
+                self.show(
+                    &layout.map_or_else(|| DEFAULT_LAYOUT.to_owned(), |layout| layout.display().to_string()),
+                );
+                format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
+            }
+            Err(error) => error.to_string(),
+        }
+    }
 }
 
 /// Passes events on to the window.

@@ -1,4 +1,4 @@
-//! Live reload: a saved layout or kind is on the floor at once.
+//! Live reload: a saved layout, kind or effect is on the floor at once.
 
 use std::path::PathBuf;
 use std::time::Duration;
@@ -22,7 +22,7 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Calls `tell` with the layout, or with what is wrong with it, each time its file or a kind's file is saved.
+    /// Calls `tell` with the layout, or with what is wrong with it, each time its file or a kind's or an effect's file is saved.
     ///
     /// Gives `None` for a built-in layout, which has no file.
     pub(crate) fn start(
@@ -31,11 +31,12 @@ impl Watch {
         tell: impl Fn(Result<Layout, Diagnostics>) + Send + 'static,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = files.path().map(PathBuf::from) else { return Ok(None) };
-        let kinds_folder = files.kinds_folder();
+        let folders: Vec<PathBuf> =
+            [files.kinds_folder(), files.effects_folder()].into_iter().flatten().collect();
         // Many editors replace the file, which would end a watch on the file itself.
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.map_or_else(|| PathBuf::from("."), PathBuf::from);
-        let watched = [Some(folder), kinds_folder.clone()];
+        let watched: Vec<PathBuf> = std::iter::once(folder).chain(folders.iter().cloned()).collect();
         let files = files.clone();
         let name = path.file_name().map(ToOwned::to_owned);
         let on_change = move |events: DebounceEventResult| {
@@ -43,7 +44,7 @@ impl Watch {
             let concerns_us = events.iter().filter(|event| !event.kind.is_access()).any(|event| {
                 event.paths.iter().any(|changed| {
                     changed.file_name() == name.as_deref()
-                        || kinds_folder.as_ref().is_some_and(|folder| {
+                        || folders.iter().any(|folder| {
                             changed.extension().is_some_and(|ending| ending == "ron")
                                 && changed.parent().map(std::path::Path::file_name)
                                     == Some(folder.file_name())
@@ -58,7 +59,7 @@ impl Watch {
             Failure::Other(format!("the layout's folder can't be watched for changes: {error}"))
         };
         let mut debouncer = new_debouncer(QUIET, None, on_change).map_err(failed)?;
-        for folder in watched.into_iter().flatten() {
+        for folder in watched {
             debouncer.watch(&folder, RecursiveMode::NonRecursive).map_err(failed)?;
         }
         Ok(Some(Self { _debouncer: debouncer }))

@@ -85,7 +85,7 @@ impl Responses {
             let cue = Cue { at: event.at, received: now.received, spots, ..Cue::default() };
             if let (EventKind::Changed(Value::Number(_) | Value::Pair(_)), Some(way)) = (event.kind, way) {
                 self.ends.reach(widget, spec, way, id, now);
-                if let Some((click, manner)) = stop(spec, way, event, now) {
+                if let Some((click, manner)) = self.stop((widget, spec), way, event, now) {
                     cues.push(Cue { click, manner, ..cue });
                 }
                 continue;
@@ -95,7 +95,7 @@ impl Responses {
                 .any(|other| other.id == event.id && matches!(other.kind, EventKind::Changed(_)));
             if event.kind == EventKind::Pressed && !changes && self.shares.is_at_end(widget) && steps(spec) {
                 let way = self.shares.stay(widget);
-                if let Some((click, manner)) = stop(spec, way, event, now) {
+                if let Some((click, manner)) = self.stop((widget, spec), way, event, now) {
                     cues.push(Cue { click, manner, ..cue });
                 }
                 continue;
@@ -105,6 +105,40 @@ impl Responses {
                 self.player.play(effect, id.0, release, cue, cues);
             }
         }
+    }
+
+    /// The click of the end or the step that a number comes to on this `way`; `None` if there is none.
+    fn stop(
+        &mut self,
+        (number, widget): (usize, &Widget),
+        way: Way,
+        event: &WidgetEvent,
+        now: Now<'_>,
+    ) -> Option<(Click, Manner)> {
+        if let (Some(high), Some(effect)) = (way.end, &widget.feel.end) {
+            let velocity =
+                event.contact.and_then(|id| now.contact(id)).map(|contact| contact.velocity.length());
+            let click = match &effect.kind {
+                EffectKind::EndStop(end) => end.click_at(high, velocity.unwrap_or(0.0)),
+                EffectKind::Click { press, .. } => press.clone(),
+                _ => return None,
+            };
+            return Some((click, effect.manner));
+        }
+        let effect = widget.feel.step.as_ref()?;
+        let is_stop = match event.kind {
+            EventKind::Changed(value) => widget.behaviour.is_stop(value),
+            _ => false,
+        };
+        let click = match &effect.kind {
+            EffectKind::Detents(detents) if detents.every > 0.0 => {
+                detents.click_at(self.shares.detent(number, detents, way)?, way.to > way.from)
+            }
+            EffectKind::Detents(detents) if is_stop => detents.click_at(way.to, way.to >= way.from),
+            EffectKind::Click { press, .. } if is_stop => press.clone(),
+            _ => return None,
+        };
+        Some((click, effect.manner))
     }
 
     /// Says what lasts: frictions under feet that slide, ends that feet push against, what is held; and goes on
@@ -164,33 +198,6 @@ fn answering(widget: &Widget, event: EventKind) -> Option<&Arc<Effect>> {
 /// Whether it counts by presses, so that one at its end should say so.
 fn steps(widget: &Widget) -> bool {
     matches!(widget.behaviour, Behaviour::Stepper(_)) && widget.feel.end.is_some()
-}
-
-/// The click of the end or the step that a number comes to on this `way`; `None` if there is none.
-fn stop(widget: &Widget, way: Way, event: &WidgetEvent, now: Now<'_>) -> Option<(Click, Manner)> {
-    if let (Some(high), Some(effect)) = (way.end, &widget.feel.end) {
-        let velocity = event.contact.and_then(|id| now.contact(id)).map(|contact| contact.velocity.length());
-        let click = match &effect.kind {
-            EffectKind::EndStop(end) => end.click_at(high, velocity.unwrap_or(0.0)),
-            EffectKind::Click { press, .. } => press.clone(),
-            _ => return None,
-        };
-        return Some((click, effect.manner));
-    }
-    let effect = widget.feel.step.as_ref()?;
-    let is_stop = match event.kind {
-        EventKind::Changed(value) => widget.behaviour.is_stop(value),
-        _ => false,
-    };
-    let click = match &effect.kind {
-        EffectKind::Detents(detents) if detents.every > 0.0 => {
-            detents.click_at(detents.passed(way.from, way.to)?, way.to > way.from)
-        }
-        EffectKind::Detents(detents) if is_stop => detents.click_at(way.to, way.to >= way.from),
-        EffectKind::Click { press, .. } if is_stop => press.clone(),
-        _ => return None,
-    };
-    Some((click, effect.manner))
 }
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.

@@ -14,6 +14,7 @@
 //! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
+//! | [`EffectSheet`] | what an effect feels like: waveform, spectrum, figures | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
 //!
 //! ```
@@ -26,6 +27,7 @@
 //! ```
 
 mod chart;
+mod effect;
 mod errors;
 mod figure;
 mod follow;
@@ -44,6 +46,7 @@ mod taps;
 mod two_feet;
 mod wilson;
 
+pub use effect::EffectSheet;
 pub use errors::{Errors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};

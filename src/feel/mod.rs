@@ -9,9 +9,11 @@
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
 //! free of allocation, locks, logs and system calls.
 
+mod audition;
 mod click;
 mod cue;
 mod effect;
+mod heard;
 mod limiter;
 mod mix;
 mod modal;
@@ -22,12 +24,14 @@ mod scope;
 mod sender;
 mod voice;
 
+pub use audition::{Audition, Gesture, Moment, audition};
 pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
 pub use effect::{
-    Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Lasting,
+    Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Knob, Lasting,
     MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, Part, Push, Resonance, Sequence, StickSlip, Texture,
     Tone, TonePoint, Use,
 };
+pub use heard::{Heard, heard};
 pub use modal::ModalBank;
 pub use player::{Player, key};
 pub use renderer::{Onset, Renderer, RendererConfig, renderer};

@@ -11,6 +11,7 @@ use super::feet::Feet;
 use super::floor_view::Grip;
 use super::inbox::Inbox;
 use super::looked::Looked;
+use super::panel::Tuner;
 use super::rate::Rate;
 use super::scopes::Scopes;
 use super::style;
@@ -38,6 +39,8 @@ pub(super) struct App {
     /// Whether sensor forces are drawn on the floor.
     pub(super) marks: bool,
     pub(super) choices: Vec<String>,
+    /// `None` where there are no effects to tune.
+    pub(super) tuner: Option<Tuner>,
     commands: Sender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
@@ -61,6 +64,7 @@ impl App {
             source: input.source,
             snapshots: input.snapshots,
             choices: input.choices,
+            tuner: Tuner::new(input.effects),
             commands: input.commands,
             grip: Grip::default(),
             watch: Watch::default(),
@@ -83,6 +87,7 @@ impl App {
         self.help_bar(ui);
         self.notices(ui);
         self.side_panel(ui);
+        self.tuner_panel(ui);
         self.problems(ui);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| self.floor_view(ui));

@@ -95,6 +95,12 @@ impl App {
         if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
             self.marks = !self.marks;
         }
+        if let Some(tuner) = &mut self.tuner {
+            let button = ui.add(egui::Button::selectable(tuner.is_open, "Effects").frame_when_inactive(true));
+            if button.on_hover_text("Tune what controls feel like: see, hear and save").clicked() {
+                tuner.is_open = !tuner.is_open;
+            }
+        }
         let Some((feet, _)) = &mut self.feet else { return };
         let stands = feet.standing().is_some();
         let button = ui.add(egui::Button::selectable(stands, "Stance foot").frame_when_inactive(true));

@@ -4,9 +4,11 @@ use std::sync::mpsc::{Receiver, Sender};
 use glam::Vec2;
 
 use crate::engine::Snapshot;
+use crate::feel::{Effect, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::scene::Shoe;
+use crate::schema::NamedEffect;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
 /// A shoe that the window moves; its `length_m` is the sole's, a centimetre more than the bare foot's.
@@ -38,6 +40,8 @@ pub struct PreviewInput {
     pub feet: Option<Box<dyn FootSink>>,
     /// Names of layouts that can be opened from the window; empty if there is no choice.
     pub choices: Vec<String>,
+    /// The effects that can be tuned, by name; empty if there is no tuner.
+    pub effects: Vec<NamedEffect>,
     /// What the person at the window wants.
     pub commands: Sender<PreviewCommand>,
 }
@@ -82,6 +86,22 @@ pub enum PreviewCommand {
         id: WidgetId,
         /// What it shall hold.
         value: Value,
+    },
+    /// Play an effect on a tile, in place of what was being played so.
+    Feel {
+        /// What is felt.
+        effect: Arc<Effect>,
+        /// What an imagined foot does.
+        gesture: Gesture,
+        /// Index of the tile.
+        tile: usize,
+    },
+    /// Keep an effect in the folder `effects`.
+    SaveEffect {
+        /// Its name, which is that of its file.
+        name: String,
+        /// The file's text.
+        text: String,
     },
 }
 

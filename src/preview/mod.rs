@@ -18,6 +18,7 @@ mod scopes;
 mod style;
 #[cfg(test)]
 mod tests;
+mod trace;
 mod transform;
 mod watch;
 

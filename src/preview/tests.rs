@@ -86,6 +86,7 @@ impl Room {
             scopes: Some(Box::new(Silence)),
             feet: simulated.then_some(sink),
             choices: vec!["Map navigation".into(), "Surgery".into()],
+            effects: crate::schema::Effects::builtin().iter().cloned().collect(),
             commands: sender,
         };
         let app = App::new(input, &PreviewOptions::default());
@@ -440,4 +441,39 @@ fn why_there_is_no_window_is_said_without_source_lines() {
     let winit = "winit EventLoopError: os error at /somewhere/linux/mod.rs:765: neither WAYLAND_DISPLAY nor DISPLAY is set.";
     assert_eq!(super::reason(winit), "neither WAYLAND_DISPLAY nor DISPLAY is set");
     assert_eq!(super::reason("no matching configs"), "no matching configs");
+}
+
+#[test]
+fn an_effect_is_tuned_played_and_saved() {
+    let mut room = Room::of(true, 1280.0, 900.0);
+    assert!(!room.says("Revert"));
+    room.window.get_by_label("Effects").click();
+    room.run(3);
+    room.window.get_by_label("Play").click();
+    room.run(3);
+    let Ok(PreviewCommand::Feel { effect, tile, .. }) = room.commands.try_recv() else {
+        panic!("nothing is played")
+    };
+    assert_eq!(effect.kind.name(), "Click");
+    assert!(tile < 36);
+    // A slider to its far end: seen at once, and played once the hand rests.
+    let level = room.window.get_by_label("level_n").rect();
+    let end = Pos2::new(level.right() - 70.0, level.center().y);
+    room.press(end);
+    room.release(end);
+    room.run(20);
+    let Ok(PreviewCommand::Feel { effect: louder, .. }) = room.commands.try_recv() else {
+        panic!("not played by itself")
+    };
+    assert_ne!(louder, effect);
+    assert!(!room.window.get_by_label("Revert").accesskit_node().is_disabled());
+    room.window.get_by_label("Save as RON").click();
+    room.run(3);
+    let Ok(PreviewCommand::SaveEffect { name, text }) = room.commands.try_recv() else { panic!("not saved") };
+    let (saved, _) = crate::schema::parse_effect(&text, "saved.ron", &Default::default()).unwrap();
+    assert_eq!((name.as_str(), &saved.effect), ("crisp_click", &louder));
+    assert_eq!(room.window.unnamed_widgets(), Vec::<String>::new());
+    room.window.get_by_label("Effects").click();
+    room.run(3);
+    assert!(!room.says("Revert"));
 }

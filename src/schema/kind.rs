@@ -40,19 +40,22 @@ impl Kinds {
     /// The kinds and effects that come with underfoot: the files of `widgets/` and `effects/`, compiled in.
     #[must_use]
     pub fn builtin() -> Self {
-        Self::shipped(Effects::builtin())
+        let kinds = Self::shipped(Effects::builtin());
+        // That each of them reads without a warning is tested.
+        debug_assert!(kinds.is_ok(), "{kinds:?}");
+        kinds.unwrap_or_default()
     }
 
-    /// The kinds that come with underfoot, felt as `effects` say, which replace the shipped ones.
-    #[must_use]
-    pub fn shipped(effects: Effects) -> Self {
+    /// The kinds that come with underfoot, felt as `effects` say, in which some may replace the shipped ones.
+    ///
+    /// # Errors
+    /// What a shipped kind can't use: an effect that it names is missing, or can't be played where it is.
+    pub fn shipped(effects: Effects) -> Result<Self, Diagnostics> {
         let mut kinds = Self::knowing(effects);
         for (name, text) in builtin::KINDS {
-            // That each of them reads without a warning is tested.
-            let added = kinds.add(text, name);
-            debug_assert!(added.is_ok(), "{added:?}");
+            kinds.add(text, name)?;
         }
-        kinds
+        Ok(kinds)
     }
 
     /// No kinds yet, but effects for kinds to name.

@@ -9,6 +9,7 @@
 //!   -page, control, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 
+mod ahap;
 mod area;
 mod arrange;
 mod behaviour;
@@ -50,9 +51,10 @@ mod units;
 mod version;
 mod words;
 
+pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
-pub use effect::{Effects, NamedEffect, parse_effect, write_effect, write_named_effect};
+pub use effect::{Effects, NamedEffect, is_effect_name, parse_effect, write_effect, write_named_effect};
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use kind::{Kind, Kinds};

@@ -10,6 +10,7 @@ mod reference;
 mod request;
 mod server;
 mod tare;
+mod trial;
 
 pub use measure::{ForceRange, ForceWatch, TileRange};
 pub use reference::{Argument, Direction, Entry, Reference};

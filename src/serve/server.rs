@@ -1,3 +1,4 @@
+use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
@@ -6,8 +7,9 @@ use tracing::{info, warn};
 use triple_buffer::Input;
 
 use super::request;
+use super::trial::Trial;
 use crate::engine::{Engine, LinkState, Snapshot};
-use crate::feel::CueSender;
+use crate::feel::{CueSender, Effect, Gesture};
 use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
@@ -45,6 +47,15 @@ pub enum Command {
     SetLayout(Box<Layout>),
     /// What an app may also ask over OSC.
     Control(ControlMessage),
+    /// Play an effect on one tile as an imagined foot would, in place of what was being played so.
+    Audition {
+        /// What is felt.
+        effect: Arc<Effect>,
+        /// What the foot does.
+        gesture: Box<Gesture>,
+        /// Index of the tile.
+        tile: u16,
+    },
 }
 
 /// Whether there is more to come after a turn.
@@ -62,6 +73,8 @@ pub struct Server {
     assembler: Assembler,
     engine: Engine,
     feel: Option<CueSender>,
+    /// An effect that somebody tries.
+    trial: Option<Trial>,
     actuators: Option<Box<dyn ActuatorSink>>,
     events: Option<Box<dyn EventSink>>,
     snapshots: Option<Input<Snapshot>>,
@@ -103,6 +116,7 @@ impl Server {
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
             engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
             feel: None,
+            trial: None,
             actuators: None,
             events: None,
             snapshots: None,
@@ -239,7 +253,14 @@ impl Server {
                 // What could not be sent is counted by the sender.
                 feel.send(cue);
             }
-            feel.rubs(step.rubs);
+            match &mut self.trial {
+                Some(trial) => {
+                    if !trial.step(at, step.rubs, feel) {
+                        self.trial = None;
+                    }
+                }
+                None => feel.rubs(step.rubs),
+            }
         }
         if let Some(events) = &mut self.events {
             events.events(step.events);
@@ -417,6 +438,9 @@ impl Server {
             match command {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
                 Command::Control(message) => self.meet(&message.into()),
+                Command::Audition { effect, gesture, tile } => {
+                    self.trial = Some(Trial::new(effect, *gesture, tile));
+                }
             }
         }
     }

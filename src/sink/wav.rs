@@ -351,7 +351,7 @@ fn numbered(path: &Path, number: usize) -> PathBuf {
     path.with_file_name(name)
 }
 
-fn file_error(path: &Path, error: hound::Error) -> SinkError {
+pub(super) fn file_error(path: &Path, error: hound::Error) -> SinkError {
     let source = match error {
         hound::Error::IoError(source) => source,
         other => io::Error::other(other),

@@ -1,21 +1,26 @@
 //! Nothing in the audio callback asks for memory.
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
-use underfoot::feel::{Click, Cue, Friction, Mode, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::feel::{
+    Click, Cue, Hum, Impulse, Lasting, Manner, Mode, RendererConfig, Rub, Rubs, Spot, Tone, renderer,
+};
 use underfoot::floor::Floor;
+use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
 
-/// Ten seconds of eight feet that rub and of clicks of eight modes, a new one every 2 ms, on four tiles each.
+/// Ten seconds of forty rubs of every model, of clicks of eight modes struck by soft pushes and of tones, a new one
+/// every 2 ms, on four tiles each.
 #[test]
 fn the_busiest_ten_seconds_do_not_allocate() {
     let (mut sender, mut renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
     let mut scope = renderer.scope().unwrap();
+    let effects = Effects::builtin();
     let frames = 48; // one millisecond
     let mut out = vec![0.0; frames * renderer.channels()];
     let mut moved = 0_usize;
     for n in 0..10_000_u64 {
         let now = Instant::from_millis(n);
-        let rubs: Rubs = (0..8).map(|foot| rub(foot, n)).collect();
+        let rubs: Rubs = (0..40).map(|foot| rub(&effects, foot, n)).collect();
         let cue = cue(n, now);
         assert_no_alloc(|| {
             sender.rubs(&rubs);
@@ -55,26 +60,33 @@ fn cue(n: u64, at: Instant) -> Cue {
         at,
         received: at,
         spots: spots(n).collect(),
-        click: Click { modes, level: Newtons(10.0), ..Click::default() },
-        ..Cue::default()
+        click: Click { modes, level: Newtons(10.0), impulse: Impulse { width_s: 0.002, round: 1.0 } },
+        tone: n.is_multiple_of(40).then(|| Tone {
+            level: Newtons(2.0),
+            hz: 80.0,
+            length_s: 0.2,
+            ..Tone::default()
+        }),
+        manner: Manner { duck_db: 6.0, ..Manner::PLAIN },
     }
 }
 
-fn rub(foot: u32, n: u64) -> Rub {
-    let friction = Friction {
-        level: Newtons(3.0),
-        low_hz: 80.0,
-        high_hz: 500.0,
-        full_speed_m_s: 0.5,
-        full_force: Newtons(400.0),
-    };
+/// Every model in turn: noise, sticking and slipping, ridges, grains, a hum.
+fn lasting(effects: &Effects, n: u64) -> Lasting {
+    let names = ["smooth", "rubber", "grating", "gravel", "leather"];
+    let named = effects.get(names[n as usize % names.len()]).unwrap();
+    let hum = Hum { level: Newtons(2.0), hz: 90.0, noise: 0.3 };
+    if n % 6 == 5 { Lasting::Hum(hum) } else { named.effect.kind.lasting().unwrap() }
+}
+
+fn rub(effects: &Effects, foot: u32, n: u64) -> Rub {
     Rub {
         // Now and then a foot lifts and another lands.
-        key: foot + 8 * (n / 100 % 3) as u32,
+        key: foot + 40 * (n / 100 % 3) as u32,
         spots: spots(u64::from(foot) + n / 50).collect(),
-        effect: friction.into(),
+        effect: lasting(effects, u64::from(foot) + n / 100 % 3),
+        manner: Manner { duck_db: (n % 7) as f32, priority: (foot % 10) as u8, ..Manner::PLAIN },
         speed_m_s: (n % 100) as f32 * 0.01,
         force: Newtons(300.0),
-        ..Rub::default()
     }
 }

@@ -35,6 +35,7 @@ fn every_ron_block_is_good() {
     for block in blocks {
         let wrong = match block.split('(').next() {
             Some("Kind") => kinds.add(&block, "README.md").err(),
+            Some("Effect") => schema::parse_effect(&block, "README.md", kinds.effects()).err(),
             Some("Layout") => schema::parse_layout(&block, "README.md", &kinds, &geometry).err(),
             Some("Floor") => schema::parse_floor(&block, "README.md").err(),
             other => panic!("what is {other:?}?"),

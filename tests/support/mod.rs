@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 use underfoot::engine::{Engine, Snapshot};
-use underfoot::feel::Cue;
+use underfoot::feel::{Cue, Rub, Rubs};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam;
 use underfoot::layout::Layout;
@@ -57,6 +57,7 @@ pub struct Walker {
     pub watched: bool,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
+    rubs: Vec<Rub>,
     cursors: Vec<Option<Cursor>>,
 }
 
@@ -94,6 +95,7 @@ impl Walker {
             watched: true,
             events: Vec::new(),
             cues: Vec::new(),
+            rubs: Vec::new(),
             cursors: Vec::new(),
         };
         walker.wait(100);
@@ -140,7 +142,7 @@ impl Walker {
         for packet in std::mem::take(&mut self.held_back) {
             self.assembler.take(&SensorPacket { received: self.now, ..packet });
             while let Some(frame) = self.assembler.ready() {
-                take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+                self.rubs.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
             }
         }
     }
@@ -197,6 +199,11 @@ impl Walker {
 
     pub fn take_cues(&mut self) -> Vec<Cue> {
         std::mem::take(&mut self.cues)
+    }
+
+    /// What lasted in each frame since the last call, while somebody looked.
+    pub fn take_rubs(&mut self) -> Vec<Rub> {
+        std::mem::take(&mut self.rubs)
     }
 
     /// The first region's cursor, frame by frame since the last call.
@@ -258,12 +265,13 @@ impl Walker {
             if self.doubtful {
                 let mut frame = frame.clone();
                 frame.may_start.fill(false);
-                take(&mut self.engine, &frame, &mut self.events, &mut self.cues);
+                self.rubs.extend(take(&mut self.engine, &frame, &mut self.events, &mut self.cues));
             } else {
-                take(&mut self.engine, frame, &mut self.events, &mut self.cues);
+                self.rubs.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
             }
         }
         if !self.watched {
+            self.rubs.clear();
             return;
         }
         let mut snapshot = Snapshot::default();
@@ -272,10 +280,11 @@ impl Walker {
     }
 }
 
-fn take(engine: &mut Engine, frame: &ForceFrame, events: &mut Vec<WidgetEvent>, cues: &mut Vec<Cue>) {
+fn take(engine: &mut Engine, frame: &ForceFrame, events: &mut Vec<WidgetEvent>, cues: &mut Vec<Cue>) -> Rubs {
     let step = engine.step(frame);
     events.extend_from_slice(step.events);
     cues.extend_from_slice(step.cues);
+    step.rubs.clone()
 }
 
 /// A foot in the air whose centre of pressure is at `point`, toes pointing north.

@@ -4,15 +4,29 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 
 use super::{Now, PUSH, push, spots};
-use crate::feel::{EffectKind, Lasting, Rub, Rubs, key};
+use crate::feel::{Detents, EffectKind, Lasting, Rub, Rubs, key};
 use crate::layout::{Layout, Widget};
 use crate::sense::ContactId;
 use crate::units::Instant;
 use crate::widget::{Behaviour, Control, Scale, Value};
 
-/// Where along their ranges the controls' numbers are: 0 to 1, both numbers of a pad; NaN for what is none.
+/// Where along their ranges the controls' numbers are.
 #[derive(Debug, Default)]
-pub(super) struct Shares(Vec<Vec2>);
+pub(super) struct Shares(Vec<Share>);
+
+/// One control's number.
+#[derive(Clone, Copy, Debug)]
+struct Share {
+    /// 0 to 1, both numbers of a pad; NaN for what is none.
+    at: Vec2,
+    /// The detent of an effect's own that was felt last, and how far the number has been from it since.
+    detent: f32,
+    away: f32,
+}
+
+/// How far a number must go from a detent before that one is felt again, in distances between two (our choice: a
+/// foot that rests on one sways by less).
+const AGAIN: f32 = 0.25;
 
 /// What a number did.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,15 +41,17 @@ impl Shares {
     pub(super) fn begin(&mut self, layout: &Layout, controls: &[Control]) {
         self.0.clear();
         self.0.extend(layout.widgets.iter().zip(controls).map(|(widget, control)| {
-            control.value().map_or(Vec2::NAN, |value| shares(&widget.behaviour, value))
+            let at = control.value().map_or(Vec2::NAN, |value| shares(&widget.behaviour, value));
+            Share { at, detent: f32::NAN, away: 0.0 }
         }));
     }
 
     /// Takes note of the new value of control number `widget`; `None` if it is no number.
     pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<Way> {
-        let known = self.0.get_mut(widget)?;
+        let share = self.0.get_mut(widget)?;
         let to = shares(behaviour, value);
-        let from = std::mem::replace(known, to);
+        let from = std::mem::replace(&mut share.at, to);
+        share.away = share.away.max((to.x - share.detent).abs());
         if to.x.is_nan() {
             return None;
         }
@@ -45,15 +61,26 @@ impl Shares {
         Some(Way { from: from.x, to: to.x, end })
     }
 
+    /// The detent of `detents` that a number passes on this `way`, if it is not the one that was felt just now.
+    pub(super) fn detent(&mut self, widget: usize, detents: &Detents, way: Way) -> Option<f32> {
+        let detent = detents.passed(way.from, way.to)?;
+        let share = self.0.get_mut(widget)?;
+        if share.detent == detent && share.away < AGAIN * detents.every {
+            return None;
+        }
+        (share.detent, share.away) = (detent, 0.0);
+        Some(detent)
+    }
+
     /// The way of a number that would go on if it were not at its end.
     pub(super) fn stay(&self, widget: usize) -> Way {
-        let at = self.0.get(widget).map_or(f32::NAN, |share| share.x);
+        let at = self.0.get(widget).map_or(f32::NAN, |share| share.at.x);
         Way { from: at, to: at, end: end_of(at) }
     }
 
     /// Whether a number is at either end of its range.
     pub(super) fn is_at_end(&self, widget: usize) -> bool {
-        self.0.get(widget).is_some_and(|share| end_of(share.x).is_some() || end_of(share.y).is_some())
+        self.0.get(widget).is_some_and(|share| end_of(share.at.x).is_some() || end_of(share.at.y).is_some())
     }
 }
 
@@ -106,12 +133,14 @@ struct Pushing {
     /// Where the foot was when the end was reached, and the way it went.
     anchor: Vec2,
     way: Vec2,
-    /// When it last pushed farther.
+    /// How far beyond the end it last pushed on, in metres, and when.
+    reached: f32,
     pushed: Instant,
 }
 
-/// Speed above which a foot pushes on rather than sways, in metres per second (our choice; see `step.rs` on sway).
-const PUSHES_M_S: f32 = 0.02;
+/// How much farther a foot that pushes on goes, rather than sways, in metres (our choice: a foot that stands wanders
+/// by less within a second).
+const PUSHES_M: f32 = 0.004;
 
 /// How long pushing is felt once the foot is at rest again, in seconds (our choice: a wall is no alarm).
 const FADES_S: f32 = 1.2;
@@ -132,7 +161,8 @@ impl Ends {
         let Some(contact) = now.contact(id) else { return };
         self.0.retain(|pushing| pushing.contact != id);
         let way = contact.velocity.normalize_or_zero();
-        let pushing = Pushing { widget, contact: id, anchor: contact.centroid, way, pushed: now.at };
+        let pushing =
+            Pushing { widget, contact: id, anchor: contact.centroid, way, reached: 0.0, pushed: now.at };
         // Of more feet than fit, the last ones only feel the thud.
         let _ = self.0.try_push(pushing);
     }
@@ -151,10 +181,12 @@ impl Ends {
                 return false;
             }
             let Some(felt) = end.push else { return false };
-            if contact.velocity.dot(pushing.way) > PUSHES_M_S {
-                pushing.pushed = now.at;
-            }
             let beyond = (contact.centroid - pushing.anchor).dot(pushing.way);
+            if beyond > pushing.reached + PUSHES_M {
+                (pushing.reached, pushing.pushed) = (beyond, now.at);
+            }
+            // Who gives way a little and pushes again feels it again.
+            pushing.reached = pushing.reached.min(beyond + PUSHES_M);
             let fresh = 1.0 - now.at.since(pushing.pushed).as_secs_f32() / FADES_S;
             if beyond > 0.0 && fresh > 0.0 {
                 let mut hum = felt.hum_at(beyond);

@@ -3,7 +3,8 @@ use crate::units::Newtons;
 /// What is felt for as long as something lasts.
 ///
 /// The level of each is a root mean square at full slip speed and normal
-/// force: one of 2 N is as strong as a sine of 2 N.
+/// force (of a sole that sticks and slips, at the speed where it is loudest):
+/// one of 2 N is as strong as a sine of 2 N.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lasting {
     /// Noise whose band follows the slip speed.
@@ -134,7 +135,7 @@ pub struct StickSlip {
     pub let_go_m_s: f32,
     /// How far the sole is drawn along before it lets go, at full force, in metres; 0.0002 to 0.05.
     pub stretch_m: f32,
-    /// How fast the sole swings on its spring, in hertz; 20 to 600.
+    /// How fast the sole swings on its spring, in hertz; 20 to 500.
     pub sole_hz: f32,
     /// How rough the surface is: share of the friction that varies by chance, 0 to 1.
     pub rough: f32,

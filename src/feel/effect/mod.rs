@@ -7,12 +7,14 @@
 //! ```
 
 mod feel;
+mod knobs;
 mod lasting;
 mod sequence;
 mod stops;
 mod tone;
 
 pub use feel::{Feel, Use};
+pub use knobs::Knob;
 pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip, Texture};
 pub use sequence::{Beat, CurvePoint, MAX_PARTS, Part, Sequence};
 pub use stops::{Detents, EndStop, MAX_MARKS, Push};

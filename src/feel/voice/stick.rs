@@ -10,13 +10,13 @@ use super::{LANES, Row, random, seeds, within};
 use crate::feel::StickSlip;
 
 /// How much farther the spring of the sole stretches than the bristles bend before the sole lets go (our choice).
-const BEND: f32 = 6.0;
+const BEND: f32 = 16.0;
 
 /// Up to this share of the breakaway bristles only bend and nothing creeps (our choice, as in the paper's figures).
 const ELASTIC: f32 = 0.7;
 
 /// Damping of the sole on its spring, as a share of the critical one (our choice: a foot is soft).
-const DAMPING: f32 = 0.12;
+const DAMPING: f32 = 0.08;
 
 /// Damping of the bristles, of the same kind (our choice: so that a sole that sticks does not ring on).
 const BRISTLE_DAMPING: f32 = 0.3;
@@ -101,7 +101,7 @@ impl Stick {
         self.let_go[lane] = (within(stick.let_go_m_s, 1e-3, 10.0) * per_sample).recip();
         self.glide[lane] = within(stick.glide / stick.grip, 0.05, 1.0);
         self.rough[lane] = within(stick.rough, 0.0, 1.0);
-        let angle = TAU * within(stick.sole_hz, 20.0, 600.0) / rate;
+        let angle = TAU * within(stick.sole_hz, 20.0, 500.0) / rate;
         self.spring[lane] = angle * angle;
         self.damping[lane] = 2.0 * DAMPING * angle;
         self.bristle[lane] = 2.0 * BRISTLE_DAMPING / (angle * BEND.sqrt());
@@ -118,7 +118,7 @@ impl Stick {
             let fast = slip * self.let_go[lane];
             let glide = self.glide[lane];
             // Only what slips feels the surface change beneath it.
-            let moves = (slip.abs() * 40.0).min(1.0);
+            let moves = fast.abs().min(1.0);
             let rough = 1.0 + 1.5 * self.rough[lane] * self.waver[lane] * moves;
             let curve = (glide + (1.0 - glide) / (1.0 + fast * fast)) * rough.max(0.2);
             let share = ((bend.abs() / curve - ELASTIC) * (1.0 / (1.0 - ELASTIC))).clamp(0.0, 1.0);

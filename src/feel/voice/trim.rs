@@ -14,22 +14,37 @@ const TRIMS: (f32, f32) = (1e-3, 1e4);
 impl Lasting {
     /// The same, its [`crate::feel::Material::trim`] such that its level is what it says, within `band`.
     ///
-    /// It is measured from a third of a second at full speed and force, which
-    /// takes about half a millisecond; not for the audio callback. Frictions
-    /// and hums need none.
+    /// It is measured from a third of a second at full force, a sole at the
+    /// speed where it is loudest and all else at full speed, which takes about
+    /// half a millisecond; not for the audio callback. Frictions and hums need none.
     #[must_use]
     pub fn balanced(mut self, band: Band) -> Self {
         let Some(material) = self.material() else { return self };
-        let drive = Drive { speed: material.full_speed_m_s, force: 1.0, hz: 0.0 };
+        let full = material.full_speed_m_s;
         let mut group = Group::new(0);
         let band = band.sound();
-        let Some(lane) = group.claim(Model::of(&self)) else { return self };
-        group.prepare(lane, &self, band, LOW_HZ);
-        group.tune(lane, &self, drive, band, LOW_HZ);
+        let mut lanes = [0; LANES];
+        for (number, lane) in lanes.iter_mut().enumerate() {
+            *lane = group.claim(Model::of(&self)).unwrap_or(number);
+            // A sole is loudest where it sticks and slips, which is not at its fastest; all else is.
+            let slower = if matches!(self, Self::StickSlip(_)) { number as f32 / LANES as f32 } else { 0.0 };
+            let drive = Drive { speed: full * (1.0 - slower), force: 1.0, hz: 0.0 };
+            group.prepare(*lane, &self, band, LOW_HZ);
+            group.tune(*lane, &self, drive, band, LOW_HZ);
+        }
         let mut samples = vec![[0.0; LANES]; RUN_IN + LISTEN];
         samples.chunks_mut(64).for_each(|part| group.render(part));
-        let square: f32 = samples[RUN_IN..].iter().map(|row| row[lane] * row[lane]).sum();
-        let rms = (square / LISTEN as f32).sqrt();
+        let rms = |lane: &usize| {
+            let square: f32 = samples[RUN_IN..].iter().map(|row| row[*lane] * row[*lane]).sum();
+            (square / LISTEN as f32).sqrt()
+        };
+        let levels = lanes.iter().map(rms);
+        let rms = if matches!(self, Self::StickSlip(_)) {
+            levels.fold(0.0, f32::max)
+        } else {
+            // Eight times as long, as far as chance is concerned.
+            levels.sum::<f32>() / LANES as f32
+        };
         // A sine's root mean square is its amplitude over the root of two.
         let trim = (std::f32::consts::FRAC_1_SQRT_2 / rms).clamp(TRIMS.0, TRIMS.1);
         let trim = if trim.is_finite() { trim } else { 1.0 };

@@ -6,6 +6,9 @@ mod events;
 mod link;
 mod scopes;
 mod tile;
+mod tuner;
+
+pub(in crate::preview) use tuner::Tuner;
 
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 

@@ -126,7 +126,7 @@ pub(super) fn stick_slip(fields: &mut Fields<'_>, base: Option<&StickSlip>, band
     let stretch =
         fields.read("stretch_m", base.map(|base| base.stretch_m), |node| single(node, 0.0002..=0.05));
     let sole = fields
-        .read("sole_hz", Some(base.map_or(150.0, |base| base.sole_hz)), |node| single(node, 20.0..=600.0));
+        .read("sole_hz", Some(base.map_or(150.0, |base| base.sole_hz)), |node| single(node, 20.0..=500.0));
     let rough = share(fields, "rough", Some(base.map_or(0.1, |base| base.rough)));
     if let (Some(grip), Some(glide)) = (grip, glide)
         && glide > grip

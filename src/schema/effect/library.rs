@@ -5,7 +5,7 @@ use std::sync::{Arc, LazyLock};
 use super::super::builtin;
 use super::super::diagnostic::Diagnostics;
 use super::super::kind::ron_files;
-use super::super::node::Node;
+use super::super::node::{Node, is_id};
 use super::super::page::MAX_WIDGETS;
 use super::super::pairs::Limits;
 use super::super::problem::Problem;
@@ -121,6 +121,12 @@ impl Effects {
     pub fn iter(&self) -> impl Iterator<Item = &NamedEffect> {
         self.effects.values()
     }
+}
+
+/// Whether `name` can be an effect's: 1 to 64 of the characters a-z, 0-9 and _.
+#[must_use]
+pub fn is_effect_name(name: &str) -> bool {
+    is_id(name)
 }
 
 /// The effect that `text` describes, made of those in `effects`, and warnings.

@@ -20,7 +20,7 @@ use super::suggest::{did_you_mean, nearest};
 use crate::feel::{Band, Effect, EffectKind, Manner, Use};
 
 pub(super) use library::list;
-pub use library::{Effects, NamedEffect, parse_effect};
+pub use library::{Effects, NamedEffect, is_effect_name, parse_effect};
 pub use write::{write_effect, write_named_effect};
 
 /// What the floor's actuators move and a foot can feel, in hertz.
@@ -75,16 +75,17 @@ pub(super) fn read(node: Node<'_>, base: Option<&Arc<Effect>>, used: Use) -> Opt
     if node.is_none() {
         return Some(None);
     }
-    let effect = match node.peek_text() {
-        Some(_) => named(node)?,
-        None => {
+    let effect = match node.expr {
+        Expr::String(_) => named(node)?,
+        Expr::Struct(_) | Expr::AnonStruct(_) | Expr::Unit(_) => {
             let released = base.filter(|_| node.what == "release").and_then(|base| released(base));
             let base = released.as_ref().or(base.map(|base| &**base));
             Arc::new(written(node, base, Form::usual(used))?)
         }
+        _ => return node.mismatch("an effect, by its name or written out"),
     };
     if !used.fits(&effect.kind) {
-        let message = format!("a {} can't be played for `{}`", effect.kind.name(), node.what);
+        let message = format!("{} can't be played for `{}`", a(effect.kind.name()), node.what);
         node.report(Problem::error(node.span(), message).expected(format!("expected {}", used.fitting())));
         return None;
     }
@@ -117,14 +118,17 @@ fn written(node: Node<'_>, base: Option<&Effect>, usual: (&'static str, Form)) -
             let written = &*variant.name.name;
             let Some(known) = Form::named(written) else {
                 let names: Vec<&str> = Form::ALL.iter().map(|(name, _)| *name).collect();
-                let help = nearest(written, names.iter().copied()).map_or_else(
-                    || did_you_mean(written, &names, '`'),
-                    |name| Some(format!("did you mean {name}?")),
-                );
-                let problem = Problem::error(
-                    node.span().start..node.span().start + written.len(),
-                    format!("no effect is a {written}"),
-                );
+                let is_name = variant.body.is_none() && node.reader.effects().get(written).is_some();
+                let help = if is_name {
+                    Some(format!("names of effects stand in quotes: \"{written}\""))
+                } else {
+                    let near = nearest(written, names.iter().copied());
+                    let near = near.map(|name| format!("did you mean {name}?"));
+                    near.or_else(|| did_you_mean(written, &names, '`'))
+                };
+                let start = node.span().start;
+                let message = format!("no effect is a {written}");
+                let problem = Problem::error(start..start + written.len(), message);
                 node.report(problem.expected(format!("expected {}(...)", usual.0)).help_if(help));
                 return None;
             };
@@ -133,16 +137,18 @@ fn written(node: Node<'_>, base: Option<&Effect>, usual: (&'static str, Form)) -
         // Without a name it is what it was before.
         _ => base.and_then(|base| Form::named(base.kind.name())).unwrap_or(usual),
     };
+    let releases = node.what == "release";
     let mut fields = node.fields(name)?;
     let from = match fields.take("from") {
         Some(node) => {
             let from = named(node)?;
             if from.kind.name() != name {
-                let message =
-                    format!("this is a {name}, \"{}\" is a {}", node.peek_text()?, from.kind.name());
-                node.report(Problem::error(node.span(), message).expected("expected one of the same kind"));
+                let message = format!("\"{}\" is {}", node.peek_text()?, a(from.kind.name()));
+                let problem = Problem::error(node.span(), message);
+                node.report(problem.expected(format!("expected the name of {}", a(name))));
                 return None;
             }
+            let from = if releases { released(&from).map_or(from, Arc::new) } else { from };
             Some(from)
         }
         None => None,
@@ -227,14 +233,15 @@ fn millis(
     range: std::ops::RangeInclusive<f64>,
 ) -> Option<f32> {
     // What a base holds is not turned to milliseconds and back, which would round it.
-    match fields.take(name) {
-        Some(node) => single(node, range).map(|ms| ms / 1000.0),
-        None if base.is_some() => base,
-        None => fields.read(name, None, |_| None),
-    }
+    fields.read(name, base, |node| single(node, range).map(|ms| ms / 1000.0))
 }
 
 /// A share within 0 to 1.
 fn share(fields: &mut Fields<'_>, name: &'static str, base: Option<f32>) -> Option<f32> {
     fields.read(name, base, |node| single(node, 0.0..=1.0))
+}
+
+/// The name of a kind with its article.
+fn a(name: &str) -> String {
+    format!("{} {name}", if name.starts_with('E') { "an" } else { "a" })
 }

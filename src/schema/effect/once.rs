@@ -6,7 +6,7 @@ use super::super::behaviour::single;
 use super::super::fields::Fields;
 use super::super::node::Node;
 use super::super::problem::Problem;
-use super::{Form, HERTZ, LEVEL_N, curves, millis, named, share, within, written};
+use super::{Form, HERTZ, LEVEL_N, a, curves, millis, named, share, within, written};
 use crate::feel::{Band, Beat, Click, EffectKind, Impulse, MAX_MODES, MAX_PARTS, Mode, Part, Sequence, Tone};
 use crate::units::Newtons;
 
@@ -142,7 +142,7 @@ fn part(node: Node<'_>, band: Band) -> Option<Vec<Part>> {
     if let Some(effect) = &effect
         && !crate::feel::Use::Once.fits(&effect.kind)
     {
-        let message = format!("a {} can't be part of a sequence", effect.kind.name());
+        let message = format!("{} can't be part of a sequence", a(effect.kind.name()));
         let problem = Problem::error(plays_at, message);
         fields.report(problem.expected(format!("expected {}", crate::feel::Use::Once.fitting())));
         fields.finish();

@@ -2,7 +2,7 @@
 //!
 //! The numbers in the names of tests are those lines.
 
-mod bench;
+pub(crate) mod bench;
 mod buttons;
 mod dials;
 mod guards;

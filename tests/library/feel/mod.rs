@@ -1,6 +1,9 @@
 //! What the floor feels like, measured from rendered samples.
 
+mod ahap;
+mod answers;
 mod click;
+mod effects;
 mod friction;
 mod safety;
 mod wav;

@@ -1,13 +1,15 @@
 //! A server without sockets: what it does with packets, silence and requests.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 use std::sync::mpsc;
 use std::time::Duration;
 
 use crate::support::layout;
 use underfoot::engine::{LinkState, Snapshot};
-use underfoot::feel::{RendererConfig, renderer};
+use underfoot::feel::{Gesture, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
+use underfoot::schema::Effects;
 use underfoot::sense::{Contact, Method, Quality, SensorHealth};
 use underfoot::serve::{Command, Ended, Server};
 use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
@@ -231,6 +233,27 @@ fn a_click_starts_with_the_sample_of_its_press() {
         told.iter().find(|(_, what)| *what == format!("home {}", EventKind::Pressed.name())).unwrap().0;
     let first = onsets.iter().next().unwrap().0;
     assert_eq!(first, pressed * 48, "48 samples a millisecond");
+}
+
+/// An effect tried from the window goes the same way as a control's answer, and the floor goes on meanwhile.
+#[test]
+fn an_effect_can_be_tried_while_the_floor_works() {
+    let (server, told) = server(&[(300, EMPTY), (200, PRESSED), (400, EMPTY)], &[]);
+    let (feel, renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    let (tell, onsets) = mpsc::channel();
+    let sink = Watched(ManualSink::new(renderer, Instant::START), tell);
+    let (commands, inbox) = mpsc::channel();
+    let mut server = server.with_feel(feel, Box::new(sink)).with_commands(inbox);
+    let effect = Arc::clone(&Effects::builtin().get("double_click").unwrap().effect);
+    let gesture = Box::new(Gesture::usual(&effect));
+    commands.send(Command::Audition { effect, gesture, tile: 30 }).unwrap();
+    play(&mut server);
+    drop(server);
+    assert!(told.iter().any(|(_, what)| what == "home clicked"));
+    let frames: Vec<u64> = onsets.iter().map(|(frame, _)| frame).collect();
+    // The two clicks of the effect, 70 ms apart, and those of the button.
+    assert!(frames.len() >= 4, "{frames:?}");
+    assert!(frames[1].abs_diff(frames[0] + 70 * 48) <= 1, "{frames:?}");
 }
 
 #[test]

@@ -1,0 +1,184 @@
+use std::collections::BTreeSet;
+
+use serde_json::json;
+
+use super::file::{
+    ControlPoint, DynamicParameter, Entry, Event, EventParameter, File, Number, ParameterCurve,
+};
+use super::{
+    AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
+    sharpness_of,
+};
+use crate::feel::{Beat, Click, Effect, EffectKind, Impulse, Manner, Mode, Part, Tone};
+
+/// The AHAP file of an effect that is played once, and what of it has no counterpart there.
+///
+/// `name` becomes the file's description.
+///
+/// # Errors
+/// [`AhapError::Driven`] of an effect that a foot or a value drives.
+pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), AhapError> {
+    let mut lost = Lost::default();
+    let parts: Vec<Part> = match &effect.kind {
+        EffectKind::Click { press, release } => {
+            lost.note(release.is_some(), "what is felt for a release");
+            vec![Part { at_s: 0.0, beat: Beat::Click(press.clone()) }]
+        }
+        EffectKind::Continuous(tone) => vec![Part { at_s: 0.0, beat: Beat::Tone(tone.clone()) }],
+        EffectKind::Sequence(sequence) => {
+            (0..sequence.parts.len()).filter_map(|index| sequence.part(index)).collect()
+        }
+        other => return Err(AhapError::Driven(other.name())),
+    };
+    let Manner { band, duck_db, priority } = effect.manner;
+    lost.note(band != Manner::PLAIN.band, "the band");
+    lost.note(duck_db != Manner::PLAIN.duck_db, "ducking");
+    lost.note(priority != Manner::PLAIN.priority, "the priority");
+    let mut pattern = Vec::new();
+    for (number, part) in parts.iter().enumerate() {
+        match &part.beat {
+            Beat::Click(click) => pattern.push(transient(part.at_s, click, &mut lost)),
+            Beat::Tone(tone) => {
+                let end = part.at_s + tone.whole_s();
+                let meets = |other: &Part| other.at_s < end && ends(other) > part.at_s;
+                let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
+                let meets_other = others.clone().any(|(_, other)| meets(other));
+                lost.note(
+                    meets_other && !tone.curve.is_empty(),
+                    "that a curve concerns one of several at a time",
+                );
+                let follows = others.clone().any(|(_, other)| other.at_s >= end);
+                continuous(part.at_s, tone, follows, &mut pattern, &mut lost);
+            }
+        }
+    }
+    let file = File {
+        version: 1.0,
+        metadata: Some(json!({ "Description": name, "Created": "underfoot" })),
+        pattern,
+    };
+    let text = serde_json::to_string_pretty(&file).unwrap_or_default();
+    Ok((
+        text + "\n",
+        lost.0.into_iter().map(|what| format!("{what}: no counterpart in AHAP, left out")).collect(),
+    ))
+}
+
+fn ends(part: &Part) -> f32 {
+    match &part.beat {
+        Beat::Click(_) => part.at_s,
+        Beat::Tone(tone) => part.at_s + tone.whole_s(),
+    }
+}
+
+#[derive(Debug, Default)]
+struct Lost(BTreeSet<&'static str>);
+
+impl Lost {
+    fn note(&mut self, is: bool, what: &'static str) {
+        if is {
+            self.0.insert(what);
+        }
+    }
+}
+
+/// `share` within 0 to 1, noted as lost if it is not.
+fn within(share: f32, lost: &mut Lost, what: &'static str) -> f32 {
+    lost.note(!(-0.001..=1.001).contains(&share), what);
+    if share >= 0.0 { share.min(1.0) } else { 0.0 }
+}
+
+fn parameter(id: &str, value: f32) -> EventParameter {
+    EventParameter { id: id.to_owned(), value: Number::Number(rounded(value)) }
+}
+
+/// Six decimals: finer than any hand and any float of this size.
+fn rounded(value: f32) -> f64 {
+    (f64::from(value) * 1e6).round() / 1e6
+}
+
+fn transient(at_s: f32, click: &Click, lost: &mut Lost) -> Entry {
+    let strongest = click.modes.iter().max_by(|a, b| a.amplitude.abs().total_cmp(&b.amplitude.abs()));
+    let mode = strongest.copied().unwrap_or(Mode { frequency_hz: 0.0, decay_s: 0.01, amplitude: 0.0 });
+    lost.note(click.modes.len() > 1, "all but the strongest mode of a click");
+    lost.note(click.impulse != Impulse::default(), "the impulse of a click");
+    let sharpness =
+        within(sharpness_of(TRANSIENT_HZ, mode.frequency_hz), lost, "a click's pitch beyond 90 to 324 Hz");
+    let usual = at_sharpness(TRANSIENT_DECAY_S, sharpness);
+    lost.note((mode.decay_s / usual - 1.0).abs() > 0.01, "how long a click rings");
+    let level = click.level.0 * mode.amplitude.abs() / TRANSIENT_N;
+    let intensity = within(level, lost, "what a click is stronger than 20 N");
+    Entry {
+        event: Some(Event {
+            time: rounded(at_s),
+            event_type: "HapticTransient".to_owned(),
+            event_duration: None,
+            event_parameters: vec![
+                parameter("HapticIntensity", intensity),
+                parameter("HapticSharpness", sharpness),
+            ],
+            other: serde_json::Map::new(),
+        }),
+        ..Entry::default()
+    }
+}
+
+fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, lost: &mut Lost) {
+    const BEYOND: &str = "a tone's pitch beyond 70 to 280 Hz";
+    lost.note(tone.noise > 0.0, "noise");
+    lost.note(tone.sustain > 0.0 && tone.sustain < 1.0 && tone.decay_s > 0.0, "a decay to part of the level");
+    let intensity = within(tone.level.0 / CONTINUOUS_N, lost, "what a tone is stronger than 12 N");
+    let sharpness = within(sharpness_of(CONTINUOUS_HZ, tone.hz), lost, BEYOND);
+    let time = |seconds: f32, lost: &mut Lost| {
+        within(seconds, lost, "attacks, decays and releases of more than 1 s")
+    };
+    let mut parameters =
+        vec![parameter("HapticIntensity", intensity), parameter("HapticSharpness", sharpness)];
+    let sustained = tone.sustain >= 0.5 || tone.decay_s == 0.0;
+    for (id, seconds) in [("AttackTime", tone.attack_s), ("ReleaseTime", tone.release_s)] {
+        if seconds > 0.0 {
+            parameters.push(parameter(id, time(seconds, lost)));
+        }
+    }
+    // A decay over the whole length is what "not sustained" means by itself.
+    if tone.decay_s > 0.0 && (sustained || (tone.decay_s - tone.length_s).abs() > 1e-6) {
+        parameters.push(parameter("DecayTime", time(tone.decay_s, lost)));
+    }
+    parameters.push(parameter("Sustained", f32::from(u8::from(sustained))));
+    pattern.push(Entry {
+        event: Some(Event {
+            time: rounded(at_s),
+            event_type: "HapticContinuous".to_owned(),
+            event_duration: Some(rounded(tone.length_s)),
+            event_parameters: parameters,
+            other: serde_json::Map::new(),
+        }),
+        ..Entry::default()
+    });
+    if tone.curve.is_empty() {
+        return;
+    }
+    let louder = "what a curve strengthens";
+    let levels =
+        tone.curve.iter().map(|point| (point.at_s, within(point.level, lost, louder))).collect::<Vec<_>>();
+    let pitches: Vec<(f32, f32)> = tone
+        .curve
+        .iter()
+        .map(|point| (point.at_s, within(sharpness_of(CONTINUOUS_HZ, point.hz), lost, BEYOND) - sharpness))
+        .collect();
+    for (id, points, neutral) in
+        [("HapticIntensityControl", levels, 1.0), ("HapticSharpnessControl", pitches, 0.0)]
+    {
+        let points = points
+            .iter()
+            .map(|&(time, value)| ControlPoint { time: rounded(time), parameter_value: rounded(value) });
+        let curve = ParameterCurve { id: id.to_owned(), time: rounded(at_s), points: points.collect() };
+        pattern.push(Entry { parameter_curve: Some(curve), ..Entry::default() });
+        // Controls concern all that comes later: what follows gets its own level back.
+        if follows {
+            let time = rounded(at_s + tone.whole_s());
+            let back = DynamicParameter { id: id.to_owned(), value: neutral, time };
+            pattern.push(Entry { parameter: Some(back), ..Entry::default() });
+        }
+    }
+}
