@@ -93,11 +93,21 @@ impl Engine {
     ///
     /// A frame with missing tiles is taken as an unsensed floor: every control is cancelled.
     pub fn step(&mut self, frame: &ForceFrame) -> Step<'_> {
+        self.sensing.update(frame);
+        self.respond(frame, None)
+    }
+
+    /// As [`Engine::step`] with contacts that were found elsewhere: one sensing for many layouts on the same floor.
+    pub(crate) fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
+        self.respond(frame, Some(contacts))
+    }
+
+    fn respond<'a>(&'a mut self, frame: &ForceFrame, given: Option<&'a [Contact]>) -> Step<'a> {
+        let contacts = given.unwrap_or_else(|| self.sensing.contacts());
         self.events.clear();
         self.events.append(&mut self.pending);
         self.cues.clear();
         self.rubs.clear();
-        let contacts = self.sensing.update(frame);
         self.interaction.step(frame, contacts, &self.layout, &mut self.events);
         let answers = response::cues(&self.events, frame.received, &self.layout, contacts, &self.last_spots);
         self.cues.extend(answers);
@@ -118,7 +128,7 @@ impl Engine {
             page: self.page_told.as_ref(),
             cues: &self.cues,
             rubs: &self.rubs,
-            contacts: self.sensing.contacts(),
+            contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }
     }
 

@@ -15,7 +15,7 @@ use crate::engine::Engine;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
-use crate::sense::Method;
+use crate::sense::{Method, Sensing};
 use crate::sim::{Foot, Load};
 use crate::units::Instant;
 use crate::widget::{Behaviour, EventKind, Guard, WidgetEvent};
@@ -103,7 +103,13 @@ impl Guarded {
                 continue;
             }
             match &mut widget.behaviour {
-                Behaviour::Button(button) => button.thresholds.guard = guard,
+                Behaviour::Button(button) => {
+                    button.thresholds.guard = guard;
+                    if self == Self::Confirm {
+                        // As in a layout: two presses are what the guard takes.
+                        button.gestures.double_tap = None;
+                    }
+                }
                 Behaviour::Switch(switch) if self == Self::Confirm => switch.thresholds.guard = guard,
                 _ => {}
             }
@@ -153,20 +159,18 @@ impl IntentTable {
         let number = number as usize;
         let layout = shipped(number, &geometry)?;
         let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
-        let mut rig = Rig::of_mapped_parts(geometry, seed)?;
+        let mut stage = Stage::new(seed)?;
         let mut body = Somebody::of(seed, number / builtin_layouts().count(), geometry.bounds());
         let area =
             layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
 
-        let trial = |(guard, layout): (Guarded, &Layout)| {
-            Trial::new(rig.engine(layout.clone(), Method::Tracker), guard)
-        };
+        let trial = |(guard, layout): (Guarded, &Layout)| Trial::new(stage.engine(layout.clone()), guard);
         let mut trials: Vec<Trial> = Guarded::ALL.into_iter().zip(&layouts).map(trial).collect();
         let mut walked = 0;
         while walked < effort.steps {
             for _ in 0..CROSSINGS {
                 let act = body.cross(area)?;
-                walked += play(&act, &mut rig, &mut trials);
+                walked += stage.play(&act, &mut trials);
             }
         }
         for (guard, mut trial) in Guarded::ALL.into_iter().zip(trials) {
@@ -185,7 +189,7 @@ impl IntentTable {
                     break;
                 }
                 pressed += act.intended.len() as u64;
-                play(&act, &mut rig, std::slice::from_mut(&mut trial));
+                stage.play(&act, std::slice::from_mut(&mut trial));
             }
             self.steps[guard as usize] += trial.steps;
             for (key, score) in trial.scores {
@@ -414,40 +418,67 @@ fn acts(kind: EventKind, widget: &Widget) -> bool {
     }
 }
 
-/// Plays an act to every trial at once, and counts its steps: all feet put down that pressed nothing on purpose.
-pub(super) fn play(act: &Act, rig: &mut Rig, trials: &mut [Trial]) -> u64 {
-    let geometry = *rig.geometry();
-    for trial in trials.iter_mut() {
-        trial.done.clear();
-        trial.done.resize(act.intended.len(), 0);
+/// A floor and what is sensed of it, once for all that is tried on it.
+#[derive(Debug)]
+pub(super) struct Stage {
+    rig: Rig,
+    sensing: Sensing,
+}
+
+impl Stage {
+    pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
+        let rig = Rig::of_mapped_parts(Geometry::default(), seed)?;
+        Ok(Self { sensing: rig.sensing(Method::Tracker), rig })
     }
-    let (mut feet, mut down, mut steps) = (Vec::<Foot>::new(), 0, 0);
-    let length = act.script.duration().as_millis() as u32;
-    for milli in 1..=length + PAUSE_MS {
-        let since = Duration::from_millis(milli.into());
-        feet.clear();
-        if milli <= length {
-            act.script.feet_at(Instant::START + since, &mut feet);
+
+    pub(super) fn engine(&self, layout: Layout) -> Engine {
+        self.rig.engine(layout, Method::Tracker)
+    }
+
+    pub(super) fn geometry(&self) -> Geometry {
+        *self.rig.geometry()
+    }
+
+    /// Plays an act to every trial at once, and counts its steps: all feet put down that pressed nothing on purpose.
+    pub(super) fn play(&mut self, act: &Act, trials: &mut [Trial]) -> u64 {
+        let bounds = self.geometry().bounds();
+        for trial in trials.iter_mut() {
+            trial.done.clear();
+            trial.done.resize(act.intended.len(), 0);
         }
-        let now_down = feet
-            .iter()
-            .filter(|foot| foot.force.0 > DOWN_N && geometry.bounds().contains(foot.centre_of_pressure()))
-            .count();
-        let meant = act.intended.iter().any(|intended| (intended.from..intended.to).contains(&since));
-        steps += if meant { 0 } else { now_down.saturating_sub(down) as u64 };
-        down = now_down;
-        rig.step(feet.iter().map(Foot::as_load).collect::<Vec<Load>>(), |frame| {
-            for trial in trials.iter_mut() {
-                let events = trial.engine.step(frame).events.to_vec();
-                events.iter().for_each(|event| trial.take(event, since, act));
+        let (mut feet, mut down, mut steps, mut empty_ms) = (Vec::<Foot>::new(), 0, 0, 0);
+        let length = act.script.duration().as_millis() as u32;
+        for milli in 1..=length + PAUSE_MS {
+            let since = Duration::from_millis(milli.into());
+            feet.clear();
+            if milli <= length {
+                act.script.feet_at(Instant::START + since, &mut feet);
             }
-        });
+            // Nothing becomes of a floor that stays empty.
+            empty_ms = if feet.is_empty() { empty_ms + 1 } else { 0 };
+            if empty_ms > PAUSE_MS {
+                continue;
+            }
+            let on_floor = |foot: &&Foot| foot.force.0 > DOWN_N && bounds.contains(foot.centre_of_pressure());
+            let now_down = feet.iter().filter(on_floor).count();
+            let meant = act.intended.iter().any(|intended| (intended.from..intended.to).contains(&since));
+            steps += if meant { 0 } else { now_down.saturating_sub(down) as u64 };
+            down = now_down;
+            let loads: Vec<Load> = feet.iter().map(Foot::as_load).collect();
+            self.rig.step(loads, |frame| {
+                let contacts = self.sensing.update(frame);
+                for trial in trials.iter_mut() {
+                    let events = trial.engine.step_given(frame, contacts).events.to_vec();
+                    events.iter().for_each(|event| trial.take(event, since, act));
+                }
+            });
+        }
+        for trial in trials.iter_mut() {
+            trial.steps += steps;
+            trial.conclude(act);
+        }
+        steps
     }
-    for trial in trials.iter_mut() {
-        trial.steps += steps;
-        trial.conclude(act);
-    }
-    steps
 }
 
 /// One of the shipped layouts, round and round.

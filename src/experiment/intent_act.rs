@@ -13,7 +13,7 @@ use crate::floor::Rect;
 use crate::layout::{Layout, Widget};
 use crate::sim::{MoveError, Performance, Person, Script};
 use crate::units::Newtons;
-use crate::widget::Guard;
+use crate::widget::{Behaviour, Guard};
 
 /// Walking speeds, in metres per second: slow, usual, brisk.
 ///
@@ -34,6 +34,9 @@ const FORCE_SCATTER: f32 = 0.3;
 const FORCE_AT_LEAST: f32 = 1.2;
 
 const MOST_OF_WEIGHT: f32 = 0.5;
+
+/// From the middle of a shoe to its side, and a little more, in metres.
+const HALF_SHOE_M: f32 = 0.07;
 
 /// How near to a control people stand who did not reach it from where they stood, in metres.
 const NEAR_M: f32 = 0.60;
@@ -59,10 +62,8 @@ pub(super) struct Act {
     pub(super) intended: Vec<Intended>,
 }
 
-/// How long after a press what comes of it may still be told.
-///
-/// A click is told only when it can no longer become a double tap.
-const AFTER: Duration = Duration::from_millis(450);
+/// How long after a press what comes of it may still be told; besides the time in which a tap may become a double tap.
+const AFTER: Duration = Duration::from_millis(120);
 
 /// Somebody made up from a seed.
 #[derive(Debug)]
@@ -139,9 +140,10 @@ impl Somebody {
             for _ in 0..times {
                 let widget = choice[self.rng.random_range(0..choice.len())];
                 let from = user.duration();
+                let after = AFTER + double_tap(&layout.widgets[widget]);
                 self.operate(&mut user, &layout.widgets[widget])?;
-                intended.push(Intended { widget, from, to: user.duration() + AFTER });
-                user.wait(AFTER + self.millis(200, 1200));
+                intended.push(Intended { widget, from, to: user.duration() + after });
+                user.wait(after + self.millis(150, 700));
             }
         }
         let away = self.rng.random_range(PI..TAU);
@@ -192,7 +194,11 @@ impl Somebody {
                 // Stands before the control then, and near enough to it.
                 let place = user.place().unwrap_or_default();
                 let nearer = place.y.max(aim.y - NEAR_M);
-                user.sidestep(Vec2::new(aim.x + 0.05 * self.sign(), nearer))?;
+                // With both feet on it: nobody stands over the edge of a floor.
+                let edge = 0.5 * self.person.stand_width_m + HALF_SHOE_M;
+                let beside =
+                    (aim.x + 0.05 * self.sign()).clamp(self.bounds.min.x + edge, self.bounds.max.x - edge);
+                user.sidestep(Vec2::new(beside, nearer))?;
                 user.wait(self.millis(800, 1500));
                 aim
             }
@@ -244,4 +250,12 @@ fn stance(layout: &Layout, bounds: Rect) -> Vec2 {
         .stances
         .first()
         .map_or(Vec2::new(bounds.centre().x, bounds.min.y + 0.15), |stance| stance.area.centre())
+}
+
+/// How long a click waits for a second tap.
+fn double_tap(widget: &Widget) -> Duration {
+    match &widget.behaviour {
+        Behaviour::Button(button) => button.gestures.double_tap.unwrap_or_default(),
+        _ => Duration::ZERO,
+    }
 }

@@ -7,15 +7,14 @@ use serde::Serialize;
 
 use super::chart::{Axis, LINE_M, MARGIN_M, Page, Plot, Sample, THEME};
 use super::figure::Figure;
-use super::intent::{Guarded, IntentEffort, IntentScore, Trial, play};
+use super::intent::{Guarded, IntentEffort, IntentScore, Stage, Trial};
 use super::intent_act::Somebody;
-use super::rig::{ExperimentError, Rig};
+use super::rig::ExperimentError;
 use super::wilson::Counted;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, Layout};
 use crate::scene::{Ink, Scene, Stroke};
 use crate::schema::{Kinds, parse_layout};
-use crate::sense::Method;
 
 /// Sides of the buttons, in centimetres, and their press thresholds, in newtons.
 const SIZES_CM: [f32; 5] = [8.0, 12.0, 16.0, 20.0, 24.0];
@@ -74,19 +73,19 @@ impl IntentSweep {
         effort: IntentEffort,
     ) -> Result<(), ExperimentError> {
         let geometry = Geometry::default();
-        let mut rig = Rig::of_mapped_parts(geometry, seed)?;
+        let mut stage = Stage::new(seed)?;
         let mut body = Somebody::of(seed, number as usize, geometry.bounds());
         let pitch = geometry.pitch_m();
         let row = Rect::new(Vec2::new(1.0, 2.1), Vec2::new(5.0, 3.1));
         let area = Rect::new(row.min * pitch, row.max * pitch);
         let mut trials = Vec::with_capacity(self.cells.len());
         for cell in &self.cells {
-            trials.push(Trial::new(rig.engine(layout(cell, &geometry)?, Method::Tracker), Guarded::Free));
+            trials.push(Trial::new(stage.engine(layout(cell, &geometry)?), Guarded::Free));
         }
         let mut walked = 0;
         while walked < effort.steps {
             for _ in 0..CROSSINGS {
-                walked += play(&body.cross(area)?, &mut rig, &mut trials);
+                walked += stage.play(&body.cross(area)?, &mut trials);
             }
         }
         for (which, trial) in trials.iter_mut().enumerate() {
@@ -95,7 +94,7 @@ impl IntentSweep {
                 let page = trial.engine.layout().clone();
                 let act = body.make_use(&page, |_| true, PRESSES)?;
                 pressed += act.intended.len() as u64;
-                play(&act, &mut rig, std::slice::from_mut(trial));
+                stage.play(&act, std::slice::from_mut(trial));
             }
         }
         for (cell, trial) in self.cells.iter_mut().zip(&trials) {

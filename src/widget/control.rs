@@ -140,7 +140,7 @@ impl Control {
         let moment = Moment::new(self.now, elapsed, input, &self.press, outcome, self.size);
         if self.guard.passes(self.now, outcome, moment.broken, emitted) {
             self.state.machine_mut().act(&moment, emitted);
-            self.guard.after(outcome, emitted);
+            self.guard.after(self.press.is_engaged(), !self.state.machine().is_at_rest(), emitted);
         }
     }
 

@@ -5,6 +5,7 @@
 //!  1  a press and its release while at rest        -> Pressed, Released, Armed; it does nothing else
 //!  2  that first press is cancelled                -> Pressed, Cancelled; not armed
 //!  3  armed, a second press within the time        -> acts as if unguarded, then Disarmed
+//!     and where a double tap may come of it        -> Disarmed once that is known
 //!  4  armed, the second press is cancelled         -> Cancelled, Disarmed
 //!  5  armed, no press within the time              -> Disarmed
 //!  6  armed, sensing is lost, a foot steps or slides on, an app stops it
@@ -166,12 +167,13 @@ impl Guarding {
         false
     }
 
-    /// Takes note that the control has seen `outcome`.
-    pub(super) fn after(&mut self, outcome: Option<Outcome>, emitted: &mut Emitted) {
-        let ended = matches!(outcome, Some(Outcome::Released | Outcome::Cancelled));
-        if ended && matches!(self.state, State::Acting { .. }) {
+    /// Takes note of what the press has come to: whether it is still down, and whether the control
+    /// `waits` for a second tap, which a first press that only arms must not swallow.
+    pub(super) fn after(&mut self, is_down: bool, waits: bool, emitted: &mut Emitted) {
+        let confirms = matches!(self.guard, Guard::Confirm { .. });
+        if matches!(self.state, State::Acting { .. }) && !is_down && !(confirms && waits) {
             self.state = State::Idle;
-            if matches!(self.guard, Guard::Confirm { .. }) {
+            if confirms {
                 emitted.push(EventKind::Disarmed);
             }
         }

@@ -58,6 +58,27 @@ fn a_button_clicks_on_release_and_never_after_a_cancel() {
 }
 
 #[test]
+fn a_guard_that_confirms_waits_for_a_second_tap_and_leaves_nothing_of_it() {
+    use EventKind::{Armed, Clicked, Disarmed, DoubleTapped, Pressed, Released};
+    // No layout may say so, but an app can.
+    let thresholds = Thresholds { guard: Guard::Confirm { within: Duration::from_secs(3) }, ..AT };
+    let mut spec = ButtonSpec::new(thresholds);
+    spec.gestures.double_tap = Some(Duration::from_millis(350));
+    let both = || control(&Behaviour::Button(spec));
+    let tap = [(foot(80.0, 0.5), 50), (foot(0.0, 0.5), 10), (Input::Clear, 100)];
+    let once = [tap, tap, [(Input::Clear, 400); 3]].concat();
+    let armed = [Pressed, Released, Armed, Pressed, Released];
+    assert_eq!(play(&mut both(), &once), [&armed[..], &[Clicked, Disarmed]].concat());
+    let twice = [tap, tap, tap].concat();
+    assert_eq!(
+        play(&mut both(), &twice),
+        [&armed[..], &[Pressed, Released, DoubleTapped, Disarmed]].concat()
+    );
+    let lost = [&tap[..], &tap[..], &[(Input::Lost, 1), (Input::Clear, 400)]].concat();
+    assert_eq!(play(&mut both(), &lost), [&armed[..], &[Disarmed]].concat());
+}
+
+#[test]
 fn a_switch_turns_over_on_release_only() {
     use EventKind::{Cancelled, Changed, Pressed, Released};
     let mut light = switch();

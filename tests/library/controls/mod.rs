@@ -1,0 +1,14 @@
+//! Every behaviour and guard, driven by a foot through each line of the timeline written above it.
+//!
+//! The numbers in the names of tests are those lines.
+
+mod bench;
+mod buttons;
+mod dials;
+mod guards;
+mod held;
+mod locked;
+mod random_feet;
+mod selectors;
+mod sliders;
+mod steppers;

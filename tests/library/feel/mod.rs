@@ -1,0 +1,6 @@
+//! What the floor feels like, measured from rendered samples.
+
+mod click;
+mod friction;
+mod safety;
+mod wav;

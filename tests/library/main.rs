@@ -1,0 +1,23 @@
+//! All that underfoot does as a library, on simulated floors, files and loopback sockets.
+//!
+//! One test program for all: linking a program for each file would take minutes and gigabytes.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/sender.rs"]
+mod sender;
+#[path = "../sense_support/mod.rs"]
+mod sense_support;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod accuracy;
+mod calibrate;
+mod controls;
+mod examples;
+mod faults;
+mod feel;
+mod intent;
+mod layout;
+mod regions;
+mod sense;
+mod wire;

@@ -1,0 +1,4 @@
+//! Sensing as a whole, on recorded forces.
+
+mod feet;
+mod robust;

@@ -1,0 +1,9 @@
+//! Packets in and out: boards, clocks, other programs, hostile networks.
+
+mod addresses;
+mod assembler;
+mod hostile;
+mod osc_out;
+mod server;
+mod tuio;
+mod udp;

@@ -1,0 +1,109 @@
+//! Events and contacts as another program hears them, over loopback.
+
+use std::net::UdpSocket;
+use std::time::Duration;
+
+use rosc::{OscPacket, OscType};
+use underfoot::engine::LinkState;
+use underfoot::floor::TileId;
+use underfoot::glam::Vec2;
+use underfoot::sense::{Contact, ContactId, Covariance, Quality, SensorHealth, TileLoad};
+use underfoot::sink::{EventSink, OscSink};
+use underfoot::units::{Instant, Newtons};
+use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
+
+fn listen() -> (UdpSocket, OscSink) {
+    let listener = UdpSocket::bind("127.0.0.1:0").unwrap();
+    listener.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+    let sink = OscSink::new(listener.local_addr().unwrap()).unwrap();
+    (listener, sink)
+}
+
+/// The messages of the next datagram, by address and first argument.
+fn hear(listener: &UdpSocket) -> Vec<(String, Option<OscType>)> {
+    let mut buffer = [0; 2048];
+    let length = listener.recv(&mut buffer).unwrap();
+    let content = match rosc::decoder::decode_udp(&buffer[..length]).unwrap().1 {
+        OscPacket::Bundle(bundle) => bundle.content,
+        message => vec![message],
+    };
+    let heard = content.into_iter().map(|element| match element {
+        OscPacket::Message(message) => (message.addr, message.args.first().cloned()),
+        OscPacket::Bundle(_) => panic!("a bundle in a bundle"),
+    });
+    heard.collect()
+}
+
+fn foot(x: f32) -> Contact {
+    let centroid = Vec2::new(x, 0.5);
+    let load = TileLoad { tile: TileId::new(0, 0), index: 0, force: Newtons(350.0), centroid };
+    Contact {
+        id: ContactId(1),
+        centroid,
+        force: Newtons(350.0),
+        velocity: Vec2::ZERO,
+        tiles: [load].into_iter().collect(),
+        covariance: Covariance::isotropic(0.003),
+        ambiguous: false,
+        quality: Quality::Live,
+        difference: None,
+    }
+}
+
+#[test]
+fn events_arrive_in_order_up_to_the_last() {
+    let (listener, mut sink) = listen();
+    let event = |number: u32| WidgetEvent {
+        at: Instant::START,
+        id: WidgetId::new(&format!("button_{number}")),
+        kind: EventKind::Clicked,
+        contact: None,
+        force: Newtons::ZERO,
+        position: Vec2::ZERO,
+    };
+    sink.link(Instant::START, LinkState::Live);
+    sink.health(Instant::START, &SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() });
+    for number in 0..100 {
+        sink.events(&[event(number)]);
+    }
+    drop(sink);
+    // News of the link and news of the sensors both tell of both.
+    for _ in 0..2 {
+        assert_eq!(hear(&listener), [("/underfoot/health".into(), Some(OscType::String("live".into())))]);
+    }
+    for number in 0..100 {
+        assert_eq!(hear(&listener)[0].0, format!("/underfoot/widget/button_{number}/clicked"));
+    }
+}
+
+#[test]
+fn contacts_arrive_at_100_hz_and_end_with_none() {
+    let (listener, mut sink) = listen();
+    // Nobody, then a foot for 100 ms from 5 ms on, then nobody.
+    let mut reports = 0;
+    for ms in 0..300 {
+        let here = (5..105).contains(&ms);
+        let contacts = if here { vec![foot(ms as f32)] } else { vec![] };
+        sink.contacts(Instant::from_millis(ms), &contacts);
+        // The report falls due at 5, 15, ... 105: the first at once, the last with nobody.
+        if (5..=105).contains(&ms) && ms % 10 == 5 {
+            reports += 1;
+            let heard = hear(&listener);
+            assert_eq!(heard[0], ("/underfoot/contacts".into(), Some(OscType::Int(here.into()))));
+            assert_eq!(heard.len(), 1 + usize::from(here));
+        }
+    }
+    assert_eq!(reports, 11);
+    listener.set_nonblocking(true).unwrap();
+    assert!(listener.recv(&mut [0; 16]).is_err(), "quiet while nobody is there");
+    assert_eq!(sink.dropped(), 0);
+}
+
+#[test]
+fn a_sink_that_ends_under_a_foot_says_that_nobody_is_there() {
+    let (listener, mut sink) = listen();
+    sink.contacts(Instant::START, &[foot(0.5)]);
+    assert_eq!(hear(&listener).len(), 2);
+    drop(sink);
+    assert_eq!(hear(&listener), [("/underfoot/contacts".into(), Some(OscType::Int(0)))]);
+}

@@ -1,0 +1,274 @@
+//! A server without sockets: what it does with packets, silence and requests.
+
+use std::collections::VecDeque;
+use std::sync::mpsc;
+use std::time::Duration;
+
+use crate::support::layout;
+use underfoot::engine::{LinkState, Snapshot};
+use underfoot::feel::{RendererConfig, renderer};
+use underfoot::floor::{Corner, Floor, SensorId, TileId};
+use underfoot::sense::{Contact, Method, Quality, SensorHealth};
+use underfoot::serve::{Command, Ended, Server};
+use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
+use underfoot::sink::{ActuatorSink, EventSink, ManualSink, SinkError};
+use underfoot::source::{SensorSource, SourceError};
+use underfoot::units::{Instant, Newtons};
+use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use underfoot::wire::{ControlMessage, Request, SensorPacket};
+
+/// Packets of a foot on `home`, with silences in between: the clock goes on, nothing comes.
+struct Visit {
+    sim: SimFloor,
+    /// Milliseconds with (`Some`) or without packets, and the force on `home`.
+    acts: VecDeque<(u32, Option<f32>)>,
+    millis: u32,
+    waiting: VecDeque<SensorPacket>,
+    foot: Foot,
+    requests: VecDeque<ControlMessage>,
+    /// Sensors that break, and when.
+    breaks: VecDeque<(u32, SensorId, Option<SensorFault>)>,
+}
+
+impl SensorSource for Visit {
+    fn next(&mut self, _: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        if let Some(packet) = self.waiting.pop_front() {
+            return Ok(Some(packet));
+        }
+        let Some((left, force)) = self.acts.front_mut() else { return Err(SourceError::Ended) };
+        *left -= 1;
+        let (over, force) = (*left == 0, *force);
+        if over {
+            self.acts.pop_front();
+        }
+        self.millis += 1;
+        while let Some((_, sensor, fault)) = self.breaks.pop_front_if(|(at, ..)| *at <= self.millis) {
+            self.sim.set_fault(sensor, fault);
+        }
+        let Some(force) = force else { return Ok(None) };
+        self.foot.force = Newtons(force);
+        let received = self.now();
+        let sequence = self.millis;
+        for (board, readings) in (0..).zip(self.sim.step(&[self.foot])) {
+            self.waiting.push_back(SensorPacket { board, sequence, received, readings: readings.clone() });
+        }
+        Ok(self.waiting.pop_front())
+    }
+
+    fn now(&self) -> Instant {
+        Instant::from_millis(self.millis.into())
+    }
+
+    fn take_request(&mut self) -> Option<Request> {
+        self.requests.pop_front().map(Request::from)
+    }
+}
+
+/// Notes everything with its time in milliseconds.
+struct Notes(mpsc::Sender<(u64, String)>);
+
+impl EventSink for Notes {
+    fn events(&mut self, events: &[WidgetEvent]) {
+        for event in events {
+            self.0.send((event.at.micros() / 1000, format!("{} {}", event.id, event.kind.name()))).unwrap();
+        }
+    }
+
+    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
+
+    fn link(&mut self, at: Instant, state: LinkState) {
+        self.0.send((at.micros() / 1000, format!("link {state:?}"))).unwrap();
+    }
+
+    fn health(&mut self, at: Instant, health: &SensorHealth) {
+        self.0.send((at.micros() / 1000, format!("health {health}"))).unwrap();
+    }
+}
+
+fn server(
+    acts: &[(u32, Option<f32>)],
+    requests: &[ControlMessage],
+) -> (Server, mpsc::Receiver<(u64, String)>) {
+    let wired = Floor::default();
+    let sim = SimFloor::new(&wired, SimConfig::default(), 9);
+    let floor = sim::calibrated(&wired, &sim, 9).unwrap();
+    server_on(&floor, sim, acts, requests, &[])
+}
+
+fn server_on(
+    floor: &Floor,
+    sim: SimFloor,
+    acts: &[(u32, Option<f32>)],
+    requests: &[ControlMessage],
+    breaks: &[(u32, SensorId, Option<SensorFault>)],
+) -> (Server, mpsc::Receiver<(u64, String)>) {
+    let page = layout("map");
+    let home = page.widgets[page.widget_index("home").unwrap()].area.centre();
+    let mut foot = Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6 };
+    foot.position += home - foot.centre_of_pressure();
+    let visit = Visit {
+        sim,
+        acts: acts.iter().copied().collect(),
+        millis: 0,
+        waiting: VecDeque::new(),
+        foot,
+        requests: requests.iter().cloned().collect(),
+        breaks: breaks.iter().copied().collect(),
+    };
+    let (tell, told) = mpsc::channel();
+    let server =
+        Server::new(floor, page, Method::default(), Box::new(visit)).with_events(Box::new(Notes(tell)));
+    (server, told)
+}
+
+fn play(server: &mut Server) {
+    while server.turn().unwrap() == Ended::No {}
+}
+
+const EMPTY: Option<f32> = Some(0.0);
+const PRESSED: Option<f32> = Some(150.0);
+
+#[test]
+fn silence_is_a_lost_floor_within_120_ms_and_the_return_wants_a_lift() {
+    // 200 ms empty, 200 ms pressed, 500 ms of silence, pressed again, lifted, pressed.
+    let acts = [(200, EMPTY), (200, PRESSED), (500, None), (400, PRESSED), (200, EMPTY), (200, PRESSED)];
+    let (mut server, told) = server(&acts, &[]);
+    play(&mut server);
+    drop(server);
+    let told: Vec<_> = told.iter().collect();
+    let words: Vec<_> = told.iter().map(|(_, what)| what.as_str()).collect();
+    let expected = ["link Live", "home pressed", "link Lost", "home cancelled", "link Live", "home pressed"];
+    assert_eq!(words, expected, "{told:?}");
+    let cancelled = told.iter().find(|(_, what)| what == "home cancelled").unwrap().0;
+    assert!((500..=520).contains(&cancelled), "silent from 400 ms on, released at {cancelled} ms");
+    assert!(told.last().unwrap().0 > 1500, "not before it was lifted");
+}
+
+#[test]
+fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
+    let id = |name: &str| WidgetId::new(name);
+    let requests = [
+        ControlMessage::Set { id: id("zoom"), value: Value::Number(0.75) },
+        // Some apps can only send numbers.
+        ControlMessage::Set { id: id("satellite"), value: Value::Number(1.0) },
+        ControlMessage::Disable { id: id("home") },
+        ControlMessage::Enable { id: id("nowhere") },
+    ];
+    let (server, told) = server(&[(200, EMPTY), (200, PRESSED), (100, EMPTY)], &requests);
+    let (commands, inbox) = mpsc::channel();
+    let mut server = server.with_commands(inbox);
+    commands
+        .send(Command::Control(ControlMessage::Set { id: id("zoom"), value: Value::Number(0.5) }))
+        .unwrap();
+    play(&mut server);
+    assert_eq!(server.engine().value("zoom"), Some(Value::Number(0.5)), "the channel came last");
+    assert_eq!(server.engine().value("satellite"), Some(Value::Switch(true)));
+    drop(server);
+    assert_eq!(told.iter().map(|(_, what)| what).collect::<Vec<_>>(), ["link Live"]);
+}
+
+#[test]
+fn a_new_layout_is_on_the_floor_at_once_and_shown_with_its_revision() {
+    let (server, _told) = server(&[(300, EMPTY)], &[]);
+    let (commands, inbox) = mpsc::channel();
+    let (input, mut snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+    let mut server = server.with_commands(inbox).with_snapshots(input);
+    commands.send(Command::SetLayout(Box::new(layout("surgical")))).unwrap();
+    play(&mut server);
+    assert_eq!(server.engine().layout().title, layout("surgical").title);
+    let snapshot = snapshots.read();
+    assert_eq!(snapshot.layout_revision, 1);
+    assert_eq!(snapshot.widgets.len(), layout("surgical").widgets.len());
+    assert_eq!(snapshot.link, LinkState::Live);
+}
+
+/// A sink whose disk is full from the start.
+struct Broken;
+
+impl ActuatorSink for Broken {
+    fn advance(&mut self, _: Instant) -> Result<(), SinkError> {
+        Err(SinkError::Device { message: "it is gone".into() })
+    }
+}
+
+#[test]
+fn controls_go_on_without_actuators() {
+    let (server, told) = server(&[(200, EMPTY), (200, PRESSED), (100, EMPTY)], &[]);
+    let (feel, _renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    let mut server = server.with_feel(feel, Box::new(Broken));
+    play(&mut server);
+    drop(server);
+    assert!(told.iter().any(|(_, what)| what == "home clicked"));
+}
+
+/// A manual sink that is looked at while the server owns it.
+struct Watched(ManualSink, mpsc::Sender<(u64, Instant)>);
+
+impl ActuatorSink for Watched {
+    fn advance(&mut self, now: Instant) -> Result<(), SinkError> {
+        self.0.advance(now)
+    }
+}
+
+impl Drop for Watched {
+    fn drop(&mut self) {
+        for onset in self.0.onsets() {
+            self.1.send(onset).unwrap();
+        }
+    }
+}
+
+#[test]
+fn a_click_starts_with_the_sample_of_its_press() {
+    let (server, told) = server(&[(200, EMPTY), (200, PRESSED), (100, EMPTY)], &[]);
+    let (feel, renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    let (tell, onsets) = mpsc::channel();
+    let sink = Watched(ManualSink::new(renderer, Instant::START), tell);
+    let mut server = server.with_feel(feel, Box::new(sink));
+    play(&mut server);
+    drop(server);
+    let pressed =
+        told.iter().find(|(_, what)| *what == format!("home {}", EventKind::Pressed.name())).unwrap().0;
+    let first = onsets.iter().next().unwrap().0;
+    assert_eq!(first, pressed * 48, "48 samples a millisecond");
+}
+
+#[test]
+fn the_sensors_health_is_told_when_it_changes_and_once_a_second_at_most() {
+    let wired = Floor::default();
+    let sim = SimFloor::new(&wired, SimConfig::default(), 9);
+    let floor = sim::calibrated(&wired, &sim, 9).unwrap();
+    let sensor = |column| SensorId { tile: TileId::new(column, 1), corner: Corner::SouthWest };
+    // Two break in the first second, one of them is repaired later.
+    let open = Some(SensorFault::Open);
+    let breaks = [(1500, sensor(0), open), (1700, sensor(3), open), (4000, sensor(0), None)];
+    let (mut server, told) = server_on(&floor, sim, &[(8000, Some(0.0))], &[], &breaks);
+    play(&mut server);
+    let mut snapshot = Snapshot::default();
+    server.snapshot(&mut snapshot);
+    assert_eq!((snapshot.health.count(Quality::Faulty), snapshot.counters.sensor_troubles), (1, 2));
+    drop(server);
+    let told: Vec<_> = told.iter().filter(|(_, what)| what.starts_with("health")).collect();
+    let what: Vec<_> = told.iter().map(|(_, what)| what.trim_start_matches("health ")).collect();
+    // That all is well at first is no news.
+    assert_eq!(what, ["1 faulty, 143 live", "2 faulty, 142 live", "1 faulty, 143 live"]);
+    assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 1000), "{told:?}");
+    assert!((1500..1650).contains(&told[0].0), "at once, if the last was a second ago: {told:?}");
+}
+
+#[test]
+fn s9_the_floor_file_of_another_floor_is_noticed_and_nothing_is_trusted() {
+    let wired = Floor::default();
+    for (seed, foreign) in [(9, false), (10, true), (11, true), (12, true)] {
+        let sim = SimFloor::new(&wired, SimConfig::default(), 9);
+        let other = SimFloor::new(&wired, SimConfig::default(), seed);
+        let floor = sim::calibrated(&wired, &other, seed).unwrap();
+        let (mut server, _told) = server_on(&floor, sim, &[(1000, Some(0.0))], &[], &[]);
+        play(&mut server);
+        let mut snapshot = Snapshot::default();
+        server.snapshot(&mut snapshot);
+        assert_eq!(snapshot.health.foreign, foreign, "floor {seed}");
+        let degraded = if foreign { 144 } else { 0 };
+        assert_eq!(snapshot.health.counts, [144 - degraded, degraded, 0, 0], "floor {seed}");
+    }
+}

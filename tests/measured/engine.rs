@@ -1,0 +1,55 @@
+//! From frames to events nothing is allocated once the floor runs: people, steps, weights, regions and guards included.
+
+use std::time::Duration;
+
+use assert_no_alloc::{assert_no_alloc, violation_count};
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::experiment::{Rig, Visit};
+use underfoot::floor::Geometry;
+use underfoot::layout::CursorRule;
+use underfoot::schema::{Kinds, builtin_layout, parse_layout};
+use underfoot::sense::{ForceFrame, Method, Quality};
+use underfoot::sim::Foot;
+use underfoot::units::Instant;
+
+#[test]
+fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
+    let geometry = Geometry::default();
+    let visit = Visit::of(3, &geometry).unwrap();
+    let mut rig = Rig::ideal(geometry);
+    let (mut frames, mut feet) = (Vec::<ForceFrame>::new(), Vec::<Foot>::new());
+    let length = visit.script().duration().as_millis() as u64;
+    for ms in 1..length {
+        feet.clear();
+        visit.script().feet_at(Instant::from_millis(ms), &mut feet);
+        rig.step(feet.iter().map(Foot::as_load), |frame| frames.push(frame.clone()));
+    }
+    // A board that falls silent for a moment.
+    for frame in &mut frames[4000..4100] {
+        frame.quality[12..18].fill([Quality::Stale; 4]);
+    }
+    let text = builtin_layout("all_controls").unwrap();
+    for rule in [CursorRule::Largest, CursorRule::Working, CursorRule::Each] {
+        let mut layout = parse_layout(text, "all", &Kinds::builtin(), &geometry).unwrap().layout;
+        layout.regions[0].cursor = rule;
+        let mut engine = Engine::new(geometry, layout, Method::Tracker);
+        let mut snapshot = Snapshot::default();
+        let mut events = 0;
+        let mut pass = |number: u32, frame: &mut ForceFrame| {
+            frame.at = frame.at + Duration::from_millis(length) * number.min(1);
+            events += engine.step(frame).events.len();
+            engine.snapshot(&mut snapshot);
+        };
+        // Twice over: once for warming up.
+        frames.iter_mut().for_each(|frame| pass(0, frame));
+        let before = violation_count();
+        for frame in &mut frames {
+            assert_no_alloc(|| pass(1, frame));
+        }
+        assert_eq!(violation_count(), before, "{rule:?}");
+        for frame in &mut frames {
+            frame.at = frame.at.before(Duration::from_millis(length));
+        }
+        println!("{rule:?}: {events} events");
+    }
+}

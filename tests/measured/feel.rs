@@ -1,0 +1,73 @@
+//! Nothing in the audio callback asks for memory.
+
+use assert_no_alloc::{assert_no_alloc, violation_count};
+use underfoot::feel::{Click, Cue, Friction, Mode, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::floor::Floor;
+use underfoot::units::{Instant, Newtons};
+
+/// Ten seconds of eight feet that rub and of clicks of eight modes, a new one every 2 ms, on four tiles each.
+#[test]
+fn the_busiest_ten_seconds_do_not_allocate() {
+    let (mut sender, mut renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    let mut scope = renderer.scope().unwrap();
+    let frames = 48; // one millisecond
+    let mut out = vec![0.0; frames * renderer.channels()];
+    let mut moved = 0_usize;
+    for n in 0..10_000_u64 {
+        let now = Instant::from_millis(n);
+        let rubs: Rubs = (0..8).map(|foot| rub(foot, n)).collect();
+        let cue = cue(n, now);
+        assert_no_alloc(|| {
+            sender.rubs(&rubs);
+            if n % 2 == 0 {
+                sender.send(&cue);
+            }
+            if n % 3000 == 2500 {
+                sender.silence();
+            }
+            if n % 3000 == 2600 {
+                sender.resume();
+            }
+            renderer.render(&mut out, now);
+            scope.update();
+        });
+        moved += out.iter().filter(|sample| **sample != 0.0).count();
+    }
+    assert_eq!(violation_count(), 0);
+    assert!(moved > 10_000_000, "only {moved} samples moved: not busy at all");
+    assert!(renderer.counters().stolen > 0, "voices were never stolen: not busy at all");
+}
+
+fn spots(first: u64) -> impl Iterator<Item = Spot> {
+    (0..4).map(move |spot| Spot { tile: ((first * 5 + spot) % 36) as u16, weight: 0.25 })
+}
+
+fn cue(n: u64, at: Instant) -> Cue {
+    // Ever other frequencies, so that every click needs slots of its own.
+    let modes = (0..8_u64)
+        .map(|mode| Mode {
+            frequency_hz: 50.0 + ((n * 8 + mode) * 7 % 900) as f32,
+            decay_s: 0.5,
+            amplitude: 0.1,
+        })
+        .collect();
+    Cue { at, received: at, spots: spots(n).collect(), click: Click { modes, level: Newtons(10.0) } }
+}
+
+fn rub(foot: u32, n: u64) -> Rub {
+    let friction = Friction {
+        level: Newtons(3.0),
+        low_hz: 80.0,
+        high_hz: 500.0,
+        full_speed_m_s: 0.5,
+        full_force: Newtons(400.0),
+    };
+    Rub {
+        // Now and then a foot lifts and another lands.
+        key: foot + 8 * (n / 100 % 3) as u32,
+        spots: spots(u64::from(foot) + n / 50).collect(),
+        friction,
+        speed_m_s: (n % 100) as f32 * 0.01,
+        force: Newtons(300.0),
+    }
+}

@@ -1,0 +1,18 @@
+//! What a test measures of its own process: that nothing is allocated where nothing may be, and that memory stays level.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+use assert_no_alloc::AllocDisabler;
+
+#[path = "../sense_support/mod.rs"]
+mod sense_support;
+#[path = "../support/mod.rs"]
+mod support;
+
+mod engine;
+mod feel;
+mod noise;
+mod sensing;
+mod wire;
+
+#[global_allocator]
+static ALLOCATOR: AllocDisabler = AllocDisabler;

@@ -1,0 +1,87 @@
+//! From packets to contacts nothing is allocated once the floor runs, whatever breaks meanwhile: it may run for months.
+
+use crate::sense_support::{Sensors, walk};
+use assert_no_alloc::{assert_no_alloc, violation_count};
+use underfoot::experiment::Visit;
+use underfoot::floor::{Corner, Floor, Geometry, SensorId};
+use underfoot::sense::{Assembler, Method, Sensing};
+use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
+use underfoot::units::{Instant, Newtons};
+use underfoot::wire::SensorPacket;
+
+#[test]
+fn people_on_a_mapped_floor_whose_sensors_break_allocate_nothing() {
+    let wired = Floor::default();
+    let mut sim = SimFloor::new(&wired, SimConfig::default(), 2);
+    let floor = sim::mapped(&sim::calibrated(&wired, &sim, 2).unwrap(), &sim, 2).unwrap();
+    let visit = Visit::of(2, &Geometry::default()).unwrap();
+    let mut assembler = Assembler::new(&floor);
+    let mut ways = [Method::Eq4, Method::Tracker]
+        .map(|method| Sensing::new(floor.geometry, method).with_maps(&floor.position_maps));
+    let sensor = |column, row, corner| SensorId { tile: underfoot::floor::TileId::new(column, row), corner };
+    let faults = [
+        (4000, sensor(3, 3, Corner::NorthEast), SensorFault::Stuck),
+        (5000, sensor(1, 1, Corner::SouthWest), SensorFault::Open),
+        (6000, sensor(2, 2, Corner::SouthEast), SensorFault::Short),
+        (7000, sensor(4, 4, Corner::NorthWest), SensorFault::Offset(Newtons(60.0))),
+    ];
+    let (mut sequence, mut frames, mut feet) = (0, 0, Vec::<Foot>::new());
+    let length = visit.script().duration().as_millis() as u64;
+    // Twice over: once for warming up.
+    for ms in 1..2 * length {
+        feet.clear();
+        visit.script().feet_at(Instant::from_millis(ms % length), &mut feet);
+        for (at, sensor, fault) in faults {
+            if ms == at || ms == length + at {
+                sim.set_fault(sensor, Some(fault));
+            }
+            if ms == length - 1 {
+                sim.set_fault(sensor, None);
+            }
+        }
+        sequence += 1;
+        let readings = sim.step(&feet);
+        let received = Instant::from_millis(ms);
+        let packets: Vec<_> = (0..)
+            .zip(readings)
+            .map(|(board, readings)| SensorPacket { board, sequence, received, readings: readings.clone() })
+            .collect();
+        let mut work = || {
+            for packet in &packets {
+                assembler.take(packet);
+            }
+            while let Some(frame) = assembler.ready() {
+                frames += 1;
+                for sensing in &mut ways {
+                    sensing.update(frame);
+                }
+            }
+        };
+        if ms < length {
+            work();
+        } else {
+            assert_no_alloc(work);
+        }
+    }
+    assert_eq!(violation_count(), 0);
+    assert!(frames > 20_000, "{frames}");
+    assert!(assembler.counters().sensor_troubles >= 6, "or nothing broke: {:?}", assembler.counters());
+}
+
+#[test]
+fn once_warm_nothing_is_allocated() {
+    for method in [Method::Eq4, Method::Tracker] {
+        let scene = walk(5, Sensors::CALIBRATED);
+        let mut sensing = Sensing::new(scene.geometry, method);
+        for frame in &scene.frames {
+            sensing.update(frame);
+        }
+        let before = violation_count();
+        assert_no_alloc(|| {
+            for frame in &scene.frames {
+                sensing.update(frame);
+            }
+        });
+        assert_eq!(violation_count(), before, "{method:?}");
+    }
+}

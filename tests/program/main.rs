@@ -1,0 +1,10 @@
+//! The program `underfoot` itself: processes, sockets, files, and what the README says of it.
+#![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+#[path = "../support/sender.rs"]
+mod sender;
+
+mod calibrate;
+mod clients;
+mod end_to_end;
+mod readme;
