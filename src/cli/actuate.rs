@@ -30,8 +30,8 @@ pub(crate) struct ActuateArgs {
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
-    /// Frames that the sound card takes at once: the shorter, the sooner a click is felt. Without it, 128; 64 with
-    /// `--device paced`.
+    /// Frames that the sound card takes at once: the shorter, the sooner a click is felt. Without it, 128 (64 with
+    /// `--device paced`), and more if samples come late again and again.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=8192))]
     block: Option<u32>,

@@ -133,8 +133,9 @@ fn by_default() -> Result<(), Failure> {
 /// Warnings and errors by default; `RUST_LOG` overrules.
 fn start_logging(verbose: u8) {
     let level = match verbose {
-        0 => "warn",
-        1 => "info,underfoot=debug",
+        // JACK's library complains of servers that are not there, which is for us to judge.
+        0 => "warn,jack=off",
+        1 => "info,underfoot=debug,jack=off",
         _ => "trace",
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));

@@ -7,6 +7,7 @@ use std::time::Duration;
 use tracing::info;
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
+use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::wire::LinkCounters;
 
@@ -80,6 +81,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_events(Box::new(args.outputs.open(&floor.geometry)?))
         .with_prefix(prefix)
         .with_commands(inbox);
+    // Last, since threads inherit it. Where it is denied, the sound card's thread says what to do.
+    claim_priority(Rank::Sensing);
     let served = server.run(&stop);
     let counters = server.counters();
     let dropped = server.unsent_events();

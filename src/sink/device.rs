@@ -54,8 +54,8 @@ pub struct DeviceOptions {
     pub sample_rate: Option<u32>,
     /// Whether samples are converted where the device has not that rate; otherwise it is refused.
     pub resample: bool,
-    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered. 128 if
-    /// absent, 64 of `paced`.
+    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered. If absent, 128
+    /// (64 of `paced`) to begin with, and more when samples come late again and again.
     pub block: Option<u32>,
     /// How the floor's channels go onto those of the device.
     pub mix: Mix,
@@ -90,6 +90,7 @@ pub struct OutputDevice {
     choice: Choice,
     floor: Floor,
     options: DeviceOptions,
+    block_is_asked: bool,
     ask: Option<Ask>,
 }
 
@@ -113,6 +114,7 @@ impl OutputDevice {
             Some(name) => cards.by_id(name).or_else(|| cards.by_name(name)),
         };
         let Some(card) = card else { return Err(missing(options.name.as_deref(), &cards.names())) };
+        let block_is_asked = options.block.is_some();
         if matches!(card, Card::Paced) {
             options.block.get_or_insert(paced::BLOCK);
             options.sample_rate.get_or_insert(paced::SAMPLE_RATE);
@@ -120,7 +122,8 @@ impl OutputDevice {
         let name = card.name();
         let ranges = card.ranges().map_err(|error| trouble(&name, &error))?;
         let choice = choice::choose(&name, &ranges, floor, &options)?;
-        Ok(Self { cards, card, name, choice, floor: floor.clone(), options, ask: Some(priority::ask_system) })
+        let (floor, ask) = (floor.clone(), Some(priority::ask_system as Ask));
+        Ok(Self { cards, card, name, choice, floor, options, block_is_asked, ask })
     }
 
     /// The device's name.
@@ -173,8 +176,8 @@ impl OutputDevice {
         // The renderer can't be made anew when the device comes back.
         self.options.sample_rate = Some(renderer.sample_rate());
         let player = Player::new(renderer, &self.floor, &self.options, self.choice);
-        let Self { cards, card, choice, floor, options, ask, .. } = self;
-        Supervisor::begin(Charge { cards, card, choice, floor, options, ask }, player)
+        let Self { cards, card, choice, floor, options, block_is_asked, ask, .. } = self;
+        Supervisor::begin(Charge { cards, card, choice, floor, options, block_is_asked, ask }, player)
     }
 }
 
@@ -243,6 +246,11 @@ impl ActuatorSink for DeviceSink {
 
 fn missing(name: Option<&str>, names: &[String]) -> SinkError {
     let message = match name {
+        Some(name) if cfg!(not(feature = "jack")) && name.to_lowercase().starts_with("jack") => {
+            "this program was built without JACK: build it with `--features jack`, which needs JACK's headers \
+             (Debian: libjack-jackd2-dev)"
+                .into()
+        }
         Some(name) if !names.is_empty() => {
             format!(
                 "there is no sound card `{name}`: choose one of {}, or `paced` for a clock without sound",

@@ -15,6 +15,10 @@ const JUMP_US: f64 = 20_000.0;
 /// What is taken of an error at most: somebody who comes this late says nothing about the beat.
 const LATEST_US: f64 = 1_000.0;
 
+/// From where on an error is no late wake-up if so many blocks in a row share it: the device has left out samples.
+const SHIFT_US: f64 = 300.0;
+const SHIFT_BLOCKS: u32 = 16;
+
 /// Largest difference in speed between the device's clock and the other one: crystals are within 200 ppm.
 const MOST_DRIFT: f64 = 1e-3;
 
@@ -41,6 +45,9 @@ struct Lock {
     speed: f64,
     /// Time locked so far, in seconds.
     age_s: f64,
+    /// Blocks in a row that were off to the same side, and by how much at least.
+    off: u32,
+    off_us: f64,
 }
 
 impl BlockClock {
@@ -50,9 +57,11 @@ impl BlockClock {
         let length_us = frames as f64 * 1e6 / f64::from(sample_rate.max(1));
         let Some(lock) = self.lock.as_mut().filter(|lock| (measured_us - lock.next_us).abs() < JUMP_US)
         else {
-            self.lock = Some(Lock { next_us: measured_us + length_us, speed: 1.0, age_s: 0.0 });
+            self.lock =
+                Some(Lock { next_us: measured_us + length_us, speed: 1.0, age_s: 0.0, off: 0, off_us: 0.0 });
             return measured;
         };
+        lock.follow_shift(measured_us - lock.next_us);
         let error_us = (measured_us - lock.next_us).clamp(-LATEST_US, LATEST_US);
         let start_us = lock.next_us;
         let bandwidth_hz = BANDWIDTH_HZ.max(FIRST_BANDWIDTH_HZ / (1.0 + lock.age_s * FIRST_BANDWIDTH_HZ));
@@ -69,6 +78,27 @@ impl BlockClock {
     /// Begins anew with the next block.
     pub(super) fn forget(&mut self) {
         self.lock = None;
+    }
+}
+
+impl Lock {
+    /// Takes over an error that has come to stay: an underrun has moved all that follows.
+    fn follow_shift(&mut self, error_us: f64) {
+        if error_us.abs() < SHIFT_US {
+            self.off = 0;
+            return;
+        }
+        if self.off == 0 || error_us.signum() != self.off_us.signum() {
+            (self.off, self.off_us) = (0, error_us);
+        }
+        self.off += 1;
+        if error_us.abs() < self.off_us.abs() {
+            self.off_us = error_us;
+        }
+        if self.off >= SHIFT_BLOCKS {
+            self.next_us += self.off_us;
+            self.off = 0;
+        }
     }
 }
 
@@ -119,6 +149,17 @@ mod tests {
         let errors = errors(|_, chance| if chance < 0.01 { 5000.0 } else { 20.0 + 40.0 * chance });
         assert!(spread(&errors) < 15.0, "{} us", spread(&errors));
         assert!(errors[errors.len() - 1] < 120.0, "{}", errors[errors.len() - 1]);
+    }
+
+    #[test]
+    fn an_underrun_moves_the_beat_within_some_blocks() {
+        // Every 3000 blocks (2 s) the device leaves out 2 ms.
+        let errors = errors(|n, chance| f64::from(n / 3000) * 2000.0 + 20.0 * chance);
+        let missed: Vec<f64> = errors.iter().map(|error| error.rem_euclid(2000.0)).collect();
+        let far = missed.iter().filter(|error| **error > 100.0 && **error < 1900.0).count();
+        assert!(far * 50 < missed.len(), "{far} of {} blocks are off", missed.len());
+        // In the end the beat has followed all of them: fourteen.
+        assert!((errors[errors.len() - 1] - 28_000.0).abs() < 100.0, "{}", errors[errors.len() - 1]);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 use std::time::{Duration, Instant};
 
 use crate::feel::Priority;
+use crate::sink::{Rank, claim_priority};
 
 /// Asks the system to let the calling thread go before everybody else's; what came of it.
 pub(super) type Ask = fn() -> Priority;
@@ -14,13 +15,15 @@ const PROVEN: Duration = Duration::from_millis(100);
 /// real-time priority such a thread would take the machine from everybody.
 pub(super) struct Promotion {
     ask: Option<Ask>,
+    /// Whether the device is known to wait.
+    proven: bool,
     begun: Option<Instant>,
     frames: u64,
 }
 
 impl Promotion {
-    pub(super) fn new(ask: Option<Ask>) -> Self {
-        Self { ask, begun: None, frames: 0 }
+    pub(super) fn new(ask: Option<Ask>, proven: bool) -> Self {
+        Self { ask, proven, begun: None, frames: 0 }
     }
 
     /// To be called in every callback, with the frames it is asked for; gives the answer when there is one.
@@ -34,6 +37,10 @@ impl Promotion {
         now: impl Fn() -> Instant,
     ) -> Option<Priority> {
         let ask = self.ask?;
+        if self.proven {
+            self.ask = None;
+            return Some(ask());
+        }
         let begun = *self.begun.get_or_insert_with(&now);
         self.frames += frames as u64;
         let played = Duration::from_secs_f64(self.frames as f64 / f64::from(sample_rate.max(1)));
@@ -52,47 +59,9 @@ impl Promotion {
     }
 }
 
-/// Above the sensing thread, below what JACK and the kernel reserve for themselves.
-#[cfg(target_os = "linux")]
-const AUDIO_PRIORITY: u8 = 60;
-
 /// Asks for real-time priority for the calling thread, unless it has it already.
-///
-/// Other systems' hosts promote their threads by themselves.
-#[cfg(target_os = "linux")]
 pub(super) fn ask_system() -> Priority {
-    ask_for(AUDIO_PRIORITY)
-}
-
-#[cfg(target_os = "linux")]
-fn ask_for(priority: u8) -> Priority {
-    use thread_priority::{
-        RealtimeThreadSchedulePolicy, ThreadPriority, ThreadPriorityValue, ThreadSchedulePolicy,
-        set_thread_priority_and_policy, thread_native_id, thread_schedule_policy,
-    };
-    let realtime = |policy| {
-        matches!(
-            policy,
-            ThreadSchedulePolicy::Realtime(
-                RealtimeThreadSchedulePolicy::Fifo | RealtimeThreadSchedulePolicy::RoundRobin
-            )
-        )
-    };
-    if thread_schedule_policy().is_ok_and(realtime) {
-        return Priority::RealTime;
-    }
-    let Ok(value) = ThreadPriorityValue::try_from(priority) else { return Priority::Denied };
-    let policy = ThreadSchedulePolicy::Realtime(RealtimeThreadSchedulePolicy::Fifo);
-    match set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Crossplatform(value), policy) {
-        Ok(()) => Priority::RealTime,
-        Err(_) => Priority::Denied,
-    }
-}
-
-/// Other systems' hosts promote their threads by themselves.
-#[cfg(not(target_os = "linux"))]
-pub(super) fn ask_system() -> Priority {
-    Priority::Hosts
+    claim_priority(Rank::Sound)
 }
 
 /// What to do about a denied priority, in a sentence for whoever set the machine up.
@@ -109,7 +78,7 @@ mod tests {
     fn asked_after(blocks: u32, real_ms_per_block: f64) -> Option<u32> {
         let start = Instant::now();
         let now = Cell::new(start);
-        let mut promotion = Promotion::new(Some(|| Priority::RealTime));
+        let mut promotion = Promotion::new(Some(|| Priority::RealTime), false);
         // 64 frames at 64 kHz: a millisecond a block.
         for block in 0..blocks {
             now.set(start + Duration::from_secs_f64(f64::from(block) * real_ms_per_block * 1e-3));
@@ -125,6 +94,13 @@ mod tests {
         assert_eq!(asked_after(1000, 1.0), Some(99));
         // One that fills a tenth of a second of buffer at first.
         assert!(asked_after(1000, 0.8).is_some());
+    }
+
+    #[test]
+    fn one_that_is_known_to_wait_is_promoted_at_once() {
+        let mut promotion = Promotion::new(Some(|| Priority::Denied), true);
+        assert_eq!(promotion.proceed(64, 64_000, Instant::now), Some(Priority::Denied));
+        assert_eq!(promotion.proceed(64, 64_000, Instant::now), None);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 use std::f64::consts::PI;
 
-/// Neighbours that make up one sample.
+/// Neighbours that make up one sample, at the slower of the two rates.
 const TAPS: usize = 32;
 
 /// Places between two samples for which weights are kept; between them they are interpolated.
@@ -11,7 +11,7 @@ const PASS: f64 = 0.8;
 
 /// Turns frames of one sample rate into frames of another, continuously.
 ///
-/// Windowed-sinc interpolation; 16 frames of delay. Frames are interleaved.
+/// Windowed-sinc interpolation; 16 frames of the slower rate as delay. Frames are interleaved.
 ///
 /// # Real-time
 /// All memory is taken when it is made.
@@ -28,7 +28,10 @@ pub(super) struct Resampler {
     position: f64,
     /// Frames that came in and are still needed.
     kept: Vec<f32>,
-    weights: Vec<[f32; TAPS]>,
+    /// Neighbours that make up one sample: even.
+    taps: usize,
+    /// The neighbours' weights, place after place.
+    weights: Vec<f32>,
 }
 
 impl Resampler {
@@ -36,12 +39,14 @@ impl Resampler {
     pub(super) fn new(channels: usize, from: u32, to: u32, most: usize) -> Self {
         let step = f64::from(from) / f64::from(to.max(1));
         let band = PASS * (1.0 / step).min(1.0);
-        let weights = (0..=PHASES).map(|phase| weights(phase as f64 / PHASES as f64, band)).collect();
-        let mut kept = Vec::with_capacity((2 * TAPS + most + step.ceil() as usize) * channels);
-        kept.resize(TAPS * channels, 0.0);
+        let taps = (TAPS as f64 * step.max(1.0) / 2.0).ceil() as usize * 2;
+        let weights =
+            (0..=PHASES).flat_map(|phase| weights(phase as f64 / PHASES as f64, band, taps)).collect();
+        let mut kept = Vec::with_capacity((2 * taps + most + step.ceil() as usize) * channels);
+        kept.resize(taps * channels, 0.0);
         // A frame less, since the first one may need another neighbour.
         let most = ((most.saturating_sub(1) as f64 / step.max(1.0)) as usize).max(1);
-        Self { channels, rate: to, most, step, position: 0.0, kept, weights }
+        Self { channels, rate: to, most, step, position: 0.0, kept, taps, weights }
     }
 
     /// Frames per second that go out.
@@ -60,12 +65,12 @@ impl Resampler {
             return 0;
         }
         let last = self.position + (frames - 1) as f64 * self.step;
-        (last.floor() as usize + TAPS + 1).saturating_sub(self.kept_frames())
+        (last.floor() as usize + self.taps + 1).saturating_sub(self.kept_frames())
     }
 
     /// How much later than the next frame given the next frame taken is, in frames taken; the delay included.
     pub(super) fn ahead(&self) -> f64 {
-        self.kept_frames() as f64 - (self.position + TAPS as f64 / 2.0 - 1.0)
+        self.kept_frames() as f64 - (self.position + self.taps as f64 / 2.0 - 1.0)
     }
 
     /// Takes frames.
@@ -75,13 +80,14 @@ impl Resampler {
 
     /// Gives as many frames as `out` holds; what was not taken in time is silent.
     pub(super) fn give(&mut self, out: &mut [f32]) {
-        let Self { channels, step, position, kept, weights, .. } = self;
+        let Self { channels, step, position, kept, taps, weights, .. } = self;
         for frame in out.chunks_exact_mut((*channels).max(1)) {
             let whole = position.floor();
             let place = (*position - whole) * PHASES as f64;
             let between = place.fract() as f32;
             let first = whole as usize * *channels;
-            let (low, high) = (&weights[place as usize], &weights[(place as usize + 1).min(PHASES)]);
+            let weights = |phase: usize| weights.chunks_exact(*taps).nth(phase).unwrap_or(&[]);
+            let (low, high) = (weights(place as usize), weights((place as usize + 1).min(PHASES)));
             for (channel, sample) in frame.iter_mut().enumerate() {
                 let neighbours = kept.get(first + channel..).unwrap_or(&[]).iter().step_by(*channels);
                 *sample = neighbours
@@ -102,9 +108,9 @@ impl Resampler {
 }
 
 /// What each of the neighbours counts for, for a sample so far between the two in the middle.
-fn weights(between: f64, band: f64) -> [f32; TAPS] {
-    let half = TAPS as f64 / 2.0;
-    let mut weights: [f64; TAPS] = std::array::from_fn(|tap| {
+fn weights(between: f64, band: f64, taps: usize) -> Vec<f32> {
+    let half = taps as f64 / 2.0;
+    let weight = |tap: usize| {
         let x = tap as f64 - (half - 1.0) - between;
         let sinc = if x == 0.0 { band } else { (PI * band * x).sin() / (PI * x) };
         // Blackman-Harris: what does not belong is 92 dB down.
@@ -112,11 +118,10 @@ fn weights(between: f64, band: f64) -> [f32; TAPS] {
         let window = 0.358_75 - 0.488_29 * phase.cos() + 0.141_28 * (2.0 * phase).cos()
             - 0.011_68 * (3.0 * phase).cos();
         sinc * window
-    });
+    };
     // What stands still stays as it is.
-    let sum: f64 = weights.iter().sum();
-    weights.iter_mut().for_each(|weight| *weight /= sum);
-    weights.map(|weight| weight as f32)
+    let sum: f64 = (0..taps).map(weight).sum();
+    (0..taps).map(|tap| (weight(tap) / sum) as f32).collect()
 }
 
 #[cfg(test)]
@@ -144,7 +149,7 @@ mod tests {
             for (n, frame) in out.chunks(2).enumerate() {
                 assert_eq!(frame[0], 0.0);
                 let at = (given + n) as f64 * f64::from(from) / f64::from(to) - delay;
-                if at > TAPS as f64 {
+                if at > resampler.taps as f64 {
                     let truth = sine(at, from);
                     signal += truth * truth;
                     error += (f64::from(frame[1]) - truth).powi(2);

@@ -11,7 +11,7 @@ use super::cards::Card;
 use super::choice::Choice;
 use super::paced::PacedStream;
 use super::player::Player;
-use super::priority::{Ask, Promotion};
+use super::priority::Promotion;
 use crate::feel::Priority;
 
 /// Errors that may wait to be looked at; what follows from the first ones is of no interest.
@@ -65,13 +65,13 @@ impl Callback {
         choice: Choice,
         home: Sender<Player>,
         pulse: Arc<Pulse>,
-        ask: Option<Ask>,
+        promotion: Promotion,
     ) -> Self {
         Self {
             player: Some(player),
             home,
             pulse,
-            promotion: Promotion::new(ask),
+            promotion,
             channels: usize::from(choice.channels).max(1),
             sample_rate: choice.sample_rate,
         }

@@ -9,7 +9,7 @@ use rtrb::Consumer;
 use super::cards::{Card, Cards};
 use super::choice::{self, Choice};
 use super::player::Player;
-use super::priority::{Ask, FIX};
+use super::priority::{Ask, FIX, Promotion};
 use super::stream::{self, Callback, Ear, Pulse, Stream};
 use super::watch::{Alarm, Watch};
 use super::{DeviceOptions, trouble};
@@ -20,6 +20,9 @@ use crate::sink::SinkError;
 /// How often a device that does not play is tried again.
 const RETRY: Duration = Duration::from_secs(1);
 
+/// How often at most the same advice is given.
+const QUIET: Duration = Duration::from_secs(600);
+
 /// How long a stream may take to let go of the player before it is given more time from tick to tick.
 const LETTING_GO: Duration = Duration::from_millis(500);
 
@@ -29,6 +32,8 @@ const LETTING_GO: Duration = Duration::from_millis(500);
 pub(super) struct Supervisor {
     cards: Arc<dyn Cards>,
     id: String,
+    /// Whether somebody asked for this length of blocks: then they stay so.
+    block_is_asked: bool,
     floor: Floor,
     options: DeviceOptions,
     ask: Option<Ask>,
@@ -43,6 +48,8 @@ pub(super) struct Supervisor {
     /// What is told to others next.
     now: DeviceStatus,
     said_denied: bool,
+    /// When it was last said that longer blocks can't be had.
+    said_storm: Option<Duration>,
 }
 
 /// A stream at work.
@@ -61,13 +68,14 @@ pub(super) struct Charge {
     pub(super) choice: Choice,
     pub(super) floor: Floor,
     pub(super) options: DeviceOptions,
+    pub(super) block_is_asked: bool,
     pub(super) ask: Option<Ask>,
 }
 
 impl Supervisor {
     /// Opens the device for the first time.
     pub(super) fn begin(charge: Charge, player: Player) -> Result<Self, SinkError> {
-        let Charge { cards, card, choice, floor, options, ask } = charge;
+        let Charge { cards, card, choice, floor, options, block_is_asked, ask } = charge;
         let now = DeviceStatus {
             name: card.name(),
             id: card.id(),
@@ -78,6 +86,7 @@ impl Supervisor {
         let mut supervisor = Self {
             cards,
             id: card.id(),
+            block_is_asked,
             floor,
             options,
             ask,
@@ -90,6 +99,7 @@ impl Supervisor {
             status: Arc::new(Mutex::new(now.clone())),
             now,
             said_denied: false,
+            said_storm: None,
         };
         supervisor.start(&card, choice, Duration::ZERO).map_err(|error| trouble(&card.name(), &error))?;
         Ok(supervisor)
@@ -149,7 +159,7 @@ impl Supervisor {
         let wanted = DeviceOptions { block: Some(frames.saturating_mul(2)), ..self.options.clone() };
         let larger = self.cards.by_id(&self.id).and_then(|card| self.choose(&card, &wanted).ok());
         match larger.filter(|larger| larger.buffer_size != choice.buffer_size) {
-            Some(larger) => {
+            Some(larger) if !self.block_is_asked => {
                 let longer = frames_of(larger.buffer_size).unwrap_or(0);
                 tracing::warn!(
                     "{name} gets its samples late again and again: going on with blocks of {longer} frames in place \
@@ -158,10 +168,17 @@ impl Supervisor {
                 self.options.block = wanted.block;
                 self.close(now, DeviceState::Faulty, "it needs longer blocks");
             }
-            None => tracing::warn!(
-                "{name} gets its samples late again and again and can't have longer blocks: set them in its server, \
-                 or relieve this machine"
-            ),
+            larger if self.said_storm.is_none_or(|said| now >= said + QUIET) => {
+                self.said_storm = Some(now);
+                let advice = match larger {
+                    Some(_) => "ask for longer blocks with `--block`",
+                    None => "it can't have longer blocks, so set them in its server",
+                };
+                tracing::warn!(
+                    "{name} gets its samples late again and again: {advice}, or relieve this machine"
+                );
+            }
+            _ => {}
         }
     }
 
@@ -236,7 +253,8 @@ impl Supervisor {
         let (blocks, underruns) = (&self.pulse.blocks, &self.pulse.underruns);
         let (blocks, underruns) = (blocks.load(Ordering::Relaxed), underruns.load(Ordering::Relaxed));
         self.pulse.frames.store(0, Ordering::Relaxed);
-        let callback = Callback::new(player, choice, self.home.0.clone(), Arc::clone(&self.pulse), self.ask);
+        let promotion = Promotion::new(self.ask, matches!(card, Card::Paced));
+        let callback = Callback::new(player, choice, self.home.0.clone(), Arc::clone(&self.pulse), promotion);
         match stream::open(card, choice, callback, ear) {
             Ok(stream) => {
                 self.watch.opened(now, blocks, underruns);

@@ -10,6 +10,9 @@ const SILENT_BLOCKS: u32 = 4;
 /// The longest that a device is waited for after it was opened: some take their time to start.
 const LONGEST_START: Duration = Duration::from_millis(3200);
 
+/// How long after it was opened underruns mean nothing: buffers are filling, priority is not yet granted.
+const STARTING: Duration = Duration::from_secs(1);
+
 /// How many underruns in how much time are too many.
 const STORM: usize = 5;
 const STORM_SPAN: Duration = Duration::from_secs(10);
@@ -21,6 +24,7 @@ const STORM_SPAN: Duration = Duration::from_secs(10);
 pub(super) struct Watch {
     /// Blocks counted when they last grew, and when that was; `None` while nothing is open.
     grown: Option<(u64, Duration)>,
+    opened: Duration,
     /// Whether a block was played since it was opened.
     started: bool,
     /// How long it may take to start; doubles with each attempt in vain.
@@ -43,6 +47,7 @@ impl Watch {
     /// A device was opened; so many blocks and underruns had been counted before.
     pub(super) fn opened(&mut self, now: Duration, blocks: u64, underruns: u64) {
         self.grown = Some((blocks, now));
+        self.opened = now;
         self.started = false;
         self.start_within = self.start_within.max(SILENCE);
         self.underruns = underruns;
@@ -80,6 +85,9 @@ impl Watch {
         // However many there were since the last look, more than a storm's worth says nothing new.
         let fresh = underruns.saturating_sub(self.underruns).min(STORM as u64);
         self.underruns = underruns;
+        if now.saturating_sub(self.opened) < STARTING {
+            return None;
+        }
         self.storm.extend((0..fresh).map(|_| now));
         while self.storm.front().is_some_and(|first| now.saturating_sub(*first) > STORM_SPAN) {
             self.storm.pop_front();
