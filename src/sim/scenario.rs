@@ -347,6 +347,7 @@ mod tests {
             }],
             stances: Vec::new(),
             pages: Vec::new(),
+            grounds: Vec::new(),
             widgets: vec![
                 widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button.clone()),
                 widget("layers", "button", tiles(3.4, 1.6, 0.6, 0.6), button),
