@@ -138,7 +138,7 @@ impl Fracture {
     }
 
     /// The pieces of crack, oldest first.
-    pub fn cracks(&self) -> impl ExactSizeIterator<Item = &Crack> + '_ {
+    pub fn cracks(&self) -> impl DoubleEndedIterator<Item = &Crack> + ExactSizeIterator + '_ {
         self.cracks.iter()
     }
 

@@ -161,7 +161,7 @@ impl IceSpec {
     /// opens some ten cracks, loading a foot slowly next to none.
     pub const POND: Self = Self {
         body: Body { mass_kg: 60.0, damping_n_s_m: 5000.0, stiffness_n_m: 200_000.0 },
-        onsets_per_j_s: 4000.0,
+        onsets_per_j_s: 6500.0,
         calm_j: 0.012,
         energy: EnergyLaw { gamma: -1.5, least_j: 0.1, most_j: 2.5 },
         ring: Ring {
@@ -173,7 +173,7 @@ impl IceSpec {
             longest_s: 0.07,
         },
         cracks: CrackRules {
-            apart_m: 0.22,
+            apart_m: 0.15,
             per_j_m: 0.045,
             turn: 0.28,
             branch: 0.16,
