@@ -16,6 +16,7 @@ pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;
+pub mod ground;
 pub mod layout;
 #[cfg(feature = "program")]
 pub mod picture;

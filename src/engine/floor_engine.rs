@@ -1,5 +1,6 @@
 use crate::feel::{Cue, Rubs};
 use crate::floor::{Geometry, PositionMap};
+use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
@@ -31,6 +32,7 @@ pub struct Engine {
     labels: Labels,
     sensing: Sensing,
     interaction: Interaction,
+    grounds: Grounds,
     last_spots: LastSpots,
     last_frame: ForceFrame,
     /// What calls between two steps led to; reported by the next step.
@@ -51,6 +53,8 @@ pub struct Step<'a> {
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
     pub rubs: &'a Rubs,
+    /// What gave way under feet; their cues are among `cues`.
+    pub grounds: &'a [GroundEvent],
     /// The feet on the floor.
     pub contacts: &'a [Contact],
 }
@@ -63,6 +67,7 @@ impl Engine {
     pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
         Self {
             interaction: Interaction::new(&layout, &geometry, 0),
+            grounds: Grounds::new(&layout.grounds, &geometry),
             sensing: Sensing::new(geometry, method),
             last_frame: ForceFrame::empty(&geometry),
             geometry,
@@ -116,6 +121,9 @@ impl Engine {
                 response::push(&mut self.rubs, rub);
             }
         }
+        let broken = self.grounds.step(frame, &self.last_frame, contacts, self.interaction.page());
+        let cue = |event| response::underfoot(event, frame.received, contacts, &self.last_spots);
+        self.cues.extend(broken.iter().map(cue));
         let interaction = &self.interaction;
         self.last_spots.update(contacts, |id| interaction.holds(id));
         keep(&mut self.last_frame, frame);
@@ -128,6 +136,7 @@ impl Engine {
             page: self.page_told.as_ref(),
             cues: &self.cues,
             rubs: &self.rubs,
+            grounds: self.grounds.events(),
             contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }
     }
@@ -273,6 +282,7 @@ impl Engine {
             indicator: control.indicator(),
             pending: control.pending(),
         }));
+        self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;
         snapshot.tiles.extend(self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).map(
@@ -346,6 +356,9 @@ impl Engine {
             }
         }
         interaction.inherit(&mut self.interaction);
+        let mut grounds = Grounds::new(&layout.grounds, &self.geometry);
+        grounds.inherit(&mut self.grounds);
+        self.grounds = grounds;
         self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;

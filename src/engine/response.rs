@@ -1,6 +1,7 @@
 //! Which cue answers which event: the one place where controls meet feel.
 
 use crate::feel::{Cue, Rub, Rubs, Spot, Spots};
+use crate::ground::GroundEvent;
 use crate::layout::Layout;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
@@ -57,6 +58,22 @@ fn cue(
         None => last_spots.of(id)?,
     };
     Some(Cue { at: event.at, received, spots, click: click.clone() })
+}
+
+/// The cue of something that gave way underfoot: felt on the tiles under the contact that did it,
+/// by its weights, or on the tile alone where the contact is not known any more.
+pub(super) fn underfoot(
+    event: &GroundEvent,
+    received: Instant,
+    contacts: &[Contact],
+    last_spots: &LastSpots,
+) -> Cue {
+    let here = contacts.iter().find(|contact| Some(contact.id) == event.contact).map(spots);
+    let spots = here.or_else(|| last_spots.of(event.contact?)).unwrap_or_else(|| {
+        let tile = u16::try_from(event.tile).unwrap_or(u16::MAX);
+        Spots::from_iter([Spot { tile, weight: 1.0 }])
+    });
+    Cue { at: event.at, received, spots, click: event.click.clone() }
 }
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.

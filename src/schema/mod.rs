@@ -6,7 +6,7 @@
 //! ```text
 //! bytes -source-> text -scan-> brackets that close, bounded nesting
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range
-//!   -page, control, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Floor
+//!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Floor
 //! ```
 
 mod area;
@@ -25,6 +25,8 @@ mod fields;
 mod floor;
 mod floor_maps;
 mod floor_text;
+mod ground;
+mod ground_parts;
 mod inherit;
 mod kind;
 mod look;
