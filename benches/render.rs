@@ -37,7 +37,11 @@ impl Busy {
         let modes: Vec<Mode> = (0..modes).map(mode).collect();
         let clicks = modes
             .chunks(8)
-            .map(|modes| Click { modes: modes.iter().copied().collect(), level: Newtons(4.0) })
+            .map(|modes| Click {
+                modes: modes.iter().copied().collect(),
+                level: Newtons(4.0),
+                ..Click::default()
+            })
             .collect();
         let out = vec![0.0; BLOCK * renderer.channels()];
         Self { sender, renderer, clicks, strikes_per_second, rubs, frame: 0, next_strike: 0, out }
@@ -56,7 +60,13 @@ impl Busy {
                 let spot = Spot { tile: (self.next_strike % u64::from(CHANNELS)) as u16, weight: 1.0 };
                 for click in &self.clicks {
                     let spots = [spot].into_iter().collect();
-                    self.sender.send(&Cue { at, received: at, spots, click: click.clone() });
+                    self.sender.send(&Cue {
+                        at,
+                        received: at,
+                        spots,
+                        click: click.clone(),
+                        ..Cue::default()
+                    });
                 }
                 self.next_strike += 1;
             }
@@ -78,15 +88,17 @@ fn nine_rubs() -> Rubs {
         .map(|foot| Rub {
             key: foot,
             spots: (0..4).map(|spot| Spot { tile: foot as u16 * 4 + spot, weight: 0.25 }).collect(),
-            friction: Friction {
+            effect: Friction {
                 level: Newtons(3.0),
                 low_hz: 80.0,
                 high_hz: 400.0,
                 full_speed_m_s: 0.5,
                 full_force: Newtons(400.0),
-            },
+            }
+            .into(),
             speed_m_s: 0.3,
             force: Newtons(300.0),
+            ..Rub::default()
         })
         .collect()
 }

@@ -5,13 +5,13 @@ use rtrb::RingBuffer;
 use triple_buffer::{Output, TripleBuffer};
 
 use super::click;
-use super::friction::Rubbing;
 use super::limiter::{Faults, Limiter, Ramp};
 use super::mix::{LANES, Mix, Wiring};
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::{ScopeReader, ScopeWriter, scope};
 use super::sender::{CueSender, Shared, count};
-use super::{FeelCounters, ModalBank, Rubs};
+use super::voice::{Started, StruckBank, Voices};
+use super::{FeelCounters, Rubs};
 use crate::floor::{Actuator, Floor};
 use crate::units::Instant;
 
@@ -72,9 +72,10 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
         schedule: Schedule::new(ring),
         clock: SampleClock::new(sample_rate),
         rubs,
-        banks: vec![ModalBank::new(f64::from(sample_rate), MODES_PER_CHANNEL); config.channels],
+        banks: vec![StruckBank::new(f64::from(sample_rate), MODES_PER_CHANNEL); config.channels],
         rendered: vec![0; config.channels],
-        rubbing: Rubbing::new(rate),
+        voices: Voices::new(rate, config.channels),
+        voiced: 0,
         mix: Mix::new(config.channels, max_block),
         limiters: vec![Limiter::new(rate); groups],
         ramp: Ramp::new(rate),
@@ -119,10 +120,12 @@ pub struct Renderer {
     schedule: Schedule,
     clock: SampleClock,
     rubs: Output<Rubs>,
-    banks: Vec<ModalBank>,
+    banks: Vec<StruckBank>,
     /// Frames of the block at hand that each bank has rendered.
     rendered: Vec<usize>,
-    rubbing: Rubbing,
+    voices: Voices,
+    /// Frames of the block at hand that the voices have rendered.
+    voiced: usize,
     mix: Mix,
     limiters: Vec<Limiter>,
     ramp: Ramp,
@@ -218,8 +221,8 @@ impl Renderer {
             return 0;
         }
         if self.rubs.update() {
-            let unfelt = self.rubbing.follow(self.rubs.output_buffer(), &self.wiring);
-            count(&self.shared.unfelt, unfelt);
+            let started = self.voices.follow(self.rubs.output_buffer(), &self.wiring);
+            note(&self.shared, started);
         }
         let whole = out.len() - out.len() % self.channels;
         let (out, rest) = out.split_at_mut(whole);
@@ -254,13 +257,14 @@ impl Renderer {
                 self.strike_cues(first, frames);
             }
             self.ring_on(frames);
-            self.rubbing.render(&mut self.mix, frames);
+            self.voices.render(&mut self.mix, self.voiced, frames);
+            self.voiced = 0;
             self.ramp.fill(&mut self.gains[..frames]);
             self.limit(out, frames);
             if self.ramp.is_down() {
-                self.banks.iter_mut().for_each(ModalBank::clear);
+                self.banks.iter_mut().for_each(StruckBank::clear);
                 self.limiters.iter_mut().for_each(Limiter::clear);
-                self.rubbing.clear();
+                self.voices.clear();
             }
         }
         if let Some(scope) = &mut self.scope {
@@ -275,7 +279,15 @@ impl Renderer {
             count(&self.shared.late, u32::from(frame < -1));
             let frame = usize::try_from(frame).unwrap_or(0).clamp(first, first + frames - 1);
             let mut felt = false;
-            for spot in &cue.spots {
+            if let Some(tone) = &cue.tone {
+                // Voices go on up to the tone's own sample.
+                self.voices.render(&mut self.mix, self.voiced, frame - first);
+                self.voiced = frame - first;
+                let started = self.voices.start(&cue, tone, &self.wiring);
+                felt = (started.unfelt as usize) < cue.spots.len();
+                note(&self.shared, started);
+            }
+            for spot in cue.spots.iter().filter(|_| !cue.click.modes.is_empty()) {
                 let Some(output) = self.wiring.output(spot.tile) else {
                     count(&self.shared.unfelt, 1);
                     continue;
@@ -283,7 +295,8 @@ impl Renderer {
                 let bank = &mut self.banks[output.channel];
                 let rendered = &mut self.rendered[output.channel];
                 if !bank.is_silent() {
-                    bank.render(&mut self.mix.row(output.channel)[*rendered..frame - first]);
+                    let stolen = bank.render(&mut self.mix.row(output.channel)[*rendered..frame - first]);
+                    count(&self.shared.stolen, stolen);
                 }
                 *rendered = frame - first;
                 let struck =
@@ -291,6 +304,9 @@ impl Renderer {
                 count(&self.shared.refused, struck.refused);
                 count(&self.shared.stolen, struck.stolen);
                 felt |= struck.modes > 0;
+                if cue.manner.duck_db > 0.0 {
+                    self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());
+                }
             }
             if felt && self.onsets.len() < WAITING {
                 self.onsets.push(Onset { frame, received: cue.received });
@@ -302,7 +318,8 @@ impl Renderer {
     fn ring_on(&mut self, frames: usize) {
         for (channel, (bank, rendered)) in self.banks.iter_mut().zip(&mut self.rendered).enumerate() {
             if !bank.is_silent() {
-                bank.render(&mut self.mix.row(channel)[*rendered..frames]);
+                let stolen = bank.render(&mut self.mix.row(channel)[*rendered..frames]);
+                count(&self.shared.stolen, stolen);
             }
             *rendered = 0;
         }
@@ -323,4 +340,9 @@ impl Renderer {
         count(&self.shared.not_finite, faults.not_finite);
         count(&self.shared.overloaded, faults.overloaded);
     }
+}
+
+fn note(shared: &Shared, started: Started) {
+    count(&shared.unfelt, started.unfelt);
+    count(&shared.stolen, started.stolen);
 }

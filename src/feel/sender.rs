@@ -19,7 +19,7 @@ pub struct FeelCounters {
     pub unfelt: u64,
     /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub refused: u64,
-    /// Ringing modes that had to make room for others.
+    /// Ringing modes and lasting voices that had to make room for others.
     pub stolen: u64,
     /// Samples that were not finite and became silence.
     pub not_finite: u64,

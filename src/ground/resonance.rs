@@ -74,7 +74,7 @@ impl Resonance {
             // Together at most 1: the level is what the plate feels at most.
             amplitude: (amplitude / sum.max(f32::MIN_POSITIVE)).clamp(-1.0, 1.0),
         });
-        Click { modes: modes.collect(), level: ring.level * share.sqrt() }
+        Click { modes: modes.collect(), level: ring.level * share.sqrt(), ..Click::default() }
     }
 }
 

@@ -5,6 +5,7 @@ use super::arrange;
 use super::checks;
 use super::control::Control;
 use super::diagnostic::Diagnostics;
+use super::effect;
 use super::fields::Fields;
 use super::ground::{self, Plot};
 use super::inherit::Choice;
@@ -59,6 +60,7 @@ pub fn parse_layout(
 ) -> Result<Loaded, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, "Layout", Limits::LAYOUT);
+    reader.know(std::sync::Arc::clone(kinds.effects()));
     if let Some(newer) = version::newer(&reader, "Layout") {
         return Err(newer);
     }
@@ -108,6 +110,9 @@ impl<'r> Page<'r> {
         let (regions, regions_known) =
             list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
         let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
+        if let Some(node) = fields.take("effects") {
+            effect::list(node);
+        }
         let kinds = Choice::new(kinds, fields.take("kinds"));
         let mut room = MAX_WIDGETS;
         let widgets = fields.take("widgets");

@@ -51,7 +51,13 @@ fn cue(n: u64, at: Instant) -> Cue {
             amplitude: 0.1,
         })
         .collect();
-    Cue { at, received: at, spots: spots(n).collect(), click: Click { modes, level: Newtons(10.0) } }
+    Cue {
+        at,
+        received: at,
+        spots: spots(n).collect(),
+        click: Click { modes, level: Newtons(10.0), ..Click::default() },
+        ..Cue::default()
+    }
 }
 
 fn rub(foot: u32, n: u64) -> Rub {
@@ -66,8 +72,9 @@ fn rub(foot: u32, n: u64) -> Rub {
         // Now and then a foot lifts and another lands.
         key: foot + 8 * (n / 100 % 3) as u32,
         spots: spots(u64::from(foot) + n / 50).collect(),
-        friction,
+        effect: friction.into(),
         speed_m_s: (n % 100) as f32 * 0.01,
         force: Newtons(300.0),
+        ..Rub::default()
     }
 }

@@ -17,11 +17,17 @@ fn floor() -> (CueSender, ManualSink) {
 
 fn click(level: f32, decay_s: f32) -> Click {
     let modes = [60.0, 150.0, 320.0].map(|frequency_hz| Mode { frequency_hz, decay_s, amplitude: 1.0 });
-    Click { modes: modes.into_iter().collect(), level: Newtons(level) }
+    Click { modes: modes.into_iter().collect(), level: Newtons(level), ..Click::default() }
 }
 
 fn cue(at: Instant, tile: u16, click: Click) -> Cue {
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    Cue {
+        at,
+        received: at,
+        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
+        click,
+        ..Cue::default()
+    }
 }
 
 fn rub(speed_m_s: f32, force: f32) -> Rub {
@@ -33,7 +39,7 @@ fn rub(speed_m_s: f32, force: f32) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = [Spot { tile: 3, weight: 1.0 }].into_iter().collect();
-    Rub { key: 1, spots, friction, speed_m_s, force: Newtons(force) }
+    Rub { key: 1, spots, effect: friction.into(), speed_m_s, force: Newtons(force), ..Rub::default() }
 }
 
 #[test]
@@ -135,7 +141,7 @@ prop_compose! {
             .collect();
         let at = Instant::from_micros(u64::from(at) % 50_000);
         let spots = spots.into_iter().collect();
-        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level) } }
+        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level), ..Click::default() }, ..Cue::default() }
     }
 }
 
@@ -153,7 +159,14 @@ prop_compose! {
             full_speed_m_s,
             full_force: Newtons(full_force),
         };
-        Rub { key, spots: spots.into_iter().collect(), friction, speed_m_s, force: Newtons(force) }
+        Rub {
+            key,
+            spots: spots.into_iter().collect(),
+            effect: friction.into(),
+            speed_m_s,
+            force: Newtons(force),
+            ..Rub::default()
+        }
     }
 }
 
