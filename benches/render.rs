@@ -56,7 +56,7 @@ impl Busy {
                 let spot = Spot { tile: (self.next_strike % u64::from(CHANNELS)) as u16, weight: 1.0 };
                 for click in &self.clicks {
                     let spots = [spot].into_iter().collect();
-                    self.sender.send(&Cue { at, received: at, spots, click: click.clone() });
+                    self.sender.send(&Cue { at, received: at, spots, click: click.clone(), to_air: 0.0 });
                 }
                 self.next_strike += 1;
             }

@@ -56,7 +56,7 @@ fn cue(
         Some(contact) => spots(contact),
         None => last_spots.of(id)?,
     };
-    Some(Cue { at: event.at, received, spots, click: click.clone() })
+    Some(Cue { at: event.at, received, spots, click: click.clone(), to_air: feel.sound })
 }
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.

@@ -66,6 +66,8 @@ pub struct Feel {
     pub warn: Option<Click>,
     /// Felt while the foot slides along it.
     pub drag: Option<Friction>,
+    /// How much of its clicks is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
+    pub sound: f32,
 }
 
 /// One tile that a cue reaches.
@@ -91,6 +93,8 @@ pub struct Cue {
     pub spots: Spots,
     /// What is felt.
     pub click: Click,
+    /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
+    pub to_air: f32,
 }
 
 /// A foot sliding on a control, as it is now.

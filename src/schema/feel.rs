@@ -25,6 +25,7 @@ pub(super) fn read_over(node: Node<'_>, base: &Feel) -> Option<Feel> {
     let arm = clicked("arm", &base.arm);
     let warn = clicked("warn", &base.warn);
     let drag = fields.read("drag", Some(base.drag), |node| friction(node, base.drag.as_ref()));
+    let sound = fields.read("sound", Some(base.sound), |node| single(node, 0.0..=1.0));
     fields.finish();
     Some(Feel {
         press: press?,
@@ -34,6 +35,7 @@ pub(super) fn read_over(node: Node<'_>, base: &Feel) -> Option<Feel> {
         arm: arm?,
         warn: warn?,
         drag: drag?,
+        sound: sound?,
     })
 }
 

@@ -51,7 +51,8 @@ fn cue(n: u64, at: Instant) -> Cue {
             amplitude: 0.1,
         })
         .collect();
-    Cue { at, received: at, spots: spots(n).collect(), click: Click { modes, level: Newtons(10.0) } }
+    let click = Click { modes, level: Newtons(10.0) };
+    Cue { at, received: at, spots: spots(n).collect(), click, to_air: 0.0 }
 }
 
 fn rub(foot: u32, n: u64) -> Rub {

@@ -183,7 +183,7 @@ fn play(card: &Card, options: DeviceOptions, delay: Duration) -> (CueSender, Dev
 fn cue(tile: u16, at: Instant) -> Cue {
     let modes = [Mode { frequency_hz: 200.0, decay_s: 0.05, amplitude: 1.0 }];
     let click = Click { modes: modes.into_iter().collect(), level: Newtons(20.0) };
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click, to_air: 0.0 }
 }
 
 #[test]

@@ -26,7 +26,7 @@ fn three_modes() -> Click {
 
 fn cue(at: Instant, spots: &[(u16, f32)], click: &Click) -> Cue {
     let spots = spots.iter().map(|&(tile, weight)| Spot { tile, weight }).collect();
-    Cue { at, received: at, spots, click: click.clone() }
+    Cue { at, received: at, spots, click: click.clone(), to_air: 0.0 }
 }
 
 /// The complex amplitude of `samples` at `frequency` around sample `centre`, under a Hann window of 50 ms.

@@ -21,7 +21,7 @@ fn click(level: f32, decay_s: f32) -> Click {
 }
 
 fn cue(at: Instant, tile: u16, click: Click) -> Cue {
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click, to_air: 0.0 }
 }
 
 fn rub(speed_m_s: f32, force: f32) -> Rub {
@@ -135,7 +135,7 @@ prop_compose! {
             .collect();
         let at = Instant::from_micros(u64::from(at) % 50_000);
         let spots = spots.into_iter().collect();
-        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level) } }
+        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level) }, to_air: 0.0 }
     }
 }
 
