@@ -2,7 +2,7 @@
 //!
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
-//!           ==rubs==> friction voices ---------------------+-> mix -> limiter -> samples
+//!           ==rubs==> friction voices ---------------------+-> mix -> rack -> samples
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
@@ -12,9 +12,12 @@ mod click;
 mod cue;
 mod friction;
 mod limiter;
+mod loudspeakers;
 mod mix;
 mod modal;
+mod rack;
 mod renderer;
+mod ringing;
 mod schedule;
 mod scope;
 mod sender;
