@@ -24,6 +24,7 @@ mod feel;
 mod fields;
 mod floor;
 mod floor_maps;
+mod floor_sound;
 mod floor_text;
 mod inherit;
 mod kind;
