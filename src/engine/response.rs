@@ -83,7 +83,8 @@ impl Responses {
                     None => continue,
                 },
             };
-            let cue = Cue { at: event.at, received: now.received, spots, ..Cue::default() };
+            let to_air = spec.feel.sound;
+            let cue = Cue { at: event.at, received: now.received, spots, to_air, ..Cue::default() };
             if let (EventKind::Changed(Value::Number(_) | Value::Pair(_)), Some(way)) = (event.kind, way) {
                 self.ends.reach(widget, spec, way, id, now);
                 if let Some((click, manner)) = stop(spec, way, event, now) {

@@ -3,7 +3,7 @@
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
 //!                              -> tones -+                 |
-//!           ==rubs================> voices of what lasts --+-> mix -> limiter -> samples
+//!           ==rubs================> voices of what lasts --+-> mix -> rack -> samples
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
@@ -13,10 +13,14 @@ mod click;
 mod cue;
 mod effect;
 mod limiter;
+mod loudspeakers;
 mod mix;
 mod modal;
 mod player;
+mod push;
+mod rack;
 mod renderer;
+mod ringing;
 mod schedule;
 mod scope;
 mod sender;

@@ -25,6 +25,7 @@ mod feel;
 mod fields;
 mod floor;
 mod floor_maps;
+mod floor_sound;
 mod floor_text;
 mod ground;
 mod ground_parts;
