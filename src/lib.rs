@@ -34,3 +34,8 @@ pub mod widget;
 pub mod wire;
 
 pub use glam;
+
+/// Whatever runs in an audio callback during a test is caught allocating.
+#[cfg(test)]
+#[global_allocator]
+static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;

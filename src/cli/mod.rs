@@ -9,12 +9,14 @@ mod check;
 mod experiment;
 mod failure;
 mod floor_args;
+mod latency;
 mod layout_args;
 mod measure;
 mod outputs;
 mod play;
 #[cfg(feature = "preview")]
 mod preview;
+mod rack;
 mod render;
 mod run;
 mod sense;
@@ -61,6 +63,8 @@ enum Command {
     Addresses(addresses::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
+    /// The actuators and what plays them: a walk from tile to tile, the devices, the channel map.
+    Rack(rack::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
     /// Calibrate a floor: sensor curves, tare, position maps.
@@ -100,6 +104,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Rack(args)) => rack::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use crate::feel::FeelCounters;
+use crate::feel::{DeviceStatus, FeelCounters};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
@@ -40,6 +40,8 @@ pub struct Snapshot {
     pub counters: LinkCounters,
     /// How the sensors are doing.
     pub health: SensorHealth,
+    /// How the device that moves the actuators is doing; `None` without one.
+    pub device: Option<DeviceStatus>,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
     /// Events that other programs could not be told.

@@ -11,11 +11,13 @@
 
 mod click;
 mod cue;
+mod device_status;
 mod effect;
 mod limiter;
 mod loudspeakers;
 mod mix;
 mod modal;
+mod newest;
 mod player;
 mod push;
 mod rack;
@@ -27,6 +29,7 @@ mod sender;
 mod voice;
 
 pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
+pub use device_status::{DeviceState, DeviceStatus, Priority};
 pub use effect::{
     Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Lasting,
     MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, Part, Push, Resonance, Sequence, StickSlip, Texture,

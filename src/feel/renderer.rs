@@ -2,13 +2,13 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use glam::Vec2;
-use rtrb::RingBuffer;
 use triple_buffer::{Output as Latest, TripleBuffer};
 
 use super::click;
 use super::limiter::Ramp;
 use super::loudspeakers::Loudspeakers;
 use super::mix::{Mix, Output, Wiring};
+use super::newest::newest;
 use super::rack::{Faults, Rack};
 use super::ringing::Ringing;
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
@@ -68,13 +68,13 @@ impl RendererConfig {
 /// All memory is taken here.
 #[must_use]
 pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
-    let (cues, ring) = RingBuffer::new(WAITING);
+    let (cues, ring) = newest(WAITING);
     let (input, rubs) = TripleBuffer::new(&Rubs::new()).split();
     let sample_rate = config.sample_rate.clamp(8_000, 768_000);
     let max_block = config.max_block.clamp(1, 8192);
     let wiring = Wiring::new(config.actuators, config.channels);
     let shared = Arc::new(Shared::new(wiring.channels().collect()));
-    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0 };
+    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0, now: Instant::START };
 
     let mut rack = Rack::new(sample_rate, config.channels);
     for (tile, channel) in wiring.channels().enumerate() {
@@ -116,6 +116,8 @@ pub struct Onset {
     pub frame: usize,
     /// When the packet arrived that caused it.
     pub received: Instant,
+    /// When its cue was sent, as told by [`CueSender::note_time`].
+    pub sent: Instant,
 }
 
 /// Turns cues into actuator samples.
@@ -186,7 +188,7 @@ impl Renderer {
     /// What could not be done so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
-        self.shared.counters()
+        FeelCounters { dropped: self.schedule.dropped(), ..self.shared.counters() }
     }
 
     /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from the first.
@@ -205,6 +207,23 @@ impl Renderer {
     #[must_use]
     pub fn onsets(&self) -> &[Onset] {
         &self.onsets
+    }
+
+    /// Forgets every cue that was sent and all that sounds; what is sent from now on rises from silence.
+    ///
+    /// For a device that was away: nobody is to feel at once what happened meanwhile. Cues that are
+    /// forgotten are counted as muted.
+    pub fn restart(&mut self) {
+        count(&self.shared.muted, self.schedule.forget_all());
+        self.ringing.clear();
+        self.rack.clear();
+        self.voices.clear();
+        self.clock.forget();
+        self.onsets.clear();
+        self.ramp = Ramp::new(self.sample_rate as f32);
+        if !self.shared.turns().is_multiple_of(2) {
+            self.ramp.fade_out();
+        }
     }
 
     /// Fills `out` with the frames from `block_start` on, each cue at its own sample.
@@ -307,7 +326,7 @@ impl Renderer {
 
     /// Strikes every cue that is due in this part, rendering each bank up to the cue's sample first.
     fn strike_cues(&mut self, first: usize, frames: usize) {
-        for Due { frame, cue, .. } in self.schedule.take_before(first + frames) {
+        for Due { frame, cue, sent, .. } in self.schedule.take_before(first + frames) {
             // A clock that is estimated wavers by a sample; that is not late.
             count(&self.shared.late, u32::from(frame < -1));
             let frame = usize::try_from(frame).unwrap_or(0).clamp(first, first + frames - 1);
@@ -343,7 +362,7 @@ impl Renderer {
                 strike(1.0, output);
             }
             if felt && self.onsets.len() < WAITING {
-                self.onsets.push(Onset { frame, received: cue.received });
+                self.onsets.push(Onset { frame, received: cue.received, sent });
             }
         }
     }

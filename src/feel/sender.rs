@@ -1,15 +1,16 @@
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use rtrb::Producer;
 use triple_buffer::Input;
 
+use super::newest::Writer;
 use super::{Cue, Rubs};
+use crate::units::Instant;
 
 /// What the renderer could not do, counted since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FeelCounters {
-    /// Cues that found the ring to the renderer full.
+    /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are given up first.
     pub dropped: u64,
     /// Cues that came while everything was silenced.
     pub muted: u64,
@@ -34,7 +35,6 @@ pub struct FeelCounters {
 /// What both ends share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    pub(super) dropped: AtomicU64,
     pub(super) muted: AtomicU64,
     pub(super) late: AtomicU64,
     pub(super) unfelt: AtomicU64,
@@ -79,7 +79,7 @@ impl Shared {
     pub(super) fn counters(&self) -> FeelCounters {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         FeelCounters {
-            dropped: read(&self.dropped),
+            dropped: 0,
             muted: read(&self.muted),
             late: read(&self.late),
             unfelt: read(&self.unfelt),
@@ -105,30 +105,38 @@ pub(super) fn count(counter: &AtomicU64, by: u32) {
 pub(super) struct Message {
     pub(super) cue: Cue,
     pub(super) turns: u64,
+    /// When it left, for measuring latency.
+    pub(super) sent: Instant,
 }
 
 /// The sensing thread's end of the wire to the renderer; none of its calls waits or allocates.
 #[derive(Debug)]
 pub struct CueSender {
-    pub(super) cues: Producer<Message>,
+    pub(super) cues: Writer<Message>,
     pub(super) rubs: Input<Rubs>,
     pub(super) shared: Arc<Shared>,
     pub(super) turns: u64,
+    /// The time as it was last told.
+    pub(super) now: Instant,
 }
 
 impl CueSender {
     /// Sends a cue to be played; the answer is whether it is on its way.
     ///
-    /// It isn't if everything is silenced, or if the renderer has not taken
-    /// any of the last 256 cues; both are counted.
+    /// It isn't if everything is silenced. If the renderer has not taken any of
+    /// the last 256 cues, the oldest of them is given up. Both are counted.
     pub fn send(&mut self, cue: &Cue) -> bool {
         if self.is_silenced() {
             count(&self.shared.muted, 1);
             return false;
         }
-        let sent = self.cues.push(Message { cue: cue.clone(), turns: self.turns }).is_ok();
-        count(&self.shared.dropped, u32::from(!sent));
-        sent
+        self.cues.push(Message { cue: cue.clone(), turns: self.turns, sent: self.now });
+        true
+    }
+
+    /// Says what time it is when the next cues are sent, on the clock that stamps packets; only for measuring latency.
+    pub fn note_time(&mut self, now: Instant) {
+        self.now = now;
     }
 
     /// Says which feet rub, and how, from now on.
@@ -136,6 +144,7 @@ impl CueSender {
     /// To be called with every frame, also with no rubs: what was said last
     /// holds for 50 ms and then fades out, in case whoever sends has died.
     pub fn rubs(&mut self, rubs: &Rubs) {
+        self.cues.flush();
         self.rubs.input_buffer_mut().clone_from(rubs);
         self.rubs.publish();
     }
@@ -146,6 +155,7 @@ impl CueSender {
     pub fn silence(&mut self) {
         if !self.is_silenced() {
             self.turn();
+            count(&self.shared.muted, self.cues.take_back());
         }
     }
 
@@ -176,7 +186,7 @@ impl CueSender {
     /// What could not be done so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
-        self.shared.counters()
+        FeelCounters { dropped: self.cues.dropped(), ..self.shared.counters() }
     }
 
     fn turn(&mut self) {

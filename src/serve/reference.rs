@@ -109,6 +109,18 @@ impl Maker<'_> {
         self.add(Direction::Out, "contact", contact, "One contact, in the bundle of `contacts`.");
         let states = vec![argument("state", "s", "waiting, live, partial or lost")];
         self.add(Direction::Out, "health", states, "Whether the boards send, when that changes.");
+        let device = vec![
+            argument("device", "s", ""),
+            argument("state", "s", "playing, lost, faulty or unfit"),
+            argument("why", "s", "empty while it plays"),
+            argument("channels", "i", ""),
+            argument("sample_rate", "i", "Hz"),
+            argument("block", "i", "frames"),
+            argument("underruns", "i", ""),
+            argument("reopened", "i", ""),
+            argument("priority", "s", "real-time, denied or host"),
+        ];
+        self.add(Direction::Out, "device", device, "What moves the actuators, when that changes.");
         let page = |range: &str| vec![argument("page", "s", range)];
         if !layout.pages.is_empty() {
             self.add(Direction::Out, "page", page(&pages(layout)), "Another page is shown.");

@@ -1,5 +1,6 @@
 use super::EventSink;
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -55,6 +56,10 @@ impl EventSink for Fanout {
 
     fn health(&mut self, at: Instant, health: &SensorHealth) {
         self.sinks.iter_mut().for_each(|sink| sink.health(at, health));
+    }
+
+    fn device(&mut self, at: Instant, status: &DeviceStatus) {
+        self.sinks.iter_mut().for_each(|sink| sink.device(at, status));
     }
 
     fn dropped(&self) -> u64 {

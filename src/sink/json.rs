@@ -6,6 +6,7 @@ use serde::Serialize;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
@@ -19,6 +20,7 @@ use crate::wire::link_name;
 /// {"t_s":9.876,"event":"link","state":"lost"}
 /// {"t_s":9.9,"event":"page","page":"settings"}
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
+/// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
@@ -36,6 +38,7 @@ enum Job {
     Link(Instant, LinkState),
     Page(PageShown),
     Health(Instant, SensorHealth),
+    Device(Instant, DeviceStatus),
 }
 
 impl JsonSink {
@@ -78,6 +81,10 @@ impl EventSink for JsonSink {
         self.worker.offer(Job::Health(at, health.clone()));
     }
 
+    fn device(&mut self, at: Instant, status: &DeviceStatus) {
+        self.worker.offer(Job::Device(at, status.clone()));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped()
     }
@@ -109,6 +116,7 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
         }
         Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,
+        Job::Device(at, status) => serde_json::to_vec(&DeviceLine::of(*at, status))?,
     };
     line.push(b'\n');
     out.write_all(&line)
@@ -151,6 +159,39 @@ struct HealthLine {
     uncalibrated: u32,
     foreign: bool,
     troubles: Vec<TroubleEntry>,
+}
+
+#[derive(Serialize)]
+struct DeviceLine<'a> {
+    t_s: f64,
+    event: &'static str,
+    device: &'a str,
+    state: &'static str,
+    why: &'a str,
+    channels: u16,
+    sample_rate: u32,
+    block: u32,
+    underruns: u64,
+    reopened: u64,
+    priority: &'static str,
+}
+
+impl<'a> DeviceLine<'a> {
+    fn of(at: Instant, status: &'a DeviceStatus) -> Self {
+        Self {
+            t_s: seconds(at),
+            event: "device",
+            device: &status.name,
+            state: status.state.name(),
+            why: &status.why,
+            channels: status.channels,
+            sample_rate: status.sample_rate,
+            block: status.block,
+            underruns: status.underruns,
+            reopened: status.reopened,
+            priority: status.priority.name(),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -332,5 +373,21 @@ mod tests {
             sink.events(&[event(EventKind::Pressed, None)]);
             std::thread::yield_now();
         }
+    }
+
+    #[test]
+    fn a_device_that_is_lost_says_why() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        let state = crate::feel::DeviceState::Lost;
+        let why = "unplugged".into();
+        let status =
+            DeviceStatus { name: "Card".into(), state, why, channels: 36, ..DeviceStatus::default() };
+        sink.device(Instant::from_millis(9900), &status);
+        drop(sink);
+        let line: String = lines.iter().collect();
+        let start =
+            r#"{"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"#;
+        assert!(line.starts_with(start), "{line}");
     }
 }

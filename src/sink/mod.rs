@@ -1,6 +1,7 @@
 //! Where samples and events go: sound cards, files, other programs.
 
 mod beat;
+mod channel_map;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -18,15 +19,17 @@ mod worker;
 use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+pub use channel_map::ChannelMap;
 #[cfg(feature = "audio")]
-pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
+pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
 pub use json::JsonSink;
-pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
+pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 pub use manual::ManualSink;
 pub use osc::OscSink;
 pub use silent::SilentSink;
@@ -40,6 +43,11 @@ pub trait ActuatorSink {
     /// # Errors
     /// [`SinkError`] if samples can no longer be taken.
     fn advance(&mut self, now: Instant) -> Result<(), SinkError>;
+
+    /// Writes how the device is doing into `status`; false where there is no device.
+    fn device(&self, _status: &mut DeviceStatus) -> bool {
+        false
+    }
 }
 
 /// Something that tells other programs what happened; it never blocks its caller.
@@ -58,6 +66,9 @@ pub trait EventSink: Send {
 
     /// Takes news of the floor's sensors; called when something has changed, once a second at most.
     fn health(&mut self, _at: Instant, _health: &SensorHealth) {}
+
+    /// Takes news of the device that moves the actuators; called when something has changed, once a second at most.
+    fn device(&mut self, _at: Instant, _status: &DeviceStatus) {}
 
     /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {

@@ -8,18 +8,19 @@ use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::widget::WidgetId;
-use crate::wire::{Prefix, write_contacts, write_event, write_health, write_page};
+use crate::wire::{Prefix, write_contacts, write_device, write_event, write_health, write_page};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
 /// messages are those of [`write_event`], [`write_contacts`],
-/// [`write_page`] and [`write_health`].
+/// [`write_page`], [`write_health`] and [`write_device`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
@@ -36,6 +37,7 @@ enum Job {
     Event(WidgetEvent),
     Page(WidgetId),
     Health(LinkState, SensorHealth),
+    Device(DeviceStatus),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -99,6 +101,10 @@ impl EventSink for OscSink {
         self.worker.offer(Job::Health(self.link, health.clone()));
     }
 
+    fn device(&mut self, _at: Instant, status: &DeviceStatus) {
+        self.worker.offer(Job::Device(status.clone()));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped() + self.undelivered.load(Ordering::Relaxed)
     }
@@ -138,6 +144,10 @@ impl Sender {
                 }
                 Job::Health(state, health) => {
                     write_health(&prefix, state, &health, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Device(status) => {
+                    write_device(&prefix, &status, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {
