@@ -1,6 +1,7 @@
 //! Where samples and events go: sound cards, files, other programs.
 
 mod beat;
+mod crackle;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -18,10 +19,12 @@ mod worker;
 use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+pub use crackle::CrackNews;
 #[cfg(feature = "audio")]
 pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
 pub use fanout::Fanout;
@@ -52,6 +55,9 @@ pub trait EventSink: Send {
 
     /// Takes news of the page that has taken the place of another.
     fn page(&mut self, _page: &PageShown) {}
+
+    /// Takes what gave way underfoot in one frame, in order; called for frames in which something did.
+    fn ground(&mut self, _events: &[GroundEvent]) {}
 
     /// Takes news of the floor's link; called when its state changes.
     fn link(&mut self, _at: Instant, _state: LinkState) {}
