@@ -9,7 +9,7 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Rubs, Spot, renderer};
 use underfoot::floor::{Floor, TileId};
 use underfoot::sink::{ActuatorSink, ChannelMap, WavOptions, WavSink, WhenFull};
-use underfoot::units::{Instant, Newtons};
+use underfoot::units::{HostClock, Instant, Newtons};
 
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
@@ -165,7 +165,7 @@ impl Walk {
 
     fn walk_on_device(&self, floor: &Floor, steps: &[(TileId, u16)]) -> Result<(), Failure> {
         let begun = HostInstant::now();
-        let clock = Arc::new(move || Instant::START + begun.elapsed());
+        let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
         let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock)?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;
         anstream::eprintln!("{notice} Ctrl-C ends the walk.");

@@ -60,6 +60,10 @@ impl Bed {
         state.seeds.clear();
         match self {
             Self::Ice(ice) => {
+                // All that there can ever be, so that no later look takes memory.
+                let (cracks, seeds) = ice.fracture.most();
+                state.cracks.reserve_exact(cracks);
+                state.seeds.reserve_exact(seeds);
                 state.cracks.extend(ice.fracture.cracks());
                 state.cracks.sort_unstable_by_key(|crack| (crack.line, crack.number));
                 state.seeds.extend_from_slice(ice.fracture.seeds());

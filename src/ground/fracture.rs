@@ -148,6 +148,12 @@ impl Fracture {
         &self.seeds
     }
 
+    /// Most pieces of crack and most seeds that there can be.
+    #[must_use]
+    pub const fn most(&self) -> (usize, usize) {
+        (self.rules.most, MOST_SEEDS)
+    }
+
     /// A number that changes whenever a crack opens, widens or heals.
     #[must_use]
     pub fn revision(&self) -> u64 {

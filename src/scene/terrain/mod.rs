@@ -123,3 +123,79 @@ impl<'a> Land<'a> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Mark, Theme};
+    use super::*;
+    use crate::floor::Geometry;
+    use crate::ground::Crack;
+    use crate::layout::Layout;
+    use crate::schema::{Kinds, builtin_layout, parse_layout};
+
+    fn shipped(name: &str) -> Layout {
+        let text = builtin_layout(name).unwrap();
+        parse_layout(text, name, &Kinds::builtin(), &Geometry::default()).unwrap().layout
+    }
+
+    fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
+        let (geometry, mut scene) = (Geometry::default(), Scene::new());
+        super::super::draw(&mut scene, &View::new(&geometry, layout, snapshot, &Theme::LIGHT));
+        scene
+    }
+
+    fn bands(scene: &Scene) -> usize {
+        scene.marks().iter().filter(|mark| matches!(mark, Mark::Band { .. })).count()
+    }
+
+    /// Two joined pieces that opened a second after the clock began.
+    fn cracked() -> Snapshot {
+        let piece = |from: [f32; 2], to: [f32; 2], number| Crack {
+            from: from.into(),
+            to: to.into(),
+            energy_j: 1.0,
+            born: Instant::from_millis(1000),
+            number,
+            line: 4,
+            ..Crack::default()
+        };
+        let cracks = vec![piece([0.5, 0.5], [0.6, 0.5], 0), piece([0.6, 0.5], [0.65, 0.55], 1)];
+        let grounds = vec![GroundState { cracks, ..GroundState::default() }];
+        Snapshot { at: Instant::from_millis(1500), grounds, ..Snapshot::default() }
+    }
+
+    #[test]
+    fn every_ground_is_drawn_within_its_area() {
+        let layout = shipped("winter_walk");
+        let scene = drawn(&layout, &Snapshot::default());
+        let fields: Vec<Rect> = scene
+            .marks()
+            .iter()
+            .filter_map(|mark| if let Mark::Field { area, .. } = mark { Some(*area) } else { None })
+            .collect();
+        // Wood is made of boxes.
+        let wanted: Vec<Rect> = layout.grounds[1..].iter().map(|ground| ground.area).collect();
+        assert_eq!(fields, wanted);
+        assert!(scene == drawn(&layout, &Snapshot::default()), "the same each time");
+    }
+
+    #[test]
+    fn cracks_are_drawn_until_they_have_frozen_shut() {
+        let layout = shipped("pond");
+        let mut snapshot = cracked();
+        assert!(bands(&drawn(&layout, &snapshot)) > 0);
+        snapshot.at = Instant::from_millis(1000 + 90_000);
+        assert_eq!(bands(&drawn(&layout, &snapshot)), 0);
+    }
+
+    #[test]
+    fn a_ground_of_another_page_is_not_drawn() {
+        let text = "Layout(version: 1, pages: [(id: \"a\", grounds: [Ice]), (id: \"b\")])";
+        let loaded = parse_layout(text, "pages", &Kinds::builtin(), &Geometry::default()).unwrap();
+        let mut snapshot = cracked();
+        assert!(bands(&drawn(&loaded.layout, &snapshot)) > 0);
+        snapshot.page = 1;
+        let scene = drawn(&loaded.layout, &snapshot);
+        assert!(!scene.marks().iter().any(|mark| matches!(mark, Mark::Field { .. } | Mark::Band { .. })));
+    }
+}

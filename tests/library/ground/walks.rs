@@ -71,7 +71,7 @@ fn each_crack_is_felt_under_the_foot_at_its_own_time() {
     assert!(cues.windows(2).all(|pair| pair[0].at <= pair[1].at), "in order of time");
     let within: Vec<u64> = cues.iter().map(|cue| cue.at.micros() % 1000).collect();
     assert!(within.iter().collect::<std::collections::BTreeSet<_>>().len() > cues.len() / 2, "{within:?}");
-    assert!(cues.iter().any(|cue| cue.spots.len() == 2), "shared by Eq. 4's weights");
+    assert!(cues.iter().any(|cue| cue.spots.len() >= 2), "shared by Eq. 4's weights");
     for cue in &cues {
         let whole: f32 = cue.spots.iter().map(|spot| spot.weight).sum();
         assert!((whole - 1.0).abs() < 1e-4);
