@@ -116,6 +116,9 @@ pub struct Fracture {
 /// Most seeds of one sheet; the one that rested longest is given up for a new one.
 const MOST_SEEDS: usize = 512;
 
+/// How long a seed without cracks is kept after its last event.
+const BARE_SEED: Duration = Duration::from_secs(10);
+
 /// A crack cut off shorter than this does not open at all, in metres.
 const SHORTEST_M: f32 = 0.001;
 
@@ -200,12 +203,17 @@ impl Fracture {
 
     /// Lets what is old enough freeze shut.
     pub fn heal(&mut self, now: Instant) {
-        let Some(refreeze_s) = self.rules.refreeze_s else { return };
-        let whole = Duration::from_secs_f32(refreeze_s.clamp(0.0, 1e9));
-        while self.cracks.front().is_some_and(|oldest| now.since(oldest.born) >= whole) {
-            self.drop_oldest();
+        let whole = self.rules.refreeze_s.map(|seconds| Duration::from_secs_f32(seconds.clamp(0.0, 1e9)));
+        if let Some(whole) = whole {
+            while self.cracks.front().is_some_and(|oldest| now.since(oldest.born) >= whole) {
+                self.drop_oldest();
+            }
         }
-        self.seeds.retain(|seed| seed.cracks > 0 || now.since(seed.latest) < whole);
+        // A seed that has lost its cracks, or never got any, is soon nothing but a place.
+        let before = self.seeds.len();
+        let rest = whole.unwrap_or(BARE_SEED).min(BARE_SEED);
+        self.seeds.retain(|seed| seed.cracks > 0 || now.since(seed.latest) < rest);
+        self.revision += u64::from(self.seeds.len() != before);
     }
 
     /// A new seed's place in `seeds`.

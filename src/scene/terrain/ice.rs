@@ -13,9 +13,10 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec) {
     old_lines(scene, land);
     bubbles(scene, land);
     let Some(state) = land.state else { return };
+    let detail = Detail::of(state.cracks.len());
     for pass in [Pass::Plane, Pass::Gap, Pass::Edge] {
         for line in state.cracks.chunk_by(|one, next| one.line == next.line) {
-            self::line(scene, land, spec, line, pass);
+            self::line(scene, land, spec, line, (pass, detail));
         }
     }
     for seed in &state.seeds {
@@ -123,19 +124,46 @@ enum Pass {
     Edge,
 }
 
+/// How finely cracks are drawn: what is seen of a few is lost among thousands, and a window that is
+/// painted without a graphics card spends its time on the triangles of which lines are made.
+#[derive(Clone, Copy)]
+struct Detail {
+    /// Distance of the points of a ragged line, in metres.
+    ragged_m: f32,
+    /// The width, as a share of the widest, from which on cracks show the dark gap.
+    gap: f32,
+}
+
+impl Detail {
+    /// For so many pieces.
+    fn of(pieces: usize) -> Self {
+        let many = ((pieces as f32 - 300.0) / 900.0).clamp(0.0, 1.0);
+        Self { ragged_m: 0.011 + 0.017 * many, gap: 0.6 * many }
+    }
+}
+
 /// Steps in which cracks differ in width and age: pieces that look alike are drawn as one.
-const STEPS: f32 = 6.0;
+const STEPS: f32 = 4.0;
 
 /// One line of joined pieces.
-fn line(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec, pieces: &[Crack], pass: Pass) {
+fn line(
+    scene: &mut Scene,
+    land: &Land<'_>,
+    spec: &IceSpec,
+    pieces: &[Crack],
+    (pass, detail): (Pass, Detail),
+) {
     let Some(first) = pieces.first() else { return };
     let count = pieces.len();
+    // A line is as wide as the strongest of its pieces, thinner from branch to branch and at its end:
+    // a width for each piece would make beads of it.
+    let strongest = pieces.iter().map(|piece| piece.energy_j).fold(0.0, f32::max);
+    let share = (strongest / spec.energy.most_j).clamp(0.0, 2.0).sqrt();
+    let widest = (0.35 + 0.65 * share) * 0.78_f32.powi(i32::from(first.rank.min(4)));
     let grade = |index: usize, piece: &Crack| {
-        let open = (piece.openness(land.now, spec.sheet.refreeze_s) * STEPS).ceil() / STEPS;
-        // Thinner from branch to branch and towards its end.
-        let end = (count - 1 - index).min(3) as f32 / 3.0;
-        let share = (piece.energy_j / spec.energy.most_j).clamp(0.0, 2.0).sqrt();
-        let width = (0.35 + 0.65 * share) * (0.55 + 0.45 * end) * 0.78_f32.powi(i32::from(piece.rank.min(4)));
+        let open = (piece.openness(land.now, spec.sheet.refreeze_s) * 1.5 * STEPS).ceil() / (1.5 * STEPS);
+        let is_end = index + 2 >= count && count > 2;
+        let width = widest * if is_end { 0.6 } else { 1.0 };
         (open, (width * STEPS).ceil() / STEPS)
     };
     let mut from = 0;
@@ -147,7 +175,8 @@ fn line(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec, pieces: &[Crack], pa
         }
         let run = &pieces[from..to];
         let (open, width) = look;
-        let points = || run.iter().enumerate().flat_map(move |(at, piece)| rough(piece, at == 0));
+        let points =
+            || run.iter().enumerate().flat_map(move |(at, piece)| rough(piece, at == 0, detail.ragged_m));
         match pass {
             Pass::Plane if open > 0.0 => {
                 // Each line has its own slant, to one side of the way it goes.
@@ -165,7 +194,7 @@ fn line(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec, pieces: &[Crack], pa
                     Ink::faint(land.white, 0.0),
                 );
             }
-            Pass::Gap if open > 0.0 => {
+            Pass::Gap if open > 0.0 && width > detail.gap => {
                 let ink = Ink::faint(land.deep.mix(super::BLACK, 0.3), 0.55 * open);
                 let aside = Vec2::new(0.0009, -0.0011);
                 let stroke = Stroke::new(0.0012 + 0.0048 * width * open, ink);
@@ -183,9 +212,9 @@ fn line(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec, pieces: &[Crack], pa
 }
 
 /// The points of a piece of crack, ragged as ice breaks: both ends stay where they are.
-fn rough(piece: &Crack, with_start: bool) -> impl Iterator<Item = Vec2> + use<> {
+fn rough(piece: &Crack, with_start: bool, spacing_m: f32) -> impl Iterator<Item = Vec2> + use<> {
     let Crack { from, to, number, .. } = *piece;
-    let steps = (from.distance(to) / 0.011).round().clamp(1.0, 12.0) as u32;
+    let steps = (from.distance(to) / spacing_m).round().clamp(1.0, 12.0) as u32;
     let noise = super::Noise(number as u32);
     let across = (to - from).perp() * (0.22 / steps as f32);
     (u32::from(!with_start)..=steps).map(move |step| {
