@@ -11,6 +11,7 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
+pub mod capacity;
 pub mod engine;
 pub mod ergonomics;
 pub mod experiment;

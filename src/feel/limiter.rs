@@ -57,11 +57,12 @@ impl Limiter {
         self.holding = false;
     }
 
-    /// Holds a stretch of samples, of which `loudest` is the largest, below full scale, in a smooth curve from [`KNEE`] on.
+    /// Holds a stretch of samples, of which `loudest` is the largest, below full scale, in a smooth curve from [`KNEE`] on;
+    /// the answer is whether any may have changed.
     #[inline(always)]
-    pub(super) fn hold_down(&mut self, columns: &mut [[f32; LANES]], loudest: f32) {
+    pub(super) fn hold_down(&mut self, columns: &mut [[f32; LANES]], loudest: f32) -> bool {
         if !(loudest > KNEE || self.holding) {
-            return;
+            return false;
         }
         let mut envelope = self.envelope;
         for column in columns {
@@ -78,6 +79,7 @@ impl Limiter {
         for lane in 0..LANES {
             self.holding |= envelope[lane] > KNEE;
         }
+        true
     }
 
     /// Takes direct current out of one sample of each channel, and holds it to `gain` at most, which it is multiplied by.

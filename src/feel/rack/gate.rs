@@ -81,19 +81,19 @@ impl Gate {
         }
     }
 
+    /// Whether every channel is open and stays so: nothing to do.
+    #[inline(always)]
+    pub(super) fn is_open(&self) -> bool {
+        let mut open = true;
+        for lane in 0..LANES {
+            open &= (self.level[lane] == 1.0) & (self.slope[lane] > 0.0);
+        }
+        open
+    }
+
     /// Lets a stretch of samples through, as far as the gates are open.
     #[inline(always)]
     pub(super) fn run(&mut self, columns: &mut [[f32; LANES]]) {
-        let (mut open, mut at_rest) = (true, true);
-        for lane in 0..LANES {
-            let end = if self.slope[lane] > 0.0 { 1.0 } else { 0.0 };
-            at_rest &= self.level[lane] == end;
-            open &= (self.level[lane] == 1.0) & (end == 1.0);
-        }
-        self.at_rest = at_rest;
-        if open {
-            return;
-        }
         for column in columns {
             for lane in 0..LANES {
                 let level = self.level[lane] + self.slope[lane];
@@ -102,6 +102,7 @@ impl Gate {
                 column[lane] *= self.level[lane];
             }
         }
+        self.at_rest = false;
     }
 }
 

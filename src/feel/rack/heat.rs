@@ -14,6 +14,9 @@ const POWER_S: f32 = 0.03;
 /// How much more than its ceiling a coil may take for each watt that it is colder.
 const CREDIT: f32 = 4.0;
 
+/// Below this share of its ceiling, a coil that was turned down has recovered.
+const COOL: f32 = 0.7;
+
 /// Below this share of what may be, a coil is cold.
 const COLD: f32 = 1e-4;
 
@@ -69,7 +72,8 @@ impl Heat {
 
     /// Turns down what would be too much, in place; the answer is how many channels it begins to turn down.
     ///
-    /// `energy` is the sum of the samples' squares, each taken for no more than full scale.
+    /// `energy` is the sum of the samples' squares. No sample is beyond full scale any more, so that none that
+    /// is turned down comes back up.
     #[inline(always)]
     pub(super) fn run<const FUSED: bool>(
         &mut self,
@@ -92,6 +96,10 @@ impl Heat {
             let mean_gain = 0.5 * (self.gain[lane] + wanted[lane]);
             self.heat[lane] += (power * mean_gain * mean_gain - self.heat[lane]) * long;
         }
+        for lane in 0..LANES {
+            // What comes and goes while the coil stays hot is one and the same trouble.
+            self.down[lane] &= (wanted[lane] < 1.0) | (self.heat[lane] > COOL * self.ceiling[lane]);
+        }
         self.warm = true;
         if calm { 0 } else { self.turn::<FUSED>(columns, &wanted) }
     }
@@ -112,8 +120,7 @@ impl Heat {
         let mut begun = 0;
         for lane in 0..LANES {
             begun += u32::from(wanted[lane] < 1.0 && !self.down[lane]);
-            // Once turned down, it is so until nothing has to be turned down any more.
-            self.down[lane] = wanted[lane] < 1.0;
+            self.down[lane] |= wanted[lane] < 1.0;
         }
         self.gain = *wanted;
         begun

@@ -1,8 +1,8 @@
 //! What stands between the mix and the amplifiers, channel by channel.
 //!
 //! ```text
-//! banks, voices -> what is no sound becomes silence -> filters (band, inverse equaliser) -> power limiter
-//!               -> peak limiter -> direct-current block -> clamp -> mutes and ramps -> samples
+//! banks, voices -> what is no sound becomes silence -> filters (band, inverse equaliser) -> peak limiter
+//!               -> power limiter -> direct-current block -> clamp -> mutes and ramps -> samples
 //! ```
 //!
 //! Sixteen channels are worked on side by side. None of it looks ahead, so it adds no latency but
@@ -26,7 +26,7 @@ use super::ringing::Ringing;
 use crate::floor::{Drive, Response};
 use gate::Gate;
 use heat::Heat;
-use section::Section;
+use section::{Section, Shape};
 
 /// Samples beyond this many full scales are a fault, not a loud cue.
 const OVERLOAD: f32 = 8.0;
@@ -58,6 +58,8 @@ pub(super) struct Rack {
     groups: Vec<Group>,
     /// The samples at hand.
     columns: Box<[[f32; LANES]; SPAN]>,
+    /// The response that filters were fitted to last.
+    fitted: Option<(Response, Vec<Shape>)>,
 }
 
 /// Sixteen channels.
@@ -87,6 +89,7 @@ impl Rack {
             sample_rate,
             groups: vec![group; channels.div_ceil(LANES)],
             columns: Box::new([[0.0; LANES]; SPAN]),
+            fitted: None,
         }
     }
 
@@ -97,10 +100,12 @@ impl Rack {
     ///
     /// Takes memory and time, so it belongs before the start. A channel that the rack hasn't got is ignored.
     pub(super) fn add_actuator(&mut self, channel: usize, drive: &Drive, response: Option<&Response>) {
+        let shapes = match response {
+            Some(response) => self.shapes_for(response),
+            None => Vec::new(),
+        };
         let Some(group) = self.groups.get_mut(channel / LANES) else { return };
         let lane = channel % LANES;
-        let shapes =
-            response.map_or(Vec::new(), |response| fit::filters(response, f64::from(self.sample_rate)));
         while group.sections.len() < shapes.len() {
             group.sections.push(Section::straight());
         }
@@ -108,6 +113,18 @@ impl Rack {
             section.set(lane, shape);
         }
         group.heat.set(lane, drive);
+    }
+
+    /// The filters for a response; those of the last are kept, since most floors have one for all.
+    fn shapes_for(&mut self, response: &Response) -> Vec<Shape> {
+        if let Some((known, shapes)) = &self.fitted
+            && known == response
+        {
+            return shapes.clone();
+        }
+        let shapes = fit::filters(response, f64::from(self.sample_rate));
+        self.fitted = Some((response.clone(), shapes.clone()));
+        shapes
     }
 
     /// Mutes a channel, or no longer, within 5 ms.
@@ -236,16 +253,27 @@ impl Group {
         }
         let columns = &mut columns[..gains.len()];
         Section::run_all::<FUSED>(&mut self.sections, columns);
-        let survey = survey(columns);
-        if !survey.is_calm() {
+        let mut found = survey(columns);
+        if !found.is_calm() {
             faults += self.mend(columns);
         }
-        faults.heated = self.heat.run::<FUSED>(columns, &survey.energy);
-        self.limiter.hold_down(columns, survey.loudest());
-        self.gate.run(columns);
-        for ((frame, column), gain) in out.chunks_mut(channels).zip(columns).zip(gains) {
-            self.limiter.finish::<FUSED>(column, *gain);
-            write(column, &mut frame[..width]);
+        if self.limiter.hold_down(columns, found.loudest()) {
+            found = survey(columns);
+        }
+        faults.heated = self.heat.run::<FUSED>(columns, &found.energy);
+        if self.gate.is_open() {
+            for ((frame, column), gain) in out.chunks_mut(channels).zip(columns).zip(gains) {
+                self.limiter.finish::<FUSED>(column, *gain);
+                write(column, &mut frame[..width]);
+            }
+        } else {
+            for (column, gain) in columns.iter_mut().zip(gains) {
+                self.limiter.finish::<FUSED>(column, *gain);
+            }
+            self.gate.run(columns);
+            for (frame, column) in out.chunks_mut(channels).zip(columns) {
+                write(column, &mut frame[..width]);
+            }
         }
         faults
     }
@@ -300,7 +328,7 @@ struct Survey {
     /// The largest absolute sample, as bits: without a sign, the bits of numbers are in the order of the
     /// numbers, and those of what is infinite or no number come last.
     most: [u32; LANES],
-    /// The sum of the squares, each taken for no more than 1.
+    /// The sum of the squares.
     energy: [f32; LANES],
 }
 
@@ -312,8 +340,7 @@ fn survey(columns: &[[f32; LANES]]) -> Survey {
     for numbers in columns.as_flattened().chunks(TOGETHER) {
         for ((number, most), energy) in numbers.iter().zip(&mut most).zip(&mut energy) {
             *most = (number.to_bits() & 0x7fff_ffff).max(*most);
-            let square = number * number;
-            *energy += if square < 1.0 { square } else { 1.0 };
+            *energy += number * number;
         }
     }
     let mut survey = Survey { most: [0; LANES], energy: [0.0; LANES] };
