@@ -11,11 +11,13 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
+pub mod capacity;
 pub mod engine;
 pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;
+pub mod ground;
 pub mod layout;
 #[cfg(feature = "program")]
 pub mod picture;

@@ -101,7 +101,7 @@ impl ActuateArgs {
         &self,
         floor: &Floor,
         start: Instant,
-        clock: HostClock,
+        clock: &HostClock,
     ) -> Result<Actuation, Failure> {
         let latency = LatencyStages::default();
         let probe = LatencyProbe::of_stages(latency.clone(), clock.clone());
@@ -165,7 +165,7 @@ impl ActuateArgs {
     }
 
     #[cfg(not(feature = "audio"))]
-    fn on_sound_card(&self, _: &Floor, _: &LatencyProbe, _: HostClock) -> Result<Playing, NoSound> {
+    fn on_sound_card(&self, _: &Floor, _: &LatencyProbe, _: &HostClock) -> Result<Playing, NoSound> {
         Err(NoSound::Silent("This program was built without sound.".into()))
     }
 
@@ -174,7 +174,7 @@ impl ActuateArgs {
         &self,
         floor: &Floor,
         probe: &LatencyProbe,
-        clock: HostClock,
+        clock: &HostClock,
     ) -> Result<Playing, NoSound> {
         let mixes: &[Mix] = match self.sound {
             Sound::Auto => &[Mix::PerActuator, Mix::Stereo],

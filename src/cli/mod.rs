@@ -5,6 +5,7 @@
 mod actuate;
 mod addresses;
 mod calibrate;
+mod capacity;
 mod check;
 mod experiment;
 mod failure;
@@ -71,6 +72,8 @@ enum Command {
     Calibrate(calibrate::Args),
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
+    /// How large a floor this machine carries: rendering and sensing, in times real time.
+    Capacity(capacity::Args),
     /// Make the paper's figures and the accuracy tables on a simulated floor.
     Experiment(experiment::Args),
     /// Print completions for a shell.
@@ -108,6 +111,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
+        Some(Command::Capacity(args)) => capacity::run(&args),
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Rubs, Spot, renderer};
 use underfoot::floor::{Floor, TileId};
 use underfoot::sink::{ActuatorSink, ChannelMap, WavOptions, WavSink, WhenFull};
-use underfoot::units::{Instant, Newtons};
+use underfoot::units::{HostClock, Instant, Newtons};
 
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
@@ -129,11 +129,12 @@ impl Walk {
     }
 
     fn click(&self, floor: &Floor, tile: TileId, at: Instant) -> Cue {
-        let click = Click { modes: CLICK.into_iter().collect(), level: Newtons(self.level_n) };
+        let click =
+            Click { modes: CLICK.into_iter().collect(), level: Newtons(self.level_n), ..Click::default() };
         let index =
             floor.geometry.index(tile).and_then(|index| u16::try_from(index).ok()).unwrap_or(u16::MAX);
         let spots = [Spot { tile: index, weight: 1.0 }].into_iter().collect();
-        Cue { at, received: at, spots, click }
+        Cue { at, received: at, spots, click, ..Cue::default() }
     }
 
     /// Every click of the walk: when, and where.
@@ -164,8 +165,8 @@ impl Walk {
 
     fn walk_on_device(&self, floor: &Floor, steps: &[(TileId, u16)]) -> Result<(), Failure> {
         let begun = HostInstant::now();
-        let clock = Arc::new(move || Instant::START + begun.elapsed());
-        let actuation = self.actuate.for_wiring().start(floor, Instant::START, clock.clone())?;
+        let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
+        let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock)?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;
         anstream::eprintln!("{notice} Ctrl-C ends the walk.");
         let stop = stop_flag()?;

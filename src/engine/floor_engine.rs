@@ -1,5 +1,6 @@
 use crate::feel::{Cue, Rubs};
 use crate::floor::{Geometry, PositionMap};
+use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
@@ -7,7 +8,7 @@ use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, W
 
 use super::interact::Interaction;
 use super::labels::Labels;
-use super::response::{self, LastSpots};
+use super::response::{Now, Responses};
 use super::{PageShown, Snapshot, TileState, WidgetState};
 
 /// A floor with a page of controls on it: frames in, events and cues out.
@@ -31,7 +32,8 @@ pub struct Engine {
     labels: Labels,
     sensing: Sensing,
     interaction: Interaction,
-    last_spots: LastSpots,
+    grounds: Grounds,
+    responses: Responses,
     last_frame: ForceFrame,
     /// What calls between two steps led to; reported by the next step.
     pending: Vec<WidgetEvent>,
@@ -51,6 +53,8 @@ pub struct Step<'a> {
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
     pub rubs: &'a Rubs,
+    /// What gave way under feet; their cues are among `cues`.
+    pub grounds: &'a [GroundEvent],
     /// The feet on the floor.
     pub contacts: &'a [Contact],
 }
@@ -61,8 +65,12 @@ impl Engine {
     /// Every control must first be seen unloaded before it works.
     #[must_use]
     pub fn new(geometry: Geometry, layout: Layout, method: Method) -> Self {
+        let interaction = Interaction::new(&layout, &geometry, 0);
+        let mut responses = Responses::default();
+        responses.begin(&layout, interaction.controls());
         Self {
-            interaction: Interaction::new(&layout, &geometry, 0),
+            interaction,
+            grounds: Grounds::new(&layout.grounds, &geometry),
             sensing: Sensing::new(geometry, method),
             last_frame: ForceFrame::empty(&geometry),
             geometry,
@@ -74,7 +82,7 @@ impl Engine {
             page_shown: None,
             page_told: None,
             labels: Labels::default(),
-            last_spots: LastSpots::default(),
+            responses,
             pending: Vec::new(),
             events: Vec::new(),
             cues: Vec::new(),
@@ -109,15 +117,13 @@ impl Engine {
         self.cues.clear();
         self.rubs.clear();
         self.interaction.step(frame, contacts, &self.layout, &mut self.events);
-        let answers = response::cues(&self.events, frame.received, &self.layout, contacts, &self.last_spots);
-        self.cues.extend(answers);
-        for sliding in self.interaction.sliding() {
-            if let Some(rub) = response::rub(sliding, &self.layout, contacts) {
-                response::push(&mut self.rubs, rub);
-            }
-        }
-        let interaction = &self.interaction;
-        self.last_spots.update(contacts, |id| interaction.holds(id));
+        let (interaction, now) = (&self.interaction, Now::of(frame, &self.layout, contacts));
+        self.responses.answer(&self.events, now, &mut self.cues);
+        let sliding = interaction.sliding();
+        self.responses.last(sliding, &interaction.holding(), now, &mut self.cues, &mut self.rubs);
+        let broken = self.grounds.step(frame, &self.last_frame, contacts, self.interaction.page());
+        self.responses.give_way(broken, now, &mut self.cues);
+        self.responses.remember(contacts, |id| interaction.holds(id));
         keep(&mut self.last_frame, frame);
         self.follow_clicks();
         self.take_waiting_layout();
@@ -128,6 +134,7 @@ impl Engine {
             page: self.page_told.as_ref(),
             cues: &self.cues,
             rubs: &self.rubs,
+            grounds: self.grounds.events(),
             contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }
     }
@@ -187,7 +194,12 @@ impl Engine {
     /// [`SetError`] says whether trying again can help; the control stays as it was.
     pub fn set_value(&mut self, id: &str, value: Value) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
-        self.interaction.control_mut(widget).ok_or(SetError::Unknown)?.set_value(value)
+        let control = self.interaction.control_mut(widget).ok_or(SetError::Unknown)?;
+        control.set_value(value)?;
+        if let Some(value) = control.value() {
+            self.responses.note(widget, &self.layout, value);
+        }
+        Ok(())
     }
 
     /// Switches the control named `id` off or on; switching off cancels its press (reported by the next step).
@@ -273,6 +285,7 @@ impl Engine {
             indicator: control.indicator(),
             pending: control.pending(),
         }));
+        self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;
         snapshot.tiles.extend(self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).map(
@@ -346,10 +359,14 @@ impl Engine {
             }
         }
         interaction.inherit(&mut self.interaction);
+        let mut grounds = Grounds::new(&layout.grounds, &self.geometry);
+        grounds.inherit(&mut self.grounds);
+        self.grounds = grounds;
         self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;
         self.labels.apply(&mut self.layout);
+        self.responses.begin(&self.layout, self.interaction.controls());
         self.layout_revision = revision;
     }
 }

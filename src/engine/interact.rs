@@ -59,7 +59,7 @@ impl Moment<'_> {
     }
 }
 
-/// A foot sliding on a control that keeps it.
+/// A foot on a control that it keeps pressed.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sliding {
     pub(super) widget: usize,
@@ -132,7 +132,7 @@ impl Interaction {
         self.feet.states(now)
     }
 
-    fn held(&self) -> impl Iterator<Item = Held> + '_ {
+    fn held(&self) -> impl Iterator<Item = Held> + Clone + '_ {
         self.regions.iter().flat_map(RegionState::held)
     }
 
@@ -155,6 +155,11 @@ impl Interaction {
         self.held()
             .filter(|held| self.controls.get(held.widget).is_some_and(Control::captures))
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
+    }
+
+    /// Feet that keep a control pressed.
+    pub(super) fn holding(&self) -> impl Iterator<Item = Sliding> + Clone + '_ {
+        self.held().map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
     /// Switches a control off or on, or locks it, which `change` does.

@@ -61,7 +61,7 @@ impl RegionState {
         self.fingers.iter().map(|finger| finger.cursor).filter(move |cursor| Some(cursor.contact) != first)
     }
 
-    pub(super) fn held(&self) -> impl Iterator<Item = Held> + '_ {
+    pub(super) fn held(&self) -> impl Iterator<Item = Held> + Clone + '_ {
         self.fingers.iter().filter_map(|finger| finger.held)
     }
 

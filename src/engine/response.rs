@@ -1,47 +1,171 @@
-//! Which cue answers which event: the one place where controls meet feel.
+//! Which effect answers which event: the one place where controls meet feel.
 
-use crate::feel::{Cue, Rub, Rubs, Spot, Spots};
-use crate::layout::Layout;
-use crate::sense::{Contact, ContactId};
-use crate::units::Instant;
-use crate::widget::{EventKind, WidgetEvent};
+mod values;
+
+use std::sync::Arc;
 
 use super::interact::Sliding;
+use crate::feel::{Click, Cue, Effect, EffectKind, Manner, Player, Rub, Rubs, Spot, Spots, key};
+use crate::ground::GroundEvent;
+use crate::layout::{Layout, Widget};
+use crate::sense::{Contact, ContactId, ForceFrame};
+use crate::units::Instant;
+use crate::widget::{Behaviour, Control, EventKind, Value, WidgetEvent};
 
-/// The cues that answer `events`, on the tiles under the contacts that caused them.
-pub(super) fn cues<'a>(
-    events: &'a [WidgetEvent],
-    received: Instant,
-    layout: &'a Layout,
-    contacts: &'a [Contact],
-    last_spots: &'a LastSpots,
-) -> impl Iterator<Item = Cue> + 'a {
-    events.iter().enumerate().filter_map(move |(at, event)| {
-        let next = events.get(at + 1);
-        let taken_back = next.is_some_and(|next| next.kind == EventKind::Cancelled && next.id == event.id);
-        if taken_back { None } else { cue(event, received, layout, contacts, last_spots) }
-    })
+use values::{Ends, Shares, Way};
+
+/// What is felt, from what controls do.
+#[derive(Debug, Default)]
+pub(super) struct Responses {
+    player: Player,
+    shares: Shares,
+    ends: Ends,
+    last_spots: LastSpots,
 }
 
-/// The cue that answers `event`; `None` if it has none.
-///
-/// A cancel is not felt, nor what it takes back: the foot has left, or the floor can't be trusted.
-fn cue(
-    event: &WidgetEvent,
-    received: Instant,
-    layout: &Layout,
-    contacts: &[Contact],
-    last_spots: &LastSpots,
-) -> Option<Cue> {
-    let widget = &layout.widgets.get(layout.widget_index(event.id.as_str())?)?;
+/// The keys of what one foot does at once, for [`key`].
+const DRAG: u32 = 0;
+const PUSH: u32 = 1;
+
+/// What is known while one frame is answered.
+#[derive(Clone, Copy)]
+pub(super) struct Now<'a> {
+    pub(super) at: Instant,
+    pub(super) received: Instant,
+    pub(super) layout: &'a Layout,
+    pub(super) contacts: &'a [Contact],
+}
+
+impl<'a> Now<'a> {
+    pub(super) fn of(frame: &ForceFrame, layout: &'a Layout, contacts: &'a [Contact]) -> Self {
+        Self { at: frame.at, received: frame.received, layout, contacts }
+    }
+
+    fn contact(&self, id: ContactId) -> Option<&'a Contact> {
+        self.contacts.iter().find(|contact| contact.id == id)
+    }
+}
+
+impl Responses {
+    /// Forgets what was felt of another layout; `controls` are those of `layout`.
+    pub(super) fn begin(&mut self, layout: &Layout, controls: &[Control]) {
+        self.shares.begin(layout, controls);
+        self.ends.clear();
+        self.player.clear();
+    }
+
+    /// Takes note of a value that an app has given.
+    pub(super) fn note(&mut self, widget: usize, layout: &Layout, value: Value) {
+        if let Some(spec) = layout.widgets.get(widget) {
+            self.shares.go(widget, &spec.behaviour, value);
+        }
+    }
+
+    /// Appends the cues that answer `events`, on the tiles under the contacts that caused them.
+    ///
+    /// A cancel is not felt, nor what it takes back: the foot has left, or the floor can't be trusted.
+    pub(super) fn answer(&mut self, events: &[WidgetEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
+        for (number, event) in events.iter().enumerate() {
+            let Some(widget) = now.layout.widget_index(event.id.as_str()) else { continue };
+            let Some(spec) = now.layout.widgets.get(widget) else { continue };
+            let way = match event.kind {
+                EventKind::Changed(value) => self.shares.go(widget, &spec.behaviour, value),
+                _ => None,
+            };
+            let next = events.get(number + 1);
+            let taken_back =
+                next.is_some_and(|next| next.kind == EventKind::Cancelled && next.id == event.id);
+            let Some(id) = event.contact.filter(|_| !taken_back) else { continue };
+            let spots = match now.contact(id) {
+                Some(contact) => spots(contact),
+                None => match self.last_spots.of(id) {
+                    Some(spots) => spots,
+                    None => continue,
+                },
+            };
+            let to_air = spec.feel.sound;
+            let cue = Cue { at: event.at, received: now.received, spots, to_air, ..Cue::default() };
+            if let (EventKind::Changed(Value::Number(_) | Value::Pair(_)), Some(way)) = (event.kind, way) {
+                self.ends.reach(widget, spec, way, id, now);
+                if let Some((click, manner)) = stop(spec, way, event, now) {
+                    cues.push(Cue { click, manner, ..cue });
+                }
+                continue;
+            }
+            let changes = events
+                .iter()
+                .any(|other| other.id == event.id && matches!(other.kind, EventKind::Changed(_)));
+            if event.kind == EventKind::Pressed && !changes && self.shares.is_at_end(widget) && steps(spec) {
+                let way = self.shares.stay(widget);
+                if let Some((click, manner)) = stop(spec, way, event, now) {
+                    cues.push(Cue { click, manner, ..cue });
+                }
+                continue;
+            }
+            if let Some(effect) = answering(spec, event.kind) {
+                let release = matches!(event.kind, EventKind::Released | EventKind::HardReleased);
+                self.player.play(effect, id.0, release, cue, cues);
+            }
+        }
+    }
+
+    /// Says what lasts: frictions under feet that slide, ends that feet push against, what is held; and goes on
+    /// with sequences.
+    pub(super) fn last(
+        &mut self,
+        sliding: impl Iterator<Item = Sliding>,
+        holding: &(impl Iterator<Item = Sliding> + Clone),
+        now: Now<'_>,
+        cues: &mut Vec<Cue>,
+        rubs: &mut Rubs,
+    ) {
+        for sliding in sliding {
+            push(rubs, rub(sliding, now.layout, now.contacts));
+        }
+        self.ends.push(&self.shares, now, rubs);
+        for Sliding { widget, contact } in holding.clone() {
+            let hold = now.layout.widgets.get(widget).and_then(|widget| widget.feel.hold.as_ref());
+            if let (Some(effect), Some(contact)) = (hold, now.contact(contact)) {
+                self.player.hold(effect, contact.id.0, now.at, now.received, &spots(contact));
+            }
+        }
+        self.player.let_go(|owner| holding.clone().any(|holding| holding.contact.0 == owner));
+        let place = |owner: u32| now.contact(ContactId(owner)).map(spots);
+        self.player.due(now.at, place, cues, rubs);
+    }
+
+    /// Appends the cues of what gave way underfoot: felt on the tiles under the contact that did it, by its
+    /// weights, or on the tile alone where the contact is not known any more.
+    pub(super) fn give_way(&self, broken: &[GroundEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
+        for event in broken {
+            let here = event.contact.and_then(|id| now.contact(id)).map(spots);
+            let spots = here.or_else(|| self.last_spots.of(event.contact?)).unwrap_or_else(|| {
+                let tile = u16::try_from(event.tile).unwrap_or(u16::MAX);
+                Spots::from_iter([Spot { tile, weight: 1.0 }])
+            });
+            let (at, received, click) = (event.at, now.received, event.click.clone());
+            cues.push(Cue { at, received, spots, click, ..Cue::default() });
+        }
+    }
+
+    /// Remembers where the contacts of this frame are felt; those that were gone in the last one too are forgotten
+    /// unless `keep` says that a control still waits for them.
+    pub(super) fn remember(&mut self, contacts: &[Contact], keep: impl Fn(ContactId) -> bool) {
+        self.last_spots.update(contacts, keep);
+    }
+}
+
+/// The effect that answers `event` of a control once; `None` if it has none.
+fn answering(widget: &Widget, event: EventKind) -> Option<&Arc<Effect>> {
     let feel = &widget.feel;
-    let click = match event.kind {
+    match event {
         EventKind::Pressed => feel.press.as_ref(),
         EventKind::Released => feel.release.as_ref(),
         EventKind::HardPressed | EventKind::LongPressed => feel.stage.as_ref().or(feel.press.as_ref()),
         EventKind::HardReleased => feel.release.as_ref(),
         EventKind::Ticked => feel.step.as_ref(),
-        EventKind::Changed(value) if widget.behaviour.is_stop(value) => feel.step.as_ref(),
+        EventKind::Changed(Value::Switch(true)) => feel.on.as_ref(),
+        EventKind::Changed(Value::Switch(false)) => feel.off.as_ref(),
         EventKind::Armed => feel.arm.as_ref(),
         EventKind::Warned | EventKind::Refused => feel.warn.as_ref(),
         EventKind::Clicked
@@ -50,32 +174,61 @@ fn cue(
         | EventKind::Cancelled
         | EventKind::Changed(_)
         | EventKind::Disarmed => None,
-    }?;
-    let id = event.contact?;
-    let spots = match contacts.iter().find(|contact| contact.id == id) {
-        Some(contact) => spots(contact),
-        None => last_spots.of(id)?,
+    }
+}
+
+/// Whether it counts by presses, so that one at its end should say so.
+fn steps(widget: &Widget) -> bool {
+    matches!(widget.behaviour, Behaviour::Stepper(_)) && widget.feel.end.is_some()
+}
+
+/// The click of the end or the step that a number comes to on this `way`; `None` if there is none.
+fn stop(widget: &Widget, way: Way, event: &WidgetEvent, now: Now<'_>) -> Option<(Click, Manner)> {
+    if let (Some(high), Some(effect)) = (way.end, &widget.feel.end) {
+        let velocity = event.contact.and_then(|id| now.contact(id)).map(|contact| contact.velocity.length());
+        let click = match &effect.kind {
+            EffectKind::EndStop(end) => end.click_at(high, velocity.unwrap_or(0.0)),
+            EffectKind::Click { press, .. } => press.clone(),
+            _ => return None,
+        };
+        return Some((click, effect.manner));
+    }
+    let effect = widget.feel.step.as_ref()?;
+    let is_stop = match event.kind {
+        EventKind::Changed(value) => widget.behaviour.is_stop(value),
+        _ => false,
     };
-    Some(Cue { at: event.at, received, spots, click: click.clone() })
+    let click = match &effect.kind {
+        EffectKind::Detents(detents) if detents.every > 0.0 => {
+            detents.click_at(detents.passed(way.from, way.to)?, way.to > way.from)
+        }
+        EffectKind::Detents(detents) if is_stop => detents.click_at(way.to, way.to >= way.from),
+        EffectKind::Click { press, .. } if is_stop => press.clone(),
+        _ => return None,
+    };
+    Some((click, effect.manner))
 }
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.
-pub(super) fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
-    let friction = layout.widgets.get(sliding.widget)?.feel.drag?;
+fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
+    let effect = layout.widgets.get(sliding.widget)?.feel.drag.as_ref()?;
     let contact = contacts.iter().find(|contact| contact.id == sliding.contact)?;
     Some(Rub {
-        key: contact.id.0,
+        key: key(contact.id.0, DRAG),
         spots: spots(contact),
-        friction,
+        effect: effect.kind.lasting()?,
+        manner: effect.manner,
         speed_m_s: contact.velocity.length(),
         force: contact.force,
     })
 }
 
 /// Appends `rub` unless the list is full, which takes more feet than a floor control page has room for.
-pub(super) fn push(rubs: &mut Rubs, rub: Rub) {
+fn push(rubs: &mut Rubs, rub: Option<Rub>) {
     // The rubs beyond the limit are the latest to land; they stay silent until one ends.
-    let _ = rubs.try_push(rub);
+    if let Some(rub) = rub {
+        let _ = rubs.try_push(rub);
+    }
 }
 
 /// The tiles under a contact with their weights in Eq. 4, renormalised over the heaviest four.
@@ -96,12 +249,10 @@ fn spots(contact: &Contact) -> Spots {
 
 /// Where contacts were felt last, so that a release is felt where the foot was although it has just left.
 #[derive(Debug, Default)]
-pub(super) struct LastSpots(Vec<(ContactId, Spots)>);
+struct LastSpots(Vec<(ContactId, Spots)>);
 
 impl LastSpots {
-    /// Remembers the contacts of this frame; those that were gone in the last one too are forgotten
-    /// unless `keep` says that a control still waits for them.
-    pub(super) fn update(&mut self, contacts: &[Contact], keep: impl Fn(ContactId) -> bool) {
+    fn update(&mut self, contacts: &[Contact], keep: impl Fn(ContactId) -> bool) {
         self.0.retain(|(id, _)| keep(*id) || contacts.iter().any(|contact| contact.id == *id));
         for contact in contacts {
             match self.0.iter_mut().find(|(id, _)| *id == contact.id) {

@@ -3,6 +3,7 @@ use std::sync::Arc;
 use glam::Vec2;
 
 use crate::feel::{DeviceStatus, FeelCounters};
+use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Value};
@@ -31,6 +32,8 @@ pub struct Snapshot {
     pub labels: Vec<(usize, Arc<str>)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
+    /// One entry per ground, in the layout's order.
+    pub grounds: Vec<GroundState>,
     /// Whether sensor packets arrive.
     pub link: LinkState,
     /// What came in and what was refused.

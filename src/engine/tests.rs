@@ -1,5 +1,6 @@
 //! The engine driven with point loads on an ideal floor.
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use arrayvec::ArrayVec;
@@ -21,6 +22,7 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
     let click = |hz| Click {
         modes: ArrayVec::from_iter([Mode { frequency_hz: hz, decay_s: 0.02, amplitude: 1.0 }]),
         level: Newtons(10.0),
+        ..Click::default()
     };
     let friction = Friction {
         level: Newtons(5.0),
@@ -39,9 +41,9 @@ fn widget(id: &str, min: Vec2, size: Vec2, behaviour: Behaviour) -> Widget {
         label: String::new(),
         behaviour,
         feel: Feel {
-            press: Some(click(180.0)),
-            release: Some(click(240.0)),
-            drag: Some(friction),
+            press: Some(Arc::new(click(180.0).into())),
+            release: Some(Arc::new(click(240.0).into())),
+            drag: Some(Arc::new(friction.into())),
             ..Feel::default()
         },
         look: Look {
@@ -69,6 +71,7 @@ fn page() -> Layout {
         }],
         stances: Vec::new(),
         pages: Vec::new(),
+        grounds: Vec::new(),
         widgets: vec![
             widget("home", Vec2::new(0.35, 0.95), size, home),
             widget("light", Vec2::new(1.25, 0.95), size, light),

@@ -15,6 +15,8 @@
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
+//! | [`PondLaws`] | whether the frozen pond's onsets, energies, fronts and turns follow its model | paper, section 4.1 |
+//! | [`PondWalk`] | how many cracks each manner of walking opens | |
 //!
 //! ```
 //! use underfoot::experiment::PeopleTable;
@@ -29,6 +31,7 @@ mod chart;
 mod errors;
 mod figure;
 mod follow;
+mod goodness;
 mod intent;
 mod intent_act;
 mod intent_sweep;
@@ -36,6 +39,8 @@ mod mishap;
 mod orientation;
 mod people;
 mod place;
+mod pond;
+mod pond_walk;
 mod rig;
 mod scan;
 mod seam_object;
@@ -47,12 +52,15 @@ mod wilson;
 pub use errors::{Errors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
+pub use goodness::Goodness;
 pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
 pub use mishap::Mishap;
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use place::{PlaceLine, PlaceTable};
+pub use pond::{PondLaw, PondLaws};
+pub use pond_walk::{Manner, MannerLine, PondWalk};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};

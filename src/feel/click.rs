@@ -1,4 +1,7 @@
-use super::{Click, ModalBank};
+use arrayvec::ArrayVec;
+
+use super::push::Pushes;
+use super::{Click, MODE_HZ, ModalBank, Mode};
 
 /// What became of a click on one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -26,21 +29,24 @@ const FAINTEST: f32 = 1e-9;
 ///
 /// # Real-time
 /// No allocation.
-pub(super) fn strike(bank: &mut ModalBank, click: &Click, gain: f32) -> Struck {
+pub(super) fn strike((bank, pushes): (&mut ModalBank, &mut Pushes), click: &Click, gain: f32) -> Struck {
     let mut struck = Struck::default();
+    let mut modes: ArrayVec<Mode, { super::MAX_MODES }> = ArrayVec::new();
     for mode in &click.modes {
         let amplitude = mode.amplitude * gain;
-        let playable = (20.0..=1000.0).contains(&mode.frequency_hz)
+        let playable = MODE_HZ.contains(&mode.frequency_hz)
             && (0.001..=2.0).contains(&mode.decay_s)
             && (-1.0..=1.0).contains(&mode.amplitude)
             && !amplitude.is_nan();
         if !playable {
             struck.refused += 1;
         } else if amplitude.abs() >= FAINTEST {
-            let stolen = bank.strike(mode.frequency_hz, mode.decay_s, amplitude.clamp(-LOUDEST, LOUDEST));
-            struck.modes += 1;
-            struck.stolen += u32::from(stolen);
+            modes.push(Mode { amplitude: amplitude.clamp(-LOUDEST, LOUDEST), ..*mode });
         }
+    }
+    struck.modes = modes.len() as u32;
+    if struck.modes > 0 {
+        struck.stolen = pushes.strike(bank, &modes, click.impulse);
     }
     struck
 }
@@ -48,7 +54,6 @@ pub(super) fn strike(bank: &mut ModalBank, click: &Click, gain: f32) -> Struck {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::feel::Mode;
     use crate::units::Newtons;
 
     fn click(modes: &[(f32, f32, f32)]) -> Click {
@@ -56,12 +61,12 @@ mod tests {
             .iter()
             .map(|&(frequency_hz, decay_s, amplitude)| Mode { frequency_hz, decay_s, amplitude })
             .collect();
-        Click { modes, level: Newtons(4.0) }
+        Click { modes, level: Newtons(4.0), ..Click::default() }
     }
 
     #[test]
     fn modes_outside_their_ranges_are_refused_one_by_one() {
-        let mut bank = ModalBank::new(48_000.0, 8);
+        let (mut bank, mut pushes) = (ModalBank::new(48_000.0, 8), Pushes::new(48_000.0));
         let mixed = click(&[
             (150.0, 0.02, 1.0),
             (f32::NAN, 0.02, 1.0),
@@ -70,15 +75,18 @@ mod tests {
             (150.0, 0.02, f32::INFINITY),
             (250.0, 0.02, 0.0),
         ]);
-        assert_eq!(strike(&mut bank, &mixed, 0.1), Struck { modes: 1, refused: 4, stolen: 0 });
-        assert_eq!(strike(&mut bank, &mixed, f32::NAN), Struck { modes: 0, refused: 6, stolen: 0 });
-        assert_eq!(bank.ringing(), 1);
+        assert_eq!(strike((&mut bank, &mut pushes), &mixed, 0.1), Struck { modes: 1, refused: 4, stolen: 0 });
+        assert_eq!(
+            strike((&mut bank, &mut pushes), &mixed, f32::NAN),
+            Struck { modes: 0, refused: 6, stolen: 0 }
+        );
+        assert!(!bank.is_silent());
     }
 
     #[test]
     fn an_absurd_level_is_struck_at_the_loudest() {
-        let mut bank = ModalBank::new(48_000.0, 8);
-        strike(&mut bank, &click(&[(250.0, 0.02, 1.0)]), 1e30);
+        let (mut bank, mut pushes) = (ModalBank::new(48_000.0, 8), Pushes::new(48_000.0));
+        strike((&mut bank, &mut pushes), &click(&[(250.0, 0.02, 1.0)]), 1e30);
         let mut out = [0.0; 480];
         bank.render(&mut out);
         assert!(out.iter().all(|x| x.abs() <= LOUDEST));

@@ -1,6 +1,10 @@
 use arrayvec::ArrayVec;
 
+use super::{Lasting, Manner, Tone};
 use crate::units::{Instant, Newtons};
+
+/// Frequencies that a mode may have, in hertz.
+pub const MODE_HZ: std::ops::RangeInclusive<f32> = 20.0..=1000.0;
 
 /// Most modes that one click excites.
 pub const MAX_MODES: usize = 8;
@@ -8,8 +12,8 @@ pub const MAX_MODES: usize = 8;
 /// Most tiles that one cue reaches: a foot covers at most four (paper, section 3.4).
 pub const MAX_SPOTS: usize = 4;
 
-/// Most rubbing contacts that are felt at once.
-pub const MAX_RUBS: usize = 16;
+/// Most things that last (frictions, textures, held tones) and are felt at once.
+pub const MAX_RUBS: usize = 40;
 
 /// One decaying resonance: `amplitude * exp(-t / decay_s) * sin(2 pi frequency_hz t)`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -26,46 +30,51 @@ pub struct Mode {
 ///
 /// # Source
 /// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)` (paper, section 4.1.1).
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Click {
     /// The modes struck together.
     pub modes: ArrayVec<Mode, MAX_MODES>,
     /// Force at the plate for a mode of amplitude 1, before the spots' weights.
     pub level: Newtons,
+    /// What they are struck with.
+    pub impulse: Impulse,
 }
 
-/// A rubbing texture: noise whose band follows the slip speed and whose level follows speed and force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
-    /// Force at the plate at full slip speed and full normal force.
-    pub level: Newtons,
-    /// Centre of the noise band when barely moving, in hertz; 20 to 1000.
-    pub low_hz: f32,
-    /// Centre of the noise band at full slip speed, in hertz; `low_hz` to 1000.
-    pub high_hz: f32,
-    /// Slip speed at which level and band reach their upper end, in metres per second.
-    pub full_speed_m_s: f32,
-    /// Normal force at which the level reaches its upper end.
-    pub full_force: Newtons,
+impl Click {
+    /// The same, `share` times as strong and with every frequency times `pitch` (within what a mode may have).
+    #[must_use]
+    pub fn scaled(&self, share: f32, pitch: f32) -> Self {
+        let modes = self.modes.iter().map(|mode| Mode {
+            frequency_hz: (mode.frequency_hz * pitch).clamp(*MODE_HZ.start(), *MODE_HZ.end()),
+            ..*mode
+        });
+        Self { modes: modes.collect(), level: self.level * share, impulse: self.impulse }
+    }
+
+    /// How long it is felt: until its slowest mode has fallen to a thousandth, in seconds.
+    #[must_use]
+    pub fn length_s(&self) -> f32 {
+        let slowest = self.modes.iter().fold(0.0_f32, |slowest, mode| slowest.max(mode.decay_s));
+        self.impulse.width_s + 6.9 * slowest
+    }
 }
 
-/// What a control feels like; each part may be absent.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Feel {
-    /// Felt when the control engages.
-    pub press: Option<Click>,
-    /// Felt when it lets go.
-    pub release: Option<Click>,
-    /// Felt when a foot passes a step, a detent or a choice.
-    pub step: Option<Click>,
-    /// Felt when a press becomes long or reaches its second stage; the press once more where absent.
-    pub stage: Option<Click>,
-    /// Felt when a first press has armed it.
-    pub arm: Option<Click>,
-    /// Felt when it will soon stop by itself, or is locked.
-    pub warn: Option<Click>,
-    /// Felt while the foot slides along it.
-    pub drag: Option<Friction>,
+/// The push that strikes a click's modes.
+///
+/// An ideal one lasts no time. One with a width is a soft hammer: what swings
+/// faster than it lasts is hardly struck, so that the click gets rounder. The
+/// strongest mode keeps its level.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Impulse {
+    /// How long the push lasts, in seconds; 0 (ideal) to [`Impulse::WIDEST_S`].
+    pub width_s: f32,
+    /// Its shape, from an even push (0) to a bell (1).
+    pub round: f32,
+}
+
+impl Impulse {
+    /// The longest push.
+    pub const WIDEST_S: f32 = 0.01;
 }
 
 /// One tile that a cue reaches.
@@ -80,8 +89,8 @@ pub struct Spot {
 /// The tiles that a cue reaches, at most [`MAX_SPOTS`].
 pub type Spots = ArrayVec<Spot, MAX_SPOTS>;
 
-/// A click to be played once.
-#[derive(Clone, Debug, PartialEq)]
+/// What is to be played once: a click, or something that lasts a known time.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cue {
     /// When the foot caused it, on the floor's sample clock.
     pub at: Instant,
@@ -89,24 +98,32 @@ pub struct Cue {
     pub received: Instant,
     /// Where it is felt.
     pub spots: Spots,
-    /// What is felt.
+    /// The click that is felt; without modes, none.
     pub click: Click,
+    /// What sounds for a while, beside the click or instead of it.
+    pub tone: Option<Tone>,
+    /// How it gets along with what else is felt there.
+    pub manner: Manner,
+    /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
+    pub to_air: f32,
 }
 
-/// A foot sliding on a control, as it is now.
-#[derive(Clone, Debug, PartialEq)]
+/// Something felt for as long as a foot slides, presses or pushes, as it is now.
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Rub {
-    /// Tells this rub from others from one update to the next: the contact's number.
+    /// Tells this rub from others from one update to the next.
     pub key: u32,
     /// Where it is felt.
     pub spots: Spots,
     /// What is felt.
-    pub friction: Friction,
+    pub effect: Lasting,
+    /// How it gets along with what else is felt there.
+    pub manner: Manner,
     /// Slip speed along the floor, in metres per second; not negative.
     pub speed_m_s: f32,
     /// Normal force.
     pub force: Newtons,
 }
 
-/// All feet sliding on controls at this moment; a rub that is not in it fades out.
+/// All that lasts at this moment; a rub that is not in it fades out.
 pub type Rubs = ArrayVec<Rub, MAX_RUBS>;

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
-//!           ==rubs==> friction voices ---------------------+-> mix -> limiter -> samples
+//!                              -> tones -+                 |
+//!           ==rubs================> voices of what lasts --+-> mix -> rack -> samples
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
@@ -11,19 +12,31 @@
 mod click;
 mod cue;
 mod device_status;
-mod friction;
+mod effect;
 mod limiter;
+mod loudspeakers;
 mod mix;
 mod modal;
 mod newest;
+mod player;
+mod push;
+mod rack;
 mod renderer;
+mod ringing;
 mod schedule;
 mod scope;
 mod sender;
+mod voice;
 
-pub use cue::{Click, Cue, Feel, Friction, MAX_MODES, MAX_RUBS, MAX_SPOTS, Mode, Rub, Rubs, Spot, Spots};
+pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
+pub use effect::{
+    Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Lasting,
+    MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, Part, Push, Resonance, Sequence, StickSlip, Texture,
+    Tone, TonePoint, Use,
+};
 pub use modal::ModalBank;
+pub use player::{Player, key};
 pub use renderer::{Onset, Renderer, RendererConfig, renderer};
 pub use scope::{MinMax, ScopeReader};
 pub use sender::{CueSender, FeelCounters};

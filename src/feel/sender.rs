@@ -1,5 +1,5 @@
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use triple_buffer::Input;
 
@@ -20,12 +20,16 @@ pub struct FeelCounters {
     pub unfelt: u64,
     /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub refused: u64,
-    /// Ringing modes that had to make room for others.
+    /// Ringing modes and lasting voices that had to make room for others.
     pub stolen: u64,
     /// Samples that were not finite and became silence.
     pub not_finite: u64,
     /// Samples beyond eight full scales, cut off there.
     pub overloaded: u64,
+    /// Channels whose voices were silenced because their samples were not finite or beyond eight full scales.
+    pub silenced: u64,
+    /// Times that an actuator began to be turned down because it was driven too long.
+    pub heated: u64,
 }
 
 /// What both ends share.
@@ -38,12 +42,36 @@ pub(super) struct Shared {
     pub(super) stolen: AtomicU64,
     pub(super) not_finite: AtomicU64,
     pub(super) overloaded: AtomicU64,
+    pub(super) silenced: AtomicU64,
+    pub(super) heated: AtomicU64,
+    /// Which channel moves each tile.
+    pub(super) channels: Box<[Option<usize>]>,
+    /// Which channels are muted.
+    mutes: Box<[AtomicBool]>,
+    /// Changes of `mutes` so far.
+    mute_changes: AtomicU64,
     /// Calls of `silence` and `resume` so far: odd means silence. A count, not
     /// a flag, so that the renderer can't miss a silence that was soon lifted.
     turns: AtomicU64,
 }
 
 impl Shared {
+    /// For tiles that these channels move.
+    pub(super) fn new(channels: Box<[Option<usize>]>) -> Self {
+        let count = channels.iter().flatten().max().map_or(0, |most| most + 1);
+        Self { channels, mutes: (0..count).map(|_| AtomicBool::new(false)).collect(), ..Self::default() }
+    }
+
+    /// How often mutes have changed.
+    pub(super) fn mute_changes(&self) -> u64 {
+        self.mute_changes.load(Ordering::Acquire)
+    }
+
+    /// Whether each of the channels that move tiles is muted.
+    pub(super) fn mutes(&self) -> impl Iterator<Item = bool> + '_ {
+        self.mutes.iter().map(|muted| muted.load(Ordering::Relaxed))
+    }
+
     pub(super) fn turns(&self) -> u64 {
         self.turns.load(Ordering::Acquire)
     }
@@ -59,6 +87,8 @@ impl Shared {
             stolen: read(&self.stolen),
             not_finite: read(&self.not_finite),
             overloaded: read(&self.overloaded),
+            silenced: read(&self.silenced),
+            heated: read(&self.heated),
         }
     }
 }
@@ -134,6 +164,17 @@ impl CueSender {
         if self.is_silenced() {
             self.turn();
         }
+    }
+
+    /// Mutes the actuator of tile number `tile` within 5 ms, or lets it be felt again; false if nothing moves that tile.
+    ///
+    /// What it would play goes on meanwhile, unfelt. Tiles that share a channel are muted together.
+    pub fn mute(&mut self, tile: u16, muted: bool) -> bool {
+        let channel = self.shared.channels.get(usize::from(tile)).copied().flatten();
+        let Some(mute) = channel.and_then(|channel| self.shared.mutes.get(channel)) else { return false };
+        mute.store(muted, Ordering::Relaxed);
+        self.shared.mute_changes.fetch_add(1, Ordering::Release);
+        true
     }
 
     /// Whether [`CueSender::silence`] holds.

@@ -1,4 +1,4 @@
-//! The files of `widgets/` and `layouts/`, compiled in.
+//! The files of `widgets/`, `effects/` and `layouts/`, compiled in.
 
 /// The shipped kinds: file name and text.
 pub(super) const KINDS: [(&str, &str); 21] = [
@@ -25,12 +25,40 @@ pub(super) const KINDS: [(&str, &str); 21] = [
     ("widgets/two_stage_button.ron", include_str!("../../widgets/two_stage_button.ron")),
 ];
 
+/// The shipped effects: file name and text. One that is made of another comes after it.
+pub(super) const EFFECTS: [(&str, &str); 22] = [
+    ("effects/confirm_arm.ron", include_str!("../../effects/confirm_arm.ron")),
+    ("effects/crisp_click.ron", include_str!("../../effects/crisp_click.ron")),
+    ("effects/detent.ron", include_str!("../../effects/detent.ron")),
+    ("effects/done.ron", include_str!("../../effects/done.ron")),
+    ("effects/double_click.ron", include_str!("../../effects/double_click.ron")),
+    ("effects/end_stop.ron", include_str!("../../effects/end_stop.ron")),
+    ("effects/engine_hum.ron", include_str!("../../effects/engine_hum.ron")),
+    ("effects/glass.ron", include_str!("../../effects/glass.ron")),
+    ("effects/grating.ron", include_str!("../../effects/grating.ron")),
+    ("effects/gravel.ron", include_str!("../../effects/gravel.ron")),
+    ("effects/heavy_click.ron", include_str!("../../effects/heavy_click.ron")),
+    ("effects/leather.ron", include_str!("../../effects/leather.ron")),
+    ("effects/long_press_rise.ron", include_str!("../../effects/long_press_rise.ron")),
+    ("effects/refused.ron", include_str!("../../effects/refused.ron")),
+    ("effects/rubber.ron", include_str!("../../effects/rubber.ron")),
+    ("effects/sand.ron", include_str!("../../effects/sand.ron")),
+    ("effects/smooth.ron", include_str!("../../effects/smooth.ron")),
+    ("effects/soft_click.ron", include_str!("../../effects/soft_click.ron")),
+    ("effects/switch_off.ron", include_str!("../../effects/switch_off.ron")),
+    ("effects/switch_on.ron", include_str!("../../effects/switch_on.ron")),
+    ("effects/warning.ron", include_str!("../../effects/warning.ron")),
+    ("effects/wood.ron", include_str!("../../effects/wood.ron")),
+];
+
 /// The shipped layouts: name and text.
-const LAYOUTS: [(&str, &str); 4] = [
+const LAYOUTS: [(&str, &str); 6] = [
     ("all_controls", include_str!("../../layouts/all_controls.ron")),
     ("first_steps", include_str!("../../layouts/first_steps.ron")),
     ("map", include_str!("../../layouts/map.ron")),
+    ("pond", include_str!("../../layouts/pond.ron")),
     ("surgical", include_str!("../../layouts/surgical.ron")),
+    ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
 ];
 
 /// The names of the layouts that come with underfoot, for [`builtin_layout`].

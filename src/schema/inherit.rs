@@ -178,6 +178,7 @@ pub(super) fn read_texts(
     let mut readers = Vec::new();
     for source in &sources {
         let reader = Reader::new(source, "Kind", Limits::LAYOUT);
+        reader.know(std::sync::Arc::clone(below.effects()));
         match version::newer(&reader, "Kind") {
             Some(newer) => problems.append(newer),
             None => readers.push(reader),

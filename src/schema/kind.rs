@@ -1,9 +1,11 @@
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::Arc;
 
 use super::behaviour::{self, Form};
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
+use super::effect::Effects;
 use super::feel;
 use super::inherit;
 use super::look;
@@ -27,23 +29,36 @@ pub struct Kind {
     pub look: Look,
 }
 
-/// The kinds that a layout may use, by name.
+/// The kinds that a layout may use, by name, and the effects that they and it may name.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Kinds {
     kinds: BTreeMap<String, Kind>,
+    effects: Arc<Effects>,
 }
 
 impl Kinds {
-    /// The kinds that come with underfoot: the files of `widgets/`, compiled in.
+    /// The kinds and effects that come with underfoot: the files of `widgets/` and `effects/`, compiled in.
     #[must_use]
     pub fn builtin() -> Self {
-        let mut kinds = Self::default();
+        Self::shipped(Effects::builtin())
+    }
+
+    /// The kinds that come with underfoot, felt as `effects` say, which replace the shipped ones.
+    #[must_use]
+    pub fn shipped(effects: Effects) -> Self {
+        let mut kinds = Self::knowing(effects);
         for (name, text) in builtin::KINDS {
             // That each of them reads without a warning is tested.
             let added = kinds.add(text, name);
             debug_assert!(added.is_ok(), "{added:?}");
         }
         kinds
+    }
+
+    /// No kinds yet, but effects for kinds to name.
+    #[must_use]
+    pub fn knowing(effects: Effects) -> Self {
+        Self { kinds: BTreeMap::new(), effects: Arc::new(effects) }
     }
 
     /// Adds the kind that `text` describes, in place of any other of its name; gives back warnings.
@@ -67,9 +82,15 @@ impl Kinds {
     ///
     /// A kind may be made from another one of the folder or from any of these kinds.
     pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
-        let (kinds, warnings) = inherit::read_files(&ron_files(folder)?, self)?;
+        let (kinds, warnings) = inherit::read_files(&ron_files(folder, "control kinds")?, self)?;
         kinds.into_iter().for_each(|kind| self.insert(kind));
         Ok(warnings)
+    }
+
+    /// The effects that kinds and layouts may name.
+    #[must_use]
+    pub fn effects(&self) -> &Arc<Effects> {
+        &self.effects
     }
 
     /// Puts `kind` in place of any other of its name.
@@ -133,10 +154,10 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
 /// Most kinds of one folder.
 const MAX_FILES: usize = 4096;
 
-/// The files named `*.ron` in `folder`, sorted.
-fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
+/// The files named `*.ron` in `folder`, which should hold `what`, sorted.
+pub(super) fn ron_files(folder: &Path, what: &str) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
     let unreadable = |error: std::io::Error| {
-        let message = format!("the folder of control kinds cannot be read: {error}");
+        let message = format!("the folder of {what} cannot be read: {error}");
         Diagnostic::of_file(&folder.display().to_string(), message, None)
     };
     let mut files = Vec::new();
@@ -146,7 +167,7 @@ fn ron_files(folder: &Path) -> Result<Vec<std::path::PathBuf>, Diagnostics> {
             files.push(path);
         }
         if files.len() > MAX_FILES {
-            let message = format!("the folder holds more than {MAX_FILES} kinds");
+            let message = format!("the folder holds more than {MAX_FILES} {what}");
             let help = Some("is this the right folder?".into());
             return Err(Diagnostic::of_file(&folder.display().to_string(), message, help).into());
         }

@@ -6,7 +6,7 @@
 //! ```text
 //! bytes -source-> text -scan-> brackets that close, bounded nesting
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range
-//!   -page, control, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Floor
+//!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 
 mod area;
@@ -19,12 +19,16 @@ mod complaint;
 mod control;
 mod day;
 mod diagnostic;
+mod effect;
 mod excerpt;
 mod feel;
 mod fields;
 mod floor;
 mod floor_maps;
+mod floor_sound;
 mod floor_text;
+mod ground;
+mod ground_parts;
 mod inherit;
 mod kind;
 mod look;
@@ -51,6 +55,7 @@ mod words;
 
 pub use builtin::{builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
+pub use effect::{Effects, NamedEffect, parse_effect, write_effect, write_named_effect};
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use kind::{Kind, Kinds};

@@ -5,7 +5,9 @@ use super::arrange;
 use super::checks;
 use super::control::Control;
 use super::diagnostic::Diagnostics;
+use super::effect;
 use super::fields::Fields;
+use super::ground::{self, Plot};
 use super::inherit::Choice;
 use super::kind::Kinds;
 use super::node::Node;
@@ -58,6 +60,7 @@ pub fn parse_layout(
 ) -> Result<Loaded, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, "Layout", Limits::LAYOUT);
+    reader.know(std::sync::Arc::clone(kinds.effects()));
     if let Some(newer) = version::newer(&reader, "Layout") {
         return Err(newer);
     }
@@ -78,6 +81,8 @@ pub(super) struct Page<'r> {
     pub(super) regions: Vec<Zone<'r>>,
     pub(super) stances: Vec<Zone<'r>>,
     pub(super) pages: Vec<Sheet<'r>>,
+    /// Those of all pages.
+    pub(super) grounds: Vec<Plot>,
     /// Those of all pages.
     pub(super) controls: Vec<Control>,
     /// Whether all regions could be read.
@@ -105,16 +110,20 @@ impl<'r> Page<'r> {
         let (regions, regions_known) =
             list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
         let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
+        if let Some(node) = fields.take("effects") {
+            effect::list(node);
+        }
         let kinds = Choice::new(kinds, fields.take("kinds"));
         let mut room = MAX_WIDGETS;
         let widgets = fields.take("widgets");
         let mut controls = widgets.map(|node| arrange::read(node, &kinds, &mut room)).unwrap_or_default();
-        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls);
+        let mut grounds = ground::read(&mut fields, None);
+        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls, &mut grounds);
         let widgets_at = fields.span("widgets");
         fields.finish();
         let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
         let units = node.reader.units();
-        Some(Self { title, units, regions, stances, pages, controls, regions_known, widgets_at })
+        Some(Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at })
     }
 
     /// The region whose area holds the middle of `area`.
@@ -158,6 +167,7 @@ impl<'r> Page<'r> {
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
             pages: self.pages.iter().map(Sheet::checked).collect::<Option<_>>()?,
+            grounds: self.grounds.iter().map(|plot| plot.checked(geometry, units)).collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
     }

@@ -5,10 +5,12 @@
 
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
+use std::sync::Arc;
 
 use ron2::ast::{Expr, StructBody};
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
+use super::effect::Effects;
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
@@ -23,6 +25,8 @@ pub(super) struct Reader<'t> {
     problems: RefCell<Vec<Problem>>,
     /// What lengths of the file count in.
     units: Cell<Units>,
+    /// The effects that may be named.
+    effects: RefCell<Arc<Effects>>,
 }
 
 impl<'t> Reader<'t> {
@@ -30,7 +34,7 @@ impl<'t> Reader<'t> {
     pub(super) fn new(source: &'t Source<'t>, kind: &str, limits: Limits) -> Self {
         let mut syntax = syntax::parse(source.text(), kind, limits);
         let problems = RefCell::new(std::mem::take(&mut syntax.problems));
-        Self { source, syntax, problems, units: Cell::default() }
+        Self { source, syntax, problems, units: Cell::default(), effects: RefCell::default() }
     }
 
     /// What the file holds.
@@ -46,6 +50,16 @@ impl<'t> Reader<'t> {
     /// From now on places and sizes count in these.
     pub(super) fn count_in(&self, units: Units) {
         self.units.set(units);
+    }
+
+    /// The effects that the file may name.
+    pub(super) fn effects(&self) -> Arc<Effects> {
+        Arc::clone(&self.effects.borrow())
+    }
+
+    /// From now on the file may name these.
+    pub(super) fn know(&self, effects: Arc<Effects>) {
+        self.effects.replace(effects);
     }
 
     /// What diagnostics call the file.

@@ -2,7 +2,14 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(super) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 9] = [
+    const UNITS: [(&str, &str); 17] = [
+        ("_n_s_m", " N s/m"),
+        ("_n_m", " N/m"),
+        ("_kg", " kg"),
+        ("_m_per_j", " m/J"),
+        ("_per_j_s", " per joule second"),
+        ("_per_j", " per joule"),
+        ("_j", " J"),
         ("_m_s", " m/s"),
         ("_per_volt", " per volt"),
         ("_ms", " ms"),
@@ -12,6 +19,7 @@ pub(super) fn unit(field: &str) -> &'static str {
         ("_deg", " degrees"),
         ("_per_s", " per second"),
         ("_s", " s"),
+        ("_db", " dB"),
     ];
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
@@ -42,6 +50,16 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
         "modes" => "modes: [(hz: 180, decay_ms: 18, amplitude: 1.0)]",
         "hz" => "hz: 180",
         "decay_ms" => "decay_ms: 18",
+        "length_ms" => "length_ms: 300",
+        "resonances" => "resonances: [(hz: 180, decay_ms: 12)]",
+        "spacing_m" => "spacing_m: 0.003",
+        "grip" => "grip: 0.9",
+        "glide" => "glide: 0.5",
+        "stretch_m" => "stretch_m: 0.002",
+        "parts" => "parts: [(at_ms: 0, plays: \"crisp_click\"), (at_ms: 90, plays: \"soft_click\")]",
+        "at_ms" => "at_ms: 0",
+        "plays" => "plays: Click(level_n: 12, modes: [(hz: 180, decay_ms: 18)])",
+        "level" => "level: 0.5",
         "low_hz" => "low_hz: 80",
         "high_hz" => "high_hz: 320",
         "tile" => "tile: (0, 0), column and row",

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::floor::Floor;
+use crate::ground::Material;
 use crate::layout::{Layout, Widget};
 use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
 use crate::wire::{COMMANDS, Command, Prefix, Takes};
@@ -121,6 +122,13 @@ impl Maker<'_> {
             argument("priority", "s", "real-time, denied or host"),
         ];
         self.add(Direction::Out, "device", device, "What moves the actuators, when that changes.");
+        if layout.grounds.iter().any(|ground| matches!(ground.material, Material::Ice(_))) {
+            let mut crack =
+                vec![argument("seed", "i", "where cracks come from"), argument("energy", "f", "J")];
+            crack.extend(place());
+            crack.push(argument("skipped", "i", "cracks since the last message that were not told"));
+            self.add(Direction::Out, "crack", crack, "The ice has cracked; 200 times a second at most.");
+        }
         let page = |range: &str| vec![argument("page", "s", range)];
         if !layout.pages.is_empty() {
             self.add(Direction::Out, "page", page(&pages(layout)), "Another page is shown.");

@@ -275,6 +275,9 @@ impl Server {
             if let Some(page) = step.page {
                 events.page(page);
             }
+            if !step.grounds.is_empty() {
+                events.ground(step.grounds);
+            }
             events.contacts(at, step.contacts);
         }
         self.play_until(at + FRAME);

@@ -1,6 +1,7 @@
 use super::EventSink;
 use crate::engine::{LinkState, PageShown};
 use crate::feel::DeviceStatus;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -48,6 +49,10 @@ impl EventSink for Fanout {
 
     fn page(&mut self, page: &PageShown) {
         self.sinks.iter_mut().for_each(|sink| sink.page(page));
+    }
+
+    fn ground(&mut self, events: &[GroundEvent]) {
+        self.sinks.iter_mut().for_each(|sink| sink.ground(events));
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {

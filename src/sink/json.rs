@@ -3,11 +3,13 @@ use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
+use super::crackle::{CrackNews, Crackle};
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
 use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
@@ -21,6 +23,7 @@ use crate::wire::link_name;
 /// {"t_s":9.9,"event":"page","page":"settings"}
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
+/// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
@@ -30,6 +33,7 @@ use crate::wire::link_name;
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
+    crackle: Crackle,
 }
 
 #[derive(Debug)]
@@ -37,6 +41,7 @@ enum Job {
     Event(WidgetEvent),
     Link(Instant, LinkState),
     Page(PageShown),
+    Crack(CrackNews),
     Health(Instant, SensorHealth),
     Device(Instant, DeviceStatus),
 }
@@ -56,7 +61,7 @@ impl JsonSink {
             }
         })
         .map_err(failed)?;
-        Ok(Self { worker })
+        Ok(Self { worker, crackle: Crackle::default() })
     }
 }
 
@@ -71,6 +76,14 @@ impl EventSink for JsonSink {
 
     fn page(&mut self, page: &PageShown) {
         self.worker.offer(Job::Page(page.clone()));
+    }
+
+    fn ground(&mut self, events: &[GroundEvent]) {
+        for event in events {
+            if let Some(news) = self.crackle.news(event) {
+                self.worker.offer(Job::Crack(news));
+            }
+        }
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {
@@ -111,6 +124,18 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
             let (t_s, page) = (seconds(shown.at), shown.page.as_str());
             serde_json::to_vec(&PageLine { t_s, event: "page", page })?
         }
+        Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
+            let t_s = seconds(*at);
+            serde_json::to_vec(&CrackLine {
+                t_s,
+                event: "crack",
+                seed: *seed,
+                energy_j: *energy_j,
+                x_m: *x_m,
+                y_m: *y_m,
+                skipped: *skipped,
+            })?
+        }
         Job::Link(at, state) => {
             let (t_s, state) = (seconds(*at), link_name(*state));
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
@@ -120,6 +145,17 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
     };
     line.push(b'\n');
     out.write_all(&line)
+}
+
+#[derive(Serialize)]
+struct CrackLine {
+    t_s: f64,
+    event: &'static str,
+    seed: u32,
+    energy_j: f32,
+    x_m: f32,
+    y_m: f32,
+    skipped: u32,
 }
 
 #[derive(Serialize)]

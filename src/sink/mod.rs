@@ -2,6 +2,7 @@
 
 mod beat;
 mod channel_map;
+mod crackle;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -21,11 +22,13 @@ use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
 use crate::feel::DeviceStatus;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
 pub use channel_map::ChannelMap;
+pub use crackle::CrackNews;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
@@ -62,6 +65,9 @@ pub trait EventSink: Send {
 
     /// Takes news of the page that has taken the place of another.
     fn page(&mut self, _page: &PageShown) {}
+
+    /// Takes what gave way underfoot in one frame, in order; called for frames in which something did.
+    fn ground(&mut self, _events: &[GroundEvent]) {}
 
     /// Takes news of the floor's link; called when its state changes.
     fn link(&mut self, _at: Instant, _state: LinkState) {}

@@ -120,6 +120,26 @@ pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>)
     write(&message(prefix.address("device"), args), bytes);
 }
 
+/// Writes that the ice has cracked as the OSC message `/underfoot/crack`.
+///
+/// First the number of the seed that the cracks come from (int), then energy (joules) and x and y
+/// (floor metres) as floats, then how many cracks there have been since the last message of which
+/// there was none (int).
+pub fn write_crack(
+    prefix: &Prefix,
+    seed: u32,
+    energy_and_place: [f32; 3],
+    skipped: u32,
+    bytes: &mut Vec<u8>,
+) {
+    let int = |number: u32| OscType::Int(number.min(i32::MAX as u32).cast_signed());
+    let mut args = vec![int(seed)];
+    args.extend(energy_and_place.map(OscType::Float));
+    args.push(int(skipped));
+    bytes.clear();
+    write(&message(prefix.address("crack"), args), bytes);
+}
+
 /// Writes which page is shown as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
 pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
     bytes.clear();

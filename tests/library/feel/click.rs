@@ -21,12 +21,12 @@ fn floor(rate: u32) -> (CueSender, ManualSink) {
 fn three_modes() -> Click {
     let mode = |frequency_hz, decay_s, amplitude| Mode { frequency_hz, decay_s, amplitude };
     let modes = [mode(80.0, 0.12, 1.0), mode(210.0, 0.08, -0.6), mode(470.0, 0.05, 0.5)];
-    Click { modes: modes.into_iter().collect(), level: Newtons(4.0) }
+    Click { modes: modes.into_iter().collect(), level: Newtons(4.0), ..Click::default() }
 }
 
 fn cue(at: Instant, spots: &[(u16, f32)], click: &Click) -> Cue {
     let spots = spots.iter().map(|&(tile, weight)| Spot { tile, weight }).collect();
-    Cue { at, received: at, spots, click: click.clone() }
+    Cue { at, received: at, spots, click: click.clone(), ..Cue::default() }
 }
 
 /// The complex amplitude of `samples` at `frequency` around sample `centre`, under a Hann window of 50 ms.
@@ -140,7 +140,7 @@ fn every_tile_gets_its_own_click() {
     let (mut sender, mut sink) = floor(48_000);
     for tile in 0..36_u16 {
         let mode = Mode { frequency_hz: 100.0 + 10.0 * f32::from(tile), decay_s: 0.1, amplitude: 1.0 };
-        let click = Click { modes: [mode].into_iter().collect(), level: Newtons(4.0) };
+        let click = Click { modes: [mode].into_iter().collect(), level: Newtons(4.0), ..Click::default() };
         sender.send(&cue(millis(20), &[(tile, 1.0)], &click));
     }
     sink.advance(millis(200)).unwrap();
@@ -158,7 +158,7 @@ fn newtons_become_full_scales_by_each_actuators_own_measure() {
     let (mut sender, renderer) = renderer(RendererConfig::of(&floor, 48_000));
     let mut sink = ManualSink::new(renderer, Instant::START);
     let slow = Mode { frequency_hz: 100.0, decay_s: 2.0, amplitude: 1.0 };
-    let click = Click { modes: [slow].into_iter().collect(), level: Newtons(4.0) };
+    let click = Click { modes: [slow].into_iter().collect(), level: Newtons(4.0), ..Click::default() };
     sender.send(&cue(millis(10), &[(0, 1.0), (1, 1.0)], &click));
     sink.advance(millis(30)).unwrap();
     let peak = |channel: usize| sink.channel(channel).iter().fold(0.0_f32, |a, b| a.max(b.abs()));

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use underfoot::feel::{CueSender, Friction, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::feel::{CueSender, Friction, Lasting, RendererConfig, Rub, Rubs, Spot, renderer};
 use underfoot::floor::Floor;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
@@ -28,7 +28,7 @@ fn rub(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = spots.iter().map(|&(tile, weight)| Spot { tile, weight }).collect();
-    Rub { key: 7, spots, friction, speed_m_s, force: Newtons(force) }
+    Rub { key: 7, spots, effect: friction.into(), speed_m_s, force: Newtons(force), ..Rub::default() }
 }
 
 /// What tile 0 gets from two seconds of steady rubbing, without the first 100 ms.
@@ -100,15 +100,16 @@ fn the_pitch_rises_with_the_speed_from_low_to_high() {
 }
 
 #[test]
-fn even_the_widest_texture_stays_between_50_and_1000_hz() {
+fn even_the_widest_texture_stays_between_50_and_750_hz() {
     for (low_hz, high_hz, speed) in [(20.0, 20.0, 0.5), (1000.0, 1000.0, 0.5), (100.0, 400.0, 0.25)] {
         let mut rub = rub(speed, 400.0, &[(0, 1.0)]);
-        rub.friction.low_hz = low_hz;
-        rub.friction.high_hz = high_hz;
+        let Lasting::Friction(friction) = &mut rub.effect else { unreachable!("a friction") };
+        friction.low_hz = low_hz;
+        friction.high_hz = high_hz;
         let spectrum = spectrum(&steady(&rub));
         let all: f64 = spectrum.iter().map(|(_, power)| power).sum();
         let inside: f64 =
-            spectrum.iter().filter(|(f, _)| (50.0..=1000.0).contains(f)).map(|(_, power)| power).sum();
+            spectrum.iter().filter(|(f, _)| (50.0..=750.0).contains(f)).map(|(_, power)| power).sum();
         assert!(inside / all > 0.94, "{low_hz} to {high_hz} Hz: {:.1} %", 100.0 * inside / all);
     }
 }

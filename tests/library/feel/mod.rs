@@ -2,5 +2,7 @@
 
 mod click;
 mod friction;
+mod loudspeakers;
+mod rack;
 mod safety;
 mod wav;

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use underfoot::feel::{Click, Cue, CueSender, Friction, Mode, RendererConfig, Rub, Rubs, Spot, renderer};
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, Loudspeaker, Response};
+use underfoot::glam::Vec2;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 
@@ -15,13 +16,31 @@ fn floor() -> (CueSender, ManualSink) {
     (sender, ManualSink::new(renderer, Instant::START))
 }
 
+/// A floor with everything: plates that were measured, and loudspeakers.
+fn whole_floor() -> (CueSender, ManualSink) {
+    let mut floor = Floor::default();
+    floor.responses[3] = Response::of(vec![(40.0, -3.0), (300.0, 3.0), (800.0, -9.0)]);
+    floor.loudspeakers = vec![
+        Loudspeaker { at: Vec2::ZERO, channel: 36, gain_db: 0.0 },
+        Loudspeaker { at: Vec2::splat(2.0), channel: 38, gain_db: 24.0 },
+    ];
+    let (sender, renderer) = renderer(RendererConfig::of(&floor, 48_000));
+    (sender, ManualSink::new(renderer, Instant::START))
+}
+
 fn click(level: f32, decay_s: f32) -> Click {
     let modes = [60.0, 150.0, 320.0].map(|frequency_hz| Mode { frequency_hz, decay_s, amplitude: 1.0 });
-    Click { modes: modes.into_iter().collect(), level: Newtons(level) }
+    Click { modes: modes.into_iter().collect(), level: Newtons(level), ..Click::default() }
 }
 
 fn cue(at: Instant, tile: u16, click: Click) -> Cue {
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    Cue {
+        at,
+        received: at,
+        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
+        click,
+        ..Cue::default()
+    }
 }
 
 fn rub(speed_m_s: f32, force: f32) -> Rub {
@@ -33,7 +52,7 @@ fn rub(speed_m_s: f32, force: f32) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = [Spot { tile: 3, weight: 1.0 }].into_iter().collect();
-    Rub { key: 1, spots, friction, speed_m_s, force: Newtons(force) }
+    Rub { key: 1, spots, effect: friction.into(), speed_m_s, force: Newtons(force), ..Rub::default() }
 }
 
 #[test]
@@ -128,6 +147,7 @@ prop_compose! {
         spots in any_spots(),
         modes in prop::collection::vec((any_number(), any_number(), any_number()), 0..8),
         level in any_number(),
+        to_air in any_number(),
     ) -> Cue {
         let modes = modes
             .into_iter()
@@ -135,7 +155,8 @@ prop_compose! {
             .collect();
         let at = Instant::from_micros(u64::from(at) % 50_000);
         let spots = spots.into_iter().collect();
-        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level) } }
+        let click = Click { modes, level: Newtons(level), ..Click::default() };
+        Cue { at, received: at, spots, click, to_air, ..Cue::default() }
     }
 }
 
@@ -153,7 +174,14 @@ prop_compose! {
             full_speed_m_s,
             full_force: Newtons(full_force),
         };
-        Rub { key, spots: spots.into_iter().collect(), friction, speed_m_s, force: Newtons(force) }
+        Rub {
+            key,
+            spots: spots.into_iter().collect(),
+            effect: friction.into(),
+            speed_m_s,
+            force: Newtons(force),
+            ..Rub::default()
+        }
     }
 }
 
@@ -165,7 +193,7 @@ proptest! {
         cues in prop::collection::vec(any_cue(), 0..12),
         rubs in prop::collection::vec(prop::collection::vec(any_rub(), 0..16), 1..4),
     ) {
-        let (mut sender, mut sink) = floor();
+        let (mut sender, mut sink) = whole_floor();
         for cue in &cues {
             sender.send(cue);
         }

@@ -16,8 +16,14 @@ fn floor() -> (CueSender, Renderer) {
 
 fn cue(at: Instant, tile: u16) -> Cue {
     let modes = [Mode { frequency_hz: 180.0, decay_s: 0.03, amplitude: 1.0 }];
-    let click = Click { modes: modes.into_iter().collect(), level: Newtons(8.0) };
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    let click = Click { modes: modes.into_iter().collect(), level: Newtons(8.0), ..Click::default() };
+    Cue {
+        at,
+        received: at,
+        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
+        click,
+        ..Cue::default()
+    }
 }
 
 #[test]

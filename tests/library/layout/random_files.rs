@@ -8,6 +8,7 @@ use proptest::sample::{Index, select};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use underfoot::ergonomics;
+use underfoot::feel::EffectKind;
 use underfoot::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, MapRecord, PositionMap,
     SensorId,
@@ -132,7 +133,8 @@ fn check_layout(layout: &Layout) {
             assert!(scale.min < scale.max && scale.step >= 0.0, "{id}");
             assert!((scale.min..=scale.max).contains(&slider.initial), "{id}");
         }
-        for click in [&widget.feel.press, &widget.feel.release].into_iter().flatten() {
+        for effect in [&widget.feel.press, &widget.feel.release].into_iter().flatten() {
+            let EffectKind::Click { press: click, .. } = &effect.kind else { continue };
             assert!(click.level.is_finite() && !click.modes.is_empty(), "{id}");
             assert!(click.modes.iter().all(|mode| (20.0..=1000.0).contains(&mode.frequency_hz)), "{id}");
         }

@@ -324,5 +324,5 @@ fn rub(foot: u32, speed_m_s: f32) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = [Spot { tile: foot as u16, weight: 1.0 }].into_iter().collect();
-    Rub { key: foot, spots, friction, speed_m_s, force: Newtons(300.0) }
+    Rub { key: foot, spots, effect: friction.into(), speed_m_s, force: Newtons(300.0), ..Rub::default() }
 }

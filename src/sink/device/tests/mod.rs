@@ -64,8 +64,9 @@ fn millis(millis: u64) -> Duration {
 
 fn cue(tile: u16, at: Instant) -> Cue {
     let modes = [Mode { frequency_hz: 200.0, decay_s: 0.05, amplitude: 1.0 }];
-    let click = Click { modes: modes.into_iter().collect(), level: Newtons(20.0) };
-    Cue { at, received: at, spots: [Spot { tile, weight: 1.0 }].into_iter().collect(), click }
+    let click = Click { modes: modes.into_iter().collect(), level: Newtons(20.0), ..Click::default() };
+    let spots = [Spot { tile, weight: 1.0 }].into_iter().collect();
+    Cue { at, received: at, spots, click, ..Cue::default() }
 }
 
 /// A card with a channel per tile of the paper's floor, and its host.

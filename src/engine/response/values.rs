@@ -1,0 +1,175 @@
+//! Where numbers were and where they come to, so that steps and ends are felt.
+
+use arrayvec::ArrayVec;
+use glam::Vec2;
+
+use super::{Now, PUSH, push, spots};
+use crate::feel::{EffectKind, Lasting, Rub, Rubs, key};
+use crate::layout::{Layout, Widget};
+use crate::sense::ContactId;
+use crate::units::Instant;
+use crate::widget::{Behaviour, Control, Scale, Value};
+
+/// Where along their ranges the controls' numbers are: 0 to 1, both numbers of a pad; NaN for what is none.
+#[derive(Debug, Default)]
+pub(super) struct Shares(Vec<Vec2>);
+
+/// What a number did.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Way {
+    pub(super) from: f32,
+    pub(super) to: f32,
+    /// Whether an end was reached, and if so whether it is the high one.
+    pub(super) end: Option<bool>,
+}
+
+impl Shares {
+    pub(super) fn begin(&mut self, layout: &Layout, controls: &[Control]) {
+        self.0.clear();
+        self.0.extend(layout.widgets.iter().zip(controls).map(|(widget, control)| {
+            control.value().map_or(Vec2::NAN, |value| shares(&widget.behaviour, value))
+        }));
+    }
+
+    /// Takes note of the new value of control number `widget`; `None` if it is no number.
+    pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<Way> {
+        let known = self.0.get_mut(widget)?;
+        let to = shares(behaviour, value);
+        let from = std::mem::replace(known, to);
+        if to.x.is_nan() {
+            return None;
+        }
+        let end = [(from.x, to.x), (from.y, to.y)]
+            .into_iter()
+            .find_map(|(from, to)| end_of(to).filter(|_| from != to));
+        Some(Way { from: from.x, to: to.x, end })
+    }
+
+    /// The way of a number that would go on if it were not at its end.
+    pub(super) fn stay(&self, widget: usize) -> Way {
+        let at = self.0.get(widget).map_or(f32::NAN, |share| share.x);
+        Way { from: at, to: at, end: end_of(at) }
+    }
+
+    /// Whether a number is at either end of its range.
+    pub(super) fn is_at_end(&self, widget: usize) -> bool {
+        self.0.get(widget).is_some_and(|share| end_of(share.x).is_some() || end_of(share.y).is_some())
+    }
+}
+
+/// Whether it is the high end.
+fn end_of(share: f32) -> Option<bool> {
+    if share <= 0.0 {
+        Some(false)
+    } else if share >= 1.0 {
+        Some(true)
+    } else {
+        None
+    }
+}
+
+fn shares(behaviour: &Behaviour, value: Value) -> Vec2 {
+    let share = |scale: &Scale, number: f32| {
+        // Steps need not end at the greatest value to the last bit.
+        let share = scale.share(number);
+        if share < 1e-5 {
+            0.0
+        } else if share > 1.0 - 1e-5 {
+            1.0
+        } else {
+            share
+        }
+    };
+    match (behaviour, value) {
+        (Behaviour::Pad(spec), Value::Pair(pair)) => {
+            Vec2::new(share(&spec.x, pair.x), share(&spec.y, pair.y))
+        }
+        (Behaviour::Pedal(spec), Value::Number(number)) => Vec2::new(share(&spec.scale, number), f32::NAN),
+        (_, Value::Number(number)) => {
+            behaviour.scale().map_or(Vec2::NAN, |scale| Vec2::new(share(scale, number), f32::NAN))
+        }
+        _ => Vec2::NAN,
+    }
+}
+
+/// Feet that have slid a number to its end, and may push on.
+#[derive(Debug, Default)]
+pub(super) struct Ends(ArrayVec<Pushing, MAX_PUSHING>);
+
+const MAX_PUSHING: usize = 16;
+
+/// One such foot.
+#[derive(Clone, Copy, Debug)]
+struct Pushing {
+    widget: usize,
+    contact: ContactId,
+    /// Where the foot was when the end was reached, and the way it went.
+    anchor: Vec2,
+    way: Vec2,
+    /// When it last pushed farther.
+    pushed: Instant,
+}
+
+/// Speed above which a foot pushes on rather than sways, in metres per second (our choice; see `step.rs` on sway).
+const PUSHES_M_S: f32 = 0.02;
+
+/// How long pushing is felt once the foot is at rest again, in seconds (our choice: a wall is no alarm).
+const FADES_S: f32 = 1.2;
+
+impl Ends {
+    pub(super) fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// Takes note of a number that has changed: it may have come to an end, or left it.
+    pub(super) fn reach(&mut self, widget: usize, spec: &Widget, way: Way, id: ContactId, now: Now<'_>) {
+        let Some(EffectKind::EndStop(end)) = spec.feel.end.as_ref().map(|effect| &effect.kind) else {
+            return;
+        };
+        if end.push.is_none() || way.end.is_none() {
+            return;
+        }
+        let Some(contact) = now.contact(id) else { return };
+        self.0.retain(|pushing| pushing.contact != id);
+        let way = contact.velocity.normalize_or_zero();
+        let pushing = Pushing { widget, contact: id, anchor: contact.centroid, way, pushed: now.at };
+        // Of more feet than fit, the last ones only feel the thud.
+        let _ = self.0.try_push(pushing);
+    }
+
+    /// Says what feet feel that push on against an end.
+    pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, rubs: &mut Rubs) {
+        self.0.retain(|pushing| {
+            let Some(contact) = now.contact(pushing.contact) else { return false };
+            let Some(effect) =
+                now.layout.widgets.get(pushing.widget).and_then(|widget| widget.feel.end.as_ref())
+            else {
+                return false;
+            };
+            let EffectKind::EndStop(end) = &effect.kind else { return false };
+            if !shares.is_at_end(pushing.widget) {
+                return false;
+            }
+            let Some(felt) = end.push else { return false };
+            if contact.velocity.dot(pushing.way) > PUSHES_M_S {
+                pushing.pushed = now.at;
+            }
+            let beyond = (contact.centroid - pushing.anchor).dot(pushing.way);
+            let fresh = 1.0 - now.at.since(pushing.pushed).as_secs_f32() / FADES_S;
+            if beyond > 0.0 && fresh > 0.0 {
+                let mut hum = felt.hum_at(beyond);
+                hum.level = hum.level * fresh;
+                let rub = Rub {
+                    key: key(contact.id.0, PUSH),
+                    spots: spots(contact),
+                    effect: Lasting::Hum(hum),
+                    manner: effect.manner,
+                    speed_m_s: contact.velocity.length(),
+                    force: contact.force,
+                };
+                push(rubs, Some(rub));
+            }
+            true
+        });
+    }
+}

@@ -1,0 +1,136 @@
+use std::sync::Arc;
+
+use arrayvec::ArrayVec;
+
+use super::{MAX_POINTS, Tone, TonePoint};
+use crate::feel::Click;
+
+/// Most parts of a sequence.
+pub const MAX_PARTS: usize = 128;
+
+/// Clicks and tones one after the other, or at once.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Sequence {
+    /// The parts, in order of time.
+    pub parts: Arc<[Part]>,
+    /// Share of each part's level over time, in order of time; empty for all of it.
+    pub curve: ArrayVec<CurvePoint, MAX_POINTS>,
+}
+
+/// One part of a sequence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Part {
+    /// When it begins, in seconds from the sequence's start.
+    pub at_s: f32,
+    /// What is played.
+    pub beat: Beat,
+}
+
+/// What one part of a sequence plays.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Beat {
+    /// A click.
+    Click(Click),
+    /// A tone or noise.
+    Tone(Tone),
+}
+
+/// A share of the level at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct CurvePoint {
+    /// Seconds from the start.
+    pub at_s: f32,
+    /// Share of the level.
+    pub level: f32,
+}
+
+impl Sequence {
+    /// Part number `index` as the curve wants it; `None` if there is no such part.
+    ///
+    /// # Real-time
+    /// No allocation.
+    #[must_use]
+    pub fn part(&self, index: usize) -> Option<Part> {
+        let part = self.parts.get(index)?;
+        let beat = match &part.beat {
+            Beat::Click(click) => Beat::Click(click.scaled(self.share_at(part.at_s), 1.0)),
+            Beat::Tone(tone) => Beat::Tone(self.curved(tone, part.at_s)),
+        };
+        Some(Part { at_s: part.at_s, beat })
+    }
+
+    /// When the last part has ended, in seconds from the start.
+    #[must_use]
+    pub fn length_s(&self) -> f32 {
+        let end = |part: &Part| match &part.beat {
+            Beat::Click(click) => part.at_s + click.length_s(),
+            Beat::Tone(tone) => part.at_s + tone.whole_s(),
+        };
+        self.parts.iter().map(end).fold(0.0, f32::max)
+    }
+
+    /// Share of the level `t` seconds from the start.
+    #[must_use]
+    pub fn share_at(&self, t: f32) -> f32 {
+        let after = self.curve.iter().position(|point| point.at_s > t).unwrap_or(self.curve.len());
+        let before = after.checked_sub(1).and_then(|before| self.curve.get(before));
+        match (before, self.curve.get(after)) {
+            (None, None) => 1.0,
+            (Some(point), None) | (None, Some(point)) => point.level,
+            (Some(a), Some(b)) => a.level + (b.level - a.level) * (t - a.at_s) / (b.at_s - a.at_s).max(1e-6),
+        }
+    }
+
+    /// `tone`, begun at `start`, with its own curve times this one; of both curves' points the first sixteen count.
+    fn curved(&self, tone: &Tone, start: f32) -> Tone {
+        if self.curve.is_empty() {
+            return tone.clone();
+        }
+        let mut times: ArrayVec<f32, { 2 * MAX_POINTS + 1 }> = ArrayVec::new();
+        times.push(0.0);
+        times.extend(tone.curve.iter().map(|point| point.at_s));
+        let inside = self.curve.iter().map(|point| point.at_s - start);
+        times.extend(inside.filter(|t| *t > 0.0 && *t < tone.whole_s()));
+        times.sort_unstable_by(f32::total_cmp);
+        let plain = Tone { attack_s: 0.0, decay_s: 0.0, ..tone.clone() };
+        let mut curve = ArrayVec::new();
+        let mut last = f32::NEG_INFINITY;
+        for at_s in times {
+            if at_s - last > 1e-5 && !curve.is_full() {
+                let (level, hz) = plain.held_at(at_s);
+                curve.push(TonePoint { at_s, level: level * self.share_at(start + at_s), hz });
+                last = at_s;
+            }
+        }
+        Tone { curve, ..tone.clone() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feel::{Impulse, Mode};
+    use crate::units::Newtons;
+
+    #[test]
+    fn the_curve_scales_clicks_where_they_begin_and_tones_all_along() {
+        let modes = [Mode { frequency_hz: 200.0, decay_s: 0.01, amplitude: 1.0 }].into_iter().collect();
+        let click = Click { modes, level: Newtons(8.0), impulse: Impulse::default() };
+        let tone = Tone { level: Newtons(2.0), hz: 90.0, length_s: 1.0, ..Tone::default() };
+        let sequence = Sequence {
+            parts: [Part { at_s: 0.5, beat: Beat::Click(click) }, Part { at_s: 0.5, beat: Beat::Tone(tone) }]
+                .into(),
+            curve: [CurvePoint { at_s: 0.0, level: 0.0 }, CurvePoint { at_s: 1.0, level: 1.0 }]
+                .into_iter()
+                .collect(),
+        };
+        let Some(Part { beat: Beat::Click(click), .. }) = sequence.part(0) else { panic!("a click") };
+        assert_eq!(click.level, Newtons(4.0));
+        let Some(Part { beat: Beat::Tone(tone), .. }) = sequence.part(1) else { panic!("a tone") };
+        for (t, level) in [(0.0, 0.5), (0.25, 0.75), (0.5, 1.0), (0.9, 1.0)] {
+            assert!((tone.at(t).0 - level).abs() < 1e-5, "{t} s: {:?}", tone.at(t));
+        }
+        assert_eq!(sequence.part(2), None);
+        assert!((sequence.length_s() - 1.5).abs() < 1e-5);
+    }
+}

@@ -1,0 +1,153 @@
+use arrayvec::ArrayVec;
+
+use super::Hum;
+use crate::feel::Click;
+
+/// Most marks of a row of detents.
+pub const MAX_MARKS: usize = 8;
+
+/// A click at each step of a number, told apart by value and by direction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Detents {
+    /// What each feels like, at the middle of the range and upwards.
+    pub click: Click,
+    /// Distance between two, as a share of the range; 0 for the control's own steps and detents.
+    pub every: f32,
+    /// How strong those are that are passed downwards, as a share.
+    pub falling: f32,
+    /// What the frequencies are multiplied with at the low and at the high end.
+    pub pitch: [f32; 2],
+    /// Where they are felt stronger, as shares of the range.
+    pub marks: ArrayVec<f32, MAX_MARKS>,
+    /// How much stronger.
+    pub mark: f32,
+}
+
+impl Detents {
+    /// The click of the detent at `share` of the range (0 to 1), passed upwards or downwards.
+    #[must_use]
+    pub fn click_at(&self, share: f32, rising: bool) -> Click {
+        let side = if rising { 1.0 } else { self.falling };
+        // A control's own steps come as near as that to a mark that is meant.
+        let near = if self.every > 0.0 { 0.25 * self.every } else { 1e-3 };
+        let marked = self.marks.iter().any(|mark| (mark - share).abs() <= near);
+        let mark = if marked { self.mark } else { 1.0 };
+        let [low, high] = self.pitch;
+        self.click.scaled(side * mark, low + (high - low) * share)
+    }
+
+    /// The detent (as a share of the range) that a number passes on its way from `from` to `to`; the last one of
+    /// several, `None` of none or if the control's own steps count.
+    #[must_use]
+    pub fn passed(&self, from: f32, to: f32) -> Option<f32> {
+        let way = to - from;
+        if self.every <= 0.0 || way == 0.0 || way.is_nan() {
+            return None;
+        }
+        let (a, b) = (from / self.every, to / self.every);
+        let detent = if to > from { (b + 1e-4).floor() } else { (b - 1e-4).ceil() };
+        let is_between = if to > from { detent > a + 1e-4 } else { detent < a - 1e-4 };
+        is_between.then_some((detent * self.every).clamp(0.0, 1.0))
+    }
+}
+
+/// What the ends of a number feel like.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EndStop {
+    /// Felt when an end is reached; the faster, the stronger.
+    pub click: Click,
+    /// What the frequencies are multiplied with at the low and at the high end.
+    pub pitch: [f32; 2],
+    /// Felt while a foot pushes on against the end.
+    pub push: Option<Push>,
+}
+
+/// What pushing against an end feels like.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Push {
+    /// What is felt, at its full level.
+    pub hum: Hum,
+    /// How far beyond the end it is at its full level, in metres.
+    pub full_m: f32,
+}
+
+/// The speed at which an end is hit at its full level, in metres per second (our choice: a brisk slide).
+const FULL_HIT_M_S: f32 = 0.4;
+
+/// Share of its level that an end has however slowly it is reached (our choice).
+const SOFTEST: f32 = 0.4;
+
+impl EndStop {
+    /// The click of an end that is hit at this speed, in metres per second; also without one (NaN), softly.
+    #[must_use]
+    pub fn click_at(&self, high: bool, speed_m_s: f32) -> Click {
+        let hit = (speed_m_s / FULL_HIT_M_S).clamp(0.0, 1.0);
+        let hit = if hit.is_nan() { 0.0 } else { hit };
+        self.click.scaled(SOFTEST + (1.0 - SOFTEST) * hit, self.pitch[usize::from(high)])
+    }
+}
+
+impl Push {
+    /// What is felt with the foot this far beyond the end.
+    #[must_use]
+    pub fn hum_at(&self, beyond_m: f32) -> Hum {
+        let share = (beyond_m / self.full_m).clamp(0.0, 1.0);
+        let share = if share.is_nan() { 0.0 } else { share };
+        Hum { level: self.hum.level * share, ..self.hum }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feel::{Impulse, Mode};
+    use crate::units::Newtons;
+
+    fn detents(every: f32) -> Detents {
+        let modes = [Mode { frequency_hz: 200.0, decay_s: 0.01, amplitude: 1.0 }].into_iter().collect();
+        Detents {
+            click: Click { modes, level: Newtons(10.0), impulse: Impulse::default() },
+            every,
+            falling: 0.5,
+            pitch: [0.8, 1.2],
+            marks: [0.5].into_iter().collect(),
+            mark: 1.5,
+        }
+    }
+
+    #[test]
+    fn value_and_side_say_what_a_detent_feels_like() {
+        let detents = detents(0.1);
+        let low = detents.click_at(0.0, true);
+        let high = detents.click_at(1.0, false);
+        assert_eq!((low.level, low.modes[0].frequency_hz), (Newtons(10.0), 160.0));
+        assert_eq!((high.level, high.modes[0].frequency_hz.round()), (Newtons(5.0), 240.0));
+        assert_eq!(detents.click_at(0.5, true).level, Newtons(15.0));
+    }
+
+    #[test]
+    fn a_detent_is_passed_once_whatever_the_way_is_cut_into() {
+        let detents = detents(0.25);
+        for pieces in [1_u16, 7, 100, 999] {
+            for rising in [true, false] {
+                let mut passed = Vec::new();
+                let mut from = if rising { 0.05 } else { 0.95 };
+                for piece in 1..=pieces {
+                    let way = 0.9 * f32::from(piece) / f32::from(pieces);
+                    let to = if rising { 0.05 + way } else { 0.95 - way };
+                    passed.extend(detents.passed(from, to));
+                    from = to;
+                }
+                let mut wanted = vec![0.25, 0.5, 0.75];
+                if !rising {
+                    wanted.reverse();
+                }
+                // One long way passes several at once: the last one is felt.
+                let wanted = if pieces == 1 { vec![wanted[2]] } else { wanted };
+                assert_eq!(passed, wanted, "{pieces} pieces");
+            }
+        }
+        assert_eq!(detents.passed(0.3, f32::NAN), None);
+        assert_eq!(self::detents(0.0).passed(0.0, 1.0), None);
+    }
+}

@@ -1,0 +1,147 @@
+use arrayvec::ArrayVec;
+
+use crate::units::Newtons;
+
+/// Most points of a curve; as many as an AHAP parameter curve may have.
+pub const MAX_POINTS: usize = 16;
+
+/// A tone or a band of noise that sounds for a while.
+///
+/// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`,
+/// stays there until `length_s`, and is gone `release_s` later; all of it times
+/// the curve, which also says the pitch.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Tone {
+    /// Force at the plate of its tone; a noise is as strong as a tone of this amplitude.
+    pub level: Newtons,
+    /// Its pitch, or the centre of its noise, where the curve has no points, in hertz; 20 to 1000.
+    pub hz: f32,
+    /// From a pure tone (0) to a band of noise (1).
+    pub noise: f32,
+    /// Time until it lets go, in seconds.
+    pub length_s: f32,
+    /// Time in which it comes, in seconds.
+    pub attack_s: f32,
+    /// Time in which it falls to `sustain` afterwards, in seconds.
+    pub decay_s: f32,
+    /// What stays after the decay, 0 to 1.
+    pub sustain: f32,
+    /// Time in which it goes after `length_s`, in seconds.
+    pub release_s: f32,
+    /// Level and pitch over time, in order of time; before the first point as there, after the last as there.
+    pub curve: ArrayVec<TonePoint, MAX_POINTS>,
+}
+
+/// Level and pitch of a tone at one moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TonePoint {
+    /// Seconds from the tone's start.
+    pub at_s: f32,
+    /// Share of the tone's level.
+    pub level: f32,
+    /// Pitch, in hertz.
+    pub hz: f32,
+}
+
+impl Tone {
+    /// Share of the level and pitch `t` seconds after the start; no level before it and after the end.
+    ///
+    /// # Real-time
+    /// A few comparisons and divisions.
+    #[must_use]
+    pub fn at(&self, t: f32) -> (f32, f32) {
+        let release = if t <= self.length_s {
+            1.0
+        } else {
+            (1.0 - (t - self.length_s) / self.release_s.max(1e-6)).max(0.0)
+        };
+        let (level, hz) = self.held_at(t);
+        (level * release, hz)
+    }
+
+    /// As [`Tone::at`] for a tone that is held on: it never lets go by itself.
+    #[must_use]
+    pub fn held_at(&self, t: f32) -> (f32, f32) {
+        let (curve, hz) = self.curve_at(t);
+        let envelope = if t < 0.0 || t.is_nan() {
+            0.0
+        } else if t < self.attack_s {
+            t / self.attack_s
+        } else if t < self.attack_s + self.decay_s {
+            1.0 - (1.0 - self.sustain) * (t - self.attack_s) / self.decay_s
+        } else if self.decay_s > 0.0 {
+            self.sustain
+        } else {
+            1.0
+        };
+        (envelope * curve, hz)
+    }
+
+    /// Time from the start to silence, in seconds.
+    #[must_use]
+    pub fn whole_s(&self) -> f32 {
+        self.length_s + self.release_s
+    }
+
+    fn curve_at(&self, t: f32) -> (f32, f32) {
+        let after = self.curve.iter().position(|point| point.at_s > t).unwrap_or(self.curve.len());
+        let before = after.checked_sub(1).and_then(|before| self.curve.get(before));
+        match (before, self.curve.get(after)) {
+            (None, None) => (1.0, self.hz),
+            (Some(point), None) | (None, Some(point)) => (point.level, point.hz),
+            (Some(a), Some(b)) => {
+                let share = (t - a.at_s) / (b.at_s - a.at_s).max(1e-6);
+                (a.level + (b.level - a.level) * share, a.hz + (b.hz - a.hz) * share)
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn tone() -> Tone {
+        Tone {
+            level: Newtons(4.0),
+            hz: 100.0,
+            length_s: 1.0,
+            attack_s: 0.1,
+            decay_s: 0.2,
+            sustain: 0.5,
+            release_s: 0.4,
+            ..Tone::default()
+        }
+    }
+
+    #[test]
+    fn the_envelope_comes_falls_stays_and_goes() {
+        let tone = tone();
+        for (t, level) in [
+            (-0.1, 0.0),
+            (0.05, 0.5),
+            (0.1, 1.0),
+            (0.2, 0.75),
+            (0.3, 0.5),
+            (1.0, 0.5),
+            (1.2, 0.25),
+            (1.4, 0.0),
+            (9.0, 0.0),
+        ] {
+            assert!((tone.at(t).0 - level).abs() < 1e-5, "{t} s: {:?}", tone.at(t));
+        }
+        assert_eq!(tone.held_at(9.0).0, 0.5);
+        assert_eq!(tone.at(f32::NAN).0, 0.0);
+    }
+
+    #[test]
+    fn the_curve_is_straight_between_its_points_and_even_beyond_them() {
+        let point = |at_s, level, hz| TonePoint { at_s, level, hz };
+        let curve = [point(0.2, 0.0, 80.0), point(0.6, 1.0, 160.0)].into_iter().collect();
+        let tone = Tone { attack_s: 0.0, decay_s: 0.0, curve, ..tone() };
+        assert_eq!(tone.at(0.1), (0.0, 80.0));
+        let (level, hz) = tone.at(0.3);
+        assert!((level - 0.25).abs() < 1e-5 && (hz - 100.0).abs() < 1e-3);
+        assert_eq!(tone.at(0.9), (1.0, 160.0));
+    }
+}

@@ -1,0 +1,268 @@
+use std::sync::Arc;
+use std::time::Duration;
+
+use arrayvec::ArrayVec;
+
+use super::{Beat, Cue, Effect, EffectKind, Hum, Lasting, MAX_RUBS, Rub, Rubs, Spots};
+use crate::units::{Instant, Newtons};
+
+/// Most effects that are played or held at once; of more, the oldest ends.
+const MAX_PLAYING: usize = 16;
+
+/// Plays effects part by part as time goes on: cues for what begins, rubs for what is held.
+///
+/// It knows no clock: whoever owns it says what time it is, about once a
+/// millisecond, and gets each part ahead of its time by up to a millisecond so
+/// that the part can begin at its own sample.
+///
+/// # Real-time
+/// No allocation beyond the list of cues that is handed in.
+#[derive(Clone, Debug, Default)]
+pub struct Player {
+    playing: ArrayVec<Playing, MAX_PLAYING>,
+}
+
+#[derive(Clone, Debug)]
+struct Playing {
+    effect: Arc<Effect>,
+    owner: u32,
+    /// Whether it lasts until [`Player::let_go`].
+    held: bool,
+    at: Instant,
+    received: Instant,
+    next: usize,
+    spots: Spots,
+}
+
+/// How far ahead of its time a part is handed out.
+const AHEAD: Duration = Duration::from_millis(1);
+
+impl Player {
+    /// Plays `effect` once from `at` on.
+    ///
+    /// `owner` is whoever causes it, such as a contact's number; [`Player::due`]
+    /// asks where its foot is. A click answers a release with its release part,
+    /// if it has one. What only lasts or is driven by a value (see
+    /// [`super::Use::Once`]) is not played.
+    pub fn play(&mut self, effect: &Arc<Effect>, owner: u32, release: bool, cue: Cue, cues: &mut Vec<Cue>) {
+        match &effect.kind {
+            EffectKind::Click { press, release: other } => {
+                let click = other.as_ref().filter(|_| release).unwrap_or(press).clone();
+                cues.push(Cue { click, manner: effect.manner, ..cue });
+            }
+            EffectKind::Continuous(tone) => {
+                cues.push(Cue { tone: Some(tone.clone()), manner: effect.manner, ..cue });
+            }
+            EffectKind::Sequence(_) => self.begin(effect, owner, false, &cue),
+            _ => {}
+        }
+    }
+
+    /// Plays `effect` from `at` on for as long as `owner` holds it; nothing happens if it is held already.
+    pub fn hold(&mut self, effect: &Arc<Effect>, owner: u32, at: Instant, received: Instant, spots: &Spots) {
+        let is_same = |playing: &Playing| playing.held && playing.owner == owner;
+        if !self.playing.iter().any(is_same) {
+            let cue = Cue { at, received, spots: spots.clone(), ..Cue::default() };
+            self.begin(effect, owner, true, &cue);
+        }
+    }
+
+    /// Ends what `owners` no longer say they hold.
+    pub fn let_go(&mut self, holds: impl Fn(u32) -> bool) {
+        self.playing.retain(|playing| !playing.held || holds(playing.owner));
+    }
+
+    /// Ends everything.
+    pub fn clear(&mut self) {
+        self.playing.clear();
+    }
+
+    fn begin(&mut self, effect: &Arc<Effect>, owner: u32, held: bool, cue: &Cue) {
+        if self.playing.is_full() {
+            self.playing.remove(0);
+        }
+        self.playing.push(Playing {
+            effect: Arc::clone(effect),
+            owner,
+            held,
+            at: cue.at,
+            received: cue.received,
+            next: 0,
+            spots: cue.spots.clone(),
+        });
+    }
+
+    /// Appends what begins until a millisecond after `now`, and what is held at `now`.
+    ///
+    /// `spots` says where an owner's foot is; without an answer it is where it was.
+    pub fn due(
+        &mut self,
+        now: Instant,
+        spots: impl Fn(u32) -> Option<Spots>,
+        cues: &mut Vec<Cue>,
+        rubs: &mut Rubs,
+    ) {
+        for playing in &mut self.playing {
+            if let Some(spots) = spots(playing.owner) {
+                playing.spots = spots;
+            }
+            playing.begin_parts(now + AHEAD, cues);
+            if playing.held {
+                playing.sound_on(now, rubs);
+            }
+        }
+        self.playing.retain(|playing| !playing.is_over(now));
+    }
+}
+
+impl Playing {
+    /// Hands out the parts that begin before `until`; the tones of what is held sound as rubs instead.
+    fn begin_parts(&mut self, until: Instant, cues: &mut Vec<Cue>) {
+        let EffectKind::Sequence(sequence) = &self.effect.kind else { return };
+        while let Some(begins) = sequence.parts.get(self.next).map(|part| self.at + seconds(part.at_s))
+            && begins <= until
+            && let Some(part) = sequence.part(self.next)
+        {
+            self.next += 1;
+            let (spots, manner) = (self.spots.clone(), self.effect.manner);
+            // What answers the foot is the first part; the others are never late.
+            let received = if part.at_s > 0.0 { begins } else { self.received };
+            let cue = Cue { at: begins, received, spots, manner, ..Cue::default() };
+            match part.beat {
+                Beat::Click(click) => cues.push(Cue { click, ..cue }),
+                Beat::Tone(tone) if !self.held => cues.push(Cue { tone: Some(tone), ..cue }),
+                Beat::Tone(_) => {}
+            }
+        }
+    }
+
+    /// Says what is held at `now`.
+    fn sound_on(&self, now: Instant, rubs: &mut Rubs) {
+        let t = now.since(self.at).as_secs_f32();
+        match &self.effect.kind {
+            EffectKind::Continuous(tone) => self.push(0, tone.level, tone.noise, tone.held_at(t), rubs),
+            EffectKind::Sequence(sequence) => {
+                for (index, part) in sequence.parts.iter().enumerate() {
+                    if let Beat::Tone(tone) = &part.beat
+                        && (part.at_s..part.at_s + tone.whole_s()).contains(&t)
+                    {
+                        let share = sequence.share_at(t);
+                        let (level, hz) = tone.at(t - part.at_s);
+                        self.push(index as u32, tone.level, tone.noise, (level * share, hz), rubs);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    fn push(&self, part: u32, full: Newtons, noise: f32, (level, hz): (f32, f32), rubs: &mut Rubs) {
+        // Beyond what feet can tell apart, what comes last stays silent.
+        let _ = rubs.try_push(Rub {
+            key: key(self.owner, FIRST_HELD + part),
+            spots: self.spots.clone(),
+            effect: Lasting::Hum(Hum { level: full * level, hz, noise }),
+            manner: self.effect.manner,
+            ..Rub::default()
+        });
+    }
+
+    fn is_over(&self, now: Instant) -> bool {
+        match &self.effect.kind {
+            EffectKind::Sequence(sequence) if !self.held => self.next >= sequence.parts.len(),
+            EffectKind::Sequence(_) | EffectKind::Continuous(_) if self.held => false,
+            _ => now > self.at,
+        }
+    }
+}
+
+/// The first key number of what a player holds; lower ones are for frictions and the like.
+const FIRST_HELD: u32 = 16;
+
+/// A [`Rub::key`]: one of up to 256 things that the foot `owner` does at once.
+#[must_use]
+pub fn key(owner: u32, part: u32) -> u32 {
+    owner.wrapping_mul(256).wrapping_add(part.min(255))
+}
+
+fn seconds(seconds: f32) -> Duration {
+    Duration::from_micros((f64::from(seconds.max(0.0)) * 1e6).round() as u64)
+}
+
+const _: () = assert!(MAX_RUBS >= MAX_PLAYING);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::feel::{Click, Manner, Mode, Part, Sequence, Spot, Tone};
+
+    fn click() -> Click {
+        let modes = [Mode { frequency_hz: 200.0, decay_s: 0.01, amplitude: 1.0 }].into_iter().collect();
+        Click { modes, level: Newtons(4.0), ..Click::default() }
+    }
+
+    fn tone() -> Tone {
+        Tone {
+            level: Newtons(2.0),
+            hz: 90.0,
+            length_s: 0.1,
+            release_s: 0.02,
+            sustain: 1.0,
+            ..Tone::default()
+        }
+    }
+
+    fn sequence() -> Arc<Effect> {
+        let part = |at_s, beat| Part { at_s, beat };
+        let parts = [
+            part(0.0, Beat::Click(click())),
+            part(0.0123, Beat::Click(click())),
+            part(0.02, Beat::Tone(tone())),
+        ];
+        let kind = EffectKind::Sequence(Sequence { parts: parts.into(), curve: Default::default() });
+        Arc::new(Effect { kind, manner: Manner::PLAIN })
+    }
+
+    fn spots(tile: u16) -> Spots {
+        [Spot { tile, weight: 1.0 }].into_iter().collect()
+    }
+
+    fn at(ms: u64) -> Instant {
+        Instant::from_millis(ms)
+    }
+
+    #[test]
+    fn parts_come_ahead_of_their_time_and_follow_the_foot() {
+        let (mut player, mut cues, mut rubs) = (Player::default(), Vec::new(), Rubs::new());
+        let cue = Cue { at: at(10), received: at(10), spots: spots(3), ..Cue::default() };
+        player.play(&sequence(), 1, false, cue, &mut cues);
+        assert!(cues.is_empty());
+        let mut handed_out = Vec::new();
+        for ms in 10..60 {
+            let tile = if ms < 20 { 3 } else { 4 };
+            player.due(at(ms), |_| Some(spots(tile)), &mut cues, &mut rubs);
+            handed_out.extend(cues.drain(..).map(|cue| (ms, cue)));
+        }
+        let when: Vec<(u64, u64, u16)> =
+            handed_out.iter().map(|(ms, cue)| (*ms, cue.at.micros(), cue.spots[0].tile)).collect();
+        assert_eq!(when, [(10, 10_000, 3), (22, 22_300, 4), (29, 30_000, 4)]);
+        assert!(handed_out[2].1.tone.is_some() && rubs.is_empty());
+        assert!(player.playing.is_empty());
+    }
+
+    #[test]
+    fn what_is_held_ends_when_it_is_let_go() {
+        let (mut player, mut cues) = (Player::default(), Vec::new());
+        let held = Arc::new(Effect { kind: EffectKind::Continuous(tone()), manner: Manner::PLAIN });
+        for ms in 0..3000 {
+            let mut rubs = Rubs::new();
+            player.hold(&held, 7, at(0), at(0), &spots(1));
+            player.due(at(ms), |_| None, &mut cues, &mut rubs);
+            assert_eq!(rubs.len(), 1, "a held tone goes on beyond its length");
+        }
+        player.let_go(|owner| owner != 7);
+        let mut rubs = Rubs::new();
+        player.due(at(3000), |_| None, &mut cues, &mut rubs);
+        assert!(rubs.is_empty() && cues.is_empty());
+    }
+}

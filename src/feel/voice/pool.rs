@@ -1,0 +1,234 @@
+use super::duck::Ducks;
+use super::group::{Group, Model};
+use super::single::{STEP, Span, State, Voice};
+use super::{LANES, LowRate};
+use crate::feel::mix::{Mix, Wiring};
+use crate::feel::{Cue, MAX_RUBS, Manner, Rub, Rubs, Tone};
+
+/// Enough for [`MAX_RUBS`] voices however they fall on the models.
+const GROUPS: usize = MAX_RUBS / LANES + 5;
+
+/// A rub that was not renewed for this long is over: whoever sends them may have died.
+const STALE_S: f32 = 0.05;
+
+/// All voices of what lasts.
+///
+/// # Real-time
+/// No allocation; without a voice nothing is computed.
+#[derive(Clone, Debug)]
+pub(in crate::feel) struct Voices {
+    rate: LowRate,
+    sample_rate: f32,
+    voices: Vec<Voice>,
+    groups: Vec<Group>,
+    ducks: Ducks,
+    /// Device samples since the last one of the low rate.
+    phase: usize,
+    ramp: Vec<f32>,
+    /// Samples since the last [`Voices::follow`].
+    age: usize,
+    active: usize,
+}
+
+/// What became of something that was to be played.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(in crate::feel) struct Started {
+    /// Spots that no actuator can play.
+    pub(in crate::feel) unfelt: u32,
+    /// Voices that had to make room, also the new one itself if it was the least important.
+    pub(in crate::feel) stolen: u32,
+}
+
+impl Voices {
+    pub(in crate::feel) fn new(sample_rate: f32, channels: usize) -> Self {
+        let rate = LowRate::of(sample_rate);
+        Self {
+            rate,
+            sample_rate,
+            voices: vec![Voice::default(); MAX_RUBS],
+            groups: (0..GROUPS).map(Group::new).collect(),
+            ducks: Ducks::new(channels),
+            phase: 0,
+            ramp: (0..rate.divisor).map(|n| n as f32 / rate.divisor as f32).collect(),
+            age: 0,
+            active: 0,
+        }
+    }
+
+    /// Stops everything at once.
+    pub(in crate::feel) fn clear(&mut self) {
+        for number in 0..self.voices.len() {
+            self.free(number);
+        }
+        self.ducks.clear();
+    }
+
+    /// Takes the rubs as they are now; a rub that is no longer among them fades out.
+    pub(in crate::feel) fn follow(&mut self, rubs: &Rubs, wiring: &Wiring) -> Started {
+        self.age = 0;
+        for voice in &mut self.voices {
+            if voice.state == State::Rubbing && !rubs.iter().any(|rub| rub.key == voice.key) {
+                voice.state = State::Fading;
+            }
+        }
+        let mut started = Started::default();
+        for rub in rubs {
+            let Some(number) = self.voice_for(rub, &mut started) else { continue };
+            started.unfelt += self.voices[number].follow(rub, wiring);
+        }
+        started
+    }
+
+    /// Plays the tone of `cue` from now on.
+    pub(in crate::feel) fn start(&mut self, cue: &Cue, tone: &Tone, wiring: &Wiring) -> Started {
+        let (voice, unfelt) = Voice::sounding(tone, cue.manner, &cue.spots, wiring);
+        let mut started = Started { unfelt, stolen: 0 };
+        if let Some(number) = self.claim(Model::Hiss, cue.manner, tone.level.0, &mut started) {
+            let (group, lane) = (self.voices[number].group, self.voices[number].lane);
+            self.voices[number] = voice.in_lane(group, lane);
+        }
+        started
+    }
+
+    /// Keeps what lasts down on `channel` while a click of this `manner` rings.
+    pub(in crate::feel) fn duck(&mut self, channel: usize, manner: &Manner, seconds: f32) {
+        self.ducks.press(channel, manner, seconds, None);
+    }
+
+    /// The voice that plays `rub` already, or one for it.
+    fn voice_for(&mut self, rub: &Rub, started: &mut Started) -> Option<usize> {
+        let model = Model::of(&rub.effect);
+        let plays =
+            |voice: &Voice| matches!(voice.state, State::Rubbing | State::Fading) && voice.key == rub.key;
+        let held = self.voices.iter().position(plays);
+        if let Some(number) = held {
+            let is_same =
+                self.voices[number].effect == rub.effect && self.voices[number].manner == rub.manner;
+            if Model::of(&self.voices[number].effect) == model {
+                if !is_same {
+                    let (group, lane) = (self.voices[number].group, self.voices[number].lane);
+                    self.groups[group].prepare(lane, &rub.effect, rub.manner.band.sound(), self.rate.hz);
+                }
+                return Some(number);
+            }
+            self.free(number);
+        }
+        let number = self.claim(model, rub.manner, 0.0, started)?;
+        let (group, lane) = (self.voices[number].group, self.voices[number].lane);
+        self.groups[group].prepare(lane, &rub.effect, rub.manner.band.sound(), self.rate.hz);
+        self.voices[number] = Voice::of(rub.key).in_lane(group, lane);
+        Some(number)
+    }
+
+    /// A free voice with a lane of `model`; if there is none, that of the least important one and of several the
+    /// faintest, unless the new one is itself less important.
+    fn claim(&mut self, model: Model, manner: Manner, loudness: f32, started: &mut Started) -> Option<usize> {
+        loop {
+            let free = self.voices.iter().position(|voice| voice.state == State::Free);
+            let lane = self.lane(model);
+            if let (Some(number), Some((group, lane))) = (free, lane) {
+                self.voices[number].group = group;
+                self.voices[number].lane = lane;
+                self.active += 1;
+                return Some(number);
+            }
+            if let Some((group, lane)) = lane {
+                self.groups[group].release(lane);
+            }
+            let rank =
+                |voice: &Voice| (voice.state != State::Fading, voice.manner.priority, voice.loudness());
+            let victim = (0..self.voices.len())
+                .filter(|&number| self.voices[number].state != State::Free)
+                .min_by(|a, b| {
+                    let (a, b) = (rank(&self.voices[*a]), rank(&self.voices[*b]));
+                    (a.0, a.1).cmp(&(b.0, b.1)).then(a.2.total_cmp(&b.2))
+                })?;
+            started.stolen += 1;
+            let (lasts, priority, level) = rank(&self.voices[victim]);
+            if lasts && (manner.priority, loudness) < (priority, level) && manner.priority < priority {
+                return None;
+            }
+            self.free(victim);
+        }
+    }
+
+    /// A lane of `model`; a group that the model has already is better than a fresh one.
+    fn lane(&mut self, model: Model) -> Option<(usize, usize)> {
+        for fresh in [false, true] {
+            for (number, group) in self.groups.iter_mut().enumerate() {
+                if group.is_silent() == fresh
+                    && let Some(lane) = group.claim(model)
+                {
+                    return Some((number, lane));
+                }
+            }
+        }
+        None
+    }
+
+    fn free(&mut self, number: usize) {
+        let voice = &mut self.voices[number];
+        if voice.state != State::Free {
+            voice.state = State::Free;
+            self.groups[voice.group].release(voice.lane);
+            self.active -= 1;
+        }
+    }
+
+    /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet.
+    pub(in crate::feel) fn render(&mut self, mix: &mut Mix, start: usize, end: usize) {
+        self.age = self.age.saturating_add(end.saturating_sub(start));
+        if self.age as f32 > STALE_S * self.sample_rate {
+            for voice in &mut self.voices {
+                if voice.state == State::Rubbing {
+                    voice.state = State::Fading;
+                }
+            }
+        }
+        for start in (start..end).step_by(STEP) {
+            let samples = STEP.min(end - start);
+            let ready = self.phase + samples;
+            self.ducks.step(samples as f32 / self.sample_rate);
+            if self.active > 0 {
+                self.render_part(mix, start, samples, ready / self.rate.divisor);
+            }
+            self.phase = ready % self.rate.divisor;
+        }
+    }
+
+    fn render_part(&mut self, mix: &mut Mix, start: usize, samples: usize, low_samples: usize) {
+        let seconds = samples as f32 / self.sample_rate;
+        for (number, voice) in self.voices.iter_mut().enumerate() {
+            if voice.state == State::Free {
+                continue;
+            }
+            let drive = voice.step(seconds);
+            let band = voice.manner.band.sound();
+            self.groups[voice.group].tune(voice.lane, &voice.effect, drive, band, self.rate.hz);
+            if voice.manner.duck_db > 0.0 && voice.state != State::Fading {
+                for channel in voice.channels() {
+                    self.ducks.press(channel, &voice.manner, 2.0 * seconds, Some(number));
+                }
+            }
+        }
+        let mut low = [[0.0; LANES]; STEP];
+        let low = &mut low[..low_samples];
+        let span = Span { start, samples, phase: self.phase, ramp: &self.ramp };
+        for group in 0..GROUPS {
+            if self.groups[group].is_silent() {
+                continue;
+            }
+            self.groups[group].render(low);
+            for (number, voice) in self.voices.iter_mut().enumerate() {
+                if voice.state != State::Free && voice.group == group {
+                    voice.add(number, low, mix, &self.ducks, &span);
+                }
+            }
+        }
+        for number in 0..self.voices.len() {
+            if self.voices[number].is_over() {
+                self.free(number);
+            }
+        }
+    }
+}

@@ -1,0 +1,282 @@
+use arrayvec::ArrayVec;
+
+use super::duck::{Ducks, MAX_REACHES};
+use super::group::Drive;
+use super::{Row, within};
+use crate::feel::mix::{Mix, Output, Wiring};
+use crate::feel::{Friction, Hum, Lasting, Manner, Rub, Spots, Tone};
+
+/// Time in which level, speed and pitch follow the foot to 1/e.
+const FOLLOW_S: f32 = 0.004;
+
+/// Time in which a new rub fades in, and one that is over fades out.
+const FADE_S: f32 = 0.015;
+
+/// A share of a texture below this (-100 dB) is none.
+const FAINT: f32 = 1e-5;
+
+/// Strongest that one voice plays, in newtons: far above anything an actuator gives.
+const STRONGEST_N: f32 = 1000.0;
+
+/// One thing that lasts, as it sounds now.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Voice {
+    pub(super) key: u32,
+    pub(super) state: State,
+    pub(super) effect: Lasting,
+    pub(super) manner: Manner,
+    pub(super) group: usize,
+    pub(super) lane: usize,
+    /// What the foot does, as the voice follows it, and as it is.
+    now: Wish,
+    wanted: Wish,
+    /// The tone being played, and the time since its start.
+    tone: Option<Tone>,
+    clock_s: f32,
+    /// Rises to 1 in [`FADE_S`] and falls to 0 in the same time when the rub is over.
+    fade: f32,
+    reaches: ArrayVec<Reach, MAX_REACHES>,
+    /// The two samples of the low rate between which the voice is.
+    between: [f32; 2],
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum State {
+    #[default]
+    Free,
+    /// A rub that is renewed again and again.
+    Rubbing,
+    /// A tone that ends by itself.
+    Sounding,
+    Fading,
+}
+
+/// Level in newtons, speed in metres per second, share of the full force, pitch in hertz.
+#[derive(Clone, Copy, Debug, Default)]
+struct Wish {
+    level_n: f32,
+    speed: f32,
+    force: f32,
+    hz: f32,
+}
+
+/// A channel under the foot, or one it has just left.
+#[derive(Clone, Copy, Debug)]
+struct Reach {
+    output: Output,
+    weight: f32,
+    wanted: f32,
+    /// The gain that the last part ended with.
+    gain: f32,
+}
+
+/// A stretch of samples to be added, and where the device's samples lie between the voices'.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Span<'a> {
+    pub(super) start: usize,
+    pub(super) samples: usize,
+    /// Device samples since the last one of the low rate.
+    pub(super) phase: usize,
+    /// 0, 1, 2, … over the number of device samples per sample of the low rate.
+    pub(super) ramp: &'a [f32],
+}
+
+/// Most samples that are added at once.
+pub(super) const STEP: usize = 64;
+
+impl Voice {
+    /// A voice for the rub of this key, silent until it follows.
+    pub(super) fn of(key: u32) -> Self {
+        Self { key, ..Self::default() }
+    }
+
+    /// The same in this lane.
+    pub(super) fn in_lane(self, group: usize, lane: usize) -> Self {
+        Self { group, lane, ..self }
+    }
+
+    /// A voice for a tone, heard from now on; the second number is how many spots no actuator can play.
+    pub(super) fn sounding(tone: &Tone, manner: Manner, spots: &Spots, wiring: &Wiring) -> (Self, u32) {
+        let hum = Hum { level: tone.level, hz: tone.hz, noise: tone.noise };
+        let mut voice = Self {
+            state: State::Sounding,
+            effect: Lasting::Hum(hum),
+            manner,
+            tone: Some(tone.clone()),
+            fade: 1.0,
+            ..Self::default()
+        };
+        let unfelt = voice.reach(spots, wiring, true);
+        // Where it begins there is nothing to slide from.
+        voice.reaches.iter_mut().for_each(|reach| reach.weight = reach.wanted);
+        (voice, unfelt)
+    }
+
+    /// Heads for what the rub is now; the answer is how many spots of a new rub no actuator can play.
+    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring) -> u32 {
+        let new = self.state == State::Free;
+        self.wanted = wish(rub);
+        if new {
+            // A new rub starts at its own pitch; its fade makes it start from silence.
+            self.now = self.wanted;
+        }
+        self.effect = rub.effect;
+        self.manner = rub.manner;
+        self.state = State::Rubbing;
+        self.reach(&rub.spots, wiring, new)
+    }
+
+    /// Heads for these spots.
+    fn reach(&mut self, spots: &Spots, wiring: &Wiring, new: bool) -> u32 {
+        for reach in &mut self.reaches {
+            reach.wanted = 0.0;
+        }
+        let mut unfelt = 0;
+        for spot in spots {
+            let weight = if spot.weight > FAINT { spot.weight.min(1.0) } else { 0.0 };
+            let Some(output) = wiring.output(spot.tile) else {
+                unfelt += u32::from(new);
+                continue;
+            };
+            if let Some(reach) = self.reaches.iter_mut().find(|reach| reach.output == output) {
+                reach.wanted += weight;
+                continue;
+            }
+            if self.reaches.is_full()
+                && let Some(left) = self.reaches.iter().position(|reach| reach.wanted == 0.0)
+            {
+                self.reaches.swap_remove(left);
+            }
+            // There is room: at most four spots are wanted at once.
+            let _ = self.reaches.try_push(Reach { output, weight: 0.0, wanted: weight, gain: 0.0 });
+        }
+        unfelt
+    }
+
+    /// The channels that it is felt on.
+    pub(super) fn channels(&self) -> impl Iterator<Item = usize> + '_ {
+        self.reaches.iter().map(|reach| reach.output.channel)
+    }
+
+    /// How loud it is now, for the choice of the one that makes room.
+    pub(super) fn loudness(&self) -> f32 {
+        self.now.level_n * self.fade
+    }
+
+    /// Moves on by `seconds`; the answer is how it is driven now.
+    pub(super) fn step(&mut self, seconds: f32) -> Drive {
+        let pull = seconds / (FOLLOW_S + seconds);
+        if let Some(tone) = &self.tone {
+            self.clock_s += seconds;
+            let (share, hz) = tone.at(self.clock_s);
+            let level = within(tone.level.0, 0.0, STRONGEST_N);
+            self.now = Wish { level_n: felt(level * within(share, 0.0, 4.0)), speed: 0.0, force: 0.0, hz };
+        } else {
+            let (now, wanted) = (&mut self.now, &self.wanted);
+            now.level_n = felt(now.level_n + (wanted.level_n - now.level_n) * pull);
+            now.speed = felt(now.speed + (wanted.speed - now.speed) * pull);
+            now.force = felt(now.force + (wanted.force - now.force) * pull);
+            now.hz += (wanted.hz - now.hz) * pull;
+        }
+        match self.state {
+            State::Fading => self.fade = (self.fade - seconds / FADE_S).max(0.0),
+            _ => self.fade = (self.fade + seconds / FADE_S).min(1.0),
+        }
+        for reach in &mut self.reaches {
+            reach.weight += (reach.wanted - reach.weight) * pull;
+        }
+        Drive { speed: self.now.speed, force: self.now.force, hz: self.now.hz }
+    }
+
+    /// Whether it can be given back.
+    pub(super) fn is_over(&self) -> bool {
+        match self.state {
+            State::Fading => self.fade == 0.0,
+            State::Sounding => !self.tone.as_ref().is_some_and(|tone| self.clock_s < tone.whole_s()),
+            State::Free | State::Rubbing => false,
+        }
+    }
+
+    /// Adds its lane of `low` to its channels, its gain going evenly from the last part's to this one's.
+    pub(super) fn add(&mut self, number: usize, low: &[Row], mix: &mut Mix, ducks: &Ducks, span: &Span<'_>) {
+        let mut own = [0.0; STEP];
+        self.interpolate(low, &mut own[..span.samples], span);
+        let level = self.now.level_n * self.fade;
+        for reach in &mut self.reaches {
+            let ducked = ducks.gain(reach.output.channel, number, self.manner.priority);
+            let gain = level * reach.weight * reach.output.per_newton * ducked;
+            if gain == 0.0 && reach.gain == 0.0 {
+                continue;
+            }
+            let slope = (gain - reach.gain) / span.samples as f32;
+            let row = &mut mix.row(reach.output.channel)[span.start..span.start + span.samples];
+            for ((sample, own), n) in row.iter_mut().zip(&own).zip(1_u16..) {
+                *sample += own * (reach.gain + slope * f32::from(n));
+            }
+            reach.gain = gain;
+        }
+        self.reaches.retain(|reach| reach.wanted > 0.0 || reach.weight > FAINT);
+    }
+
+    fn interpolate(&mut self, low: &[Row], own: &mut [f32], span: &Span<'_>) {
+        let divisor = span.ramp.len();
+        let mut next = low.iter();
+        let (mut phase, mut rest) = (span.phase, own);
+        while !rest.is_empty() {
+            let run = rest.len().min(divisor - phase);
+            let (part, later) = rest.split_at_mut(run);
+            let [from, to] = self.between;
+            for (sample, share) in part.iter_mut().zip(&span.ramp[phase..]) {
+                *sample = from + (to - from) * share;
+            }
+            phase += run;
+            if phase == divisor {
+                phase = 0;
+                self.between = [to, next.next().map_or(0.0, |row| row[self.lane])];
+            }
+            rest = later;
+        }
+    }
+}
+
+/// What a rub wants of its voice.
+fn wish(rub: &Rub) -> Wish {
+    let level = |level: f32| within(level, 0.0, STRONGEST_N);
+    let speed_m_s = within(rub.speed_m_s, 0.0, 20.0);
+    match &rub.effect {
+        Lasting::Hum(hum) => Wish { level_n: felt(level(hum.level.0)), speed: 0.0, force: 0.0, hz: hum.hz },
+        Lasting::Friction(friction) => {
+            let Friction { low_hz, high_hz, .. } = friction;
+            let speed = share(speed_m_s, friction.full_speed_m_s);
+            let force = share(rub.force.0, friction.full_force.0);
+            let level_n = felt(level(friction.level.0) * speed * force);
+            Wish { level_n, speed: speed_m_s, force, hz: low_hz + (high_hz - low_hz) * speed }
+        }
+        Lasting::StickSlip(stick) => {
+            let material = &stick.material;
+            let force = share(rub.force.0, material.full_force.0);
+            let level_n = felt(level(material.level.0 * material.trim) * force);
+            Wish { level_n, speed: speed_m_s, force, hz: 0.0 }
+        }
+        Lasting::Texture(_) | Lasting::Grains(_) => {
+            let Some(material) = rub.effect.material() else { return Wish::default() };
+            let force = share(rub.force.0, material.full_force.0);
+            // Impacts grow with the root of the speed and come with the speed: their power is as that of a level
+            // that is linear in it.
+            let hit = share(speed_m_s, material.full_speed_m_s).sqrt();
+            let level_n = felt(level(material.level.0 * material.trim) * force * hit);
+            Wish { level_n, speed: speed_m_s, force, hz: 0.0 }
+        }
+    }
+}
+
+/// `level`, or zero if it is below any that is felt: one that fades for ever would end in denormal numbers.
+fn felt(level: f32) -> f32 {
+    if level > 1e-6 { level } else { 0.0 }
+}
+
+/// `value` as a share of `full`, 0 to 1; 0 if there is no sense in it.
+fn share(value: f32, full: f32) -> f32 {
+    let share = value / full;
+    if share > 0.0 { share.min(1.0) } else { 0.0 }
+}
