@@ -86,14 +86,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         anstream::println!("  {:<52} {error:>7.1} dB", format!("{} kHz", rate / 1000));
     }
     anstream::println!(
-        "With half a core for either, this machine feels {felt_tiles} tiles in use at once and senses \
-         {sensed_tiles}: a floor of {side} x {side} tiles."
+        "With half a core for either, this machine feels {felt_tiles} tiles in use at once and senses at least \
+         {sensed_tiles} with two people on each 6 x 6: a floor of {side} x {side} tiles."
     );
     Ok(())
 }
 
 fn print(measured: &Measured) {
-    anstream::println!("  {:<52} {:>7.0} x real time", measured.name, measured.times_real_time);
+    let digits = if measured.times_real_time < 10.0 { 2 } else { 0 };
+    anstream::println!("  {:<52} {:>7.digits$} x real time", measured.name, measured.times_real_time);
 }
 
 fn rendering(length: Duration) -> Vec<Measured> {
