@@ -154,8 +154,9 @@ impl Page {
             let share = f32::from(layer) / f32::from(LAYERS);
             let Ink { colour, opacity } = near.mix(far, share - 0.5 / f32::from(LAYERS));
             let beyond = near.mix(far, share + 0.5 / f32::from(LAYERS)).opacity;
-            // The last layer carries what is left at the far side.
-            let own = if layer == LAYERS { opacity } else { opacity - beyond };
+            // Where layers lie on each other, what they let through multiplies.
+            let beyond = if layer == LAYERS { 0.0 } else { beyond };
+            let own = 1.0 - (1.0 - opacity) / (1.0 - beyond).max(1e-3);
             if own <= 0.0 {
                 continue;
             }
