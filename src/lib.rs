@@ -11,11 +11,13 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
+pub mod capacity;
 pub mod engine;
 pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;
+pub mod ground;
 pub mod layout;
 #[cfg(feature = "program")]
 pub mod picture;
@@ -33,3 +35,8 @@ pub mod widget;
 pub mod wire;
 
 pub use glam;
+
+/// Whatever runs in an audio callback during a test is caught allocating.
+#[cfg(test)]
+#[global_allocator]
+static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;

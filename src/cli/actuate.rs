@@ -1,9 +1,10 @@
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use underfoot::feel::{CueSender, Renderer, RendererConfig, ScopeReader, renderer};
 use underfoot::floor::Floor;
 use underfoot::sink::{
-    ActuatorSink, LatencyMeter, LatencyProbe, SilentSink, SinkError, WavOptions, WavSink, WhenFull,
+    ActuatorSink, LatencyProbe, LatencyStages, SilentSink, SinkError, WavOptions, WavSink, WhenFull,
 };
 #[cfg(feature = "audio")]
 use underfoot::sink::{DeviceOptions, Mix, OutputDevice};
@@ -24,10 +25,33 @@ pub(crate) struct ActuateArgs {
     #[cfg(feature = "audio")]
     #[arg(long, value_enum, default_value_t)]
     sound: Sound,
-    /// The sound card, by its name or a part of it; without it, the system's choice.
+    /// The sound card, by its name or a part of it, its identifier (`underfoot rack devices` lists them), or a
+    /// host such as `jack`; `paced` is a clock that stands in for a card. Without it, the system's choice.
     #[cfg(feature = "audio")]
     #[arg(long, value_name = "NAME")]
     device: Option<String>,
+    /// Frames that the sound card takes at once: the shorter, the sooner a click is felt. Without it, 128 (64 with
+    /// `--device paced`), and more if samples come late again and again.
+    #[cfg(feature = "audio")]
+    #[arg(long, value_name = "FRAMES", value_parser = clap::value_parser!(u32).range(1..=8192))]
+    block: Option<u32>,
+    /// Convert samples where the sound card has not the rate of `--rate`; without it, such a card is refused.
+    #[cfg(feature = "audio")]
+    #[arg(long, requires = "rate")]
+    resample: bool,
+    /// Play every click exactly so many milliseconds after the foot that caused it; without it, as soon as possible.
+    /// A delay that is too short for the sound card makes clicks late, which is counted.
+    #[arg(long, value_name = "MS", value_parser = delay)]
+    delay_ms: Option<Duration>,
+}
+
+fn delay(text: &str) -> Result<Duration, String> {
+    let ms: f64 = text.parse().map_err(|error| format!("{error}"))?;
+    if (0.0..=1000.0).contains(&ms) {
+        Ok(Duration::from_secs_f64(ms * 1e-3))
+    } else {
+        Err("0 to 1000".into())
+    }
 }
 
 #[cfg(feature = "audio")]
@@ -53,7 +77,7 @@ pub(crate) struct Actuation {
     /// What the window's scopes show.
     pub(crate) scope: Option<ScopeReader>,
     /// How long packets take to be felt.
-    pub(crate) latency: LatencyMeter,
+    pub(crate) latency: LatencyStages,
     /// Where the samples go, or why nobody hears them.
     pub(crate) notice: String,
 }
@@ -77,10 +101,10 @@ impl ActuateArgs {
         &self,
         floor: &Floor,
         start: Instant,
-        clock: HostClock,
+        clock: &HostClock,
     ) -> Result<Actuation, Failure> {
-        let latency = LatencyMeter::new();
-        let probe = LatencyProbe::new(latency.clone(), clock);
+        let latency = LatencyStages::default();
+        let probe = LatencyProbe::of_stages(latency.clone(), clock.clone());
         let playing = match &self.wav {
             Some(path) => {
                 let options = WavOptions {
@@ -94,7 +118,7 @@ impl ActuateArgs {
                     Ok(Box::new(WavSink::create(path, renderer, options)?))
                 })?
             }
-            None => match self.on_sound_card(floor, &probe) {
+            None => match self.on_sound_card(floor, &probe, clock) {
                 Ok(playing) => playing,
                 Err(NoSound::Refused(error)) => return Err(error.into()),
                 Err(NoSound::Silent(reason)) => {
@@ -108,7 +132,21 @@ impl ActuateArgs {
         Ok(Actuation { feel, sink, scope, latency, notice })
     }
 
-    fn file_rate(&self) -> u32 {
+    /// Where to record, if that was asked for.
+    pub(crate) fn wav(&self) -> Option<&Path> {
+        self.wav.as_deref()
+    }
+
+    /// The same, but each tile on a channel of its own, whatever the sound card makes of it.
+    pub(crate) fn for_wiring(&self) -> Self {
+        #[cfg(feature = "audio")]
+        if self.sound == Sound::Auto {
+            return Self { sound: Sound::Tiles, ..self.clone() };
+        }
+        self.clone()
+    }
+
+    pub(crate) fn file_rate(&self) -> u32 {
         self.rate.unwrap_or(48_000)
     }
 
@@ -119,18 +157,25 @@ impl ActuateArgs {
         notice: String,
         sink: impl FnOnce(Renderer) -> Result<Box<dyn ActuatorSink>, SinkError>,
     ) -> Result<Playing, SinkError> {
-        let (feel, mut renderer) = renderer(RendererConfig::of(floor, rate));
+        let config =
+            RendererConfig { delay: self.delay_ms.unwrap_or_default(), ..RendererConfig::of(floor, rate) };
+        let (feel, mut renderer) = renderer(config);
         let scope = renderer.scope();
         Ok(Playing { feel, sink: sink(renderer)?, scope, notice })
     }
 
     #[cfg(not(feature = "audio"))]
-    fn on_sound_card(&self, _: &Floor, _: &LatencyProbe) -> Result<Playing, NoSound> {
+    fn on_sound_card(&self, _: &Floor, _: &LatencyProbe, _: &HostClock) -> Result<Playing, NoSound> {
         Err(NoSound::Silent("This program was built without sound.".into()))
     }
 
     #[cfg(feature = "audio")]
-    fn on_sound_card(&self, floor: &Floor, probe: &LatencyProbe) -> Result<Playing, NoSound> {
+    fn on_sound_card(
+        &self,
+        floor: &Floor,
+        probe: &LatencyProbe,
+        clock: &HostClock,
+    ) -> Result<Playing, NoSound> {
         let mixes: &[Mix] = match self.sound {
             Sound::Auto => &[Mix::PerActuator, Mix::Stereo],
             Sound::Tiles => &[Mix::PerActuator],
@@ -142,9 +187,11 @@ impl ActuateArgs {
             let options = DeviceOptions {
                 name: self.device.clone(),
                 sample_rate: self.rate,
+                resample: self.resample,
+                block: self.block,
                 mix,
+                steady: self.delay_ms.map(|_| clock.clone()),
                 latency: Some(probe.clone()),
-                ..DeviceOptions::default()
             };
             let played = OutputDevice::find(floor, options).and_then(|device| {
                 let heard = if mix == Mix::Stereo { "all tiles in stereo" } else { "a channel per tile" };

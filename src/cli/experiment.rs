@@ -7,8 +7,9 @@ use clap::Subcommand;
 use serde::Serialize;
 use underfoot::experiment::{
     ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
-    SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    PondLaws, PondWalk, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
 };
+use underfoot::ground::IceSpec;
 use underfoot::picture;
 
 use super::failure::Failure;
@@ -39,6 +40,8 @@ enum What {
     /// How often controls act that nobody meant, and miss what somebody meant: people who cross and use
     /// every shipped layout, and rows of buttons of many sizes and thresholds.
     Intent(IntentArgs),
+    /// Whether the frozen pond follows its model, and how many cracks each manner of walking opens.
+    Pond(PondArgs),
 }
 
 #[derive(clap::Args, Debug)]
@@ -105,6 +108,28 @@ struct IntentArgs {
     json: bool,
 }
 
+#[derive(clap::Args, Debug)]
+struct PondArgs {
+    /// How many crack events.
+    #[arg(long, value_name = "N", default_value_t = 100_000, value_parser = clap::value_parser!(u64).range(1000..=10_000_000))]
+    events: u64,
+    /// How many steps of each manner of walking.
+    #[arg(long, value_name = "N", default_value_t = 40, value_parser = clap::value_parser!(u64).range(1..=10_000))]
+    steps: u64,
+    /// What chance begins with.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u32,
+    /// Folder for the pictures of the pond (PNG) and the table of walking (CSV); made if it is missing.
+    #[arg(long, value_name = "DIR", default_value = ".")]
+    out: PathBuf,
+    /// Width of the pictures, in pixels.
+    #[arg(long, value_name = "PX", default_value_t = 1400)]
+    width: u32,
+    /// One JSON object instead of tables; no files.
+    #[arg(long)]
+    json: bool,
+}
+
 /// Makes the experiment.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     match &args.what {
@@ -116,7 +141,36 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Place(args) => place(args),
         What::Feet(args) => feet(args),
         What::Intent(args) => intent(args),
+        What::Pond(args) => pond(args),
     }
+}
+
+fn pond(args: &PondArgs) -> Result<(), Failure> {
+    let laws = PondLaws::measure(IceSpec::POND, args.seed, args.events);
+    let walk = PondWalk::measure(args.seed.into(), args.steps)?;
+    if args.json {
+        #[derive(Serialize)]
+        struct Tables {
+            laws: PondLaws,
+            walk: PondWalk,
+        }
+        return print_json(&Tables { laws, walk });
+    }
+    anstream::println!("{laws}\n{walk}");
+    let failed = |path: &Path| {
+        let path = path.to_path_buf();
+        move |error| Failure::File(path, error)
+    };
+    std::fs::create_dir_all(&args.out).map_err(failed(&args.out))?;
+    for (name, scene) in PondWalk::pictures(args.seed.into())? {
+        let path = args.out.join(name).with_extension("png");
+        picture::write(&scene, &path, args.width)?;
+        anstream::println!("{}", path.display());
+    }
+    let path = args.out.join("pond_walk.csv");
+    std::fs::write(&path, walk.csv()).map_err(failed(&path))?;
+    anstream::println!("{}", path.display());
+    Ok(())
 }
 
 fn intent(args: &IntentArgs) -> Result<(), Failure> {

@@ -10,7 +10,7 @@ use super::failure::Failure;
 /// Which layout it is about.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct LayoutArgs {
-    /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls).
+    /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond, winter_walk).
     #[arg(value_name = "LAYOUT")]
     pub(crate) layout: Option<PathBuf>,
     /// Folder of control kinds to add; without it, a `widgets` folder beside the layout or beside its folder.

@@ -5,17 +5,20 @@
 mod actuate;
 mod addresses;
 mod calibrate;
+mod capacity;
 mod check;
 mod experiment;
 mod failure;
 mod feel;
 mod floor_args;
+mod latency;
 mod layout_args;
 mod measure;
 mod outputs;
 mod play;
 #[cfg(feature = "preview")]
 mod preview;
+mod rack;
 mod render;
 mod run;
 mod sense;
@@ -64,12 +67,16 @@ enum Command {
     Feel(feel::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
+    /// The actuators and what plays them: a walk from tile to tile, the devices, the channel map.
+    Rack(rack::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
     /// Calibrate a floor: sensor curves, tare, position maps.
     Calibrate(calibrate::Args),
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
+    /// How large a floor this machine carries: rendering and sensing, in times real time.
+    Capacity(capacity::Args),
     /// Make the paper's figures and the accuracy tables on a simulated floor.
     Experiment(experiment::Args),
     /// Print completions for a shell.
@@ -104,9 +111,11 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Feel(args)) => feel::run(&args),
         Some(Command::Render(args)) => render::run(&args),
+        Some(Command::Rack(args)) => rack::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
+        Some(Command::Capacity(args)) => capacity::run(&args),
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
@@ -132,8 +141,9 @@ fn by_default() -> Result<(), Failure> {
 /// Warnings and errors by default; `RUST_LOG` overrules.
 fn start_logging(verbose: u8) {
     let level = match verbose {
-        0 => "warn",
-        1 => "info,underfoot=debug",
+        // JACK's library complains of servers that are not there, which is for us to judge.
+        0 => "warn,jack=off",
+        1 => "info,underfoot=debug,jack=off",
         _ => "trace",
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));

@@ -46,7 +46,7 @@ impl SimArgs {
     }
 }
 
-/// The scenario in `file`, or the built-in session, on the controls of `layout`.
+/// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll.
 pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) -> Result<Script, Failure> {
     let scenario = match file {
         Some(path) => {
@@ -54,6 +54,7 @@ pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) 
                 std::fs::read_to_string(path).map_err(|error| Failure::File(PathBuf::from(path), error))?;
             Scenario::parse(&path.display().to_string(), &text)?
         }
+        None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
         None => Scenario::parse("the built-in session", Scenario::SESSION)?,
     };
     Ok(scenario.resolve(layout, geometry)?)

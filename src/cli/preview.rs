@@ -214,7 +214,7 @@ impl Served {
     fn serve(self, stop: &AtomicBool, scopes: &Sender<Option<ScopeReader>>) -> Result<(), Failure> {
         // Sound is made here because not every system lets a stream change threads.
         let Actuation { feel, sink, scope, notice, .. } =
-            self.actuate.start(&self.floor, self.source.now(), self.clock)?;
+            self.actuate.start(&self.floor, self.source.now(), &self.clock)?;
         // A window that is closed already needs neither.
         let _ = scopes.send(scope);
         let _ = self.notices.send(notice);

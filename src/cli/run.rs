@@ -7,13 +7,14 @@ use std::time::Duration;
 use tracing::info;
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
-use underfoot::sink::LatencyMeter;
+use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::wire::LinkCounters;
 
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
+use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
 use super::outputs::OutputArgs;
 use super::stop::stop_flag;
@@ -33,6 +34,8 @@ pub(crate) struct Args {
     outputs: OutputArgs,
     #[command(flatten)]
     actuate: ActuateArgs,
+    #[command(flatten)]
+    latency: LatencyArgs,
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
@@ -49,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = UdpSource::bind(args.listen, &floor)?.with_prefix(prefix.clone());
     let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
-        args.actuate.start(&floor, source.now(), source.clock())?;
+        args.actuate.start(&floor, source.now(), &source.clock())?;
     let stop = stop_flag()?;
     let (commands, inbox) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
@@ -74,15 +77,19 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
     let mut server = Server::new(&floor, layout, method, Box::new(source))
         .with_feel(feel, sink)
+        .with_latency(latency.clone())
         .with_events(Box::new(args.outputs.open(&floor.geometry)?))
         .with_prefix(prefix)
         .with_commands(inbox);
+    // Last, since threads inherit it. Where it is denied, the sound card's thread says what to do.
+    claim_priority(Rank::Sensing);
     let served = server.run(&stop);
     let counters = server.counters();
     let dropped = server.unsent_events();
     // Ends the recording and sends what is still under way.
     drop(server);
-    report(&counters, dropped, &latency);
+    report(&counters, dropped);
+    args.latency.tell(&latency)?;
     Ok(served?)
 }
 
@@ -94,8 +101,8 @@ fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
     });
 }
 
-/// What came in, what was not used, and how quickly the floor answered.
-fn report(counters: &LinkCounters, dropped: u64, latency: &LatencyMeter) {
+/// What came in and what was not used.
+fn report(counters: &LinkCounters, dropped: u64) {
     anstream::eprintln!(
         "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; requests not met {}; events not sent {dropped}.",
         counters.packets,
@@ -107,8 +114,4 @@ fn report(counters: &LinkCounters, dropped: u64, latency: &LatencyMeter) {
         counters.bad_readings,
         counters.denied,
     );
-    match latency.summary() {
-        Some(summary) => anstream::eprintln!("From packet to first sample handed on: {summary}."),
-        None => anstream::eprintln!("No cue was played."),
-    }
 }

@@ -150,6 +150,11 @@ impl Camera {
         }
         self.seen = Some(at);
         server.snapshot(&mut self.now);
+        // Where there is nothing to press, the ground tells what was done to it: the last step has most of it.
+        if self.now.widgets.is_empty() && !self.now.contacts.is_empty() {
+            self.best = Some((0, self.now.clone()));
+            return;
+        }
         let pressed = self.now.widgets.iter().filter(|widget| widget.pressed);
         // A slider on its way tells more than a button that is held.
         let worth =

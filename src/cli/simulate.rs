@@ -7,6 +7,7 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::schema;
 use underfoot::sim::{self, Sensing, SimConfig, SimFloor};
+use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
@@ -119,6 +120,8 @@ impl Args {
         let socket = UdpSocket::bind(here).map_err(no_socket)?;
         let stop = stop_flag()?;
         let until = self.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)));
+        // Boards are punctual.
+        claim_priority(Rank::Sensing);
         let mut sent = 0;
         loop {
             let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;

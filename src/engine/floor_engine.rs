@@ -1,5 +1,6 @@
 use crate::feel::{Cue, Rubs};
 use crate::floor::{Geometry, PositionMap};
+use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
@@ -31,6 +32,7 @@ pub struct Engine {
     labels: Labels,
     sensing: Sensing,
     interaction: Interaction,
+    grounds: Grounds,
     responses: Responses,
     last_frame: ForceFrame,
     /// What calls between two steps led to; reported by the next step.
@@ -51,6 +53,8 @@ pub struct Step<'a> {
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
     pub rubs: &'a Rubs,
+    /// What gave way under feet; their cues are among `cues`.
+    pub grounds: &'a [GroundEvent],
     /// The feet on the floor.
     pub contacts: &'a [Contact],
 }
@@ -66,6 +70,7 @@ impl Engine {
         responses.begin(&layout, interaction.controls());
         Self {
             interaction,
+            grounds: Grounds::new(&layout.grounds, &geometry),
             sensing: Sensing::new(geometry, method),
             last_frame: ForceFrame::empty(&geometry),
             geometry,
@@ -116,6 +121,8 @@ impl Engine {
         self.responses.answer(&self.events, now, &mut self.cues);
         let sliding = interaction.sliding();
         self.responses.last(sliding, &interaction.holding(), now, &mut self.cues, &mut self.rubs);
+        let broken = self.grounds.step(frame, &self.last_frame, contacts, self.interaction.page());
+        self.responses.give_way(broken, now, &mut self.cues);
         self.responses.remember(contacts, |id| interaction.holds(id));
         keep(&mut self.last_frame, frame);
         self.follow_clicks();
@@ -127,6 +134,7 @@ impl Engine {
             page: self.page_told.as_ref(),
             cues: &self.cues,
             rubs: &self.rubs,
+            grounds: self.grounds.events(),
             contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }
     }
@@ -277,6 +285,7 @@ impl Engine {
             indicator: control.indicator(),
             pending: control.pending(),
         }));
+        self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;
         snapshot.tiles.extend(self.sensing.tiles().zip(&frame.forces).zip(&frame.quality).map(
@@ -350,6 +359,9 @@ impl Engine {
             }
         }
         interaction.inherit(&mut self.interaction);
+        let mut grounds = Grounds::new(&layout.grounds, &self.geometry);
+        grounds.inherit(&mut self.grounds);
+        self.grounds = grounds;
         self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;

@@ -6,6 +6,7 @@ use std::sync::Arc;
 
 use super::interact::Sliding;
 use crate::feel::{Click, Cue, Effect, EffectKind, Manner, Player, Rub, Rubs, Spot, Spots, key};
+use crate::ground::GroundEvent;
 use crate::layout::{Layout, Widget};
 use crate::sense::{Contact, ContactId, ForceFrame};
 use crate::units::Instant;
@@ -82,7 +83,8 @@ impl Responses {
                     None => continue,
                 },
             };
-            let cue = Cue { at: event.at, received: now.received, spots, ..Cue::default() };
+            let to_air = spec.feel.sound;
+            let cue = Cue { at: event.at, received: now.received, spots, to_air, ..Cue::default() };
             if let (EventKind::Changed(Value::Number(_) | Value::Pair(_)), Some(way)) = (event.kind, way) {
                 self.ends.reach(widget, spec, way, id, now);
                 if let Some((click, manner)) = self.stop((widget, spec), way, event, now) {
@@ -164,6 +166,20 @@ impl Responses {
         self.player.let_go(|owner| holding.clone().any(|holding| holding.contact.0 == owner));
         let place = |owner: u32| now.contact(ContactId(owner)).map(spots);
         self.player.due(now.at, place, cues, rubs);
+    }
+
+    /// Appends the cues of what gave way underfoot: felt on the tiles under the contact that did it, by its
+    /// weights, or on the tile alone where the contact is not known any more.
+    pub(super) fn give_way(&self, broken: &[GroundEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
+        for event in broken {
+            let here = event.contact.and_then(|id| now.contact(id)).map(spots);
+            let spots = here.or_else(|| self.last_spots.of(event.contact?)).unwrap_or_else(|| {
+                let tile = u16::try_from(event.tile).unwrap_or(u16::MAX);
+                Spots::from_iter([Spot { tile, weight: 1.0 }])
+            });
+            let (at, received, click) = (event.at, now.received, event.click.clone());
+            cues.push(Cue { at, received, spots, click, ..Cue::default() });
+        }
     }
 
     /// Remembers where the contacts of this frame are felt; those that were gone in the last one too are forgotten

@@ -2,7 +2,8 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use crate::feel::FeelCounters;
+use crate::feel::{DeviceStatus, FeelCounters};
+use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Value};
@@ -31,12 +32,16 @@ pub struct Snapshot {
     pub labels: Vec<(usize, Arc<str>)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
+    /// One entry per ground, in the layout's order.
+    pub grounds: Vec<GroundState>,
     /// Whether sensor packets arrive.
     pub link: LinkState,
     /// What came in and what was refused.
     pub counters: LinkCounters,
     /// How the sensors are doing.
     pub health: SensorHealth,
+    /// How the device that moves the actuators is doing; `None` without one.
+    pub device: Option<DeviceStatus>,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
     /// Events that other programs could not be told.

@@ -71,6 +71,7 @@ fn page() -> Layout {
         }],
         stances: Vec::new(),
         pages: Vec::new(),
+        grounds: Vec::new(),
         widgets: vec![
             widget("home", Vec2::new(0.35, 0.95), size, home),
             widget("light", Vec2::new(1.25, 0.95), size, light),

@@ -160,7 +160,7 @@ impl IntentTable {
         let layout = shipped(number, &geometry)?;
         let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
         let mut stage = Stage::new(seed)?;
-        let mut body = Somebody::of(seed, number / builtin_layouts().count(), geometry.bounds());
+        let mut body = Somebody::of(seed, number / layouts_with_controls().count(), geometry.bounds());
         let area =
             layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
 
@@ -481,9 +481,16 @@ impl Stage {
     }
 }
 
-/// One of the shipped layouts, round and round.
+/// The shipped layouts that somebody can mean to press.
+fn layouts_with_controls() -> impl Iterator<Item = &'static str> {
+    let has_controls = |name: &&str| builtin_layout(name).is_some_and(|text| text.contains("widgets:"));
+    builtin_layouts().filter(has_controls)
+}
+
+/// One of them, round and round.
 fn shipped(number: usize, geometry: &Geometry) -> Result<Layout, ExperimentError> {
-    let name = builtin_layouts().nth(number % builtin_layouts().count()).unwrap_or_default();
+    let count = layouts_with_controls().count().max(1);
+    let name = layouts_with_controls().nth(number % count).unwrap_or_default();
     let text = builtin_layout(name).unwrap_or_default();
     let loaded = parse_layout(text, name, &Kinds::builtin(), geometry);
     loaded.map(|loaded| loaded.layout).map_err(|problems| ExperimentError::Layout(problems.to_string()))

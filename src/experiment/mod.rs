@@ -16,6 +16,8 @@
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //! | [`EffectSheet`] | what an effect feels like: waveform, spectrum, figures | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
+//! | [`PondLaws`] | whether the frozen pond's onsets, energies, fronts and turns follow its model | paper, section 4.1 |
+//! | [`PondWalk`] | how many cracks each manner of walking opens | |
 //!
 //! ```
 //! use underfoot::experiment::PeopleTable;
@@ -31,6 +33,7 @@ mod effect;
 mod errors;
 mod figure;
 mod follow;
+mod goodness;
 mod intent;
 mod intent_act;
 mod intent_sweep;
@@ -38,6 +41,8 @@ mod mishap;
 mod orientation;
 mod people;
 mod place;
+mod pond;
+mod pond_walk;
 mod rig;
 mod scan;
 mod seam_object;
@@ -50,12 +55,15 @@ pub use effect::EffectSheet;
 pub use errors::{Errors, Summary};
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
+pub use goodness::Goodness;
 pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
 pub use mishap::Mishap;
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use place::{PlaceLine, PlaceTable};
+pub use pond::{PondLaw, PondLaws};
+pub use pond_walk::{Manner, MannerLine, PondWalk};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use seam_object::{SeamObject, SeamObjectRow};

@@ -1,7 +1,7 @@
 use arrayvec::ArrayVec;
 
-use super::voice::StruckBank;
-use super::{Click, MODE_HZ, Mode};
+use super::push::Pushes;
+use super::{Click, MODE_HZ, ModalBank, Mode};
 
 /// What became of a click on one channel.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -29,7 +29,7 @@ const FAINTEST: f32 = 1e-9;
 ///
 /// # Real-time
 /// No allocation.
-pub(super) fn strike(bank: &mut StruckBank, click: &Click, gain: f32) -> Struck {
+pub(super) fn strike((bank, pushes): (&mut ModalBank, &mut Pushes), click: &Click, gain: f32) -> Struck {
     let mut struck = Struck::default();
     let mut modes: ArrayVec<Mode, { super::MAX_MODES }> = ArrayVec::new();
     for mode in &click.modes {
@@ -46,7 +46,7 @@ pub(super) fn strike(bank: &mut StruckBank, click: &Click, gain: f32) -> Struck 
     }
     struck.modes = modes.len() as u32;
     if struck.modes > 0 {
-        struck.stolen = bank.strike(&modes, click.impulse);
+        struck.stolen = pushes.strike(bank, &modes, click.impulse);
     }
     struck
 }
@@ -66,7 +66,7 @@ mod tests {
 
     #[test]
     fn modes_outside_their_ranges_are_refused_one_by_one() {
-        let mut bank = StruckBank::new(48_000.0, 8);
+        let (mut bank, mut pushes) = (ModalBank::new(48_000.0, 8), Pushes::new(48_000.0));
         let mixed = click(&[
             (150.0, 0.02, 1.0),
             (f32::NAN, 0.02, 1.0),
@@ -75,15 +75,18 @@ mod tests {
             (150.0, 0.02, f32::INFINITY),
             (250.0, 0.02, 0.0),
         ]);
-        assert_eq!(strike(&mut bank, &mixed, 0.1), Struck { modes: 1, refused: 4, stolen: 0 });
-        assert_eq!(strike(&mut bank, &mixed, f32::NAN), Struck { modes: 0, refused: 6, stolen: 0 });
+        assert_eq!(strike((&mut bank, &mut pushes), &mixed, 0.1), Struck { modes: 1, refused: 4, stolen: 0 });
+        assert_eq!(
+            strike((&mut bank, &mut pushes), &mixed, f32::NAN),
+            Struck { modes: 0, refused: 6, stolen: 0 }
+        );
         assert!(!bank.is_silent());
     }
 
     #[test]
     fn an_absurd_level_is_struck_at_the_loudest() {
-        let mut bank = StruckBank::new(48_000.0, 8);
-        strike(&mut bank, &click(&[(250.0, 0.02, 1.0)]), 1e30);
+        let (mut bank, mut pushes) = (ModalBank::new(48_000.0, 8), Pushes::new(48_000.0));
+        strike((&mut bank, &mut pushes), &click(&[(250.0, 0.02, 1.0)]), 1e30);
         let mut out = [0.0; 480];
         bank.render(&mut out);
         assert!(out.iter().all(|x| x.abs() <= LOUDEST));

@@ -104,6 +104,8 @@ pub struct Cue {
     pub tone: Option<Tone>,
     /// How it gets along with what else is felt there.
     pub manner: Manner,
+    /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
+    pub to_air: f32,
 }
 
 /// Something felt for as long as a foot slides, presses or pushes, as it is now.

@@ -1,3 +1,5 @@
+use glam::{Mat4, Vec4};
+
 use crate::floor::Actuator;
 
 /// Channels that the output stage works on side by side.
@@ -27,6 +29,11 @@ impl Wiring {
                 .then(|| Output { channel, per_newton: full_scale.recip() })
         };
         Self { outputs: actuators.into_iter().map(|actuator| actuator.and_then(output)).collect() }
+    }
+
+    /// The channel of each tile.
+    pub(super) fn channels(&self) -> impl Iterator<Item = Option<usize>> + '_ {
+        self.outputs.iter().map(|output| output.map(|output| output.channel))
     }
 
     /// What moves tile number `tile`; `None` if nothing does.
@@ -76,23 +83,60 @@ impl Mix {
         self.is_open[group * LANES..(group + 1) * LANES].contains(&true)
     }
 
-    /// Makes sure that every row of a group holds this block's samples.
-    pub(super) fn open(&mut self, group: usize) {
-        for channel in group * LANES..(group + 1) * LANES {
-            self.row(channel);
+    /// Adds samples `from` up to `from + samples` of a group's rows to `columns`, of which at least as many are given.
+    ///
+    /// Rows that nobody wrote to add nothing. Columns beyond `samples` are of no meaning afterwards.
+    ///
+    /// # Panics
+    /// If `from` is no multiple of [`LANES`].
+    #[inline(always)]
+    pub(super) fn add_to(&self, group: usize, from: usize, samples: usize, columns: &mut [[f32; LANES]]) {
+        debug_assert!(from.is_multiple_of(LANES));
+        for (square, columns) in
+            columns[..samples.next_multiple_of(LANES)].as_chunks_mut::<LANES>().0.iter_mut().enumerate()
+        {
+            let mut rows = [&NOTHING; LANES];
+            for (lane, row) in rows.iter_mut().enumerate() {
+                let number = group * LANES + lane;
+                let start = number * self.stride + from + square * LANES;
+                if self.is_open[number]
+                    && let Some(samples) = self.samples[start..].first_chunk()
+                {
+                    *row = samples;
+                }
+            }
+            let across: [[f32; LANES]; LANES] = transposed(&rows);
+            // As one flat run of numbers: nested loops over both would be made slow gathers of.
+            for (sample, more) in columns.as_flattened_mut().iter_mut().zip(across.as_flattened()) {
+                *sample += more;
+            }
         }
     }
+}
 
-    /// The [`LANES`] samples from number `LANES * span` on of each row of an open group.
-    ///
-    /// What lies beyond the block is of no meaning.
-    #[inline(always)]
-    pub(super) fn square(&self, group: usize, span: usize) -> [&[f32; LANES]; LANES] {
-        std::array::from_fn(|lane| {
-            let start = (group * LANES + lane) * self.stride + span * LANES;
-            self.samples[start..].first_chunk().unwrap_or(&[0.0; LANES])
-        })
+const NOTHING: [f32; LANES] = [0.0; LANES];
+
+/// Makes columns of rows, in squares of four by four.
+// Not inlined: wider instructions would make slow gathers of these shuffles.
+#[inline(never)]
+pub(super) fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES] {
+    let mut columns = [[0.0; LANES]; LANES];
+    for lane in (0..LANES).step_by(4) {
+        for n in (0..LANES).step_by(4) {
+            let square = Mat4::from_cols(
+                Vec4::from_slice(&rows[lane][n..]),
+                Vec4::from_slice(&rows[lane + 1][n..]),
+                Vec4::from_slice(&rows[lane + 2][n..]),
+                Vec4::from_slice(&rows[lane + 3][n..]),
+            )
+            .transpose();
+            square.x_axis.write_to_slice(&mut columns[n][lane..]);
+            square.y_axis.write_to_slice(&mut columns[n + 1][lane..]);
+            square.z_axis.write_to_slice(&mut columns[n + 2][lane..]);
+            square.w_axis.write_to_slice(&mut columns[n + 3][lane..]);
+        }
     }
+    columns
 }
 
 #[cfg(test)]
@@ -120,8 +164,8 @@ mod tests {
         mix.begin(4);
         assert!(!mix.is_open(0));
         mix.row(0)[3] = 0.5;
-        mix.open(0);
-        assert_eq!(mix.square(0, 0)[0][..4], [0.0, 0.0, 0.0, 0.5]);
-        assert_eq!(mix.square(0, 0)[1][..4], [0.0; 4]);
+        let mut columns = [[0.25; LANES]; LANES];
+        mix.add_to(0, 0, 4, &mut columns);
+        assert_eq!((columns[3][0], columns[3][1], columns[2][0]), (0.75, 0.25, 0.25));
     }
 }

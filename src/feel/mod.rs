@@ -3,7 +3,7 @@
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
 //!                              -> tones -+                 |
-//!           ==rubs================> voices of what lasts --+-> mix -> limiter -> samples
+//!           ==rubs================> voices of what lasts --+-> mix -> rack -> samples
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
@@ -12,13 +12,19 @@
 mod audition;
 mod click;
 mod cue;
+mod device_status;
 mod effect;
 mod heard;
 mod limiter;
+mod loudspeakers;
 mod mix;
 mod modal;
+mod newest;
 mod player;
+mod push;
+mod rack;
 mod renderer;
+mod ringing;
 mod schedule;
 mod scope;
 mod sender;
@@ -26,6 +32,7 @@ mod voice;
 
 pub use audition::{Audition, Gesture, Moment, audition};
 pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
+pub use device_status::{DeviceState, DeviceStatus, Priority};
 pub use effect::{
     Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Knob, Lasting,
     MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, Part, Push, Resonance, Sequence, StickSlip, Texture,

@@ -1,18 +1,22 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use rtrb::RingBuffer;
-use triple_buffer::{Output, TripleBuffer};
+use glam::Vec2;
+use triple_buffer::{Output as Latest, TripleBuffer};
 
 use super::click;
-use super::limiter::{Faults, Limiter, Ramp};
-use super::mix::{LANES, Mix, Wiring};
+use super::limiter::Ramp;
+use super::loudspeakers::Loudspeakers;
+use super::mix::{Mix, Output, Wiring};
+use super::newest::newest;
+use super::rack::{Faults, Rack};
+use super::ringing::Ringing;
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::{ScopeReader, ScopeWriter, scope};
 use super::sender::{CueSender, Shared, count};
-use super::voice::{Started, StruckBank, Voices};
+use super::voice::{Started, Voices};
 use super::{FeelCounters, Rubs};
-use crate::floor::{Actuator, Floor};
+use crate::floor::{Actuator, Drive, Floor, Loudspeaker, Response};
 use crate::units::Instant;
 
 /// Different modes that ring at once on one channel, before the weakest has to make room.
@@ -27,6 +31,14 @@ pub struct RendererConfig {
     pub channels: usize,
     /// What moves each tile, in tile-index order.
     pub actuators: Vec<Option<Actuator>>,
+    /// What drives the actuators.
+    pub drive: Drive,
+    /// The measured response of each tile's actuator, in tile-index order; may be shorter than `actuators`.
+    pub responses: Vec<Option<Response>>,
+    /// The loudspeakers that cues with a share [`super::Cue::to_air`] are heard from.
+    pub loudspeakers: Vec<Loudspeaker>,
+    /// The centre of each tile, in floor metres and tile-index order: what is felt on a tile is heard from there.
+    pub centres: Vec<Vec2>,
     /// Most frames rendered in one go; longer blocks are rendered in parts.
     pub max_block: usize,
     /// How long after its cause a cue is played, so that the delay is the same for all.
@@ -34,13 +46,17 @@ pub struct RendererConfig {
 }
 
 impl RendererConfig {
-    /// A renderer for every actuator of `floor`, in blocks of up to 256 frames and without delay.
+    /// A renderer for every actuator and loudspeaker of `floor`, in blocks of up to 256 frames and without delay.
     #[must_use]
     pub fn of(floor: &Floor, sample_rate: u32) -> Self {
         Self {
             sample_rate,
             channels: floor.channel_count(),
             actuators: floor.actuators.clone(),
+            drive: floor.drive,
+            responses: floor.responses.clone(),
+            loudspeakers: floor.loudspeakers.clone(),
+            centres: floor.geometry.tiles().map(|tile| floor.geometry.centre(tile)).collect(),
             max_block: 256,
             delay: Duration::ZERO,
         }
@@ -52,33 +68,40 @@ impl RendererConfig {
 /// All memory is taken here.
 #[must_use]
 pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
-    let (cues, ring) = RingBuffer::new(WAITING);
+    let (cues, ring) = newest(WAITING);
     let (input, rubs) = TripleBuffer::new(&Rubs::new()).split();
-    let shared = Arc::new(Shared::default());
-    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0 };
-
     let sample_rate = config.sample_rate.clamp(8_000, 768_000);
-    let rate = sample_rate as f32;
     let max_block = config.max_block.clamp(1, 8192);
-    let groups = config.channels.div_ceil(LANES);
+    let wiring = Wiring::new(config.actuators, config.channels);
+    let shared = Arc::new(Shared::new(wiring.channels().collect()));
+    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0, now: Instant::START };
+
+    let mut rack = Rack::new(sample_rate, config.channels);
+    for (tile, channel) in wiring.channels().enumerate() {
+        if let Some(channel) = channel {
+            let response = config.responses.get(tile).and_then(Option::as_ref);
+            rack.add_actuator(channel, &config.drive, response);
+        }
+    }
     let renderer = Renderer {
         sample_rate,
         channels: config.channels,
         max_block,
         delay: config.delay,
-        wiring: Wiring::new(config.actuators, config.channels),
+        wiring,
+        loudspeakers: Loudspeakers::new(&config.loudspeakers, config.centres, config.channels),
         shared,
         turns: 0,
+        mute_changes: 0,
         schedule: Schedule::new(ring),
         clock: SampleClock::new(sample_rate),
         rubs,
-        banks: vec![StruckBank::new(f64::from(sample_rate), MODES_PER_CHANNEL); config.channels],
-        rendered: vec![0; config.channels],
-        voices: Voices::new(rate, config.channels),
+        ringing: Ringing::new(sample_rate, config.channels, MODES_PER_CHANNEL),
+        voices: Voices::new(sample_rate as f32, config.channels),
         voiced: 0,
         mix: Mix::new(config.channels, max_block),
-        limiters: vec![Limiter::new(rate); groups],
-        ramp: Ramp::new(rate),
+        rack,
+        ramp: Ramp::new(sample_rate as f32),
         gains: vec![0.0; max_block],
         onsets: Vec::with_capacity(WAITING),
         scope: None,
@@ -93,6 +116,8 @@ pub struct Onset {
     pub frame: usize,
     /// When the packet arrived that caused it.
     pub received: Instant,
+    /// When its cue was sent, as told by [`CueSender::note_time`].
+    pub sent: Instant,
 }
 
 /// Turns cues into actuator samples.
@@ -114,20 +139,21 @@ pub struct Renderer {
     max_block: usize,
     delay: Duration,
     wiring: Wiring,
+    loudspeakers: Loudspeakers,
     shared: Arc<Shared>,
     /// How often silence was turned on and off, as far as is dealt with.
     turns: u64,
+    /// The same of single tiles' mutes.
+    mute_changes: u64,
     schedule: Schedule,
     clock: SampleClock,
-    rubs: Output<Rubs>,
-    banks: Vec<StruckBank>,
-    /// Frames of the block at hand that each bank has rendered.
-    rendered: Vec<usize>,
+    rubs: Latest<Rubs>,
+    ringing: Ringing,
     voices: Voices,
     /// Frames of the block at hand that the voices have rendered.
     voiced: usize,
     mix: Mix,
-    limiters: Vec<Limiter>,
+    rack: Rack,
     ramp: Ramp,
     gains: Vec<f32>,
     onsets: Vec<Onset>,
@@ -162,7 +188,7 @@ impl Renderer {
     /// What could not be done so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
-        self.shared.counters()
+        FeelCounters { dropped: self.schedule.dropped(), ..self.shared.counters() }
     }
 
     /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from the first.
@@ -181,6 +207,23 @@ impl Renderer {
     #[must_use]
     pub fn onsets(&self) -> &[Onset] {
         &self.onsets
+    }
+
+    /// Forgets every cue that was sent and all that sounds; what is sent from now on rises from silence.
+    ///
+    /// For a device that was away: nobody is to feel at once what happened meanwhile. Cues that are
+    /// forgotten are counted as muted.
+    pub fn restart(&mut self) {
+        count(&self.shared.muted, self.schedule.forget_all());
+        self.ringing.clear();
+        self.rack.clear();
+        self.voices.clear();
+        self.clock.forget();
+        self.onsets.clear();
+        self.ramp = Ramp::new(self.sample_rate as f32);
+        if !self.shared.turns().is_multiple_of(2) {
+            self.ramp.fade_out();
+        }
     }
 
     /// Fills `out` with the frames from `block_start` on, each cue at its own sample.
@@ -244,6 +287,13 @@ impl Renderer {
         if self.ramp.is_down() && turns.is_multiple_of(2) {
             self.ramp.fade_in();
         }
+        let mute_changes = self.shared.mute_changes();
+        if mute_changes != self.mute_changes {
+            self.mute_changes = mute_changes;
+            for (channel, muted) in self.shared.mutes().enumerate() {
+                self.rack.mute(channel, muted);
+            }
+        }
     }
 
     /// Renders up to `max_block` frames; the first is number `first` of the block.
@@ -256,14 +306,16 @@ impl Renderer {
             if !self.ramp.is_falling() {
                 self.strike_cues(first, frames);
             }
-            self.ring_on(frames);
+            let stolen = self.ringing.finish_rows(frames, &mut self.mix);
+            count(&self.shared.stolen, stolen);
             self.voices.render(&mut self.mix, self.voiced, frames);
             self.voiced = 0;
             self.ramp.fill(&mut self.gains[..frames]);
-            self.limit(out, frames);
+            let faults = self.rack.process(&mut self.ringing, &self.mix, &self.gains[..frames], out);
+            self.count(faults);
             if self.ramp.is_down() {
-                self.banks.iter_mut().for_each(StruckBank::clear);
-                self.limiters.iter_mut().for_each(Limiter::clear);
+                self.ringing.clear();
+                self.rack.clear();
                 self.voices.clear();
             }
         }
@@ -274,7 +326,7 @@ impl Renderer {
 
     /// Strikes every cue that is due in this part, rendering each bank up to the cue's sample first.
     fn strike_cues(&mut self, first: usize, frames: usize) {
-        for Due { frame, cue, .. } in self.schedule.take_before(first + frames) {
+        for Due { frame, cue, sent, .. } in self.schedule.take_before(first + frames) {
             // A clock that is estimated wavers by a sample; that is not late.
             count(&self.shared.late, u32::from(frame < -1));
             let frame = usize::try_from(frame).unwrap_or(0).clamp(first, first + frames - 1);
@@ -287,58 +339,39 @@ impl Renderer {
                 felt = (started.unfelt as usize) < cue.spots.len();
                 note(&self.shared, started);
             }
-            for spot in cue.spots.iter().filter(|_| !cue.click.modes.is_empty()) {
+            let mut strike = |weight: f32, output: Output| {
+                let bell = self.ringing.strikable(output.channel, frame - first, &mut self.mix);
+                let gain = cue.click.level.0 * weight * output.per_newton;
+                let struck = click::strike(bell, &cue.click, gain);
+                count(&self.shared.refused, struck.refused);
+                count(&self.shared.stolen, struck.stolen);
+                struck.modes > 0
+            };
+            let struck_spots = cue.spots.iter().filter(|_| !cue.click.modes.is_empty());
+            for spot in struck_spots {
                 let Some(output) = self.wiring.output(spot.tile) else {
                     count(&self.shared.unfelt, 1);
                     continue;
                 };
-                let bank = &mut self.banks[output.channel];
-                let rendered = &mut self.rendered[output.channel];
-                if !bank.is_silent() {
-                    let stolen = bank.render(&mut self.mix.row(output.channel)[*rendered..frame - first]);
-                    count(&self.shared.stolen, stolen);
-                }
-                *rendered = frame - first;
-                let struck =
-                    click::strike(bank, &cue.click, cue.click.level.0 * spot.weight * output.per_newton);
-                count(&self.shared.refused, struck.refused);
-                count(&self.shared.stolen, struck.stolen);
-                felt |= struck.modes > 0;
+                felt |= strike(spot.weight, output);
                 if cue.manner.duck_db > 0.0 {
                     self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());
                 }
             }
+            for output in self.loudspeakers.heard(&cue.spots, cue.to_air) {
+                strike(1.0, output);
+            }
             if felt && self.onsets.len() < WAITING {
-                self.onsets.push(Onset { frame, received: cue.received });
+                self.onsets.push(Onset { frame, received: cue.received, sent });
             }
         }
     }
 
-    /// Renders the rest of every bank.
-    fn ring_on(&mut self, frames: usize) {
-        for (channel, (bank, rendered)) in self.banks.iter_mut().zip(&mut self.rendered).enumerate() {
-            if !bank.is_silent() {
-                let stolen = bank.render(&mut self.mix.row(channel)[*rendered..frames]);
-                count(&self.shared.stolen, stolen);
-            }
-            *rendered = 0;
-        }
-    }
-
-    /// Limits and interleaves the mix into `out`.
-    fn limit(&mut self, out: &mut [f32], frames: usize) {
-        out.fill(0.0);
-        let mut faults = Faults::default();
-        for (group, limiter) in self.limiters.iter_mut().enumerate() {
-            if !self.mix.is_open(group) && limiter.is_idle() {
-                continue;
-            }
-            let found = limiter.process(&mut self.mix, group, &self.gains[..frames], out, self.channels);
-            faults.not_finite += found.not_finite;
-            faults.overloaded += found.overloaded;
-        }
+    fn count(&self, faults: Faults) {
         count(&self.shared.not_finite, faults.not_finite);
         count(&self.shared.overloaded, faults.overloaded);
+        count(&self.shared.silenced, faults.silenced);
+        count(&self.shared.heated, faults.heated);
     }
 }
 

@@ -1,8 +1,7 @@
 use std::time::Duration;
 
-use rtrb::Consumer;
-
 use super::Cue;
+use super::newest::Reader;
 use super::sender::Message;
 use crate::units::Instant;
 
@@ -12,7 +11,7 @@ pub(super) const WAITING: usize = 256;
 /// Cues that wait for the block in which their time comes.
 #[derive(Debug)]
 pub(super) struct Schedule {
-    ring: Consumer<Message>,
+    ring: Reader<Message>,
     /// In order of time for the block at hand.
     waiting: Vec<Due>,
 }
@@ -22,11 +21,13 @@ pub(super) struct Schedule {
 pub(super) struct Due {
     pub(super) frame: i64,
     pub(super) cue: Cue,
+    /// When it was sent, for measuring latency.
+    pub(super) sent: Instant,
     turns: u64,
 }
 
 impl Schedule {
-    pub(super) fn new(ring: Consumer<Message>) -> Self {
+    pub(super) fn new(ring: Reader<Message>) -> Self {
         Self { ring, waiting: Vec::with_capacity(WAITING) }
     }
 
@@ -35,7 +36,22 @@ impl Schedule {
         let before = self.waiting.len();
         self.waiting.retain(|due| due.turns >= turns);
         let mut forgotten = (before - self.waiting.len()) as u32;
-        while self.ring.peek().is_ok_and(|message| message.turns < turns) && self.ring.pop().is_ok() {
+        while self.ring.peek().is_some_and(|message| message.turns < turns) && self.ring.skip() {
+            forgotten += 1;
+        }
+        forgotten
+    }
+
+    /// Cues given up so far because newer ones took their place.
+    pub(super) fn dropped(&self) -> u64 {
+        self.ring.dropped()
+    }
+
+    /// Forgets every cue that was sent so far; the answer is how many.
+    pub(super) fn forget_all(&mut self) -> u32 {
+        let mut forgotten = self.waiting.len() as u32;
+        self.waiting.clear();
+        while self.ring.skip() {
             forgotten += 1;
         }
         forgotten
@@ -44,9 +60,10 @@ impl Schedule {
     /// Takes in new cues and puts all in order; `frame_of` says when a cue is due.
     pub(super) fn arrange(&mut self, frame_of: impl Fn(&Cue) -> i64) {
         while self.waiting.len() < WAITING
-            && let Ok(message) = self.ring.pop()
+            && let Some(message) = self.ring.pop()
         {
-            self.waiting.push(Due { frame: 0, cue: message.cue, turns: message.turns });
+            let Message { cue, turns, sent } = message;
+            self.waiting.push(Due { frame: 0, cue, sent, turns });
         }
         for due in &mut self.waiting {
             due.frame = frame_of(&due.cue);

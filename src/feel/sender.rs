@@ -1,15 +1,16 @@
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-use rtrb::Producer;
 use triple_buffer::Input;
 
+use super::newest::Writer;
 use super::{Cue, Rubs};
+use crate::units::Instant;
 
 /// What the renderer could not do, counted since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FeelCounters {
-    /// Cues that found the ring to the renderer full.
+    /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are given up first.
     pub dropped: u64,
     /// Cues that came while everything was silenced.
     pub muted: u64,
@@ -25,12 +26,15 @@ pub struct FeelCounters {
     pub not_finite: u64,
     /// Samples beyond eight full scales, cut off there.
     pub overloaded: u64,
+    /// Channels whose voices were silenced because their samples were not finite or beyond eight full scales.
+    pub silenced: u64,
+    /// Times that an actuator began to be turned down because it was driven too long.
+    pub heated: u64,
 }
 
 /// What both ends share.
 #[derive(Debug, Default)]
 pub(super) struct Shared {
-    pub(super) dropped: AtomicU64,
     pub(super) muted: AtomicU64,
     pub(super) late: AtomicU64,
     pub(super) unfelt: AtomicU64,
@@ -38,12 +42,36 @@ pub(super) struct Shared {
     pub(super) stolen: AtomicU64,
     pub(super) not_finite: AtomicU64,
     pub(super) overloaded: AtomicU64,
+    pub(super) silenced: AtomicU64,
+    pub(super) heated: AtomicU64,
+    /// Which channel moves each tile.
+    pub(super) channels: Box<[Option<usize>]>,
+    /// Which channels are muted.
+    mutes: Box<[AtomicBool]>,
+    /// Changes of `mutes` so far.
+    mute_changes: AtomicU64,
     /// Calls of `silence` and `resume` so far: odd means silence. A count, not
     /// a flag, so that the renderer can't miss a silence that was soon lifted.
     turns: AtomicU64,
 }
 
 impl Shared {
+    /// For tiles that these channels move.
+    pub(super) fn new(channels: Box<[Option<usize>]>) -> Self {
+        let count = channels.iter().flatten().max().map_or(0, |most| most + 1);
+        Self { channels, mutes: (0..count).map(|_| AtomicBool::new(false)).collect(), ..Self::default() }
+    }
+
+    /// How often mutes have changed.
+    pub(super) fn mute_changes(&self) -> u64 {
+        self.mute_changes.load(Ordering::Acquire)
+    }
+
+    /// Whether each of the channels that move tiles is muted.
+    pub(super) fn mutes(&self) -> impl Iterator<Item = bool> + '_ {
+        self.mutes.iter().map(|muted| muted.load(Ordering::Relaxed))
+    }
+
     pub(super) fn turns(&self) -> u64 {
         self.turns.load(Ordering::Acquire)
     }
@@ -51,7 +79,7 @@ impl Shared {
     pub(super) fn counters(&self) -> FeelCounters {
         let read = |counter: &AtomicU64| counter.load(Ordering::Relaxed);
         FeelCounters {
-            dropped: read(&self.dropped),
+            dropped: 0,
             muted: read(&self.muted),
             late: read(&self.late),
             unfelt: read(&self.unfelt),
@@ -59,6 +87,8 @@ impl Shared {
             stolen: read(&self.stolen),
             not_finite: read(&self.not_finite),
             overloaded: read(&self.overloaded),
+            silenced: read(&self.silenced),
+            heated: read(&self.heated),
         }
     }
 }
@@ -75,30 +105,38 @@ pub(super) fn count(counter: &AtomicU64, by: u32) {
 pub(super) struct Message {
     pub(super) cue: Cue,
     pub(super) turns: u64,
+    /// When it left, for measuring latency.
+    pub(super) sent: Instant,
 }
 
 /// The sensing thread's end of the wire to the renderer; none of its calls waits or allocates.
 #[derive(Debug)]
 pub struct CueSender {
-    pub(super) cues: Producer<Message>,
+    pub(super) cues: Writer<Message>,
     pub(super) rubs: Input<Rubs>,
     pub(super) shared: Arc<Shared>,
     pub(super) turns: u64,
+    /// The time as it was last told.
+    pub(super) now: Instant,
 }
 
 impl CueSender {
     /// Sends a cue to be played; the answer is whether it is on its way.
     ///
-    /// It isn't if everything is silenced, or if the renderer has not taken
-    /// any of the last 256 cues; both are counted.
+    /// It isn't if everything is silenced. If the renderer has not taken any of
+    /// the last 256 cues, the oldest of them is given up. Both are counted.
     pub fn send(&mut self, cue: &Cue) -> bool {
         if self.is_silenced() {
             count(&self.shared.muted, 1);
             return false;
         }
-        let sent = self.cues.push(Message { cue: cue.clone(), turns: self.turns }).is_ok();
-        count(&self.shared.dropped, u32::from(!sent));
-        sent
+        self.cues.push(Message { cue: cue.clone(), turns: self.turns, sent: self.now });
+        true
+    }
+
+    /// Says what time it is when the next cues are sent, on the clock that stamps packets; only for measuring latency.
+    pub fn note_time(&mut self, now: Instant) {
+        self.now = now;
     }
 
     /// Says which feet rub, and how, from now on.
@@ -106,6 +144,7 @@ impl CueSender {
     /// To be called with every frame, also with no rubs: what was said last
     /// holds for 50 ms and then fades out, in case whoever sends has died.
     pub fn rubs(&mut self, rubs: &Rubs) {
+        self.cues.flush();
         self.rubs.input_buffer_mut().clone_from(rubs);
         self.rubs.publish();
     }
@@ -116,6 +155,7 @@ impl CueSender {
     pub fn silence(&mut self) {
         if !self.is_silenced() {
             self.turn();
+            count(&self.shared.muted, self.cues.take_back());
         }
     }
 
@@ -124,6 +164,17 @@ impl CueSender {
         if self.is_silenced() {
             self.turn();
         }
+    }
+
+    /// Mutes the actuator of tile number `tile` within 5 ms, or lets it be felt again; false if nothing moves that tile.
+    ///
+    /// What it would play goes on meanwhile, unfelt. Tiles that share a channel are muted together.
+    pub fn mute(&mut self, tile: u16, muted: bool) -> bool {
+        let channel = self.shared.channels.get(usize::from(tile)).copied().flatten();
+        let Some(mute) = channel.and_then(|channel| self.shared.mutes.get(channel)) else { return false };
+        mute.store(muted, Ordering::Relaxed);
+        self.shared.mute_changes.fetch_add(1, Ordering::Release);
+        true
     }
 
     /// Whether [`CueSender::silence`] holds.
@@ -135,7 +186,7 @@ impl CueSender {
     /// What could not be done so far.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
-        self.shared.counters()
+        FeelCounters { dropped: self.cues.dropped(), ..self.shared.counters() }
     }
 
     fn turn(&mut self) {

@@ -1,4 +1,7 @@
-use super::{CalibrationRecord, Corner, Day, Geometry, MapRecord, PositionMap, SensorId, TileId};
+use super::{
+    CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, PositionMap, Response, SensorId,
+    TileId,
+};
 use crate::units::Newtons;
 
 /// Everything underfoot knows of one floor: geometry, boards, calibration, actuators.
@@ -17,6 +20,12 @@ pub struct Floor {
     pub tare: Vec<[Newtons; 4]>,
     /// The actuator under each tile; `None` where there is none.
     pub actuators: Vec<Option<Actuator>>,
+    /// What drives the actuators.
+    pub drive: Drive,
+    /// The measured response of each tile's actuator, which the rack makes flat; `None` where none was measured.
+    pub responses: Vec<Option<Response>>,
+    /// The loudspeakers beside the floor, at most [`Loudspeaker::MOST`].
+    pub loudspeakers: Vec<Loudspeaker>,
     /// The position map of each tile; `None` where none was measured.
     pub position_maps: Vec<Option<PositionMap>>,
     /// When each law in `calibration` was measured and how well it fits; `None` where nobody said.
@@ -39,6 +48,9 @@ impl Floor {
             calibration: vec![[Calibration::NOMINAL; 4]; tiles],
             tare: vec![[Newtons::ZERO; 4]; tiles],
             actuators: (0..tiles).map(|channel| Some(Actuator::nominal(channel as u16))).collect(),
+            drive: Drive::default(),
+            responses: vec![None; tiles],
+            loudspeakers: Vec::new(),
             position_maps: vec![None; tiles],
             calibration_records: vec![[None; 4]; tiles],
             map_records: vec![None; tiles],
@@ -100,10 +112,13 @@ impl Floor {
         })
     }
 
-    /// Number of actuator channels a device must have for this floor: the highest channel used plus one.
+    /// Number of channels a device must have for this floor: the highest channel that any actuator or
+    /// loudspeaker uses plus one.
     #[must_use]
     pub fn channel_count(&self) -> usize {
-        self.actuators.iter().flatten().map(|actuator| usize::from(actuator.channel) + 1).max().unwrap_or(0)
+        let actuators = self.actuators.iter().flatten().map(|actuator| actuator.channel);
+        let channels = actuators.chain(self.loudspeakers.iter().map(|loudspeaker| loudspeaker.channel));
+        channels.map(|channel| usize::from(channel) + 1).max().unwrap_or(0)
     }
 }
 

@@ -4,12 +4,14 @@
 //! (right), y north (away from the user), in metres. [`Geometry`] knows where
 //! tiles and sensors are; [`Floor`] adds what is wired to them.
 
+mod drive;
 mod geometry;
 mod hardware;
 mod position_map;
 mod record;
 mod rect;
 
+pub use drive::{Drive, Loudspeaker, Response};
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
 pub use hardware::{Actuator, Board, Calibration, Floor};
 pub use position_map::PositionMap;

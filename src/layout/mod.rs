@@ -3,12 +3,14 @@
 //! Everything here is in floor metres and newtons, with ids unique, sizes
 //! positive and numbers finite; [`crate::schema`] is where nonsense stops.
 
+mod ground;
 mod hit;
 mod icon;
 mod look;
 mod page;
 mod region;
 
+pub use ground::Ground;
 pub use hit::HitIndex;
 pub use icon::Icon;
 pub use look::{Colour, Look, Shape};
@@ -32,6 +34,8 @@ pub struct Layout {
     pub stances: Vec<Stance>,
     /// The pages that take turns, the first one first; empty if there is only one.
     pub pages: Vec<Page>,
+    /// What the floor seems to be made of, on all pages; where two overlap, both answer.
+    pub grounds: Vec<Ground>,
     /// The controls of all pages, in drawing order.
     pub widgets: Vec<Widget>,
 }

@@ -3,7 +3,7 @@ use std::fmt::{self, Write};
 use glam::Vec2;
 
 use crate::floor::Rect;
-use crate::scene::{Anchor, Lettering, Mark, Paint, Scene};
+use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene};
 
 /// The drawing as a stand-alone SVG document, one user unit to a millimetre of floor.
 ///
@@ -13,8 +13,11 @@ use crate::scene::{Anchor, Lettering, Mark, Paint, Scene};
 pub fn svg(scene: &Scene) -> String {
     let size = mm(scene.bounds().size());
     // A mark takes about 120 bytes.
-    let mut page =
-        Page { out: String::with_capacity(400 + 130 * scene.marks().len()), bounds: scene.bounds() };
+    let mut page = Page {
+        out: String::with_capacity(400 + 130 * scene.marks().len()),
+        bounds: scene.bounds(),
+        gradients: 0,
+    };
     // Writing to a `String` cannot fail.
     let _ = page.document(scene, size);
     page.out
@@ -28,7 +31,15 @@ fn mm(metres: Vec2) -> Vec2 {
 struct Page {
     out: String,
     bounds: Rect,
+    /// Gradients so far, each of which needs a name.
+    gradients: u32,
 }
+
+/// Height of the strips that a field is made of, in millimetres: what changes from one to the next is not seen.
+const STRIP_MM: f32 = 5.0;
+
+/// Layers that make a band fade out.
+const LAYERS: u16 = 4;
 
 impl Page {
     fn document(&mut self, scene: &Scene, size: Vec2) -> fmt::Result {
@@ -88,8 +99,78 @@ impl Page {
                 write!(self.out, "{}\"", if *closed { "Z" } else { "" })?;
                 self.paint(paint)
             }
+            Mark::Field { area, columns, inks } => self.field(*area, *columns as usize, scene.inks(*inks)),
+            Mark::Band { points, reach, near, far } => self.band(scene.points(*points), *reach, *near, *far),
             Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
         }
+    }
+
+    /// Strips that each change from west to east.
+    fn field(&mut self, area: Rect, columns: usize, inks: &[Ink]) -> fmt::Result {
+        let rows = inks.len() / columns;
+        let (at, size) = (self.place(Vec2::new(area.min.x, area.max.y)), mm(area.size()));
+        let cell = size.y / (rows - 1) as f32;
+        let each = (cell / STRIP_MM).ceil().clamp(1.0, 64.0) as usize;
+        let strips = (rows - 1) * each;
+        for strip in 0..strips {
+            // From the north down.
+            let from_south = ((strips - 1 - strip) as f32 + 0.5) / each as f32;
+            let (row, share) = (from_south as usize, from_south.fract());
+            let ink =
+                |column: usize| inks[row * columns + column].mix(inks[(row + 1) * columns + column], share);
+            self.gradients += 1;
+            let name = self.gradients;
+            write!(self.out, "<linearGradient id=\"g{name}\">")?;
+            for column in 0..columns {
+                // What is as its neighbours need not be said.
+                let is_plain = column > 0
+                    && column + 1 < columns
+                    && ink(column) == ink(column - 1)
+                    && ink(column) == ink(column + 1);
+                if !is_plain {
+                    let offset = column as f32 / (columns - 1) as f32;
+                    let Ink { colour, opacity } = ink(column);
+                    write!(self.out, "<stop offset=\"{offset:.4}\" stop-color=\"{colour}\"")?;
+                    self.opacity("stop-opacity", opacity)?;
+                    self.out.write_str("/>")?;
+                }
+            }
+            let top = at.y + size.y * strip as f32 / strips as f32;
+            writeln!(
+                self.out,
+                "</linearGradient><rect x=\"{:.2}\" y=\"{top:.2}\" width=\"{:.2}\" height=\"{:.2}\" \
+                 fill=\"url(#g{name})\" shape-rendering=\"crispEdges\"/>",
+                at.x,
+                size.x,
+                size.y / strips as f32
+            )?;
+        }
+        Ok(())
+    }
+
+    /// Layers that end ever further out, which together fade.
+    fn band(&mut self, points: &[Vec2], reach: Vec2, near: Ink, far: Ink) -> fmt::Result {
+        for layer in 1..=LAYERS {
+            let share = f32::from(layer) / f32::from(LAYERS);
+            let Ink { colour, opacity } = near.mix(far, share - 0.5 / f32::from(LAYERS));
+            let beyond = near.mix(far, share + 0.5 / f32::from(LAYERS)).opacity;
+            // Where layers lie on each other, what they let through multiplies.
+            let beyond = if layer == LAYERS { 0.0 } else { beyond };
+            let own = 1.0 - (1.0 - opacity) / (1.0 - beyond).max(1e-3);
+            if own <= 0.0 {
+                continue;
+            }
+            self.out.write_str("<path d=\"")?;
+            let far_side = points.iter().rev().map(|point| *point + reach * share);
+            for (step, point) in points.iter().copied().chain(far_side).enumerate() {
+                let at = self.place(point);
+                write!(self.out, "{}{:.2} {:.2}", if step == 0 { "M" } else { " " }, at.x, at.y)?;
+            }
+            write!(self.out, "Z\" fill=\"{colour}\"")?;
+            self.opacity("fill-opacity", own)?;
+            self.out.write_str("/>\n")?;
+        }
+        Ok(())
     }
 
     /// The attributes that say how a mark is drawn, and the end of its element.

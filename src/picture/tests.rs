@@ -93,3 +93,38 @@ fn the_files_name_says_what_is_written() {
     let message = write(&scene, nowhere, 200).unwrap_err().to_string();
     assert!(message.starts_with("cannot write /nonexistent/floor.png"), "{message}");
 }
+
+/// A field from black in the west to white in the east, and a band that fades out northwards.
+#[test]
+fn fields_and_bands_change_smoothly_in_the_pixels() {
+    use crate::floor::Rect;
+    use crate::layout::Colour;
+    use crate::scene::Ink;
+    use glam::Vec2;
+
+    let (black, white) = (Colour::rgb(0, 0, 0), Colour::rgb(255, 255, 255));
+    let mut scene = Scene::new();
+    scene.clear(Rect::from_min_size(Vec2::ZERO, Vec2::ONE), Colour::rgb(128, 128, 128));
+    let south = Rect::from_min_size(Vec2::ZERO, Vec2::new(1.0, 0.5));
+    let inks = [black, white, black, white].map(Ink::solid);
+    scene.add_field(south, 2, inks);
+    let line = [Vec2::new(0.0, 0.6), Vec2::new(0.5, 0.6), Vec2::new(1.0, 0.6)];
+    scene.add_band(line, Vec2::new(0.0, 0.4), Ink::solid(white), Ink::faint(white, 0.0));
+    let pixels = Pixmap::decode_png(&png(&scene, 200).unwrap()).unwrap();
+    let red = |x: f32, y: f32| {
+        i32::from(pixels.pixel((x * 200.0) as u32, ((1.0 - y) * 200.0) as u32).unwrap().red())
+    };
+    for share in [0.1, 0.5, 0.9] {
+        let wanted = (share * 255.0) as i32;
+        assert!((red(share, 0.25) - wanted).abs() < 6, "{} at {share}", red(share, 0.25));
+    }
+    let fading = [0.62, 0.72, 0.82, 0.92].map(|y| red(0.4, y));
+    assert!(fading.windows(2).all(|pair| pair[0] > pair[1]), "{fading:?}");
+    assert!(fading[0] > 220 && fading[3] < 165, "{fading:?}");
+    assert_eq!(red(0.5, 0.55), 128, "nothing between the two");
+    // What makes no field or band leaves nothing behind.
+    let marks = scene.marks().len();
+    scene.add_field(south, 3, inks);
+    scene.add_band([Vec2::ONE], Vec2::X, inks[0], inks[1]);
+    assert_eq!(scene.marks().len(), marks);
+}

@@ -3,8 +3,10 @@ use eframe::egui::epaint::{
     self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape,
 };
 use eframe::egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Shape, StrokeKind, vec2};
+use glam::Vec2;
 
 use super::transform::ScreenFromFloor;
+use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
 
@@ -70,8 +72,47 @@ impl Brush<'_> {
                 }
                 self.dashes(scene, mark, paint);
             }
+            Mark::Field { area, columns, inks } => self.field(*area, *columns, scene.inks(*inks)),
+            Mark::Band { points, reach, near, far } => {
+                let [near, far] = [near, far].map(|ink| ink_color(*ink));
+                self.band(scene.points(*points), *reach, near, far);
+            }
             Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
         }
+    }
+
+    /// A rectangle of changing colour, as two triangles for each cell of its grid.
+    fn field(&self, area: floor::Rect, columns: u32, inks: &[Ink]) {
+        let rows = inks.len() as u32 / columns;
+        let cell = area.size() / Vec2::new((columns - 1) as f32, (rows - 1) as f32);
+        let mut mesh = Mesh::default();
+        mesh.reserve_vertices(inks.len());
+        mesh.reserve_triangles(2 * inks.len());
+        for (at, ink) in (0..).zip(inks) {
+            let grid = Vec2::new((at % columns) as f32, (at / columns) as f32);
+            mesh.colored_vertex(self.map.point(area.min + cell * grid), ink_color(*ink));
+            if at % columns > 0 && at >= columns {
+                let (west, south) = (at - 1, at - columns);
+                mesh.add_triangle(south - 1, south, at);
+                mesh.add_triangle(south - 1, at, west);
+            }
+        }
+        self.painter.add(Shape::mesh(mesh));
+    }
+
+    /// Lines and the same lines further off, with what lies between.
+    fn band(&self, points: &[Vec2], reach: Vec2, near: Color32, far: Color32) {
+        let mut mesh = Mesh::default();
+        for (at, point) in (0..).zip(points) {
+            mesh.colored_vertex(self.map.point(*point), near);
+            mesh.colored_vertex(self.map.point(*point + reach), far);
+            if at > 0 {
+                let first = 2 * at - 2;
+                mesh.add_triangle(first, first + 1, first + 2);
+                mesh.add_triangle(first + 1, first + 3, first + 2);
+            }
+        }
+        self.painter.add(Shape::mesh(mesh));
     }
 
     /// The inside of a path, as triangles around the mean of its points.

@@ -18,6 +18,7 @@ pub struct Scene {
     background: Colour,
     marks: Vec<Mark>,
     points: Vec<Vec2>,
+    inks: Vec<Ink>,
     letters: String,
 }
 
@@ -34,6 +35,7 @@ impl Scene {
         self.background = background;
         self.marks.clear();
         self.points.clear();
+        self.inks.clear();
         self.letters.clear();
     }
 
@@ -55,10 +57,16 @@ impl Scene {
         &self.marks
     }
 
-    /// The points of a [`Mark::Path`] of this scene; empty for another scene's span that reaches too far.
+    /// The points of a [`Mark::Path`] or [`Mark::Band`] of this scene; empty for another scene's span that reaches too far.
     #[must_use]
     pub fn points(&self, span: Span) -> &[Vec2] {
         self.points.get(span.start as usize..span.end as usize).unwrap_or_default()
+    }
+
+    /// The inks of a [`Mark::Field`] of this scene; empty for another scene's span that reaches too far.
+    #[must_use]
+    pub fn inks(&self, span: Span) -> &[Ink] {
+        self.inks.get(span.start as usize..span.end as usize).unwrap_or_default()
     }
 
     /// The letters of a [`Mark::Text`] of this scene; empty for another scene's span that reaches too far.
@@ -103,6 +111,33 @@ impl Scene {
         self.marks.push(Mark::Path { points, closed, paint });
     }
 
+    /// Adds a rectangle of changing colour, its `inks` in rows of `columns` from the south-west on;
+    /// nothing for less than two rows of two. Inks that make no whole row are left out.
+    pub fn add_field(&mut self, area: Rect, columns: u32, inks: impl IntoIterator<Item = Ink>) {
+        let start = self.inks.len();
+        self.inks.extend(inks);
+        let rows = (self.inks.len() - start) / columns.max(1) as usize;
+        let end = start + rows * columns as usize;
+        if columns < 2 || rows < 2 {
+            self.inks.truncate(start);
+            return;
+        }
+        self.inks.truncate(end);
+        self.marks.push(Mark::Field { area, columns, inks: Span { start: start as u32, end: end as u32 } });
+    }
+
+    /// Adds what straight lines through `points` sweep when moved by `reach`; nothing for fewer than two points.
+    pub fn add_band(&mut self, points: impl IntoIterator<Item = Vec2>, reach: Vec2, near: Ink, far: Ink) {
+        let start = self.points.len();
+        self.points.extend(points);
+        if self.points.len() < start + 2 {
+            self.points.truncate(start);
+            return;
+        }
+        let points = Span { start: start as u32, end: self.points.len() as u32 };
+        self.marks.push(Mark::Band { points, reach, near, far });
+    }
+
     /// Adds a straight line.
     pub fn add_line(&mut self, from: Vec2, to: Vec2, paint: Paint) {
         self.add_path([from, to], false, paint);
@@ -142,6 +177,8 @@ impl Scene {
                     paint.magnify(by);
                 }
                 Mark::Path { paint, .. } => paint.magnify(by),
+                Mark::Field { area, .. } => *area = Rect::new(place(area.min), place(area.max)),
+                Mark::Band { reach, .. } => *reach *= by,
                 Mark::Text { lettering, .. } => {
                     lettering.at = place(lettering.at);
                     lettering.size_m *= by;

@@ -19,6 +19,14 @@ impl Ink {
         Self { colour, opacity: 1.0 }
     }
 
+    /// The ink `share` (0 to 1) of the way from this one to `other`.
+    #[must_use]
+    pub fn mix(self, other: Self, share: f32) -> Self {
+        let share = share.clamp(0.0, 1.0);
+        let opacity = self.opacity + (other.opacity - self.opacity) * share;
+        Self { colour: self.colour.mix(other.colour, share), opacity }
+    }
+
     /// `colour` with `opacity` 0 to 1.
     #[must_use]
     pub const fn faint(colour: Colour, opacity: f32) -> Self {
@@ -117,7 +125,7 @@ pub struct Lettering {
     pub ink: Ink,
 }
 
-/// A stretch of a scene's points or letters; only meaningful to the scene that gave it.
+/// A stretch of a scene's points, inks or letters; only meaningful to the scene that gave it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {
     pub(super) start: u32,
@@ -154,6 +162,28 @@ pub enum Mark {
         closed: bool,
         /// How it is drawn.
         paint: Paint,
+    },
+    /// An upright rectangle whose colour changes smoothly: inks at an even grid of points, the
+    /// outermost on its edges, and between them what lies between.
+    Field {
+        /// Its outline.
+        area: Rect,
+        /// Points eastwards, at least two.
+        columns: u32,
+        /// Rows of inks from the south-west on, at least two: see [`super::Scene::inks`].
+        inks: Span,
+    },
+    /// What straight lines from point to point sweep when they are moved by `reach`: a sheet seen
+    /// at a slant, from `near` on the lines to `far` where they end up.
+    Band {
+        /// The points: see [`super::Scene::points`].
+        points: Span,
+        /// How far they are moved, in metres.
+        reach: Vec2,
+        /// The ink on the lines.
+        near: Ink,
+        /// The ink at the other side.
+        far: Ink,
     },
     /// One line of text.
     Text {

@@ -7,7 +7,7 @@
 //! ```
 //! use underfoot::scene::{self, Scene, Theme, View};
 //! # use underfoot::{engine::Snapshot, floor::Geometry, layout::Layout};
-//! # let layout = Layout { title: "Empty".into(), regions: vec![], stances: vec![], pages: vec![], widgets: vec![] };
+//! # let layout = Layout { title: "Empty".into(), regions: vec![], stances: vec![], pages: vec![], grounds: vec![], widgets: vec![] };
 //! let mut scene = Scene::new();
 //! let (geometry, snapshot) = (Geometry::default(), Snapshot::default());
 //! scene::draw(&mut scene, &View::new(&geometry, &layout, &snapshot, &Theme::LIGHT));
@@ -26,6 +26,7 @@ mod outline;
 #[cfg(test)]
 pub(crate) mod sample;
 mod strip;
+mod terrain;
 #[cfg(test)]
 mod tests;
 mod theme;
@@ -68,13 +69,14 @@ pub fn extent(geometry: &Geometry, show: Show) -> Rect {
 
 /// Draws `view` into `scene`, in place of what was there.
 ///
-/// The order is that of things on a real floor: plates, what is projected on
-/// them, what is under them, feet, and words about all of it.
+/// The order is that of things on a real floor: plates, the ground and the controls that are
+/// projected on them, what is under them, feet, and words about all of it.
 pub fn draw(scene: &mut Scene, view: &View<'_>) {
     let floor = view.geometry.bounds();
     let bounds = extent(view.geometry, view.show);
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
+    terrain::draw(scene, view);
     ground::unknown(scene, view);
     if view.show.ruler {
         ground::ruler(scene, view);

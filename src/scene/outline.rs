@@ -16,6 +16,12 @@ pub fn outline_of(scene: &Scene, mark: &Mark, visit: impl FnMut(Vec2)) {
         Mark::Ellipse { centre, radii, .. } => {
             ellipse_arc(Rect::from_centre_size(centre, 2.0 * radii), 1.0).for_each(visit);
         }
+        Mark::Field { area, .. } => box_arc(area, 0.0, 1.0).for_each(visit),
+        Mark::Band { points, reach, .. } => {
+            let points = scene.points(points);
+            let far = points.iter().rev().map(|point| *point + reach);
+            points.iter().copied().chain(far).chain(points.first().copied()).for_each(visit);
+        }
         Mark::Path { points, closed, .. } => {
             let points = scene.points(points);
             let back = points.first().filter(|_| closed);

@@ -122,6 +122,7 @@ pub(crate) fn map() -> Layout {
         }],
         stances: vec![Stance { area: tiles(1.75, 0.35, 2.5, 1.4), label: "stand here".into() }],
         pages: vec![],
+        grounds: vec![],
         widgets: vec![
             widget("zoom-in", "Zoom in", [0.25, 4.55], [1.0, 1.0], button(), blue(Shape::Box)),
             widget("zoom-out", "Zoom out", [0.25, 3.35], [1.0, 1.0], button(), blue(Shape::Box)),

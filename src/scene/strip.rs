@@ -103,6 +103,16 @@ pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
             scene.add_box(bar, 0.004, Paint::fill(Ink::solid(theme.haptic)));
         });
     }
+    let cracks: usize = view.snapshot.grounds.iter().map(|ground| ground.cracks.len()).sum();
+    if cracks > 0 {
+        let crowded: u64 = view.snapshot.grounds.iter().map(|ground| ground.counters.crowded_out).sum();
+        let early = if crowded > 0 { format!(", {crowded} healed early") } else { String::new() };
+        pen.entry(scene, &format!("{cracks} pieces of crack{early}"), 0.012, |scene, at| {
+            let stroke = Paint::stroke(Stroke::new(0.003, Ink::solid(theme.quiet)));
+            let zigzag = [(-0.012, -0.006), (-0.003, 0.006), (0.003, -0.004), (0.012, 0.007)];
+            scene.add_path(zigzag.map(|(x, y)| at + Vec2::new(x, y)), false, stroke);
+        });
+    }
     for (quality, name) in
         [(Quality::Degraded, "degraded"), (Quality::Stale, "silent"), (Quality::Faulty, "faulty")]
     {

@@ -335,6 +335,10 @@ fn nonsense_in_a_snapshot_draws_nothing_that_is_not_finite() {
             }
             Mark::Ellipse { centre, radii, .. } => centre.is_finite() && radii.is_finite(),
             Mark::Path { points, .. } => scene.points(*points).iter().all(|point| point.is_finite()),
+            Mark::Field { area, .. } => area.min.is_finite() && area.max.is_finite(),
+            Mark::Band { points, reach, .. } => {
+                reach.is_finite() && scene.points(*points).iter().all(|point| point.is_finite())
+            }
             Mark::Text { lettering, .. } => lettering.at.is_finite() && lettering.size_m.is_finite(),
         };
         assert!(finite, "{mark:?}");

@@ -52,11 +52,13 @@ pub(super) const EFFECTS: [(&str, &str); 22] = [
 ];
 
 /// The shipped layouts: name and text.
-const LAYOUTS: [(&str, &str); 4] = [
+const LAYOUTS: [(&str, &str); 6] = [
     ("all_controls", include_str!("../../layouts/all_controls.ron")),
     ("first_steps", include_str!("../../layouts/first_steps.ron")),
     ("map", include_str!("../../layouts/map.ron")),
+    ("pond", include_str!("../../layouts/pond.ron")),
     ("surgical", include_str!("../../layouts/surgical.ron")),
+    ("winter_walk", include_str!("../../layouts/winter_walk.ron")),
 ];
 
 /// The names of the layouts that come with underfoot, for [`builtin_layout`].

@@ -4,6 +4,7 @@ use std::collections::{HashMap, HashSet};
 
 use super::area::{Area, Placed};
 use super::control::Control;
+use super::ground;
 use super::number::plain;
 use super::page::{Page, Zone};
 use super::pages;
@@ -17,7 +18,8 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
     check_zones(reader, page, &floor);
     check_ids(reader, page);
     pages::check(reader, page);
-    if page.controls.is_empty() && reader.is_sound() {
+    ground::check(page, &floor, |problem| reader.report(problem));
+    if page.controls.is_empty() && page.grounds.is_empty() && reader.is_sound() {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));
     }

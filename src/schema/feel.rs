@@ -1,5 +1,6 @@
 use std::sync::Arc;
 
+use super::behaviour::single;
 use super::effect;
 use super::node::Node;
 use crate::feel::{Effect, Feel, Use};
@@ -21,6 +22,7 @@ pub(super) fn read_over(node: Node<'_>, base: &Feel) -> Option<Feel> {
     let off = part("off", &base.off, Use::Once);
     let hold = part("hold", &base.hold, Use::Hold);
     let drag = part("drag", &base.drag, Use::Drag);
+    let sound = fields.read("sound", Some(base.sound), |node| single(node, 0.0..=1.0));
     fields.finish();
     Some(Feel {
         press: press?,
@@ -34,5 +36,6 @@ pub(super) fn read_over(node: Node<'_>, base: &Feel) -> Option<Feel> {
         off: off?,
         hold: hold?,
         drag: drag?,
+        sound: sound?,
     })
 }

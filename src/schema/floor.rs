@@ -7,6 +7,7 @@ use super::day;
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
 use super::floor_maps::maps;
+use super::floor_sound::sound;
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
@@ -14,8 +15,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
 use crate::floor::{
-    Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, GeometryError, SensorId,
-    TileId,
+    Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, GeometryError, SensorId, TileId,
 };
 use crate::units::Newtons;
 use crate::wire::MAX_CHANNELS;
@@ -59,7 +59,7 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     let sensors = fields.read("sensors", Some(()), |node| sensors(node, grid, &mut floor));
     let tared = fields.read("tared", Some(None), |node| day::read(node).map(Some));
     let maps = fields.read("maps", Some(()), |node| maps(node, grid, &mut floor));
-    let actuators = fields.read("actuators", Some(None), |node| actuators(node, grid).map(Some));
+    let sound = sound(&mut fields, grid, &mut floor);
     fields.finish();
     geometry?;
     sensors?;
@@ -68,9 +68,7 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     if let Some(boards) = boards? {
         floor.boards = boards;
     }
-    if let Some(actuators) = actuators? {
-        floor.actuators = actuators;
-    }
+    sound?;
     Some(floor)
 }
 
@@ -296,33 +294,11 @@ fn calibration_record(fields: &mut Fields<'_>) -> Option<Option<CalibrationRecor
     }
 }
 
-/// The actuators that are listed; tiles that are not have none.
-fn actuators(node: Node<'_>, grid: Grid) -> Option<Vec<Option<Actuator>>> {
-    let geometry = grid.known.unwrap_or_default();
-    let mut actuators = vec![None; geometry.tile_count()];
-    let mut seen = Seen::new();
-    for node in node.list("actuator", usize::MAX)? {
-        let Some(mut fields) = node.fields("Actuator") else { continue };
-        let tile = fields.read("tile", None, |node| grid.tile(node));
-        let channel = fields.read("channel", None, |node| node.whole(0..=4095));
-        let nominal = Actuator::nominal(0).full_scale.0;
-        let full_scale = fields.read("full_scale_n", Some(nominal), |node| single(node, 0.1..=10_000.0));
-        let span = fields.span("tile");
-        fields.finish();
-        let Some(tile) = tile else { continue };
-        seen.check(node.reader, tile, || format!("the actuator of tile {tile}"), span);
-        let slot = geometry.index(tile).and_then(|index| actuators.get_mut(index));
-        if let (Some(slot), Some(channel), Some(full_scale)) = (slot, channel, full_scale) {
-            *slot = Some(Actuator { channel: channel as u16, full_scale: Newtons(full_scale) });
-        }
-    }
-    Some(actuators)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::write_floor;
     use super::*;
+    use crate::floor::Actuator;
 
     fn read(text: &str) -> Floor {
         parse_floor(text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))

@@ -2,7 +2,9 @@ use std::fmt::Write;
 
 use super::floor::usual_address;
 use super::version::FORMAT_VERSION;
-use crate::floor::{Actuator, Board, Calibration, Corner, Floor, MapRecord, SensorId, TileId};
+use crate::floor::{
+    Actuator, Board, Calibration, Corner, Drive, Floor, Loudspeaker, MapRecord, SensorId, TileId,
+};
 use crate::units::Newtons;
 
 /// The file that describes `floor`, with comments; [`super::parse_floor`] reads the same floor from it.
@@ -44,23 +46,7 @@ fn write(floor: &Floor, text: &mut String) -> std::fmt::Result {
     }
     write_sensors(floor, text)?;
     write_maps(floor, text)?;
-    if floor.actuators == usual.actuators {
-        writeln!(text, "    // Each tile has an actuator, channel by channel in tile order.")?;
-    } else {
-        writeln!(text, "    // Output channels; tiles that are not listed have no actuator.")?;
-        writeln!(text, "    actuators: [")?;
-        for (tile, actuator) in geometry.tiles().zip(&floor.actuators) {
-            if let Some(Actuator { channel, full_scale }) = actuator {
-                let tile = place(tile);
-                writeln!(
-                    text,
-                    "        (tile: {tile}, channel: {channel}, full_scale_n: {:?}),",
-                    full_scale.0
-                )?;
-            }
-        }
-        writeln!(text, "    ],")?;
-    }
+    write_sound(floor, &usual, text)?;
     writeln!(text, ")")
 }
 
@@ -158,6 +144,57 @@ fn write_maps(floor: &Floor, text: &mut String) -> std::fmt::Result {
         writeln!(text, "trims: {:?}, bends: {:?}),", map.trims, map.bends)?;
     }
     writeln!(text, "    ],")
+}
+
+fn write_sound(floor: &Floor, usual: &Floor, text: &mut String) -> std::fmt::Result {
+    let Drive { full_scale_v, load_ohm, long_term_w } = floor.drive;
+    if floor.drive != usual.drive {
+        writeln!(
+            text,
+            "    // What drives the actuators: volts at full scale, and what a coil takes for ever."
+        )?;
+        writeln!(
+            text,
+            "    drive: (full_scale_v: {full_scale_v:?}, load_ohm: {load_ohm:?}, long_term_w: {long_term_w:?}),"
+        )?;
+    }
+    let moved = || floor.actuators.iter().zip(&floor.responses).filter(|(actuator, _)| actuator.is_some());
+    let first = moved().next().and_then(|(_, response)| response.as_ref());
+    let common = first.filter(|first| moved().all(|(_, own)| own.as_ref() == Some(*first)));
+    if let Some(common) = common {
+        writeln!(text, "    // How strongly the plates move: hertz, and decibels relative to full_scale_n.")?;
+        writeln!(text, "    response_db: {:?},", common.points())?;
+    }
+    let own = |index: usize| floor.responses.get(index).and_then(Option::as_ref).filter(|_| common.is_none());
+    if floor.actuators == usual.actuators && (0..floor.responses.len()).all(|index| own(index).is_none()) {
+        writeln!(text, "    // Each tile has an actuator, channel by channel in tile order.")?;
+    } else {
+        writeln!(text, "    // Output channels; tiles that are not listed have no actuator.")?;
+        writeln!(text, "    actuators: [")?;
+        for (index, (tile, actuator)) in floor.geometry.tiles().zip(&floor.actuators).enumerate() {
+            let Some(Actuator { channel, full_scale }) = actuator else { continue };
+            let tile = place(tile);
+            write!(text, "        (tile: {tile}, channel: {channel}, full_scale_n: {:?}", full_scale.0)?;
+            if let Some(response) = own(index) {
+                write!(text, ", response_db: {:?}", response.points())?;
+            }
+            writeln!(text, "),")?;
+        }
+        writeln!(text, "    ],")?;
+    }
+    if !floor.loudspeakers.is_empty() {
+        writeln!(text, "    // Loudspeakers, by where they stand, in metres from the south-west corner.")?;
+        writeln!(text, "    loudspeakers: [")?;
+        for Loudspeaker { at, channel, gain_db } in &floor.loudspeakers {
+            let (east, north) = (at.x, at.y);
+            writeln!(
+                text,
+                "        (at_m: ({east:?}, {north:?}), channel: {channel}, gain_db: {gain_db:?}),"
+            )?;
+        }
+        writeln!(text, "    ],")?;
+    }
+    Ok(())
 }
 
 fn place(tile: TileId) -> String {

@@ -26,7 +26,7 @@ pub(super) fn read_over(node: Node<'_>, base: Look) -> Option<Look> {
     Some(Look { shape: shape?, face: face?, lit: lit?, ink: ink?, icon: icon? })
 }
 
-fn colour(node: Node<'_>) -> Option<Colour> {
+pub(super) fn colour(node: Node<'_>) -> Option<Colour> {
     let text = node.text(64)?;
     if let Ok(colour) = text.parse() {
         return Some(colour);

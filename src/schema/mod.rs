@@ -6,7 +6,7 @@
 //! ```text
 //! bytes -source-> text -scan-> brackets that close, bounded nesting
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range
-//!   -page, control, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
+//!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 
 mod ahap;
@@ -26,7 +26,10 @@ mod feel;
 mod fields;
 mod floor;
 mod floor_maps;
+mod floor_sound;
 mod floor_text;
+mod ground;
+mod ground_parts;
 mod inherit;
 mod kind;
 mod look;

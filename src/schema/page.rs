@@ -7,6 +7,7 @@ use super::control::Control;
 use super::diagnostic::Diagnostics;
 use super::effect;
 use super::fields::Fields;
+use super::ground::{self, Plot};
 use super::inherit::Choice;
 use super::kind::Kinds;
 use super::node::Node;
@@ -81,6 +82,8 @@ pub(super) struct Page<'r> {
     pub(super) stances: Vec<Zone<'r>>,
     pub(super) pages: Vec<Sheet<'r>>,
     /// Those of all pages.
+    pub(super) grounds: Vec<Plot>,
+    /// Those of all pages.
     pub(super) controls: Vec<Control>,
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
@@ -114,12 +117,13 @@ impl<'r> Page<'r> {
         let mut room = MAX_WIDGETS;
         let widgets = fields.take("widgets");
         let mut controls = widgets.map(|node| arrange::read(node, &kinds, &mut room)).unwrap_or_default();
-        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls);
+        let mut grounds = ground::read(&mut fields, None);
+        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls, &mut grounds);
         let widgets_at = fields.span("widgets");
         fields.finish();
         let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
         let units = node.reader.units();
-        Some(Self { title, units, regions, stances, pages, controls, regions_known, widgets_at })
+        Some(Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at })
     }
 
     /// The region whose area holds the middle of `area`.
@@ -163,6 +167,7 @@ impl<'r> Page<'r> {
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
             pages: self.pages.iter().map(Sheet::checked).collect::<Option<_>>()?,
+            grounds: self.grounds.iter().map(|plot| plot.checked(geometry, units)).collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
     }

@@ -13,6 +13,7 @@ use std::ops::Range;
 use super::arrange;
 use super::control::Control;
 use super::fields::Fields;
+use super::ground::{self, Plot};
 use super::inherit::Choice;
 use super::node::Node;
 use super::page::{self, Page};
@@ -42,8 +43,13 @@ pub(super) fn read<'r>(
     kinds: &Choice<'_>,
     room: &mut usize,
     controls: &mut Vec<Control>,
+    grounds: &mut Vec<Plot>,
 ) -> Vec<Sheet<'r>> {
-    let (pages, _) = page::list(fields, "pages", "page", |node| Sheet::read(node, kinds, room));
+    let mut number = 0;
+    let (pages, _) = page::list(fields, "pages", "page", |node| {
+        number += 1;
+        Sheet::read(node, kinds, room, (number - 1, &mut *grounds))
+    });
     let mut sheets = Vec::with_capacity(pages.len());
     for (number, (sheet, own)) in pages.into_iter().enumerate() {
         controls.extend(own.into_iter().map(|mut control| {
@@ -88,12 +94,18 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
 }
 
 impl<'r> Sheet<'r> {
-    fn read(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<(Self, Vec<Control>)> {
+    fn read(
+        node: Node<'r>,
+        kinds: &Choice<'_>,
+        room: &mut usize,
+        (number, grounds): (usize, &mut Vec<Plot>),
+    ) -> Option<(Self, Vec<Control>)> {
         let mut fields = node.fields("Page")?;
         let id = fields.read("id", None, |node| node.id());
         let title = fields.read("title", Some(""), |node| node.text(200));
         let widgets = fields.take("widgets");
         let controls = widgets.map(|node| arrange::read(node, kinds, room)).unwrap_or_default();
+        grounds.extend(ground::read(&mut fields, Some(number)));
         let id_at = fields.span("id");
         fields.finish();
         Some((Self { id, id_at, title }, controls))

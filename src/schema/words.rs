@@ -2,7 +2,14 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(super) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 10] = [
+    const UNITS: [(&str, &str); 17] = [
+        ("_n_s_m", " N s/m"),
+        ("_n_m", " N/m"),
+        ("_kg", " kg"),
+        ("_m_per_j", " m/J"),
+        ("_per_j_s", " per joule second"),
+        ("_per_j", " per joule"),
+        ("_j", " J"),
         ("_m_s", " m/s"),
         ("_per_volt", " per volt"),
         ("_ms", " ms"),

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use crate::floor::Floor;
+use crate::ground::Material;
 use crate::layout::{Layout, Widget};
 use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
 use crate::wire::{COMMANDS, Command, Prefix, Takes};
@@ -109,6 +110,25 @@ impl Maker<'_> {
         self.add(Direction::Out, "contact", contact, "One contact, in the bundle of `contacts`.");
         let states = vec![argument("state", "s", "waiting, live, partial or lost")];
         self.add(Direction::Out, "health", states, "Whether the boards send, when that changes.");
+        let device = vec![
+            argument("device", "s", ""),
+            argument("state", "s", "playing, lost, faulty or unfit"),
+            argument("why", "s", "empty while it plays"),
+            argument("channels", "i", ""),
+            argument("sample_rate", "i", "Hz"),
+            argument("block", "i", "frames"),
+            argument("underruns", "i", ""),
+            argument("reopened", "i", ""),
+            argument("priority", "s", "real-time, denied or host"),
+        ];
+        self.add(Direction::Out, "device", device, "What moves the actuators, when that changes.");
+        if layout.grounds.iter().any(|ground| matches!(ground.material, Material::Ice(_))) {
+            let mut crack =
+                vec![argument("seed", "i", "where cracks come from"), argument("energy", "f", "J")];
+            crack.extend(place());
+            crack.push(argument("skipped", "i", "cracks since the last message that were not told"));
+            self.add(Direction::Out, "crack", crack, "The ice has cracked; 200 times a second at most.");
+        }
         let page = |range: &str| vec![argument("page", "s", range)];
         if !layout.pages.is_empty() {
             self.add(Direction::Out, "page", page(&pages(layout)), "Another page is shown.");

@@ -9,11 +9,11 @@ use triple_buffer::Input;
 use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, LinkState, Snapshot};
-use crate::feel::{CueSender, Effect, Gesture};
+use crate::feel::{CueSender, DeviceStatus, Effect, Gesture};
 use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
-use crate::sink::{ActuatorSink, EventSink};
+use crate::sink::{ActuatorSink, EventSink, LatencyStages};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{ControlMessage, LinkCounters, Prefix, Request, write_error};
@@ -92,6 +92,11 @@ pub struct Server {
     told: Option<(Instant, SensorHealth)>,
     /// How they are, for comparing.
     health: SensorHealth,
+    /// How the device is doing, if there is one, and what was last told of it.
+    device: Option<DeviceStatus>,
+    device_told: Option<(Instant, DeviceStatus)>,
+    /// Measures latency, if wanted, and when the last packet was taken.
+    latency: Option<(LatencyStages, Instant)>,
     /// Until when nothing new is looked for.
     looked: Instant,
     /// Whether it has been said that this seems to be another floor.
@@ -129,6 +134,9 @@ impl Server {
             uncalibrated: 0,
             told: None,
             health: SensorHealth::default(),
+            device: None,
+            device_told: None,
+            latency: None,
             looked: Instant::START,
             said_foreign: false,
             shown: Instant::START,
@@ -150,6 +158,13 @@ impl Server {
     pub fn with_feel(mut self, feel: CueSender, actuators: Box<dyn ActuatorSink>) -> Self {
         self.feel = Some(feel);
         self.actuators = Some(actuators);
+        self
+    }
+
+    /// Measures in `stages` how long packets take to become cues; what follows is the sink's to measure.
+    #[must_use]
+    pub fn with_latency(mut self, stages: LatencyStages) -> Self {
+        self.latency = Some((stages, Instant::START));
         self
     }
 
@@ -199,6 +214,7 @@ impl Server {
         snapshot.link = self.link;
         snapshot.counters = self.counters();
         self.assembler.health(&mut snapshot.health);
+        snapshot.device.clone_from(&self.device);
         snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
         snapshot.unsent_events = self.unsent_events();
     }
@@ -224,7 +240,12 @@ impl Server {
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.obey();
         match self.source.next(PATIENCE) {
-            Ok(Some(packet)) => self.assembler.take(&packet),
+            Ok(Some(packet)) => {
+                if let Some((_, taken)) = &mut self.latency {
+                    *taken = self.source.now();
+                }
+                self.assembler.take(&packet);
+            }
             Ok(None) => {
                 let now = self.source.now();
                 self.assembler.poll(now);
@@ -249,6 +270,14 @@ impl Server {
         let at = frame.at;
         let step = self.engine.step(frame);
         if let Some(feel) = &mut self.feel {
+            if let Some((stages, taken)) = self.latency.as_ref().filter(|_| !step.cues.is_empty()) {
+                let now = self.source.now();
+                feel.note_time(now);
+                for cue in step.cues {
+                    stages.link.record(taken.since(cue.received));
+                    stages.engine.record(now.since(*taken));
+                }
+            }
             for cue in step.cues {
                 // What could not be sent is counted by the sender.
                 feel.send(cue);
@@ -266,6 +295,9 @@ impl Server {
             events.events(step.events);
             if let Some(page) = step.page {
                 events.page(page);
+            }
+            if !step.grounds.is_empty() {
+                events.ground(step.grounds);
             }
             events.contacts(at, step.contacts);
         }
@@ -389,6 +421,7 @@ impl Server {
         // Qualities come and go with single readings: what is told is looked at some times a second.
         self.looked = now + HEALTH_LOOK;
         self.note_foreign();
+        self.note_device(now);
         self.assembler.health(&mut self.health);
         let known = self.told.as_ref();
         let is_due =
@@ -408,6 +441,26 @@ impl Server {
             }
             None => self.told = Some((now, self.health.clone())),
         }
+    }
+
+    /// Tells how the device is doing when that has changed, once a second at most.
+    fn note_device(&mut self, now: Instant) {
+        let Some(actuators) = &self.actuators else { return };
+        let mut status = self.device.take().unwrap_or_default();
+        if !actuators.device(&mut status) {
+            return;
+        }
+        let is_news = match &self.device_told {
+            Some((at, told)) => now.since(*at) >= HEALTH_PERIOD && status.is_news_after(told),
+            None => true,
+        };
+        if is_news {
+            if let Some(events) = &mut self.events {
+                events.device(now, &status);
+            }
+            self.device_told = Some((now, status.clone()));
+        }
+        self.device = Some(status);
     }
 
     /// Says once that the floor file seems to be another floor's.

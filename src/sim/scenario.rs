@@ -108,6 +108,9 @@ impl Scenario {
     /// The built-in session on the shipped layout `map`: walk on, press a button, drag a slider, flip a switch, walk off.
     pub const SESSION: &str = include_str!("scenarios/session.ron");
 
+    /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of 6 x 5 tiles and more.
+    pub const STROLL: &str = include_str!("scenarios/stroll.ron");
+
     /// The scenario written in `text`; `file` is what messages call it.
     ///
     /// # Errors
@@ -347,6 +350,7 @@ mod tests {
             }],
             stances: Vec::new(),
             pages: Vec::new(),
+            grounds: Vec::new(),
             widgets: vec![
                 widget("zoom_in", "button", tiles(2.6, 1.6, 0.6, 0.6), button.clone()),
                 widget("layers", "button", tiles(3.4, 1.6, 0.6, 0.6), button),

@@ -1,21 +1,32 @@
 //! Actuators and loudspeakers through the sound card; the only user of cpal.
 
 mod block_clock;
+mod cards;
 mod choice;
 mod mixdown;
+mod paced;
 mod player;
+mod priority;
+mod resample;
+mod stream;
+mod supervisor;
+mod watch;
 
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, Instant as HostInstant};
 
-use cpal::traits::{DeviceTrait, HostTrait, StreamTrait};
-use cpal::{DeviceId, ErrorKind, FromSample, I24, SampleFormat, SizedSample, U24};
+use cpal::ErrorKind;
 
+use self::cards::{Card, Cards, System};
+pub use self::cards::{DeviceEntry, output_devices};
 use self::choice::Choice;
-use self::mixdown::Mixdown;
 use self::player::Player;
+use self::priority::Ask;
+use self::supervisor::{Charge, Supervisor};
 use super::{ActuatorSink, LatencyProbe, SinkError};
-use crate::feel::Renderer;
+use crate::feel::{DeviceStatus, Renderer};
 use crate::floor::Floor;
 use crate::units::HostClock;
 use crate::units::Instant;
@@ -35,12 +46,17 @@ pub enum Mix {
 /// What is wanted of a device.
 #[derive(Clone)]
 pub struct DeviceOptions {
-    /// The device's name or a part of it, or what the system calls it (`hw:1,0`); the system's own choice if absent.
+    /// The device's name or a part of it, what the system calls it (`hw:1,0`), its identifier
+    /// ([`DeviceEntry::id`]), a host (`jack`), or `paced`: a clock that stands in for a card. The
+    /// system's own choice if absent: whatever that is at the start, it is never left for another.
     pub name: Option<String>,
     /// Samples per second; 48 or 96 kHz if absent and there is a choice.
     pub sample_rate: Option<u32>,
-    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered.
-    pub block: u32,
+    /// Whether samples are converted where the device has not that rate; otherwise it is refused.
+    pub resample: bool,
+    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered. If absent, 128
+    /// (64 of `paced`) to begin with, and more when samples come late again and again.
+    pub block: Option<u32>,
     /// How the floor's channels go onto those of the device.
     pub mix: Mix,
     /// With the clock that stamps cues, each is played exactly the renderer's delay after its cause; without, as soon as possible.
@@ -50,9 +66,17 @@ pub struct DeviceOptions {
 }
 
 impl Default for DeviceOptions {
-    /// The system's own choice, in blocks of 128 frames, one channel per actuator, each cue as soon as possible.
+    /// The system's own choice, as it likes to be played, one channel per actuator, each cue as soon as possible.
     fn default() -> Self {
-        Self { name: None, sample_rate: None, block: 128, mix: Mix::default(), steady: None, latency: None }
+        Self {
+            name: None,
+            sample_rate: None,
+            resample: false,
+            block: None,
+            mix: Mix::default(),
+            steady: None,
+            latency: None,
+        }
     }
 }
 
@@ -60,11 +84,14 @@ impl Default for DeviceOptions {
 ///
 /// It tells the sample rate that the renderer must be made for.
 pub struct OutputDevice {
-    device: cpal::Device,
+    cards: Arc<dyn Cards>,
+    card: Card,
     name: String,
     choice: Choice,
     floor: Floor,
     options: DeviceOptions,
+    block_is_asked: bool,
+    ask: Option<Ask>,
 }
 
 impl OutputDevice {
@@ -74,23 +101,29 @@ impl OutputDevice {
     /// [`SinkError::Device`] if there is no such device or it can't do what is
     /// asked; the message says what it can do, and what to do about it.
     pub fn find(floor: &Floor, options: DeviceOptions) -> Result<Self, SinkError> {
-        let host = cpal::default_host();
-        let device = match &options.name {
-            None => host.default_output_device(),
-            Some(name) => named(&host, name),
-        };
-        match device {
-            Some(device) => Self::with(device, floor, options),
-            None => Err(missing(options.name.as_deref())),
-        }
+        Self::find_among(System::shared(), floor, options)
     }
 
-    fn with(device: cpal::Device, floor: &Floor, options: DeviceOptions) -> Result<Self, SinkError> {
-        let name = device.to_string();
-        let ranges =
-            device.supported_output_configs().map_err(|error| trouble(&name, &error))?.collect::<Vec<_>>();
-        let choice = choice::choose(&name, &ranges, floor.channel_count(), &options)?;
-        Ok(Self { device, name, choice, floor: floor.clone(), options })
+    fn find_among(
+        cards: Arc<dyn Cards>,
+        floor: &Floor,
+        mut options: DeviceOptions,
+    ) -> Result<Self, SinkError> {
+        let card = match &options.name {
+            None => cards.chosen_by_system(),
+            Some(name) => cards.by_id(name).or_else(|| cards.by_name(name)),
+        };
+        let Some(card) = card else { return Err(missing(options.name.as_deref(), &cards.names())) };
+        let block_is_asked = options.block.is_some();
+        if matches!(card, Card::Paced) {
+            options.block.get_or_insert(paced::BLOCK);
+            options.sample_rate.get_or_insert(paced::SAMPLE_RATE);
+        }
+        let name = card.name();
+        let ranges = card.ranges().map_err(|error| trouble(&name, &error))?;
+        let choice = choice::choose(&name, &ranges, floor, &options)?;
+        let (floor, ask) = (floor.clone(), Some(priority::ask_system as Ask));
+        Ok(Self { cards, card, name, choice, floor, options, block_is_asked, ask })
     }
 
     /// The device's name.
@@ -102,6 +135,15 @@ impl OutputDevice {
     /// Samples per second that the renderer must give.
     #[must_use]
     pub fn sample_rate(&self) -> u32 {
+        match self.options.sample_rate {
+            Some(asked) if self.options.resample => asked,
+            _ => self.choice.sample_rate,
+        }
+    }
+
+    /// Samples per second of the device itself: another rate only where conversion was asked for.
+    #[must_use]
+    pub fn device_rate(&self) -> u32 {
         self.choice.sample_rate
     }
 
@@ -113,163 +155,112 @@ impl OutputDevice {
 
     /// Starts playing what `renderer` gives.
     ///
+    /// From now on the device is looked after on a thread of its own: when it
+    /// is lost or hangs, it is opened again as soon as it can be, and what
+    /// happened meanwhile is not felt.
+    ///
     /// # Errors
     /// [`SinkError::Device`] if the renderer was made for another sample rate,
     /// or the device is in use, gone, or can't be played after all.
     pub fn play(self, renderer: Renderer) -> Result<DeviceSink, SinkError> {
-        if renderer.sample_rate() != self.choice.sample_rate {
-            let (made_for, wanted) = (renderer.sample_rate(), self.choice.sample_rate);
+        DeviceSink::keep(self.supervise(renderer)?)
+    }
+
+    fn supervise(mut self, renderer: Renderer) -> Result<Supervisor, SinkError> {
+        if renderer.sample_rate() != self.sample_rate() {
+            let (made_for, wanted) = (renderer.sample_rate(), self.sample_rate());
             return Err(SinkError::Device {
                 message: format!("{} plays {wanted} samples per second, not {made_for}", self.name),
             });
         }
-        let shared = Arc::new(Shared::default());
-        let mixdown =
-            Mixdown::new(&self.floor, self.options.mix, renderer.channels(), self.choice.channels.into());
-        let player = Player::new(renderer, mixdown, self.options.steady, self.options.latency);
-        let stream = match self.choice.format {
-            SampleFormat::I8 => stream::<i8>(&self.device, self.choice, player, &shared),
-            SampleFormat::I16 => stream::<i16>(&self.device, self.choice, player, &shared),
-            SampleFormat::I24 => stream::<I24>(&self.device, self.choice, player, &shared),
-            SampleFormat::I32 => stream::<i32>(&self.device, self.choice, player, &shared),
-            SampleFormat::U8 => stream::<u8>(&self.device, self.choice, player, &shared),
-            SampleFormat::U16 => stream::<u16>(&self.device, self.choice, player, &shared),
-            SampleFormat::U24 => stream::<U24>(&self.device, self.choice, player, &shared),
-            SampleFormat::U32 => stream::<u32>(&self.device, self.choice, player, &shared),
-            SampleFormat::F64 => stream::<f64>(&self.device, self.choice, player, &shared),
-            _ => stream::<f32>(&self.device, self.choice, player, &shared),
-        };
-        let stream = stream.map_err(|error| trouble(&self.name, &error))?;
-        stream.play().map_err(|error| trouble(&self.name, &error))?;
-        Ok(DeviceSink { _stream: stream, shared, name: self.name, choice: self.choice })
+        // The renderer can't be made anew when the device comes back.
+        self.options.sample_rate = Some(renderer.sample_rate());
+        let player = Player::new(renderer, &self.floor, &self.options, self.choice);
+        let Self { cards, card, choice, floor, options, block_is_asked, ask, .. } = self;
+        Supervisor::begin(Charge { cards, card, choice, floor, options, block_is_asked, ask }, player)
     }
 }
 
-/// The names of all devices that can play something, for a list to choose from; empty if there is none.
-#[must_use]
-pub fn output_device_names() -> Vec<String> {
-    cpal::default_host()
-        .output_devices()
-        .map(|devices| devices.map(|device| device.to_string()).collect())
-        .unwrap_or_default()
-}
+/// How often a device is looked after.
+const TICK: Duration = Duration::from_millis(20);
+
+/// How long the end of the program waits for a device to be closed.
+const FAREWELL: Duration = Duration::from_secs(1);
 
 /// A floor's actuators, or a designer's loudspeakers, on a sound card.
 ///
 /// The device keeps its own time: its callback renders, and does nothing else.
 /// Dropping the sink stops it.
 pub struct DeviceSink {
-    _stream: cpal::Stream,
-    shared: Arc<Shared>,
-    name: String,
-    choice: Choice,
+    status: Arc<Mutex<DeviceStatus>>,
+    /// `None` only while being dropped.
+    stop: Option<Sender<()>>,
+    stopped: Receiver<()>,
 }
 
 impl DeviceSink {
-    /// How the device is doing.
-    #[must_use]
-    pub fn status(&self) -> DeviceStatus {
-        DeviceStatus {
-            name: self.name.clone(),
-            sample_rate: self.choice.sample_rate,
-            channels: self.choice.channels,
-            blocks: self.shared.blocks.load(Ordering::Relaxed),
-            underruns: self.shared.underruns.load(Ordering::Relaxed),
-            lost: self.shared.lost.get().cloned(),
+    fn keep(mut supervisor: Supervisor) -> Result<Self, SinkError> {
+        let status = supervisor.status();
+        let (stop, told) = channel::<()>();
+        let (stopping, stopped) = channel();
+        let begun = HostInstant::now();
+        let work = move || {
+            while told.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                supervisor.tick(begun.elapsed());
+            }
+            drop(supervisor);
+            // Whoever waits may have given up.
+            let _ = stopping.send(());
+        };
+        let spawned = thread::Builder::new().name("sound card".into()).spawn(work);
+        spawned.map_err(|error| SinkError::Device {
+            message: format!(
+                "the sound card can't be looked after, since there is no thread to be had: {error}"
+            ),
+        })?;
+        Ok(Self { status, stop: Some(stop), stopped })
+    }
+}
+
+impl Drop for DeviceSink {
+    /// Closes the device, but does not wait for ever for one that hangs.
+    fn drop(&mut self) {
+        self.stop = None;
+        if self.stopped.recv_timeout(FAREWELL).is_err() {
+            tracing::warn!("the sound card does not let itself be closed");
         }
     }
 }
 
 impl ActuatorSink for DeviceSink {
-    /// Does nothing, since the device keeps its own time; a device that was lost is told of once.
+    /// Does nothing, since the device keeps its own time; one that does not play comes back by itself.
     fn advance(&mut self, _now: Instant) -> Result<(), SinkError> {
-        match self.shared.lost.get() {
-            Some(reason) if !self.shared.told.swap(true, Ordering::Relaxed) => Err(SinkError::Device {
-                message: format!("{} is lost ({reason}): plug it in again and restart", self.name),
-            }),
-            _ => Ok(()),
-        }
+        Ok(())
+    }
+
+    fn device(&self, status: &mut DeviceStatus) -> bool {
+        status.clone_from(&self.status.lock().unwrap_or_else(PoisonError::into_inner));
+        true
     }
 }
 
-/// How a device is doing.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct DeviceStatus {
-    /// Its name.
-    pub name: String,
-    /// Samples per second.
-    pub sample_rate: u32,
-    /// Channels in use or kept silent.
-    pub channels: u16,
-    /// Blocks played so far: if this stands still, the device hangs.
-    pub blocks: u64,
-    /// Times when samples came too late for the device.
-    pub underruns: u64,
-    /// Why it plays no more; `None` while it plays.
-    pub lost: Option<String>,
-}
-
-/// What the callbacks tell.
-#[derive(Debug, Default)]
-struct Shared {
-    blocks: AtomicU64,
-    underruns: AtomicU64,
-    lost: OnceLock<String>,
-    /// Whether [`DeviceSink::advance`] has told that it is lost.
-    told: AtomicBool,
-}
-
-impl Shared {
-    fn note(&self, error: &cpal::Error) {
-        match error.kind() {
-            ErrorKind::Xrun => {
-                self.underruns.fetch_add(1, Ordering::Relaxed);
-            }
-            ErrorKind::DeviceNotAvailable
-            | ErrorKind::StreamInvalidated
-            | ErrorKind::HostUnavailable
-            | ErrorKind::PermissionDenied => {
-                // Only the first reason counts; the rest follow from it.
-                let _ = self.lost.set(error.to_string());
-            }
-            _ => tracing::warn!("sound card: {error}"),
+fn missing(name: Option<&str>, names: &[String]) -> SinkError {
+    let message = match name {
+        Some(name) if cfg!(not(feature = "jack")) && name.to_lowercase().starts_with("jack") => {
+            "this program was built without JACK: build it with `--features jack`, which needs JACK's headers \
+             (Debian: libjack-jackd2-dev)"
+                .into()
         }
-    }
-}
-
-fn stream<T: SizedSample + FromSample<f32>>(
-    device: &cpal::Device,
-    choice: Choice,
-    mut player: Player,
-    shared: &Arc<Shared>,
-) -> Result<cpal::Stream, cpal::Error> {
-    let (played, failed) = (Arc::clone(shared), Arc::clone(shared));
-    device.build_output_stream::<T, _, _>(
-        choice.stream_config(),
-        move |out, _| {
-            player.fill(out);
-            played.blocks.fetch_add(1, Ordering::Relaxed);
-        },
-        move |error| failed.note(&error),
-        None,
-    )
-}
-
-/// The device of that very name or identifier, or else the first that has it in its name, or what the system knows by it.
-fn named(host: &cpal::Host, name: &str) -> Option<cpal::Device> {
-    let wanted = name.to_lowercase();
-    let find = |fits: &dyn Fn(&cpal::Device) -> bool| host.output_devices().ok()?.find(fits);
-    find(&|device| device.id().is_ok_and(|id| id.id() == name) || device.to_string().to_lowercase() == wanted)
-        .or_else(|| find(&|device| device.to_string().to_lowercase().contains(&wanted)))
-        .or_else(|| host.device_by_id(&DeviceId::new(host.id(), name)))
-}
-
-fn missing(name: Option<&str>) -> SinkError {
-    let message = match (name, output_device_names()) {
-        (Some(name), names) if !names.is_empty() => {
-            format!("there is no sound card `{name}`: choose one of {}", names.join(", "))
+        Some(name) if !names.is_empty() => {
+            format!(
+                "there is no sound card `{name}`: choose one of {}, or `paced` for a clock without sound",
+                names.join(", ")
+            )
         }
-        _ => "no sound card was found: connect one, record to a WAV file, or go on without".into(),
+        Some(name) => {
+            format!("there is no sound card `{name}` and no other: `underfoot rack devices` lists all")
+        }
+        None => "no sound card was found: connect one, record to a WAV file, or go on without".into(),
     };
     SinkError::Device { message }
 }

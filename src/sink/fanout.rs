@@ -1,5 +1,7 @@
 use super::EventSink;
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -49,12 +51,20 @@ impl EventSink for Fanout {
         self.sinks.iter_mut().for_each(|sink| sink.page(page));
     }
 
+    fn ground(&mut self, events: &[GroundEvent]) {
+        self.sinks.iter_mut().for_each(|sink| sink.ground(events));
+    }
+
     fn link(&mut self, at: Instant, state: LinkState) {
         self.sinks.iter_mut().for_each(|sink| sink.link(at, state));
     }
 
     fn health(&mut self, at: Instant, health: &SensorHealth) {
         self.sinks.iter_mut().for_each(|sink| sink.health(at, health));
+    }
+
+    fn device(&mut self, at: Instant, status: &DeviceStatus) {
+        self.sinks.iter_mut().for_each(|sink| sink.device(at, status));
     }
 
     fn dropped(&self) -> u64 {

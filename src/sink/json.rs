@@ -3,10 +3,13 @@ use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
+use super::crackle::{CrackNews, Crackle};
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
@@ -19,6 +22,8 @@ use crate::wire::link_name;
 /// {"t_s":9.876,"event":"link","state":"lost"}
 /// {"t_s":9.9,"event":"page","page":"settings"}
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
+/// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
+/// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
@@ -28,6 +33,7 @@ use crate::wire::link_name;
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
+    crackle: Crackle,
 }
 
 #[derive(Debug)]
@@ -35,7 +41,9 @@ enum Job {
     Event(WidgetEvent),
     Link(Instant, LinkState),
     Page(PageShown),
+    Crack(CrackNews),
     Health(Instant, SensorHealth),
+    Device(Instant, DeviceStatus),
 }
 
 impl JsonSink {
@@ -53,7 +61,7 @@ impl JsonSink {
             }
         })
         .map_err(failed)?;
-        Ok(Self { worker })
+        Ok(Self { worker, crackle: Crackle::default() })
     }
 }
 
@@ -70,12 +78,24 @@ impl EventSink for JsonSink {
         self.worker.offer(Job::Page(page.clone()));
     }
 
+    fn ground(&mut self, events: &[GroundEvent]) {
+        for event in events {
+            if let Some(news) = self.crackle.news(event) {
+                self.worker.offer(Job::Crack(news));
+            }
+        }
+    }
+
     fn link(&mut self, at: Instant, state: LinkState) {
         self.worker.offer(Job::Link(at, state));
     }
 
     fn health(&mut self, at: Instant, health: &SensorHealth) {
         self.worker.offer(Job::Health(at, health.clone()));
+    }
+
+    fn device(&mut self, at: Instant, status: &DeviceStatus) {
+        self.worker.offer(Job::Device(at, status.clone()));
     }
 
     fn dropped(&self) -> u64 {
@@ -104,14 +124,38 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
             let (t_s, page) = (seconds(shown.at), shown.page.as_str());
             serde_json::to_vec(&PageLine { t_s, event: "page", page })?
         }
+        Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
+            let t_s = seconds(*at);
+            serde_json::to_vec(&CrackLine {
+                t_s,
+                event: "crack",
+                seed: *seed,
+                energy_j: *energy_j,
+                x_m: *x_m,
+                y_m: *y_m,
+                skipped: *skipped,
+            })?
+        }
         Job::Link(at, state) => {
             let (t_s, state) = (seconds(*at), link_name(*state));
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
         }
         Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,
+        Job::Device(at, status) => serde_json::to_vec(&DeviceLine::of(*at, status))?,
     };
     line.push(b'\n');
     out.write_all(&line)
+}
+
+#[derive(Serialize)]
+struct CrackLine {
+    t_s: f64,
+    event: &'static str,
+    seed: u32,
+    energy_j: f32,
+    x_m: f32,
+    y_m: f32,
+    skipped: u32,
 }
 
 #[derive(Serialize)]
@@ -151,6 +195,39 @@ struct HealthLine {
     uncalibrated: u32,
     foreign: bool,
     troubles: Vec<TroubleEntry>,
+}
+
+#[derive(Serialize)]
+struct DeviceLine<'a> {
+    t_s: f64,
+    event: &'static str,
+    device: &'a str,
+    state: &'static str,
+    why: &'a str,
+    channels: u16,
+    sample_rate: u32,
+    block: u32,
+    underruns: u64,
+    reopened: u64,
+    priority: &'static str,
+}
+
+impl<'a> DeviceLine<'a> {
+    fn of(at: Instant, status: &'a DeviceStatus) -> Self {
+        Self {
+            t_s: seconds(at),
+            event: "device",
+            device: &status.name,
+            state: status.state.name(),
+            why: &status.why,
+            channels: status.channels,
+            sample_rate: status.sample_rate,
+            block: status.block,
+            underruns: status.underruns,
+            reopened: status.reopened,
+            priority: status.priority.name(),
+        }
+    }
 }
 
 #[derive(Serialize)]
@@ -332,5 +409,21 @@ mod tests {
             sink.events(&[event(EventKind::Pressed, None)]);
             std::thread::yield_now();
         }
+    }
+
+    #[test]
+    fn a_device_that_is_lost_says_why() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        let state = crate::feel::DeviceState::Lost;
+        let why = "unplugged".into();
+        let status =
+            DeviceStatus { name: "Card".into(), state, why, channels: 36, ..DeviceStatus::default() };
+        sink.device(Instant::from_millis(9900), &status);
+        drop(sink);
+        let line: String = lines.iter().collect();
+        let start =
+            r#"{"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"#;
+        assert!(line.starts_with(start), "{line}");
     }
 }

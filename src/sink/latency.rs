@@ -6,8 +6,8 @@ use std::time::Duration;
 use crate::feel::Onset;
 use crate::units::{HostClock, Instant};
 
-/// Buckets per doubling of the latency: a quantile is at most 0.8 % off.
-const FINENESS: u64 = 128;
+/// Buckets per doubling of the latency: a quantile is at most 0.1 % off.
+const FINENESS: u64 = 1024;
 
 /// Longest latency told apart: 67 seconds.
 const LONGEST_US: u64 = (1 << 26) - 1;
@@ -36,6 +36,19 @@ impl LatencyMeter {
         if let Some(counter) = self.buckets.get(bucket(micros)) {
             counter.fetch_add(1, Ordering::Relaxed);
         }
+    }
+
+    /// How many latencies lay between which bounds, shortest first; what nobody took is left out.
+    pub fn buckets(&self) -> impl Iterator<Item = Bucket> + '_ {
+        self.buckets.iter().enumerate().filter_map(|(index, count)| {
+            let count = count.load(Ordering::Relaxed);
+            let (from, to) = (bucket_low(index), bucket_low(index + 1));
+            (count > 0).then(|| Bucket {
+                from: Duration::from_micros(from),
+                to: Duration::from_micros(to),
+                count,
+            })
+        })
     }
 
     /// What was recorded so far; `None` if nothing was.
@@ -78,7 +91,18 @@ impl fmt::Debug for LatencyMeter {
     }
 }
 
-/// The distribution of the latencies that a [`LatencyMeter`] has gathered; exact to 0.8 %.
+/// Latencies that were about equal.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Bucket {
+    /// The shortest that counts here.
+    pub from: Duration,
+    /// The shortest that counts no longer.
+    pub to: Duration,
+    /// How many there were, at least 1.
+    pub count: u64,
+}
+
+/// The distribution of the latencies that a [`LatencyMeter`] has gathered; exact to 0.1 %.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LatencySummary {
     /// How many there were, at least 1.
@@ -109,10 +133,34 @@ impl fmt::Display for LatencySummary {
     }
 }
 
+/// The way of a packet that is felt, stage by stage; clones share what they gather.
+#[derive(Clone, Debug, Default)]
+pub struct LatencyStages {
+    /// From the packet's arrival, as the system has it, until it was taken by the sensing thread.
+    pub link: LatencyMeter,
+    /// From there until its cue was sent to the renderer.
+    pub engine: LatencyMeter,
+    /// From there until the device's callback handed on its first sample.
+    pub audio: LatencyMeter,
+    /// All of that: from the packet to the callback.
+    pub whole: LatencyMeter,
+    /// From the packet until the first sample sounds, by the device's own account.
+    pub sounding: LatencyMeter,
+}
+
+/// When the samples of a block sound; by default nobody knows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct HandedOn {
+    /// When the block's first sample sounds, if the device says so.
+    pub sounds: Option<Instant>,
+    /// The block's samples per second.
+    pub sample_rate: u32,
+}
+
 /// Measures how long packets take until the first sample they caused is handed on.
 #[derive(Clone)]
 pub struct LatencyProbe {
-    meter: LatencyMeter,
+    stages: LatencyStages,
     clock: HostClock,
 }
 
@@ -120,7 +168,13 @@ impl LatencyProbe {
     /// A probe that fills `meter`; `clock` is the one that stamped the packets' arrival.
     #[must_use]
     pub fn new(meter: LatencyMeter, clock: HostClock) -> Self {
-        Self { meter, clock }
+        Self::of_stages(LatencyStages { whole: meter, ..LatencyStages::default() }, clock)
+    }
+
+    /// A probe that fills those of `stages` that end with the device; `clock` is the one that stamped the packets' arrival.
+    #[must_use]
+    pub fn of_stages(stages: LatencyStages, clock: HostClock) -> Self {
+        Self { stages, clock }
     }
 
     /// The time on the probe's clock.
@@ -133,20 +187,26 @@ impl LatencyProbe {
     ///
     /// # Real-time
     /// Reads the clock once, and only if there is an onset.
-    pub fn handed_on(&self, onsets: &[Onset]) {
+    pub fn handed_on(&self, onsets: &[Onset], block: HandedOn) {
         if onsets.is_empty() {
             return;
         }
         let now = self.now();
         for onset in onsets {
-            self.meter.record(now.since(onset.received));
+            self.stages.audio.record(now.since(onset.sent));
+            self.stages.whole.record(now.since(onset.received));
+            if let Some(sounds) = block.sounds {
+                let into = onset.frame as f64 / f64::from(block.sample_rate.max(1));
+                let sounds = sounds + Duration::from_secs_f64(into);
+                self.stages.sounding.record(sounds.since(onset.received));
+            }
         }
     }
 }
 
 impl fmt::Debug for LatencyProbe {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("LatencyProbe").field("meter", &self.meter).finish_non_exhaustive()
+        f.debug_struct("LatencyProbe").field("stages", &self.stages).finish_non_exhaustive()
     }
 }
 
@@ -159,15 +219,19 @@ const fn bucket(micros: u64) -> usize {
     (FINENESS * (octave + 1) + (micros >> octave) - FINENESS) as usize
 }
 
-/// The middle of the latencies that fall into a bucket, in microseconds.
-const fn bucket_middle(index: usize) -> u64 {
+/// The shortest latency that falls into a bucket, in microseconds.
+const fn bucket_low(index: usize) -> u64 {
     let index = index as u64;
     if index < FINENESS {
         return index;
     }
-    let octave = index / FINENESS - 1;
-    let low = (index % FINENESS + FINENESS) << octave;
-    low + (1 << octave) / 2
+    (index % FINENESS + FINENESS) << (index / FINENESS - 1)
+}
+
+/// The middle of the latencies that fall into a bucket, in microseconds.
+const fn bucket_middle(index: usize) -> u64 {
+    let low = bucket_low(index);
+    low + (bucket_low(index + 1) - low) / 2
 }
 
 #[cfg(test)]
@@ -176,9 +240,9 @@ mod tests {
 
     #[test]
     fn every_latency_falls_near_the_middle_of_its_bucket() {
-        for micros in (0..2000).chain([4567, 99_999, 1_234_567, LONGEST_US]) {
+        for micros in (0..5000).chain([4567, 99_999, 1_234_567, LONGEST_US]) {
             let middle = bucket_middle(bucket(micros));
-            assert!(middle.abs_diff(micros) <= micros / 128, "{micros}: {middle}");
+            assert!(middle.abs_diff(micros) <= micros / 1024, "{micros}: {middle}");
         }
     }
 
@@ -206,7 +270,23 @@ mod tests {
     fn a_probe_measures_from_arrival_to_hand_over() {
         let meter = LatencyMeter::new();
         let probe = LatencyProbe::new(meter.clone(), Arc::new(|| Instant::from_micros(5090)));
-        probe.handed_on(&[Onset { frame: 0, received: Instant::from_millis(5) }]);
-        assert_eq!(meter.summary().map(|summary| summary.median), Some(Duration::from_micros(90)));
+        let (received, sent) = (Instant::from_millis(5), Instant::from_micros(5050));
+        let block = HandedOn { sounds: Some(Instant::from_millis(6)), sample_rate: 48_000 };
+        probe.handed_on(&[Onset { frame: 48, received, sent }], block);
+        let median = |meter: &LatencyMeter| meter.summary().map(|summary| summary.median.as_micros());
+        assert_eq!((median(&meter), median(&probe.stages.audio)), (Some(90), Some(40)));
+        // The first sample of the click is the block's 49th: 1 ms on.
+        let sounding = median(&probe.stages.sounding).unwrap();
+        assert!(sounding.abs_diff(2000) <= 16, "{sounding}");
+    }
+
+    #[test]
+    fn buckets_hold_everything_between_their_bounds() {
+        let meter = LatencyMeter::new();
+        [3, 3, 130, 50_000].into_iter().for_each(|micros| meter.record(Duration::from_micros(micros)));
+        let buckets: Vec<_> = meter.buckets().collect();
+        assert_eq!(buckets.iter().map(|bucket| bucket.count).collect::<Vec<_>>(), [2, 1, 1]);
+        assert_eq!((buckets[0].from, buckets[0].to), (Duration::from_micros(3), Duration::from_micros(4)));
+        assert!(buckets[2].from <= Duration::from_millis(50) && Duration::from_millis(50) < buckets[2].to);
     }
 }

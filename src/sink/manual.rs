@@ -1,7 +1,7 @@
 use std::convert::Infallible;
 
 use super::lockstep::Lockstep;
-use super::{ActuatorSink, LatencyProbe, SinkError};
+use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::{Onset, Renderer};
 use crate::units::Instant;
 
@@ -72,7 +72,7 @@ impl ActuatorSink for ManualSink {
         let width = channels.len().max(1);
         let Ok(()) = lockstep.advance::<Infallible>(now, |block, started| {
             if let Some(probe) = probe {
-                probe.handed_on(started);
+                probe.handed_on(started, HandedOn::default());
             }
             onsets.extend(started.iter().map(|onset| (first, *onset)));
             for (channel, samples) in channels.iter_mut().enumerate() {

@@ -1,6 +1,8 @@
 //! Where samples and events go: sound cards, files, other programs.
 
 mod beat;
+mod channel_map;
+mod crackle;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -10,6 +12,7 @@ mod lockstep;
 mod manual;
 mod mono;
 mod osc;
+mod priority;
 mod silent;
 mod tuio;
 mod udp;
@@ -19,18 +22,23 @@ mod worker;
 use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
+pub use channel_map::ChannelMap;
+pub use crackle::CrackNews;
 #[cfg(feature = "audio")]
-pub use device::{DeviceOptions, DeviceSink, DeviceStatus, Mix, OutputDevice, output_device_names};
+pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
 pub use json::JsonSink;
-pub use latency::{LatencyMeter, LatencyProbe, LatencySummary};
+pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 pub use manual::ManualSink;
 pub use mono::write_mono;
 pub use osc::OscSink;
+pub use priority::{Rank, claim_priority};
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
@@ -42,6 +50,11 @@ pub trait ActuatorSink {
     /// # Errors
     /// [`SinkError`] if samples can no longer be taken.
     fn advance(&mut self, now: Instant) -> Result<(), SinkError>;
+
+    /// Writes how the device is doing into `status`; false where there is no device.
+    fn device(&self, _status: &mut DeviceStatus) -> bool {
+        false
+    }
 }
 
 /// Something that tells other programs what happened; it never blocks its caller.
@@ -55,11 +68,17 @@ pub trait EventSink: Send {
     /// Takes news of the page that has taken the place of another.
     fn page(&mut self, _page: &PageShown) {}
 
+    /// Takes what gave way underfoot in one frame, in order; called for frames in which something did.
+    fn ground(&mut self, _events: &[GroundEvent]) {}
+
     /// Takes news of the floor's link; called when its state changes.
     fn link(&mut self, _at: Instant, _state: LinkState) {}
 
     /// Takes news of the floor's sensors; called when something has changed, once a second at most.
     fn health(&mut self, _at: Instant, _health: &SensorHealth) {}
+
+    /// Takes news of the device that moves the actuators; called when something has changed, once a second at most.
+    fn device(&mut self, _at: Instant, _status: &DeviceStatus) {}
 
     /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {

@@ -4,28 +4,32 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 
 use super::beat::{Beat, Latest};
+use super::crackle::{CrackNews, Crackle};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
+use crate::feel::DeviceStatus;
+use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::widget::WidgetId;
-use crate::wire::{Prefix, write_contacts, write_event, write_health, write_page};
+use crate::wire::{Prefix, write_contacts, write_crack, write_device, write_event, write_health, write_page};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
-/// messages are those of [`write_event`], [`write_contacts`],
-/// [`write_page`] and [`write_health`].
+/// messages are those of [`write_event`], [`write_contacts`], [`write_crack`],
+/// [`write_page`], [`write_health`] and [`write_device`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
     beat: Beat,
+    crackle: Crackle,
     /// What was last heard of link and sensors: each message tells of both.
     link: LinkState,
     health: SensorHealth,
@@ -35,7 +39,9 @@ pub struct OscSink {
 enum Job {
     Event(WidgetEvent),
     Page(WidgetId),
+    Crack(CrackNews),
     Health(LinkState, SensorHealth),
+    Device(DeviceStatus),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -67,7 +73,15 @@ impl OscSink {
             source,
         })?;
         let (link, health) = (LinkState::default(), SensorHealth::default());
-        Ok(Self { worker, latest, undelivered, beat: Beat::new(None), link, health })
+        Ok(Self {
+            worker,
+            latest,
+            undelivered,
+            beat: Beat::new(None),
+            crackle: Crackle::default(),
+            link,
+            health,
+        })
     }
 }
 
@@ -89,6 +103,14 @@ impl EventSink for OscSink {
         self.worker.offer(Job::Page(page.page.clone()));
     }
 
+    fn ground(&mut self, events: &[GroundEvent]) {
+        for event in events {
+            if let Some(news) = self.crackle.news(event) {
+                self.worker.offer(Job::Crack(news));
+            }
+        }
+    }
+
     fn link(&mut self, _at: Instant, state: LinkState) {
         self.link = state;
         self.worker.offer(Job::Health(state, self.health.clone()));
@@ -97,6 +119,10 @@ impl EventSink for OscSink {
     fn health(&mut self, _at: Instant, health: &SensorHealth) {
         self.health.clone_from(health);
         self.worker.offer(Job::Health(self.link, health.clone()));
+    }
+
+    fn device(&mut self, _at: Instant, status: &DeviceStatus) {
+        self.worker.offer(Job::Device(status.clone()));
     }
 
     fn dropped(&self) -> u64 {
@@ -136,8 +162,16 @@ impl Sender {
                     write_page(&prefix, page.as_str(), &mut bytes);
                     out.send(&bytes);
                 }
+                Job::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
+                    write_crack(&prefix, seed, [energy_j, x_m, y_m], skipped, &mut bytes);
+                    out.send(&bytes);
+                }
                 Job::Health(state, health) => {
                     write_health(&prefix, state, &health, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Device(status) => {
+                    write_device(&prefix, &status, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {

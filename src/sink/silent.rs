@@ -1,7 +1,7 @@
 use std::convert::Infallible;
 
 use super::lockstep::Lockstep;
-use super::{ActuatorSink, LatencyProbe, SinkError};
+use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::Renderer;
 use crate::units::Instant;
 
@@ -25,7 +25,7 @@ impl ActuatorSink for SilentSink {
         let Self { lockstep, probe } = self;
         let Ok(()) = lockstep.advance::<Infallible>(now, |_, onsets| {
             if let Some(probe) = probe {
-                probe.handed_on(onsets);
+                probe.handed_on(onsets, HandedOn::default());
             }
             Ok(())
         });

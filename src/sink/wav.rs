@@ -8,7 +8,7 @@ use std::time::{Duration, Instant as WallInstant};
 use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::lockstep::Lockstep;
-use super::{ActuatorSink, LatencyProbe, SinkError};
+use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::Renderer;
 use crate::units::Instant;
 
@@ -169,7 +169,7 @@ impl ActuatorSink for WavSink {
         let passed_on = lockstep.advance(now, |block, onsets| {
             let pieces = pieces.as_ref().ok_or(())?;
             if let Some(probe) = probe {
-                probe.handed_on(onsets);
+                probe.handed_on(onsets, HandedOn::default());
             }
             let frames = (block.len() / width) as u64;
             if !pass_on(pieces, *when_full, gap, block)? {

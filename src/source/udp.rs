@@ -1,5 +1,6 @@
 mod log;
 mod proc_net;
+mod stamped;
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
@@ -10,6 +11,7 @@ use std::time::{Duration, Instant as HostInstant};
 use socket2::{Domain, Protocol, Socket, Type};
 
 use self::log::RefusalLog;
+use self::stamped::{Received, Stamped};
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
 use crate::units::{HostClock, Instant};
@@ -29,12 +31,15 @@ const DROPS_EVERY: Duration = Duration::from_secs(1);
 
 /// Sensor packets and control messages from a UDP socket.
 ///
-/// Its clock starts at zero when the socket is bound. Packets are stamped when
-/// the program takes them from the kernel, so the stamp includes the time the
-/// thread needed to wake up.
+/// Its clock starts at zero when the socket is bound. On Linux packets are
+/// stamped with the moment the kernel received them; elsewhere when the program
+/// takes them, so that the stamp includes the time the thread needed to wake up.
 #[derive(Debug)]
 pub struct UdpSource {
     socket: UdpSocket,
+    stamped: Stamped,
+    /// When the last datagram came.
+    received: Instant,
     granted: usize,
     started: HostInstant,
     patience: Option<Duration>,
@@ -69,8 +74,11 @@ impl UdpSource {
             );
         }
         let decoder = Decoder::new(floor);
+        let socket = UdpSocket::from(socket);
         Ok(Self {
-            socket: socket.into(),
+            stamped: Stamped::on(&socket),
+            received: Instant::START,
+            socket,
             granted,
             started: HostInstant::now(),
             patience: None,
@@ -128,19 +136,21 @@ impl UdpSource {
     /// Receives one datagram and sorts what it holds; false if none came.
     fn receive(&mut self, patience: Duration) -> Result<bool, SourceError> {
         self.set_patience(patience).map_err(failed)?;
-        let (length, sender) = match self.socket.recv_from(&mut self.buffer) {
+        let Received { length, sender, waited } = match self.stamped.receive(&self.socket, &mut self.buffer) {
             Ok(received) => received,
             Err(error) if is_passing(error.kind()) => return Ok(false),
             Err(error) => return Err(failed(error)),
         };
         self.counters.datagrams += 1;
         let now = self.now();
+        // The wall clock that the kernel stamps by may be slewed; time still never goes back.
+        self.received = self.received.max(now.before(waited));
         if !self.allowed.is_empty() && !self.allowed.contains(&sender.ip().to_canonical()) {
             self.counters.foreign += 1;
             self.log.foreign(now, sender);
             return Ok(true);
         }
-        match self.decoder.decode(&self.buffer[..length], now, &mut self.batch) {
+        match self.decoder.decode(&self.buffer[..length], self.received, &mut self.batch) {
             Ok(()) => {
                 self.packets.extend(self.batch.packets.drain(..));
                 let room = MAX_CONTROLS.saturating_sub(self.requests.len());

@@ -3,6 +3,7 @@ use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 use super::Prefix;
 use super::encode::write;
 use crate::engine::LinkState;
+use crate::feel::DeviceStatus;
 use crate::sense::{Contact, SensorHealth};
 use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
 
@@ -98,6 +99,45 @@ pub fn write_health(prefix: &Prefix, state: LinkState, health: &SensorHealth, by
     args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
     bytes.clear();
     write(&message(prefix.address("health"), args), bytes);
+}
+
+/// Writes how the device that moves the actuators is doing as the OSC message `/underfoot/device`.
+///
+/// Its name, its state (`playing`, `lost`, `faulty` or `unfit`) and why it does not play (strings, the last one
+/// empty while it does); then channels, samples per second, frames in a block, underruns so far, and how often it
+/// was opened anew (ints); then its priority: `real-time`, `denied`, or `host` where its host sees to that.
+pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>) {
+    let int = |count: u64| OscType::Int(i32::try_from(count).unwrap_or(i32::MAX));
+    let mut args = vec![
+        OscType::String(status.name.clone()),
+        OscType::String(status.state.name().into()),
+        OscType::String(status.why.clone()),
+    ];
+    let numbers = [status.channels.into(), status.sample_rate.into(), status.block.into()];
+    args.extend(numbers.into_iter().chain([status.underruns, status.reopened]).map(int));
+    args.push(OscType::String(status.priority.name().into()));
+    bytes.clear();
+    write(&message(prefix.address("device"), args), bytes);
+}
+
+/// Writes that the ice has cracked as the OSC message `/underfoot/crack`.
+///
+/// First the number of the seed that the cracks come from (int), then energy (joules) and x and y
+/// (floor metres) as floats, then how many cracks there have been since the last message of which
+/// there was none (int).
+pub fn write_crack(
+    prefix: &Prefix,
+    seed: u32,
+    energy_and_place: [f32; 3],
+    skipped: u32,
+    bytes: &mut Vec<u8>,
+) {
+    let int = |number: u32| OscType::Int(number.min(i32::MAX as u32).cast_signed());
+    let mut args = vec![int(seed)];
+    args.extend(energy_and_place.map(OscType::Float));
+    args.push(int(skipped));
+    bytes.clear();
+    write(&message(prefix.address("crack"), args), bytes);
 }
 
 /// Writes which page is shown as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
@@ -301,5 +341,27 @@ mod tests {
         args.extend([3, 1, 20, 2].map(OscType::Int));
         args.extend((0..8).map(|column| OscType::String(format!("tile ({column}, 1) sw: stuck"))));
         assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
+    }
+
+    #[test]
+    fn a_device_is_its_name_its_state_and_five_numbers() {
+        use crate::feel::{DeviceState, Priority};
+        let mut bytes = Vec::new();
+        let status = DeviceStatus {
+            name: "Card".into(),
+            state: DeviceState::Lost,
+            why: "unplugged".into(),
+            channels: 36,
+            sample_rate: 96_000,
+            block: 64,
+            underruns: u64::MAX,
+            priority: Priority::Denied,
+            ..DeviceStatus::default()
+        };
+        write_device(&Prefix::default(), &status, &mut bytes);
+        let mut args: Vec<_> = ["Card", "lost", "unplugged"].map(|text| OscType::String(text.into())).into();
+        args.extend([36, 96_000, 64, i32::MAX, 0].map(OscType::Int));
+        args.push(OscType::String("denied".into()));
+        assert_eq!(decoded(&bytes), message("/underfoot/device".into(), args));
     }
 }

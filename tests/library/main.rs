@@ -16,6 +16,7 @@ mod controls;
 mod examples;
 mod faults;
 mod feel;
+mod ground;
 mod intent;
 mod layout;
 mod regions;

@@ -53,3 +53,43 @@ fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
         println!("{rule:?}: {events} events");
     }
 }
+
+#[test]
+fn grounds_allocate_nothing_while_they_crack_and_heal() {
+    let geometry = Geometry::default();
+    let visit = Visit::of(3, &geometry).unwrap();
+    let mut rig = Rig::ideal(geometry);
+    let (mut frames, mut feet) = (Vec::<ForceFrame>::new(), Vec::<Foot>::new());
+    let length = visit.script().duration().as_millis() as u64;
+    for ms in 1..length {
+        feet.clear();
+        visit.script().feet_at(Instant::from_millis(ms), &mut feet);
+        // A giant, so that much gives way.
+        let giant = |foot: &Foot| Foot { force: foot.force * 3.0, ..*foot };
+        rig.step(feet.iter().map(|foot| giant(foot).as_load()), |frame| frames.push(frame.clone()));
+    }
+    for name in ["pond", "winter_walk"] {
+        let text = builtin_layout(name).unwrap();
+        let layout = parse_layout(text, name, &Kinds::builtin(), &geometry).unwrap().layout;
+        let mut engine = Engine::new(geometry, layout, Method::Tracker);
+        let mut snapshot = Snapshot::default();
+        let mut events = 0;
+        let mut pass = |round: u32, frame: &ForceFrame| {
+            let mut frame = frame.clone();
+            frame.at = frame.at + Duration::from_millis(length) * round;
+            let before = violation_count();
+            assert_no_alloc(|| {
+                events += engine.step(&frame).grounds.len();
+                engine.snapshot(&mut snapshot);
+            });
+            violation_count() - before
+        };
+        for frame in &frames {
+            pass(0, frame);
+        }
+        let violations: u32 = frames.iter().map(|frame| pass(1, frame)).sum();
+        assert_eq!(violations, 0, "{name}");
+        println!("{name}: {events} events");
+        assert!(events > 100, "{name}: {events}");
+    }
+}

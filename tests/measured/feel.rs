@@ -4,7 +4,8 @@ use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::feel::{
     Click, Cue, Hum, Impulse, Lasting, Manner, Mode, RendererConfig, Rub, Rubs, Spot, Tone, renderer,
 };
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, Loudspeaker, Response};
+use underfoot::glam::Vec2;
 use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
 
@@ -12,7 +13,7 @@ use underfoot::units::{Instant, Newtons};
 /// every 2 ms, on four tiles each.
 #[test]
 fn the_busiest_ten_seconds_do_not_allocate() {
-    let (mut sender, mut renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    let (mut sender, mut renderer) = renderer(RendererConfig::of(&whole_floor(), 48_000));
     let mut scope = renderer.scope().unwrap();
     let effects = Effects::builtin();
     let frames = 48; // one millisecond
@@ -33,6 +34,7 @@ fn the_busiest_ten_seconds_do_not_allocate() {
             if n % 3000 == 2600 {
                 sender.resume();
             }
+            sender.mute((n % 36) as u16, n % 5 == 0);
             renderer.render(&mut out, now);
             scope.update();
         });
@@ -41,6 +43,19 @@ fn the_busiest_ten_seconds_do_not_allocate() {
     assert_eq!(violation_count(), 0);
     assert!(moved > 10_000_000, "only {moved} samples moved: not busy at all");
     assert!(renderer.counters().stolen > 0, "voices were never stolen: not busy at all");
+}
+
+/// A floor with everything: plates that were measured, and eight loudspeakers.
+fn whole_floor() -> Floor {
+    let mut floor = Floor::default();
+    let response = Response::of(vec![(40.0, -12.0), (70.0, 9.0), (300.0, -6.0), (800.0, -15.0)]);
+    floor.responses.fill(response);
+    let around = (36..44).map(|channel| {
+        let at = Vec2::splat(0.9) + 1.5 * Vec2::from_angle(f32::from(channel) * 0.785);
+        Loudspeaker { at, channel, gain_db: 0.0 }
+    });
+    floor.loudspeakers = around.collect();
+    floor
 }
 
 fn spots(first: u64) -> impl Iterator<Item = Spot> {
@@ -68,6 +83,7 @@ fn cue(n: u64, at: Instant) -> Cue {
             ..Tone::default()
         }),
         manner: Manner { duck_db: 6.0, ..Manner::PLAIN },
+        to_air: 0.5,
     }
 }
 

@@ -9,13 +9,13 @@ use std::time::{Duration, Instant};
 
 use serde_json::Value;
 
-fn underfoot() -> Command {
+pub(super) fn underfoot() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_underfoot"));
     command.env_remove("DISPLAY").env_remove("WAYLAND_DISPLAY").env_remove("RUST_LOG");
     command
 }
 
-fn said(output: &Output) -> String {
+pub(super) fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
 }
 
@@ -37,7 +37,7 @@ fn events(lines: &str) -> Vec<(f64, String, String, Value)> {
 }
 
 /// The samples of each channel of a WAV file, in full scales.
-fn channels(path: &Path) -> (u32, Vec<Vec<f32>>) {
+pub(super) fn channels(path: &Path) -> (u32, Vec<Vec<f32>>) {
     let mut reader = hound::WavReader::open(path).unwrap();
     let spec = reader.spec();
     let scale = 1.0 / (1_i64 << (spec.bits_per_sample - 1)) as f32;
@@ -48,7 +48,7 @@ fn channels(path: &Path) -> (u32, Vec<Vec<f32>>) {
     (spec.sample_rate, channels)
 }
 
-fn peak(samples: &[f32]) -> f32 {
+pub(super) fn peak(samples: &[f32]) -> f32 {
     samples.iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
 }
 

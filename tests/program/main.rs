@@ -7,4 +7,5 @@ mod sender;
 mod calibrate;
 mod clients;
 mod end_to_end;
+mod rack;
 mod readme;

@@ -168,6 +168,12 @@ impl Walker {
         });
     }
 
+    /// Lets a millisecond pass with the working foot's force at `force`.
+    pub fn press_now(&mut self, force: Newtons) {
+        self.foot.as_mut().unwrap().force = force;
+        self.tick();
+    }
+
     /// Slides the working foot to `point` in a straight line at `speed` metres per second.
     pub fn slide_to(&mut self, point: Vec2, speed: f32) {
         let from = self.foot.unwrap().centre_of_pressure();

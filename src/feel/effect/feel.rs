@@ -27,6 +27,8 @@ pub struct Feel {
     pub hold: Option<Arc<Effect>>,
     /// Felt while the foot slides along it.
     pub drag: Option<Arc<Effect>>,
+    /// How much of its clicks is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
+    pub sound: f32,
 }
 
 /// What plays an effect, which decides which ones fit.

@@ -16,11 +16,9 @@ mod impacts;
 mod pool;
 mod single;
 mod stick;
-mod struck;
 mod trim;
 
 pub(super) use pool::{Started, Voices};
-pub(super) use struck::StruckBank;
 
 /// Voices that are computed side by side.
 const LANES: usize = 8;

@@ -5,6 +5,7 @@ use super::super::app::App;
 use super::super::painter::color;
 use super::super::style::{quiet, row};
 use crate::engine::LinkState;
+use crate::feel::DeviceState;
 use crate::scene::Theme;
 use crate::sense::Quality;
 use crate::wire::LinkCounters;
@@ -41,6 +42,19 @@ impl App {
                 ui.label(quiet(theme, "every one answers as its plate demands"));
             }
         });
+    }
+
+    /// How the device that moves the actuators is doing, if there is one.
+    pub(super) fn device_part(&mut self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let Some(status) = &self.snapshots.output_buffer().device else { return };
+        let colour = match status.state {
+            DeviceState::Playing if status.is_well() => theme.ink,
+            DeviceState::Playing => theme.warning,
+            DeviceState::Lost | DeviceState::Faulty | DeviceState::Unfit => theme.fault,
+        };
+        ui.add_space(2.0);
+        ui.label(egui::RichText::new(format!("Actuators: {status}")).color(color(colour)));
     }
 
     /// What came over the wire and what was refused, by reason.

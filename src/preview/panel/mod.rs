@@ -36,6 +36,7 @@ impl App {
                 self.scopes_part(ui);
                 self.controls_part(ui);
                 self.health_part(ui);
+                self.device_part(ui);
                 self.link_part(ui);
                 self.other_parts = ui.cursor().top() - top - events;
             });

@@ -12,7 +12,7 @@ mod slider;
 mod stepper;
 mod switch;
 mod thresholds;
-mod variant;
+pub(super) mod variant;
 
 use std::time::Duration;
 
@@ -130,7 +130,7 @@ fn seconds(node: Node<'_>, range: std::ops::RangeInclusive<f64>) -> Option<Durat
 }
 
 /// What `read` makes of a field that may be written `None`, for what is not there at all.
-fn optional<T>(
+pub(super) fn optional<T>(
     fields: &mut Fields<'_>,
     name: &'static str,
     base: Option<T>,

@@ -6,7 +6,10 @@ use super::super::problem::Problem;
 use super::super::suggest::{listed, nearest};
 
 /// Which of `names` is written, and the settings in the brackets behind it, if there are any.
-pub(super) fn read<'r>(node: Node<'r>, names: &[&'static str]) -> Option<(&'static str, Option<Fields<'r>>)> {
+pub(in crate::schema) fn read<'r>(
+    node: Node<'r>,
+    names: &[&'static str],
+) -> Option<(&'static str, Option<Fields<'r>>)> {
     let expected = listed(names, "or");
     let Expr::Struct(variant) = node.expr else { return node.mismatch(&expected) };
     let written = &*variant.name.name;

@@ -1,7 +1,8 @@
 use cpal::{BufferSize, SampleFormat, StreamConfig, SupportedBufferSize, SupportedStreamConfigRange};
 
 use super::{DeviceOptions, Mix};
-use crate::sink::SinkError;
+use crate::floor::Floor;
+use crate::sink::{ChannelMap, SinkError};
 
 /// How a device will be used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,6 +18,9 @@ impl Choice {
         StreamConfig { channels: self.channels, sample_rate: self.sample_rate, buffer_size: self.buffer_size }
     }
 }
+
+/// Frames in a block where nobody asks for others.
+const BLOCK: u32 = 128;
 
 /// Rates in order of preference.
 const RATES: [u32; 3] = [48_000, 96_000, 44_100];
@@ -35,13 +39,17 @@ const FORMATS: [SampleFormat; 10] = [
     SampleFormat::U8,
 ];
 
-/// The best of what the device `name` offers in `ranges` for a floor that needs `needed` channels.
+/// The best of what the device `name` offers in `ranges` for `floor`.
+///
+/// A device without the sample rate that is asked for is refused, unless rates may be converted: then its rate is
+/// the nearest above, or its highest.
 pub(super) fn choose(
     name: &str,
     ranges: &[SupportedStreamConfigRange],
-    needed: usize,
+    floor: &Floor,
     options: &DeviceOptions,
 ) -> Result<Choice, SinkError> {
+    let needed = floor.channel_count();
     let refuse = |message: String| Err(SinkError::Device { message });
     let playable = || ranges.iter().filter(|range| FORMATS.contains(&range.sample_format()));
     let most = playable().map(SupportedStreamConfigRange::channels).max().unwrap_or(0);
@@ -50,10 +58,7 @@ pub(super) fn choose(
     }
     let wanted = match options.mix {
         Mix::PerActuator if usize::from(most) < needed => {
-            return refuse(format!(
-                "the sound card {name} has {most} channels and the floor needs {needed}: connect one with more, \
-                 or ask for a stereo mix or for as many channels as there are"
-            ));
+            return refuse(too_few(name, most, floor));
         }
         Mix::PerActuator | Mix::AsManyAsThereAre => needed.clamp(1, most.into()),
         Mix::Stereo => usize::from(most.min(2)),
@@ -66,7 +71,7 @@ pub(super) fn choose(
         .unwrap_or(most);
     let fitting = || playable().filter(|range| range.channels() == channels);
 
-    let Some(sample_rate) = pick_rate(fitting, options.sample_rate) else {
+    let Some(sample_rate) = pick_rate(fitting, options.sample_rate, options.resample) else {
         let asked = options.sample_rate.unwrap_or_default();
         let offered: Vec<String> = fitting()
             .map(|range| match (range.min_sample_rate(), range.max_sample_rate()) {
@@ -75,7 +80,8 @@ pub(super) fn choose(
             })
             .collect();
         return refuse(format!(
-            "the sound card {name} can't play {asked} samples per second with {channels} channels: it offers {}",
+            "the sound card {name} can't play {asked} samples per second with {channels} channels: it offers {}; \
+             ask for one of these, or for the rate to be converted with `--resample`",
             offered.join(", ")
         ));
     };
@@ -86,8 +92,8 @@ pub(super) fn choose(
         return refuse(format!("the sound card {name} plays nothing we can give: choose another"));
     };
     let buffer_size = match *range.buffer_size() {
-        SupportedBufferSize::Range { min, max } if options.block > 0 && min <= max => {
-            BufferSize::Fixed(options.block.clamp(min.max(1), max.max(1)))
+        SupportedBufferSize::Range { min, max } if min <= max => {
+            BufferSize::Fixed(options.block.unwrap_or(BLOCK).clamp(min.max(1), max.max(1)))
         }
         _ => BufferSize::Default,
     };
@@ -95,18 +101,34 @@ pub(super) fn choose(
 }
 
 /// The rate that is asked for, or else the one we like best; `None` if the device can't.
-fn pick_rate<'a, I>(fitting: impl Fn() -> I, asked: Option<u32>) -> Option<u32>
+fn pick_rate<'a, I>(fitting: impl Fn() -> I, asked: Option<u32>, resample: bool) -> Option<u32>
 where
     I: Iterator<Item = &'a SupportedStreamConfigRange>,
 {
     let offered = |rate: &u32| fitting().any(|range| range.contains_rate(*rate));
     match asked {
-        Some(rate) => Some(rate).filter(offered),
+        Some(rate) if offered(&rate) => Some(rate),
+        Some(rate) if resample => {
+            let above = fitting().map(SupportedStreamConfigRange::min_sample_rate).filter(|low| *low > rate);
+            above.min().or_else(|| fitting().map(SupportedStreamConfigRange::max_sample_rate).max())
+        }
+        Some(_) => None,
         None => RATES
             .into_iter()
             .find(offered)
             .or_else(|| fitting().map(SupportedStreamConfigRange::max_sample_rate).max()),
     }
+}
+
+/// Why a device with so few channels is refused, with the floor's map and the tiles that nobody would feel.
+fn too_few(name: &str, most: u16, floor: &Floor) -> String {
+    let map = ChannelMap::new(floor);
+    let (needed, tiles) = (floor.channel_count(), map.beyond(most.into()).count());
+    format!(
+        "the sound card {name} has {most} channels and the floor needs {needed}: {tiles} tiles would not be felt. \
+         Connect one with more, give the floor's tiles other channels (`actuators` in the floor file), or ask for \
+         `--sound stereo`. The channel of each tile, from 0:\n{map}"
+    )
 }
 
 #[cfg(test)]
@@ -119,8 +141,8 @@ mod tests {
     }
 
     fn chosen(ranges: &[SupportedStreamConfigRange], mix: Mix, rate: Option<u32>) -> Result<Choice, String> {
-        let options = DeviceOptions { mix, sample_rate: rate, block: 32, ..DeviceOptions::default() };
-        choose("Test", ranges, 36, &options).map_err(|error| error.to_string())
+        let options = DeviceOptions { mix, sample_rate: rate, block: Some(32), ..DeviceOptions::default() };
+        choose("Test", ranges, &Floor::default(), &options).map_err(|error| error.to_string())
     }
 
     #[test]
@@ -143,7 +165,11 @@ mod tests {
     fn too_few_channels_are_refused_with_both_numbers_unless_allowed() {
         let card = [range(2, 8_000, 48_000, SampleFormat::F32), range(8, 96_000, 96_000, SampleFormat::F32)];
         let message = chosen(&card, Mix::PerActuator, None).unwrap_err();
-        assert!(message.contains("has 8 channels and the floor needs 36"), "{message}");
+        assert!(
+            message.contains("has 8 channels and the floor needs 36: 28 tiles would not be felt"),
+            "{message}"
+        );
+        assert!(message.contains("row   5 | 30 31 32 33 34 35\n"), "{message}");
         let some = chosen(&card, Mix::AsManyAsThereAre, None).unwrap();
         assert_eq!((some.channels, some.sample_rate), (8, 96_000));
     }
@@ -153,6 +179,21 @@ mod tests {
         let card = [range(2, 44_100, 48_000, SampleFormat::F32)];
         let message = chosen(&card, Mix::Stereo, Some(96_000)).unwrap_err();
         assert!(message.contains("can't play 96000") && message.contains("44100 to 48000"), "{message}");
+    }
+
+    #[test]
+    fn a_rate_is_converted_only_when_asked_to_the_nearest_that_loses_nothing() {
+        let card = [44_100, 48_000, 192_000].map(|rate| range(2, rate, rate, SampleFormat::F32));
+        let rate = |asked| {
+            let options = DeviceOptions {
+                mix: Mix::Stereo,
+                sample_rate: Some(asked),
+                resample: true,
+                ..DeviceOptions::default()
+            };
+            choose("Test", &card, &Floor::default(), &options).unwrap().sample_rate
+        };
+        assert_eq!([22_050, 48_000, 96_000, 384_000].map(rate), [44_100, 48_000, 192_000, 192_000]);
     }
 
     #[test]

@@ -2,59 +2,134 @@ use std::time::Duration;
 
 use cpal::{FromSample, Sample};
 
+use super::DeviceOptions;
 use super::block_clock::BlockClock;
+use super::choice::Choice;
 use super::mixdown::Mixdown;
+use super::resample::Resampler;
 use crate::feel::Renderer;
-use crate::sink::LatencyProbe;
-use crate::units::HostClock;
+use crate::floor::Floor;
+use crate::sink::{HandedOn, LatencyProbe};
+use crate::units::{HostClock, Instant};
 
-/// What runs in the device's callback.
+/// What runs in the device's callback; it outlives the streams it plays on.
 pub(super) struct Player {
     renderer: Renderer,
     mixdown: Mixdown,
     steady: Option<(HostClock, BlockClock)>,
     probe: Option<LatencyProbe>,
+    resampler: Option<Resampler>,
     /// One block as the renderer gives it.
     block: Vec<f32>,
+    /// One block at the device's rate, if that is another one.
+    resampled: Vec<f32>,
 }
 
 impl Player {
-    pub(super) fn new(
-        renderer: Renderer,
-        mixdown: Mixdown,
-        steady: Option<HostClock>,
-        probe: Option<LatencyProbe>,
-    ) -> Self {
-        let block = vec![0.0; renderer.max_block() * renderer.channels()];
-        let steady = steady.map(|clock| (clock, BlockClock::default()));
-        Self { renderer, mixdown, steady, probe, block }
+    pub(super) fn new(renderer: Renderer, floor: &Floor, options: &DeviceOptions, choice: Choice) -> Self {
+        let samples = renderer.max_block() * renderer.channels();
+        let mut player = Self {
+            mixdown: Mixdown::new(floor, options.mix, renderer.channels(), choice.channels.into()),
+            renderer,
+            steady: options.steady.clone().map(|clock| (clock, BlockClock::default())),
+            probe: options.latency.clone(),
+            resampler: None,
+            block: vec![0.0; samples],
+            resampled: Vec::new(),
+        };
+        player.fit(floor, options, choice);
+        player
     }
 
-    /// Fills a device buffer of any length.
+    /// Gets ready for a stream of this kind; not while one is played.
+    pub(super) fn fit(&mut self, floor: &Floor, options: &DeviceOptions, choice: Choice) {
+        let width = self.renderer.channels();
+        self.mixdown = Mixdown::new(floor, options.mix, width, choice.channels.into());
+        let (from, to) = (self.renderer.sample_rate(), choice.sample_rate);
+        let most = self.renderer.max_block();
+        self.resampler = (from != to).then(|| Resampler::new(width, from, to, most));
+        self.resampled.resize(if from == to { 0 } else { most * width }, 0.0);
+        self.restart();
+    }
+
+    /// Forgets what was sent while nothing was played, so that it is not felt all at once.
+    pub(super) fn restart(&mut self) {
+        self.renderer.restart();
+        if let Some((_, blocks)) = &mut self.steady {
+            blocks.forget();
+        }
+    }
+
+    /// Fills a device buffer of any length, whose first sample sounds in so much time; zero if that is not known.
     ///
     /// # Real-time
-    /// No allocation, lock or log; the clocks, if any, are read once.
-    pub(super) fn fill<T: Sample + FromSample<f32>>(&mut self, out: &mut [T]) {
+    /// No allocation, lock or log; the clocks, if any, are read.
+    pub(super) fn fill<T: Sample + FromSample<f32>>(&mut self, out: &mut [T], sounds_in: Duration) {
         let width = self.mixdown.device_width();
         let rate = self.renderer.sample_rate();
+        let begun = self.probe.as_ref().map(LatencyProbe::now);
+        let frames = out.len() / width;
+        let device_rate = self.device_rate();
         let mut start = self
             .steady
             .as_mut()
-            .map(|(clock, blocks)| blocks.start_of_block(clock(), out.len() / width, rate));
-        for out in out.chunks_mut(self.renderer.max_block() * width) {
+            .map(|(clock, blocks)| blocks.start_of_block(clock() + sounds_in, frames, device_rate));
+        let mut before = 0;
+        let most = self.resampler.as_ref().map_or(self.renderer.max_block(), Resampler::most);
+        for out in out.chunks_mut(most * width) {
             let frames = out.len() / width;
-            let block = &mut self.block[..frames * self.renderer.channels()];
-            match &mut start {
-                Some(start) => {
-                    self.renderer.render(block, *start);
-                    *start = *start + Duration::from_secs_f64(frames as f64 / f64::from(rate));
+            if self.resampler.is_some() {
+                self.fill_resampled(out, frames, start);
+            } else {
+                let block = &mut self.block[..frames * self.renderer.channels()];
+                match start {
+                    Some(start) => self.renderer.render(block, start),
+                    None => self.renderer.render_now(block),
                 }
-                None => self.renderer.render_now(block),
+                self.mixdown.write(block, out);
             }
-            self.mixdown.write(block, out);
-            if let Some(probe) = &self.probe {
-                probe.handed_on(self.renderer.onsets());
+            start =
+                start.map(|start| start + Duration::from_secs_f64(frames as f64 / f64::from(device_rate)));
+            if let (Some(probe), Some(begun)) = (&self.probe, begun) {
+                let sounds =
+                    begun + sounds_in + Duration::from_secs_f64(f64::from(before) / f64::from(device_rate));
+                let sounds = (!sounds_in.is_zero()).then_some(sounds);
+                probe.handed_on(self.renderer.onsets(), HandedOn { sounds, sample_rate: rate });
             }
+            before += frames as u32;
         }
+    }
+
+    /// Fills `frames` frames at the device's rate from as many as that takes at the renderer's.
+    fn fill_resampled<T: Sample + FromSample<f32>>(
+        &mut self,
+        out: &mut [T],
+        frames: usize,
+        start: Option<Instant>,
+    ) {
+        let Self { renderer, mixdown, resampler, block, resampled, .. } = self;
+        let Some(resampler) = resampler else { return };
+        let (channels, rate) = (renderer.channels(), f64::from(renderer.sample_rate()));
+        let mut needed = resampler.needed(frames);
+        while needed > 0 {
+            let taken = needed.min(renderer.max_block());
+            let block = &mut block[..taken * channels];
+            match start {
+                Some(start) => {
+                    let ahead = Duration::from_secs_f64((resampler.ahead() / rate).max(0.0));
+                    renderer.render(block, start + ahead);
+                }
+                None => renderer.render_now(block),
+            }
+            resampler.take(block);
+            needed -= taken;
+        }
+        let resampled = &mut resampled[..frames * channels];
+        resampler.give(resampled);
+        mixdown.write(resampled, out);
+    }
+
+    fn device_rate(&self) -> u32 {
+        self.resampler.as_ref().map_or(self.renderer.sample_rate(), Resampler::rate)
     }
 }

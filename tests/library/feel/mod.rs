@@ -5,5 +5,7 @@ mod answers;
 mod click;
 mod effects;
 mod friction;
+mod loudspeakers;
+mod rack;
 mod safety;
 mod wav;

@@ -2,7 +2,8 @@
 
 use proptest::prelude::*;
 use underfoot::feel::{Click, Cue, CueSender, Friction, Mode, RendererConfig, Rub, Rubs, Spot, renderer};
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, Loudspeaker, Response};
+use underfoot::glam::Vec2;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 
@@ -12,6 +13,18 @@ fn millis(millis: u64) -> Instant {
 
 fn floor() -> (CueSender, ManualSink) {
     let (sender, renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
+    (sender, ManualSink::new(renderer, Instant::START))
+}
+
+/// A floor with everything: plates that were measured, and loudspeakers.
+fn whole_floor() -> (CueSender, ManualSink) {
+    let mut floor = Floor::default();
+    floor.responses[3] = Response::of(vec![(40.0, -3.0), (300.0, 3.0), (800.0, -9.0)]);
+    floor.loudspeakers = vec![
+        Loudspeaker { at: Vec2::ZERO, channel: 36, gain_db: 0.0 },
+        Loudspeaker { at: Vec2::splat(2.0), channel: 38, gain_db: 24.0 },
+    ];
+    let (sender, renderer) = renderer(RendererConfig::of(&floor, 48_000));
     (sender, ManualSink::new(renderer, Instant::START))
 }
 
@@ -134,6 +147,7 @@ prop_compose! {
         spots in any_spots(),
         modes in prop::collection::vec((any_number(), any_number(), any_number()), 0..8),
         level in any_number(),
+        to_air in any_number(),
     ) -> Cue {
         let modes = modes
             .into_iter()
@@ -141,7 +155,8 @@ prop_compose! {
             .collect();
         let at = Instant::from_micros(u64::from(at) % 50_000);
         let spots = spots.into_iter().collect();
-        Cue { at, received: at, spots, click: Click { modes, level: Newtons(level), ..Click::default() }, ..Cue::default() }
+        let click = Click { modes, level: Newtons(level), ..Click::default() };
+        Cue { at, received: at, spots, click, to_air, ..Cue::default() }
     }
 }
 
@@ -178,7 +193,7 @@ proptest! {
         cues in prop::collection::vec(any_cue(), 0..12),
         rubs in prop::collection::vec(prop::collection::vec(any_rub(), 0..16), 1..4),
     ) {
-        let (mut sender, mut sink) = floor();
+        let (mut sender, mut sink) = whole_floor();
         for cue in &cues {
             sender.send(cue);
         }

@@ -74,6 +74,10 @@ fn shipped_layouts_are_made_for_feet() {
     for name in builtin_layouts() {
         let layout = shipped(name);
         assert_eq!(ergonomics::review(&layout, &Floor::default()), [], "{name}");
+        // Grounds are walked on, from anywhere.
+        if layout.widgets.is_empty() {
+            continue;
+        }
         let stance = layout.stances.first().unwrap().area;
         // The rows of tiles with the standing foot and with controls: one in between stays empty.
         let row = |y: f32| (y / 0.304 + 1e-4).floor();

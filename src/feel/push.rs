@@ -2,7 +2,7 @@ use std::f64::consts::TAU;
 
 use arrayvec::ArrayVec;
 
-use crate::feel::{Impulse, MAX_MODES, ModalBank, Mode};
+use super::{Impulse, MAX_MODES, ModalBank, Mode};
 
 /// Longest time between two of the impulses that make up a push, in seconds: a quarter of the fastest mode's period.
 const SPACING_S: f32 = 0.000_25;
@@ -17,15 +17,14 @@ const MAX_PUSHES: usize = 8;
 /// period could not do it with any strength.
 const STRONGEST: f32 = 4.0;
 
-/// A modal bank, and the pushes that strike it: an impulse with a width is a row of small ones.
+/// The pushes that strike one modal bank: an impulse with a width is a row of small ones.
 ///
 /// # Real-time
-/// No allocation; a silent bank costs nothing.
+/// No allocation.
 #[derive(Clone, Debug)]
-pub(in crate::feel) struct StruckBank {
-    bank: ModalBank,
+pub(super) struct Pushes {
     sample_rate: f32,
-    pushes: ArrayVec<Push, MAX_PUSHES>,
+    under_way: ArrayVec<Push, MAX_PUSHES>,
 }
 
 /// A push under way.
@@ -43,55 +42,54 @@ struct Push {
     age: usize,
 }
 
-impl StruckBank {
-    pub(in crate::feel) fn new(sample_rate: f64, modes: usize) -> Self {
-        Self {
-            bank: ModalBank::new(sample_rate, modes),
-            sample_rate: sample_rate as f32,
-            pushes: ArrayVec::new(),
-        }
+impl Pushes {
+    pub(super) fn new(sample_rate: f32) -> Self {
+        Self { sample_rate, under_way: ArrayVec::new() }
     }
 
-    /// Whether the next samples are all zero.
-    pub(in crate::feel) fn is_silent(&self) -> bool {
-        self.bank.is_silent() && self.pushes.is_empty()
+    /// Whether none is under way.
+    pub(super) fn is_empty(&self) -> bool {
+        self.under_way.is_empty()
     }
 
-    /// Stops everything at once.
-    pub(in crate::feel) fn clear(&mut self) {
-        self.bank.clear();
-        self.pushes.clear();
+    /// Ends them all at once.
+    pub(super) fn clear(&mut self) {
+        self.under_way.clear();
     }
 
     /// Strikes modes that can be played, so that the very next sample is the first that moves; the answer is how
     /// many modes had to make room.
-    pub(in crate::feel) fn strike(&mut self, modes: &ArrayVec<Mode, MAX_MODES>, impulse: Impulse) -> u32 {
+    pub(super) fn strike(
+        &mut self,
+        bank: &mut ModalBank,
+        modes: &ArrayVec<Mode, MAX_MODES>,
+        impulse: Impulse,
+    ) -> u32 {
         let width_s = if impulse.width_s > 0.0 { impulse.width_s.min(Impulse::WIDEST_S) } else { 0.0 };
-        if width_s * self.sample_rate < 2.0 || self.pushes.is_full() {
-            return strike_all(&mut self.bank, modes, 1.0);
+        if width_s * self.sample_rate < 2.0 || self.under_way.is_full() {
+            return strike_all(bank, modes, 1.0);
         }
         let count = ((width_s / SPACING_S).ceil() as usize).max(FEWEST);
         let round = if impulse.round > 0.0 { impulse.round.min(1.0) } else { 0.0 };
         let spacing = width_s * self.sample_rate / count as f32;
         let gain = evened(modes, round, count, f64::from(width_s));
         let mut push = Push { modes: modes.clone(), round, gain, count, done: 0, spacing, age: 0 };
-        let stolen = push.strike(&mut self.bank);
-        self.pushes.push(push);
+        let stolen = push.strike(bank);
+        self.under_way.push(push);
         stolen
     }
 
-    /// Adds the next `out.len()` samples to `out`; the answer is how many modes had to make room meanwhile.
-    pub(in crate::feel) fn render(&mut self, out: &mut [f32]) -> u32 {
+    /// Adds the bank's next `out.len()` samples to `out`; the answer is how many modes had to make room meanwhile.
+    pub(super) fn render(&mut self, bank: &mut ModalBank, out: &mut [f32]) -> u32 {
         let (mut rest, mut stolen) = (out, 0);
-        while !self.pushes.is_empty() && !rest.is_empty() {
-            let next = self.pushes.iter().map(Push::wait).min().unwrap_or(0);
+        while !self.under_way.is_empty() && !rest.is_empty() {
+            let next = self.under_way.iter().map(Push::wait).min().unwrap_or(0);
             let now = next.min(rest.len());
             let (part, later) = std::mem::take(&mut rest).split_at_mut(now);
-            self.bank.render(part);
+            bank.render(part);
             rest = later;
             let passed = part.len();
-            let bank = &mut self.bank;
-            self.pushes.retain(|push| {
+            self.under_way.retain(|push| {
                 push.age += passed;
                 while push.done < push.count && push.wait() == 0 {
                     stolen += push.strike(bank);
@@ -99,7 +97,7 @@ impl StruckBank {
                 push.done < push.count
             });
         }
-        self.bank.render(rest);
+        bank.render(rest);
         stolen
     }
 }
@@ -157,11 +155,11 @@ mod tests {
     }
 
     fn struck(modes: &[Mode], impulse: Impulse, block: usize) -> Vec<f32> {
-        let mut bank = StruckBank::new(RATE, 8);
-        bank.strike(&modes.iter().copied().collect(), impulse);
+        let (mut bank, mut pushes) = (ModalBank::new(RATE, 8), Pushes::new(RATE as f32));
+        pushes.strike(&mut bank, &modes.iter().copied().collect(), impulse);
         let mut out = vec![0.0; 9600];
         out.chunks_mut(block).for_each(|part| {
-            bank.render(part);
+            pushes.render(&mut bank, part);
         });
         out
     }
@@ -214,16 +212,16 @@ mod tests {
 
     #[test]
     fn many_pushes_at_once_are_all_felt_and_end() {
-        let mut bank = StruckBank::new(RATE, 8);
+        let (mut bank, mut pushes) = (ModalBank::new(RATE, 8), Pushes::new(RATE as f32));
         let modes = [mode(200.0, 0.1)].into_iter().collect();
         for _ in 0..20 {
-            bank.strike(&modes, Impulse { width_s: 0.01, round: 1.0 });
+            pushes.strike(&mut bank, &modes, Impulse { width_s: 0.01, round: 1.0 });
         }
         let mut out = vec![0.0; 96_000];
         out.chunks_mut(64).for_each(|part| {
-            bank.render(part);
+            pushes.render(&mut bank, part);
         });
         assert!(peak(&out) > 1.0);
-        assert!(bank.is_silent());
+        assert!(bank.is_silent() && pushes.is_empty());
     }
 }

@@ -1,0 +1,10 @@
+//! Standard work for measuring how large a floor a machine carries.
+//!
+//! Nothing here looks at a clock: each load does a known stretch of floor time, and whoever
+//! measures divides it by the time that took. `underfoot capacity` and the benches measure the same loads.
+
+mod rendering;
+mod sensing;
+
+pub use rendering::{BankLoad, RenderLoad, RenderWork, modal_error_db};
+pub use sensing::SensingLoad;

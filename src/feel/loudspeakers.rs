@@ -1,0 +1,150 @@
+use arrayvec::ArrayVec;
+use glam::Vec2;
+
+use super::Spot;
+use super::mix::Output;
+use crate::floor::{Actuator, Loudspeaker};
+
+/// Loudspeakers that play one cue at most.
+pub(super) const NEAREST: usize = 3;
+
+/// As near as a loudspeaker gets, in metres: nobody stands inside of one.
+const NEAR_M: f32 = 0.1;
+
+/// The loudspeakers that play one cue, and how much of it each gets.
+pub(super) type Heard = ArrayVec<Output, NEAREST>;
+
+/// The loudspeakers around the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Loudspeakers {
+    /// Where each is and what it gets of a cue that only it plays.
+    all: ArrayVec<(Vec2, Output), { Loudspeaker::MOST }>,
+    /// Centres of the tiles.
+    centres: Box<[Vec2]>,
+}
+
+impl Loudspeakers {
+    /// Those of `all` that a device of so many channels has, for a floor whose tiles have these centres.
+    pub(super) fn new(all: &[Loudspeaker], centres: Vec<Vec2>, channels: usize) -> Self {
+        let nominal = Actuator::nominal(0).full_scale.0;
+        let playable = all.iter().filter(|one| {
+            usize::from(one.channel) < channels && one.at.is_finite() && one.gain_db.is_finite()
+        });
+        let all = playable.take(Loudspeaker::MOST).map(|one| {
+            let per_newton = 10_f32.powf(one.gain_db / 20.0) / nominal;
+            (one.at, Output { channel: one.channel.into(), per_newton })
+        });
+        Self { all: all.collect(), centres: centres.into() }
+    }
+
+    /// Where a cue on these spots is heard, of which `to_air` (0 to 1) is to be heard at all.
+    ///
+    /// The three nearest loudspeakers share it, the nearer the more, with the same
+    /// power together wherever it is. The share of the third falls to nothing
+    /// where a fourth becomes as near, so nothing jumps when a foot moves.
+    ///
+    /// # Real-time
+    /// No allocation.
+    pub(super) fn heard(&self, spots: &[Spot], to_air: f32) -> Heard {
+        let mut heard = Heard::new();
+        if to_air.is_nan() || to_air <= 0.0 || self.all.is_empty() {
+            return heard;
+        }
+        let (mut sum, mut place) = (0.0, Vec2::ZERO);
+        for spot in spots {
+            if let Some(centre) = self.centres.get(usize::from(spot.tile))
+                && spot.weight > 0.0
+                && spot.weight.is_finite()
+            {
+                sum += spot.weight;
+                place += *centre * spot.weight;
+            }
+        }
+        if sum == 0.0 || !sum.is_finite() {
+            return heard;
+        }
+        let place = place / sum;
+        let mut near: ArrayVec<(f32, Output), { Loudspeaker::MOST }> =
+            self.all.iter().map(|(at, output)| (at.distance(place).max(NEAR_M), *output)).collect();
+        near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
+        let beyond = near.get(NEAREST).map_or(0.0, |(distance, _)| distance.recip());
+        // A fourth as near as the first takes no part, but then the first must not fall silent.
+        let share = |distance: f32| distance.recip() - beyond + 1e-4;
+        let power: f32 = near.iter().take(NEAREST).map(|(distance, _)| share(*distance).powi(2)).sum();
+        let loudness = to_air.min(1.0) * sum.min(1.0) / power.sqrt();
+        for (distance, output) in near.into_iter().take(NEAREST) {
+            let per_newton = output.per_newton * loudness * share(distance);
+            heard.push(Output { per_newton, ..output });
+        }
+        heard
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Four loudspeakers at the corners of a floor of 2 m, and tiles along its diagonal.
+    fn corners() -> Loudspeakers {
+        let at = [(0.0, 0.0), (2.0, 0.0), (0.0, 2.0), (2.0, 2.0)];
+        let all: Vec<Loudspeaker> = (36..)
+            .zip(at)
+            .map(|(channel, at)| Loudspeaker { at: at.into(), channel, gain_db: 0.0 })
+            .collect();
+        let centres = (0..200).map(|n| Vec2::new(0.01 * n as f32, 0.008 * n as f32)).collect();
+        Loudspeakers::new(&all, centres, 40)
+    }
+
+    fn gains(heard: &Heard) -> [f32; 4] {
+        let mut gains = [0.0; 4];
+        for output in heard {
+            gains[output.channel - 36] = output.per_newton * 40.0;
+        }
+        gains
+    }
+
+    #[test]
+    fn power_is_the_same_everywhere_and_nothing_jumps() {
+        let speakers = corners();
+        let mut last: Option<[f32; 4]> = None;
+        for tile in 0..200 {
+            let gains = gains(&speakers.heard(&[Spot { tile, weight: 1.0 }], 1.0));
+            let power: f32 = gains.iter().map(|gain| gain * gain).sum();
+            assert!((power - 1.0).abs() < 1e-4, "tile {tile}: {power}");
+            if let Some(last) = last {
+                let jump = gains.iter().zip(last).map(|(a, b)| (a - b).abs()).fold(0.0, f32::max);
+                assert!(jump < 0.2, "tile {tile}: {jump}");
+            }
+            last = Some(gains);
+        }
+    }
+
+    #[test]
+    fn the_nearest_is_the_loudest_and_a_cue_on_two_tiles_lies_between_them() {
+        let speakers = corners();
+        let west = gains(&speakers.heard(&[Spot { tile: 0, weight: 1.0 }], 0.5));
+        assert!(west[0] > 0.49 && west[0] <= 0.5, "{west:?}");
+        let between = speakers.heard(&[Spot { tile: 20, weight: 0.5 }, Spot { tile: 60, weight: 0.5 }], 1.0);
+        let middle = speakers.heard(&[Spot { tile: 40, weight: 1.0 }], 1.0);
+        for (a, b) in gains(&between).iter().zip(gains(&middle)) {
+            assert!((a - b).abs() < 1e-4);
+        }
+    }
+
+    #[test]
+    fn nothing_is_heard_that_is_not_meant_to_be_or_makes_no_sense() {
+        let speakers = corners();
+        for (tile, weight, to_air) in
+            [(0, 1.0, 0.0), (0, 1.0, f32::NAN), (0, f32::NAN, 1.0), (0, f32::INFINITY, 1.0), (999, 1.0, 1.0)]
+        {
+            assert!(speakers.heard(&[Spot { tile, weight }], to_air).is_empty());
+        }
+        assert!(
+            Loudspeakers::new(&[], vec![Vec2::ZERO], 4)
+                .heard(&[Spot { tile: 0, weight: 1.0 }], 1.0)
+                .is_empty()
+        );
+        let far = Loudspeaker { at: Vec2::ZERO, channel: 4, gain_db: 0.0 };
+        assert!(Loudspeakers::new(&[far], vec![Vec2::ZERO], 4).all.is_empty());
+    }
+}

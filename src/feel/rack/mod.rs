@@ -1,0 +1,393 @@
+//! What stands between the mix and the amplifiers, channel by channel.
+//!
+//! ```text
+//! banks, voices -> what is no sound becomes silence -> filters (band, inverse equaliser) -> peak limiter
+//!               -> power limiter -> direct-current block -> clamp -> mutes and ramps -> samples
+//! ```
+//!
+//! Sixteen channels are worked on side by side. None of it looks ahead, so it adds no latency but
+//! the filters' own; a group of channels that is silent costs nothing.
+
+// Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
+#![allow(clippy::needless_range_loop)]
+
+mod fit;
+mod gate;
+mod heat;
+mod section;
+
+use multiversion::multiversion;
+use multiversion::target::target_cfg_f;
+
+use super::limiter::Limiter;
+use super::mix::{LANES, Mix};
+use super::modal::SPAN;
+use super::ringing::Ringing;
+use crate::floor::{Drive, Response};
+use gate::Gate;
+use heat::Heat;
+use section::{Section, Shape};
+
+/// Samples beyond this many full scales are a fault, not a loud cue.
+const OVERLOAD: f32 = 8.0;
+
+/// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
+const TRIFLE: f32 = 1e-12;
+
+/// Below this (-140 dB of full scale) what is left of a sound is dropped.
+const SILENCE: f32 = 1e-7;
+
+/// What was not sound, and what was done about it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Faults {
+    /// Samples that were no numbers or infinite: silence now.
+    pub(super) not_finite: u32,
+    /// Samples beyond [`OVERLOAD`]: cut off there.
+    pub(super) overloaded: u32,
+    /// Channels whose voices were silenced because of either.
+    pub(super) silenced: u32,
+    /// Channels that began to be turned down because they are too hot.
+    pub(super) heated: u32,
+}
+
+/// What all channels go through.
+#[derive(Clone, Debug)]
+pub(super) struct Rack {
+    channels: usize,
+    sample_rate: f32,
+    groups: Vec<Group>,
+    /// The samples at hand.
+    columns: Box<[[f32; LANES]; SPAN]>,
+    /// The response that filters were fitted to last.
+    fitted: Option<(Response, Vec<Shape>)>,
+}
+
+/// Sixteen channels.
+#[derive(Clone, Debug)]
+struct Group {
+    sections: Vec<Section>,
+    heat: Heat,
+    limiter: Limiter,
+    gate: Gate,
+    /// Whether silence in gives silence out.
+    idle: bool,
+}
+
+impl Rack {
+    /// A rack that lets everything through, but limited.
+    pub(super) fn new(sample_rate: u32, channels: usize) -> Self {
+        let sample_rate = sample_rate as f32;
+        let group = Group {
+            sections: Vec::new(),
+            heat: Heat::new(sample_rate),
+            limiter: Limiter::new(sample_rate),
+            gate: Gate::new(sample_rate),
+            idle: true,
+        };
+        Self {
+            channels,
+            sample_rate,
+            groups: vec![group; channels.div_ceil(LANES)],
+            columns: Box::new([[0.0; LANES]; SPAN]),
+            fitted: None,
+        }
+    }
+
+    /// Says that `channel` moves a plate by a coil that is driven like that.
+    ///
+    /// A `response` that was measured is made flat within 50 to 750 Hz, and what is outside taken away; without
+    /// one, samples keep their shape, but for direct current.
+    ///
+    /// Takes memory and time, so it belongs before the start. A channel that the rack hasn't got is ignored.
+    pub(super) fn add_actuator(&mut self, channel: usize, drive: &Drive, response: Option<&Response>) {
+        let shapes = match response {
+            Some(response) => self.shapes_for(response),
+            None => Vec::new(),
+        };
+        let Some(group) = self.groups.get_mut(channel / LANES) else { return };
+        let lane = channel % LANES;
+        while group.sections.len() < shapes.len() {
+            group.sections.push(Section::straight());
+        }
+        for (section, shape) in group.sections.iter_mut().zip(&shapes) {
+            section.set(lane, shape);
+        }
+        group.heat.set(lane, drive);
+    }
+
+    /// The filters for a response; those of the last are kept, since most floors have one for all.
+    fn shapes_for(&mut self, response: &Response) -> Vec<Shape> {
+        if let Some((known, shapes)) = &self.fitted
+            && known == response
+        {
+            return shapes.clone();
+        }
+        let shapes = fit::filters(response, f64::from(self.sample_rate));
+        self.fitted = Some((response.clone(), shapes.clone()));
+        shapes
+    }
+
+    /// Mutes a channel, or no longer, within 5 ms.
+    pub(super) fn mute(&mut self, channel: usize, muted: bool) {
+        if let Some(group) = self.groups.get_mut(channel / LANES) {
+            group.gate.mute(channel % LANES, muted);
+        }
+    }
+
+    /// Forgets all that sounded, at once; coils stay as warm as they are.
+    pub(super) fn clear(&mut self) {
+        self.groups.iter_mut().for_each(Group::clear);
+    }
+
+    /// Writes the next samples to `out`, interleaved; `gains` holds a factor for each of its frames.
+    ///
+    /// # Real-time
+    /// No allocation.
+    pub(super) fn process(
+        &mut self,
+        ringing: &mut Ringing,
+        mix: &Mix,
+        gains: &[f32],
+        out: &mut [f32],
+    ) -> Faults {
+        let mut faults = Faults::default();
+        let is_fed = |group: usize, ringing: &Ringing| mix.is_open(group) || ringing.has_more(group);
+        if self.groups.iter().enumerate().any(|(number, group)| group.idle && !is_fed(number, ringing)) {
+            out.fill(0.0);
+        }
+        let columns = &mut *self.columns;
+        for (number, group) in self.groups.iter_mut().enumerate() {
+            let first = number * LANES;
+            let in_rows = mix.is_open(number);
+            let fed = is_fed(number, ringing);
+            if !fed && group.idle {
+                group.rest(gains.len());
+                continue;
+            }
+            let widths = Widths { channels: self.channels, width: LANES.min(self.channels - first) };
+            for from in (0..gains.len()).step_by(SPAN) {
+                let gains = &gains[from..gains.len().min(from + SPAN)];
+                if !ringing.draw(number, gains.len(), columns) {
+                    *columns = [[0.0; LANES]; SPAN];
+                }
+                let rows = in_rows.then_some(Rows { mix, group: number, from });
+                let out = &mut out[from * self.channels + first..];
+                faults += run(group, rows, columns, gains, out, widths);
+            }
+            group.settle(fed);
+            for (channel, spent) in (first..).zip(group.gate.reset()) {
+                if spent {
+                    ringing.clear_channel(channel);
+                }
+            }
+        }
+        faults
+    }
+}
+
+/// Channels of a frame, and of a group.
+#[derive(Clone, Copy)]
+struct Widths {
+    channels: usize,
+    width: usize,
+}
+
+/// Where in the mix a stretch of a group's samples is.
+#[derive(Clone, Copy)]
+struct Rows<'a> {
+    mix: &'a Mix,
+    group: usize,
+    from: usize,
+}
+
+/// Sends a stretch of a group's samples through the rack, with the widest registers this processor has.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
+fn run<'a>(
+    group: &mut Group,
+    rows: Option<Rows<'a>>,
+    columns: &mut [[f32; LANES]; SPAN],
+    gains: &[f32],
+    out: &mut [f32],
+    widths: Widths,
+) -> Faults {
+    if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
+        group.run::<true>(rows, columns, gains, out, widths)
+    } else {
+        group.run::<false>(rows, columns, gains, out, widths)
+    }
+}
+
+impl Group {
+    fn clear(&mut self) {
+        for section in &mut self.sections {
+            section.states().fill([0.0; LANES]);
+        }
+        self.limiter.clear();
+        self.gate.settle();
+        self.idle = true;
+    }
+
+    /// Lets silent samples pass.
+    fn rest(&mut self, samples: usize) {
+        self.heat.rest(samples);
+        self.gate.settle();
+    }
+
+    #[inline(always)]
+    fn run<const FUSED: bool>(
+        &mut self,
+        rows: Option<Rows<'_>>,
+        columns: &mut [[f32; LANES]; SPAN],
+        gains: &[f32],
+        out: &mut [f32],
+        Widths { channels, width }: Widths,
+    ) -> Faults {
+        let mut faults = Faults::default();
+        if let Some(Rows { mix, group, from }) = rows {
+            mix.add_to(group, from, gains.len(), columns);
+            // Before it is too late: a filter never gets rid of what is no number. Banks don't give any.
+            let columns = &mut columns[..gains.len()];
+            if !survey(columns).is_calm() {
+                faults = self.mend(columns);
+            }
+        }
+        let columns = &mut columns[..gains.len()];
+        Section::run_all::<FUSED>(&mut self.sections, columns);
+        let mut found = survey(columns);
+        if !found.is_calm() {
+            faults += self.mend(columns);
+        }
+        if self.limiter.hold_down(columns, found.loudest()) {
+            found = survey(columns);
+        }
+        faults.heated = self.heat.run::<FUSED>(columns, &found.energy);
+        if self.gate.is_open() {
+            for ((frame, column), gain) in out.chunks_mut(channels).zip(columns).zip(gains) {
+                self.limiter.finish::<FUSED>(column, *gain);
+                write(column, &mut frame[..width]);
+            }
+        } else {
+            for (column, gain) in columns.iter_mut().zip(gains) {
+                self.limiter.finish::<FUSED>(column, *gain);
+            }
+            self.gate.run(columns);
+            for (frame, column) in out.chunks_mut(channels).zip(columns) {
+                write(column, &mut frame[..width]);
+            }
+        }
+        faults
+    }
+
+    /// Silences samples that are not finite, cuts off those that are too loud, counts both, and closes their channels.
+    fn mend(&mut self, columns: &mut [[f32; LANES]]) -> Faults {
+        let mut faults = Faults::default();
+        for column in columns {
+            for (lane, sample) in column.iter_mut().enumerate() {
+                if !sample.is_finite() {
+                    faults.not_finite += 1;
+                    *sample = 0.0;
+                } else if sample.abs() > OVERLOAD {
+                    faults.overloaded += 1;
+                    *sample = OVERLOAD.copysign(*sample);
+                } else {
+                    continue;
+                }
+                faults.silenced += u32::from(self.gate.trip(lane));
+            }
+        }
+        faults
+    }
+
+    /// Makes exact zeros of what has become too small to matter, long before it would become a denormal number.
+    fn settle(&mut self, fed: bool) {
+        let mut left = self.limiter.settle();
+        for section in &mut self.sections {
+            left = left.max(settled(section.states()));
+        }
+        self.idle = !fed && left < SILENCE;
+        if self.idle {
+            self.clear();
+        }
+    }
+}
+
+/// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
+pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
+    let mut largest = 0.0;
+    for number in numbers.as_flattened_mut() {
+        if number.abs() < TRIFLE {
+            *number = 0.0;
+        }
+        largest = if number.abs() > largest { number.abs() } else { largest };
+    }
+    largest
+}
+
+/// What a stretch of samples is like, channel by channel.
+struct Survey {
+    /// The largest absolute sample, as bits: without a sign, the bits of numbers are in the order of the
+    /// numbers, and those of what is infinite or no number come last.
+    most: [u32; LANES],
+    /// The sum of the squares.
+    energy: [f32; LANES],
+}
+
+#[inline(always)]
+fn survey(columns: &[[f32; LANES]]) -> Survey {
+    /// Numbers that are worked on together: so many that the compiler keeps the loop, and makes vectors of it.
+    const TOGETHER: usize = 8 * LANES;
+    let (mut most, mut energy) = ([0_u32; TOGETHER], [0.0_f32; TOGETHER]);
+    for numbers in columns.as_flattened().chunks(TOGETHER) {
+        for ((number, most), energy) in numbers.iter().zip(&mut most).zip(&mut energy) {
+            *most = (number.to_bits() & 0x7fff_ffff).max(*most);
+            *energy += number * number;
+        }
+    }
+    let mut survey = Survey { most: [0; LANES], energy: [0.0; LANES] };
+    for (most, energy) in most.as_chunks::<LANES>().0.iter().zip(energy.as_chunks::<LANES>().0) {
+        for lane in 0..LANES {
+            survey.energy[lane] += energy[lane];
+            survey.most[lane] = survey.most[lane].max(most[lane]);
+        }
+    }
+    survey
+}
+
+impl Survey {
+    /// Whether all samples are numbers no larger than [`OVERLOAD`].
+    #[inline(always)]
+    fn is_calm(&self) -> bool {
+        self.loudest() <= OVERLOAD
+    }
+
+    /// The largest absolute sample; infinite or no number if any is.
+    #[inline(always)]
+    fn loudest(&self) -> f32 {
+        let mut all = 0;
+        for most in self.most {
+            all = most.max(all);
+        }
+        f32::from_bits(all)
+    }
+}
+
+/// Writes a column into a group's part of a frame.
+#[inline(always)]
+fn write(column: &[f32; LANES], frame: &mut [f32]) {
+    if let Some(frame) = frame.first_chunk_mut::<LANES>() {
+        *frame = *column;
+    } else {
+        for (sample, from) in frame.iter_mut().zip(column) {
+            *sample = *from;
+        }
+    }
+}
+
+impl std::ops::AddAssign for Faults {
+    fn add_assign(&mut self, other: Self) {
+        self.not_finite += other.not_finite;
+        self.overloaded += other.overloaded;
+        self.silenced += other.silenced;
+        self.heated += other.heated;
+    }
+}

@@ -1,0 +1,90 @@
+/// How much energy single events take: a power law on a bounded range.
+///
+/// # Source
+/// `p(E) ~ E^gamma` (paper, section 4.1.1), here between a least and a most
+/// energy, for a footstep has only so much to give and what is too weak to be
+/// felt need not happen. Drawn by the inverse of the distribution function.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EnergyLaw {
+    /// The exponent; below zero, small events are more frequent than large ones.
+    pub gamma: f32,
+    /// The least energy, in joules; positive.
+    pub least_j: f32,
+    /// The most energy, in joules; at least the least.
+    pub most_j: f32,
+}
+
+impl EnergyLaw {
+    /// The energy below which a share `u` (0 to 1) of all events lies, in joules.
+    #[must_use]
+    pub fn quantile(&self, u: f64) -> f64 {
+        let (least, most) = self.range();
+        let u = u.clamp(0.0, 1.0);
+        let power = f64::from(self.gamma) + 1.0;
+        let energy = if power.abs() < 1e-6 {
+            least * (most / least).powf(u)
+        } else {
+            // In units of the least energy, so that no power overflows.
+            least * (1.0 + u * ((most / least).powf(power) - 1.0)).powf(power.recip())
+        };
+        energy.clamp(least, most)
+    }
+
+    /// The share of all events with at most `energy_j`, 0 to 1.
+    #[must_use]
+    pub fn share_below(&self, energy_j: f64) -> f64 {
+        let (least, most) = self.range();
+        let energy = energy_j.clamp(least, most) / least;
+        let power = f64::from(self.gamma) + 1.0;
+        let share = if power.abs() < 1e-6 {
+            energy.ln() / (most / least).ln()
+        } else {
+            (energy.powf(power) - 1.0) / ((most / least).powf(power) - 1.0)
+        };
+        // A range without extent.
+        if share.is_nan() { 1.0 } else { share }
+    }
+
+    /// The mean energy, in joules.
+    #[must_use]
+    pub fn mean_j(&self) -> f64 {
+        // Simpson's rule over the quantiles, which are smooth.
+        let n = 512;
+        let weight = |k: usize| if k == 0 || k == n { 1.0 } else { 2.0 + 2.0 * (k % 2) as f64 };
+        let sum: f64 = (0..=n).map(|k| weight(k) * self.quantile(k as f64 / n as f64)).sum();
+        sum / (3.0 * n as f64)
+    }
+
+    fn range(&self) -> (f64, f64) {
+        let least = f64::from(self.least_j);
+        (least, f64::from(self.most_j).max(least))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn quantiles_and_shares_undo_each_other_for_any_exponent() {
+        for gamma in [-4.0, -2.0, -1.5, -1.000_000_1, -1.0, -0.5, 0.0, 2.0] {
+            let law = EnergyLaw { gamma, least_j: 0.1, most_j: 2.5 };
+            for step in 0..=20 {
+                let u = f64::from(step) / 20.0;
+                let back = law.share_below(law.quantile(u));
+                assert!((back - u).abs() < 1e-5, "gamma {gamma}: {u} came back as {back}");
+            }
+            let (ends, range) = ([law.quantile(0.0), law.quantile(1.0)], [0.1, 2.5]);
+            assert!(ends.iter().zip(range).all(|(end, wanted)| (end - wanted).abs() < 1e-6), "{ends:?}");
+        }
+    }
+
+    #[test]
+    fn the_mean_is_the_textbook_s() {
+        // For gamma = -1.5 the mean of a bounded power law is the geometric mean of its ends.
+        let law = EnergyLaw { gamma: -1.5, least_j: 0.1, most_j: 2.5 };
+        assert!((law.mean_j() - 0.5).abs() < 1e-4, "{}", law.mean_j());
+        let single = EnergyLaw { gamma: -1.5, least_j: 0.3, most_j: 0.3 };
+        assert!((single.mean_j() - 0.3).abs() < 1e-6 && single.share_below(0.3) == 1.0);
+    }
+}

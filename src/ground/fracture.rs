@@ -1,0 +1,492 @@
+use std::collections::VecDeque;
+use std::f32::consts::TAU;
+use std::time::Duration;
+
+use arrayvec::ArrayVec;
+use glam::Vec2;
+use rand::RngExt;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64Mcg;
+
+use super::Crack;
+use crate::floor::Rect;
+use crate::units::Instant;
+
+/// How cracks spread.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CrackRules {
+    /// No new seed comes within this distance of another, in metres: the paper's Δp.
+    pub apart_m: f32,
+    /// Length of crack that a joule opens, in metres: the paper's α.
+    pub per_j_m: f32,
+    /// Standard deviation of the sideways step β that turns a crack at each event: the paper's σ.
+    /// A crack turns by the arc tangent of β.
+    pub turn: f32,
+    /// Chance that a piece of crack ends in two, 0 to 1; none in the paper.
+    pub branch: f32,
+    /// The angle at which branches part, in radians.
+    pub branch_rad: f32,
+    /// Most pieces that are kept, 16 and more; the oldest heal for new ones.
+    pub most: usize,
+    /// How long a crack takes to freeze shut, in seconds; `None`: for ever.
+    pub refreeze_s: Option<f32>,
+}
+
+/// Where cracks come from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Seed {
+    /// Its number, never used again.
+    pub number: u32,
+    /// Where it is, in floor metres.
+    pub at: Vec2,
+    /// When the last event was here.
+    pub latest: Instant,
+    /// All energy of its events, in joules.
+    pub energy_j: f32,
+    /// Pieces of crack that it has; one without any has healed.
+    cracks: u32,
+    fronts: ArrayVec<Front, 6>,
+}
+
+impl Seed {
+    /// How many crack fronts it has, 2 to 6, grown or not yet.
+    #[must_use]
+    pub fn fronts(&self) -> usize {
+        self.fronts.len()
+    }
+}
+
+/// One of the ways that cracks go from a seed, with the branches it has put out.
+#[derive(Clone, Debug, Default, PartialEq)]
+struct Front {
+    /// Ends that can still grow; none once all have met something.
+    tips: ArrayVec<Tip, TIPS>,
+    /// The number of its latest piece.
+    latest: u64,
+}
+
+/// Most ends of one front that grow.
+const TIPS: usize = 5;
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Tip {
+    at: Vec2,
+    way: Vec2,
+    line: u32,
+    rank: u8,
+}
+
+/// What one event did to the cracks.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Growth {
+    /// The number of the seed it was at.
+    pub seed: u32,
+    /// Whether that seed is new.
+    pub is_new: bool,
+    /// Which of the seed's fronts it went to; of a new seed the first of two.
+    pub front: usize,
+    /// Where the crack it grew now ends; `None` if no crack grew and one gapes wider instead.
+    pub tip: Option<Vec2>,
+}
+
+/// The cracks in one sheet: a graph that grows by events and heals with time.
+///
+/// Its memory is bounded and taken at the start.
+///
+/// # Source
+/// Paper, section 4.1.2. Beyond it: fronts branch, stop at the sheet's edge and
+/// at other cracks, and heal.
+#[derive(Clone, Debug)]
+pub struct Fracture {
+    rules: CrackRules,
+    area: Rect,
+    /// In the order they opened.
+    cracks: VecDeque<Crack>,
+    /// Pieces that have been taken off the front of `cracks`.
+    healed: u64,
+    /// Of these, those that had to make room.
+    crowded_out: u64,
+    seeds: Vec<Seed>,
+    next_seed: u32,
+    next_line: u32,
+    /// Grows with every change.
+    revision: u64,
+}
+
+/// Most seeds of one sheet; the one that rested longest is given up for a new one.
+const MOST_SEEDS: usize = 512;
+
+/// How long a seed without cracks is kept after its last event.
+const BARE_SEED: Duration = Duration::from_secs(10);
+
+/// A crack cut off shorter than this does not open at all, in metres.
+const SHORTEST_M: f32 = 0.001;
+
+impl Fracture {
+    /// A whole sheet that covers `area`.
+    #[must_use]
+    pub fn new(rules: CrackRules, area: Rect) -> Self {
+        let most = rules.most.max(16);
+        Self {
+            rules: CrackRules { most, ..rules },
+            area,
+            cracks: VecDeque::with_capacity(most),
+            healed: 0,
+            crowded_out: 0,
+            seeds: Vec::with_capacity(MOST_SEEDS),
+            next_seed: 0,
+            next_line: 0,
+            revision: 0,
+        }
+    }
+
+    /// The pieces of crack, oldest first.
+    pub fn cracks(&self) -> impl DoubleEndedIterator<Item = &Crack> + ExactSizeIterator + '_ {
+        self.cracks.iter()
+    }
+
+    /// The seeds that have cracks.
+    #[must_use]
+    pub fn seeds(&self) -> &[Seed] {
+        &self.seeds
+    }
+
+    /// Most pieces of crack and most seeds that there can be.
+    #[must_use]
+    pub const fn most(&self) -> (usize, usize) {
+        (self.rules.most, MOST_SEEDS)
+    }
+
+    /// A number that changes whenever a crack opens, widens or heals.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.revision
+    }
+
+    /// Pieces that healed before their time to make room for new ones.
+    #[must_use]
+    pub fn crowded_out(&self) -> u64 {
+        self.crowded_out
+    }
+
+    /// Takes in an event of `energy_j` joules at `at`.
+    ///
+    /// With a seed within Δp the event goes to one of the fronts of the nearest,
+    /// each with the same chance; otherwise there is a new seed with 2 to 6
+    /// fronts at equal angles, two of which it grows.
+    pub fn grow(&mut self, at: Vec2, energy_j: f32, now: Instant, rng: &mut Pcg64Mcg) -> Growth {
+        self.revision += 1;
+        let at = at.clamp(self.area.min, self.area.max);
+        let nearest = self
+            .seeds
+            .iter()
+            .enumerate()
+            .map(|(index, seed)| (index, seed.at.distance_squared(at)))
+            .min_by(|one, other| one.1.total_cmp(&other.1))
+            .filter(|(_, squared)| *squared <= self.rules.apart_m * self.rules.apart_m);
+        let (index, is_new) = match nearest {
+            Some((index, _)) => (index, false),
+            None => (self.sow(at, now, rng), true),
+        };
+        let Some(seed) = self.seeds.get_mut(index) else { return Growth::default() };
+        seed.latest = now;
+        seed.energy_j += energy_j;
+        let (number, fronts) = (seed.number, seed.fronts.len());
+        let front = rng.random_range(0..fronts);
+        let tip = self.extend(index, front, energy_j, now, rng);
+        if is_new {
+            let other = (front + rng.random_range(1..fronts)) % fronts;
+            self.extend(index, other, energy_j, now, rng);
+        }
+        Growth { seed: number, is_new, front, tip }
+    }
+
+    /// Lets what is old enough freeze shut.
+    pub fn heal(&mut self, now: Instant) {
+        let whole = self.rules.refreeze_s.map(|seconds| Duration::from_secs_f32(seconds.clamp(0.0, 1e9)));
+        if let Some(whole) = whole {
+            while self.cracks.front().is_some_and(|oldest| now.since(oldest.born) >= whole) {
+                self.drop_oldest();
+            }
+        }
+        // A seed that has lost its cracks, or never got any, is soon nothing but a place.
+        let before = self.seeds.len();
+        let rest = whole.unwrap_or(BARE_SEED).min(BARE_SEED);
+        self.seeds.retain(|seed| seed.cracks > 0 || now.since(seed.latest) < rest);
+        self.revision += u64::from(self.seeds.len() != before);
+    }
+
+    /// A new seed's place in `seeds`.
+    fn sow(&mut self, at: Vec2, now: Instant, rng: &mut Pcg64Mcg) -> usize {
+        if self.seeds.len() == MOST_SEEDS
+            && let Some((idlest, _)) = self.seeds.iter().enumerate().min_by_key(|(_, seed)| seed.latest)
+        {
+            self.seeds.swap_remove(idlest);
+        }
+        let count = rng.random_range(2..=6);
+        let first = rng.random_range(0.0..TAU);
+        let fronts = (0..count).map(|front| {
+            let way = Vec2::from_angle(first + TAU * front as f32 / count as f32);
+            let tip = Tip { at, way, line: self.next_line + front, rank: 0 };
+            Front { tips: ArrayVec::from_iter([tip]), latest: u64::MAX }
+        });
+        let fronts = fronts.collect();
+        let number = self.next_seed;
+        self.next_seed = self.next_seed.wrapping_add(1);
+        self.next_line = self.next_line.wrapping_add(count);
+        self.seeds.push(Seed { number, at, latest: now, energy_j: 0.0, cracks: 0, fronts });
+        self.seeds.len() - 1
+    }
+
+    /// Grows a front by what `energy_j` opens; one that can't grow any more puts out a branch or gapes wider.
+    fn extend(
+        &mut self,
+        seed: usize,
+        front: usize,
+        energy_j: f32,
+        now: Instant,
+        rng: &mut Pcg64Mcg,
+    ) -> Option<Vec2> {
+        let rules = self.rules;
+        let tips = self.seeds.get(seed)?.fronts.get(front)?.tips.len();
+        if tips == 0 {
+            self.sprout(seed, front, rng);
+        }
+        let found = self.seeds.get(seed)?.fronts.get(front)?;
+        if found.tips.is_empty() {
+            self.widen(found.latest, energy_j);
+            return None;
+        }
+        let found_latest = found.latest;
+        let chosen = rng.random_range(0..found.tips.len());
+        let tip = *found.tips.get(chosen)?;
+        let sideways: f32 = StandardNormal.sample(rng);
+        let way = (tip.way + tip.way.perp() * (rules.turn * sideways)).normalize_or(tip.way);
+        let wished = tip.at + way * (rules.per_j_m * energy_j);
+        let (to, is_stopped) = self.reach(tip.at, wished);
+        let is_short = tip.at.distance(to) < SHORTEST_M;
+        if is_short {
+            self.widen(found_latest, energy_j);
+        } else {
+            let seed = self.seeds.get(seed)?.number;
+            let Tip { at: from, line, rank, .. } = tip;
+            self.open(Crack { from, to, energy_j, born: now, number: 0, line, rank, seed });
+        }
+        let piece = (self.healed + self.cracks.len() as u64).wrapping_sub(1);
+        let branches = !is_stopped && !is_short && rng.random::<f32>() < rules.branch;
+        let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
+        let aside = Vec2::from_angle(side * rules.branch_rad * rng.random_range(0.7..1.3)).rotate(way);
+        let line = self.next_line;
+        let Seed { fronts, cracks, .. } = self.seeds.get_mut(seed)?;
+        let front = fronts.get_mut(front)?;
+        if !is_short {
+            *cracks += 1;
+            front.latest = piece;
+        }
+        if is_stopped {
+            front.tips.remove(chosen);
+        } else if !is_short {
+            front.tips[chosen] = Tip { at: to, way, ..tip };
+            if branches && !front.tips.is_full() {
+                front.tips.push(Tip { at: to, way: aside, line, rank: tip.rank.saturating_add(1) });
+                self.next_line = self.next_line.wrapping_add(1);
+            }
+        }
+        (!is_short).then_some(to)
+    }
+
+    /// How far a crack from `start` gets towards `end`, and whether something stops it: the edge or another crack.
+    fn reach(&self, start: Vec2, end: Vec2) -> (Vec2, bool) {
+        let mut share = 1.0_f32;
+        for axis in 0..2 {
+            let (low, high) = (self.area.min[axis], self.area.max[axis]);
+            let step = end[axis] - start[axis];
+            if end[axis] < low {
+                share = share.min((low - start[axis]) / step);
+            } else if end[axis] > high {
+                share = share.min((high - start[axis]) / step);
+            }
+        }
+        for crack in &self.cracks {
+            if let Some(met) = crack.met_by(start, end) {
+                share = share.min(met);
+            }
+        }
+        if share < 1.0 {
+            ((start + (end - start) * share.max(0.0)).clamp(self.area.min, self.area.max), true)
+        } else {
+            (end, false)
+        }
+    }
+
+    fn open(&mut self, crack: Crack) {
+        if self.cracks.len() >= self.rules.most {
+            self.drop_oldest();
+            self.crowded_out += 1;
+        }
+        let number = self.healed + self.cracks.len() as u64;
+        self.cracks.push_back(Crack { number, ..crack });
+    }
+
+    /// Lets a front of which nothing grows any more begin anew from the end of one of its seed's cracks.
+    fn sprout(&mut self, seed: usize, front: usize, rng: &mut Pcg64Mcg) {
+        if self.cracks.is_empty() || rng.random::<f32>() >= self.rules.branch.max(0.25) {
+            return;
+        }
+        let Some(number) = self.seeds.get(seed).map(|seed| seed.number) else { return };
+        // A few tries: most cracks near the newest are the seed's own.
+        for _ in 0..8 {
+            let back = (rng.random::<f32>().powi(2) * self.cracks.len() as f32) as usize;
+            let Some(crack) = self.cracks.get(self.cracks.len() - 1 - back.min(self.cracks.len() - 1)) else {
+                return;
+            };
+            if crack.seed != number {
+                continue;
+            }
+            let side = if rng.random::<bool>() { 1.0 } else { -1.0 };
+            let along = (crack.to - crack.from).normalize_or(Vec2::X);
+            let way = Vec2::from_angle(side * rng.random_range(1.0..1.9)).rotate(along);
+            let tip = Tip { at: crack.from, way, line: self.next_line, rank: crack.rank.saturating_add(1) };
+            self.next_line = self.next_line.wrapping_add(1);
+            if let Some(front) = self.seeds.get_mut(seed).and_then(|seed| seed.fronts.get_mut(front)) {
+                let _ = front.tips.try_push(tip);
+            }
+            return;
+        }
+    }
+
+    fn widen(&mut self, piece: u64, energy_j: f32) {
+        let index = piece.checked_sub(self.healed).and_then(|index| usize::try_from(index).ok());
+        if let Some(crack) = index.and_then(|index| self.cracks.get_mut(index)) {
+            crack.energy_j += energy_j;
+        }
+    }
+
+    fn drop_oldest(&mut self) {
+        let Some(oldest) = self.cracks.pop_front() else { return };
+        self.healed += 1;
+        self.revision += 1;
+        if let Some(seed) = self.seeds.iter_mut().find(|seed| seed.number == oldest.seed) {
+            seed.cracks = seed.cracks.saturating_sub(1);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::SeedableRng;
+
+    use super::*;
+
+    const RULES: CrackRules = CrackRules {
+        apart_m: 0.25,
+        per_j_m: 0.04,
+        turn: 0.25,
+        branch: 0.15,
+        branch_rad: 0.7,
+        most: 500,
+        refreeze_s: Some(60.0),
+    };
+
+    fn pond() -> Rect {
+        Rect::new(Vec2::ZERO, Vec2::splat(1.8))
+    }
+
+    fn at(seconds: f32) -> Instant {
+        Instant::from_micros((seconds * 1e6) as u64)
+    }
+
+    #[test]
+    fn a_first_event_sows_a_seed_with_two_cracks_and_later_ones_stay_with_it() {
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        let mut fracture = Fracture::new(RULES, pond());
+        let middle = Vec2::splat(0.9);
+        assert!(fracture.grow(middle, 1.0, at(0.0), &mut rng).is_new);
+        let cracks: Vec<Crack> = fracture.cracks().copied().collect();
+        assert_eq!(cracks.len(), 2, "two fronts are started at once");
+        assert!(cracks.iter().all(|crack| crack.from == middle && (crack.length_m() - 0.04).abs() < 1e-5));
+        // 24 cm away: the same seed. 26 cm: a new one.
+        assert!(!fracture.grow(middle + Vec2::X * 0.24, 1.0, at(0.1), &mut rng).is_new);
+        assert!(fracture.grow(middle + Vec2::X * 0.26, 1.0, at(0.2), &mut rng).is_new);
+        assert_eq!(fracture.seeds().len(), 2);
+    }
+
+    #[test]
+    fn cracks_join_end_to_end_stay_on_the_sheet_and_cross_nothing() {
+        for seed in 0..20 {
+            let mut rng = Pcg64Mcg::seed_from_u64(seed);
+            let mut fracture = Fracture::new(RULES, pond());
+            for step in 0..400 {
+                let place = Vec2::new(rng.random_range(-0.1..1.9), rng.random_range(-0.1..1.9));
+                fracture.grow(place, rng.random_range(0.1..2.5), at(step as f32 * 0.01), &mut rng);
+            }
+            let cracks: Vec<Crack> = fracture.cracks().copied().collect();
+            assert!(cracks.len() > 200, "{}", cracks.len());
+            for (index, crack) in cracks.iter().enumerate() {
+                for end in [crack.from, crack.to] {
+                    assert!(end == end.clamp(Vec2::ZERO, Vec2::splat(1.8)), "{end} is off the sheet");
+                }
+                assert!(crack.length_m() >= 0.99 * SHORTEST_M);
+                for other in &cracks[..index] {
+                    // Cut a little off both ends, where cracks may touch.
+                    let (from, to) = (crack.from.lerp(crack.to, 0.02), crack.from.lerp(crack.to, 0.98));
+                    assert_eq!(other.met_by(from, to), None, "{crack:?} crosses {other:?}");
+                }
+            }
+            for line in 0..fracture.next_line {
+                let pieces: Vec<&Crack> = cracks.iter().filter(|crack| crack.line == line).collect();
+                assert!(pieces.windows(2).all(|pair| pair[0].to == pair[1].from), "line {line} has a gap");
+            }
+            assert!(cracks.iter().any(|crack| crack.rank > 0), "some have branched");
+        }
+    }
+
+    #[test]
+    fn memory_is_bounded_and_what_had_to_make_room_is_counted() {
+        let mut rng = Pcg64Mcg::seed_from_u64(9);
+        let rules = CrackRules { most: 100, branch: 1.0, ..RULES };
+        let mut fracture = Fracture::new(rules, pond());
+        let capacity = (fracture.cracks.capacity(), fracture.seeds.capacity());
+        for step in 0..20_000 {
+            let place = Vec2::new(rng.random_range(0.0..1.8), rng.random_range(0.0..1.8));
+            fracture.grow(place, 0.5, at(step as f32 * 1e-3), &mut rng);
+        }
+        assert_eq!(fracture.cracks().len(), 100);
+        assert!(fracture.crowded_out() > 1000, "{}", fracture.crowded_out());
+        assert_eq!((fracture.cracks.capacity(), fracture.seeds.capacity()), capacity, "no memory was taken");
+        let oldest = fracture.cracks().next().unwrap().born;
+        assert!(fracture.cracks().all(|crack| crack.born >= oldest), "the oldest have healed first");
+    }
+
+    #[test]
+    fn a_pond_left_alone_freezes_over() {
+        let mut rng = Pcg64Mcg::seed_from_u64(2);
+        let mut fracture = Fracture::new(RULES, pond());
+        for step in 0..50 {
+            fracture.grow(Vec2::splat(0.9), 0.5, at(step as f32), &mut rng);
+        }
+        fracture.heal(at(60.5));
+        let left = fracture.cracks().len();
+        assert!(left > 0 && fracture.cracks().all(|crack| crack.born > at(0.4)));
+        fracture.heal(at(110.0));
+        assert_eq!((fracture.cracks().len(), fracture.seeds().len()), (0, 0));
+        // And cracks anew from a new seed.
+        assert!(fracture.grow(Vec2::splat(0.9), 0.5, at(111.0), &mut rng).is_new);
+    }
+
+    #[test]
+    fn a_front_that_met_something_takes_energy_as_width() {
+        let mut rng = Pcg64Mcg::seed_from_u64(4);
+        let rules = CrackRules { branch: 0.0, ..RULES };
+        // A sheet the size of a hand: every front soon meets its edge.
+        let mut fracture = Fracture::new(rules, Rect::new(Vec2::ZERO, Vec2::splat(0.1)));
+        let mut put_in = 0.0;
+        for step in 0..300 {
+            let growth = fracture.grow(Vec2::splat(0.05), 0.5, at(step as f32 * 0.01), &mut rng);
+            put_in += if growth.is_new { 1.0 } else { 0.5 };
+        }
+        let kept: f32 = fracture.cracks().map(|crack| crack.energy_j).sum();
+        assert!(fracture.cracks().any(|crack| crack.energy_j > 2.0), "some gape");
+        assert!(kept > 0.9 * put_in, "{kept} of {put_in} J");
+    }
+}

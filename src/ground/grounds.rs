@@ -1,0 +1,294 @@
+use std::time::Duration;
+
+use glam::Vec2;
+
+use super::bed::Bed;
+use super::tile::{Stride, Tread};
+use super::{Elastic, GroundCounters, GroundEvent, GroundState};
+use crate::floor::{Geometry, Rect};
+use crate::layout::Ground;
+use crate::sense::{Contact, ForceFrame, Quality};
+use crate::units::Instant;
+
+/// Length of one step.
+const STEP: Duration = Duration::from_millis(1);
+
+/// A gap of more frames than this is no walking: what stands there then has settled.
+const LONGEST_GAP: u64 = 20;
+
+/// Most events of one frame that are felt one by one.
+const MOST_EVENTS: usize = 32;
+
+/// Load with which a foot is noticed at the latest when it comes gently, in newtons: what is there
+/// in the first frame of a contact and no more than this has not fallen from the sky.
+const LANDING_N: f64 = 20.0;
+
+/// How often healing is seen to.
+const HEAL_EVERY: Duration = Duration::from_millis(100);
+
+/// All grounds of a layout at work: frames and contacts in, events out.
+///
+/// Each tile of a ground has a sheet, a process and modes of its own. A tile
+/// that nobody loads costs nothing. Nothing allocates once a ground is laid.
+///
+/// # Source
+/// "Separate, independent responses are rendered in parallel for each tile" (paper, section 4.1.1).
+#[derive(Clone, Debug, Default)]
+pub struct Grounds {
+    plots: Vec<Plot>,
+    last: Option<Instant>,
+    events: Vec<GroundEvent>,
+}
+
+/// One ground.
+#[derive(Clone, Debug)]
+struct Plot {
+    ground: Ground,
+    elastic: Elastic,
+    bed: Bed,
+    treads: Vec<Tread>,
+    /// Tiles that are followed.
+    awake: Vec<usize>,
+    healed: Instant,
+    revision: u64,
+    counters: GroundCounters,
+    /// Whether nothing has been seen of it yet, or not lately.
+    is_fresh: bool,
+}
+
+impl Grounds {
+    /// The `grounds` of a layout on a floor of this `geometry`, whole and untrodden.
+    #[must_use]
+    pub fn new(grounds: &[Ground], geometry: &Geometry) -> Self {
+        let tiles = geometry.tile_count();
+        let plots = grounds.iter().map(|ground| Plot {
+            elastic: Elastic::new(ground.material.body(), STEP.as_secs_f64()),
+            bed: Bed::new(&ground.material, ground.area, ground.seed, tiles),
+            ground: ground.clone(),
+            treads: vec![Tread::default(); tiles],
+            awake: Vec::with_capacity(tiles),
+            healed: Instant::START,
+            revision: 0,
+            counters: GroundCounters::default(),
+            is_fresh: true,
+        });
+        let plots: Vec<Plot> = plots.collect();
+        let events = Vec::with_capacity(MOST_EVENTS * plots.len());
+        Self { plots, last: None, events }
+    }
+
+    /// Keeps the state of grounds that both have, so that editing one leaves the cracks in the other.
+    pub fn inherit(&mut self, old: &mut Self) {
+        self.last = old.last;
+        for plot in &mut self.plots {
+            let same = old.plots.iter().position(|other| {
+                let page = plot.ground.page;
+                Ground { page, ..other.ground.clone() } == plot.ground
+            });
+            if let Some(same) = same {
+                let page = plot.ground.page;
+                *plot = old.plots.swap_remove(same);
+                plot.ground.page = page;
+            }
+        }
+    }
+
+    /// Takes in a frame, with what sensing made of it, and gives what gave way, in order of time.
+    ///
+    /// `previous` is the frame before. Only the grounds of `page` and of all pages are trodden. A tile
+    /// of which nothing is known holds still, and a load that stands there when it is known again has
+    /// come unseen: it cracks nothing.
+    ///
+    /// # Real-time
+    /// No allocation.
+    pub fn step(
+        &mut self,
+        frame: &ForceFrame,
+        previous: &ForceFrame,
+        contacts: &[Contact],
+        page: usize,
+    ) -> &[GroundEvent] {
+        self.events.clear();
+        if self.plots.is_empty() {
+            return &self.events;
+        }
+        let passed = self.last.map_or(u64::MAX, |last| frame.at.since(last).as_millis() as u64);
+        self.last = Some(frame.at);
+        for (number, plot) in self.plots.iter_mut().enumerate() {
+            let is_shown = plot.ground.page.is_none_or(|own| own == page);
+            if !is_shown || passed > LONGEST_GAP {
+                plot.doze();
+            }
+            if is_shown && passed > 0 {
+                plot.wake(contacts, frame, previous);
+                let first = self.events.len();
+                plot.tread(number, frame, passed.min(LONGEST_GAP), &mut self.events);
+                self.events[first..].sort_unstable_by_key(|event| (event.at, event.tile));
+            }
+        }
+        &self.events
+    }
+
+    /// What gave way in the last frame.
+    #[must_use]
+    pub fn events(&self) -> &[GroundEvent] {
+        &self.events
+    }
+
+    /// How many grounds there are.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.plots.len()
+    }
+
+    /// Whether there are none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.plots.is_empty()
+    }
+
+    /// Writes what the grounds look like into `states`, one each, in the layout's order.
+    ///
+    /// A state that is up to date already is left alone, so that looking often costs little.
+    pub fn show(&self, states: &mut Vec<GroundState>) {
+        states.resize_with(self.plots.len(), GroundState::default);
+        for (plot, state) in self.plots.iter().zip(states) {
+            // What has nothing to do with this ground may have the same revision by chance: it covers another area.
+            if state.revision != plot.revision || state.counters != plot.counters || state.is_empty() {
+                state.revision = plot.revision;
+                plot.bed.show(state);
+            }
+            state.counters = plot.counters;
+        }
+    }
+}
+
+impl Plot {
+    /// Forgets who treads.
+    fn doze(&mut self) {
+        for tile in self.awake.drain(..) {
+            if let Some(tread) = self.treads.get_mut(tile) {
+                *tread = Tread::default();
+            }
+        }
+        self.is_fresh = true;
+    }
+
+    /// Finds out who treads where.
+    fn wake(&mut self, contacts: &[Contact], frame: &ForceFrame, previous: &ForceFrame) {
+        for index in &self.awake {
+            if let Some(tread) = self.treads.get_mut(*index) {
+                tread.contact = None;
+            }
+        }
+        for contact in contacts {
+            for load in &contact.tiles {
+                let Some(tread) = self.treads.get_mut(load.index) else { continue };
+                if !holds(self.ground.area, load.centroid) {
+                    continue;
+                }
+                let whole_n = force_n(frame, load.index);
+                if !tread.is_awake {
+                    let was_unknown =
+                        previous.quality.get(load.index).is_none_or(|quality| is_unknown(*quality));
+                    let unseen = self.is_fresh || was_unknown;
+                    let settled = if unseen { whole_n } else { whole_n.min(LANDING_N) };
+                    *tread =
+                        Tread { motion: self.elastic.settled(settled), is_awake: true, ..Tread::default() };
+                    self.bed.settle(load.index, tread.motion.x_m);
+                    self.awake.push(load.index);
+                }
+                let share = (f64::from(load.force.0) / whole_n.max(1.0)).clamp(0.0, 1.0);
+                if tread.contact.is_none() {
+                    (tread.weight, tread.share) = (0.0, 0.0);
+                }
+                // Of several feet on one tile the heavier one counts: the dominant centroid.
+                if contact.force.0 > tread.weight {
+                    (tread.contact, tread.weight) = (Some(contact.id), contact.force.0);
+                    tread.place = contact.centroid.clamp(self.ground.area.min, self.ground.area.max);
+                }
+                tread.share = (tread.share + share).min(1.0);
+            }
+        }
+        self.is_fresh = false;
+    }
+
+    fn tread(&mut self, number: usize, frame: &ForceFrame, steps: u64, events: &mut Vec<GroundEvent>) {
+        let Self { elastic, bed, treads, awake, counters, revision, healed, .. } = self;
+        if frame.at.since(*healed) >= HEAL_EVERY {
+            *healed = frame.at;
+            *revision += u64::from(bed.heal(frame.at));
+        }
+        let before = counters.events;
+        let first = events.len();
+        awake.retain(|&index| {
+            let Some(tread) = treads.get_mut(index) else { return false };
+            if frame.quality.get(index).is_none_or(|quality| is_unknown(*quality)) {
+                *tread = Tread::default();
+                return false;
+            }
+            let (from_n, to_n) = (tread.motion.force_n, force_n(frame, index) * tread.share);
+            for step in 1..=steps {
+                let earlier = tread.motion;
+                elastic.step(&mut tread.motion, from_n + (to_n - from_n) * step as f64 / steps as f64);
+                let stride = Stride {
+                    tile: index,
+                    place: tread.place,
+                    elastic,
+                    before: earlier,
+                    after: tread.motion,
+                    from: frame.at,
+                };
+                let contact = tread.contact;
+                bed.tread(&stride, |event| {
+                    counters.events += 1;
+                    if events.len() - first == MOST_EVENTS {
+                        counters.unfelt += 1;
+                        return;
+                    }
+                    let within = Duration::from_nanos((event.share * 1e6) as u64);
+                    events.push(GroundEvent {
+                        at: frame.at + within,
+                        ground: number,
+                        tile: index,
+                        contact,
+                        place: event.place,
+                        energy_j: event.energy_j,
+                        seed: event.seed,
+                        click: event.click,
+                    });
+                });
+            }
+            let goes_on = tread.contact.is_some() || !elastic.is_still(&tread.motion);
+            if !goes_on {
+                *tread = Tread::default();
+            }
+            goes_on
+        });
+        if counters.events > before {
+            *revision += 1;
+        }
+        counters.crowded_out = bed.crowded_out();
+    }
+}
+
+/// Whether `area` has `point`, all of its edges included.
+fn holds(area: Rect, point: Vec2) -> bool {
+    point == point.clamp(area.min, area.max)
+}
+
+/// What a tile bears, in newtons.
+fn force_n(frame: &ForceFrame, tile: usize) -> f64 {
+    frame.forces.get(tile).map_or(0.0, |forces| forces.iter().copied().map(f64::from).sum())
+}
+
+/// Whether too little is known of a tile with sensors of this quality to say what it bears.
+fn is_unknown(quality: [Quality; 4]) -> bool {
+    quality.iter().all(|quality| *quality >= Quality::Stale)
+}
+
+impl GroundState {
+    fn is_empty(&self) -> bool {
+        self.relief.size() == (0, 0)
+    }
+}

@@ -1,0 +1,41 @@
+//! Materials underfoot: how ice, snow, gravel, sand and wood answer the feet on them.
+//!
+//! ```text
+//! tile forces (N, 1 kHz) -elastic-> displacement and speed of the sheet under each tile
+//!   ice:    kinetic energy -onsets-> crack events -energy-> joules -+-fracture-> crack graph, depth
+//!   grains: power          -onsets-> collisions   -energy-> joules -+-relief--> prints
+//!   wood:   strain         -slips--> creaks              -> joules -+
+//!                                                                   +-resonance-> Cue (one event: touch and sound)
+//! ```
+//!
+//! [`Grounds`] is all the ground of one page at work: the engine feeds it each
+//! frame. Nothing here reads a clock or the system's randomness: times come
+//! with the frames, chance from the seeds of the layout, so the same walk
+//! gives the same pond, to the bit.
+
+mod bed;
+mod crack;
+mod elastic;
+mod energy;
+mod fracture;
+mod grains;
+mod grounds;
+mod ice;
+mod onsets;
+mod relief;
+mod resonance;
+mod spec;
+mod state;
+mod tile;
+mod wood;
+
+pub use crack::Crack;
+pub use elastic::{Body, Elastic, Motion};
+pub use energy::EnergyLaw;
+pub use fracture::{CrackRules, Fracture, Growth, Seed};
+pub use grounds::Grounds;
+pub use onsets::{MOST_PER_S, Onsets};
+pub use relief::Relief;
+pub use resonance::{Resonance, Ring};
+pub use spec::{Grain, GrainSpec, IceSpec, Material, Sheet, WoodSpec};
+pub use state::{GroundCounters, GroundEvent, GroundState};

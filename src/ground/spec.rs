@@ -1,0 +1,267 @@
+//! What grounds are made of, as layouts describe them.
+
+use super::{Body, CrackRules, EnergyLaw, Ring};
+use crate::units::Newtons;
+use crate::widget::Axis;
+
+/// What a ground is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Material {
+    /// A frozen pond that cracks.
+    Ice(IceSpec),
+    /// Many small grains.
+    Grain(GrainSpec),
+    /// Planks that creak.
+    Wood(WoodSpec),
+}
+
+impl Material {
+    /// The name that layouts call it by.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::Ice(_) => "Ice",
+            Self::Grain(spec) => spec.grain.name(),
+            Self::Wood(_) => "Wood",
+        }
+    }
+
+    /// The elastic sheet that its tiles are.
+    #[must_use]
+    pub const fn body(&self) -> Body {
+        match self {
+            Self::Ice(spec) => spec.body,
+            Self::Grain(spec) => spec.body,
+            Self::Wood(spec) => spec.body,
+        }
+    }
+}
+
+/// A frozen pond.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct IceSpec {
+    /// The elastic sheet.
+    pub body: Body,
+    /// Crack events per second and joule of one-sided kinetic energy above `calm_j`.
+    pub onsets_per_j_s: f32,
+    /// Kinetic energy that the ice bears without cracking, in joules; none in the paper.
+    pub calm_j: f32,
+    /// How much energy single events take.
+    pub energy: EnergyLaw,
+    /// How they ring.
+    pub ring: Ring,
+    /// How cracks spread.
+    pub cracks: CrackRules,
+    /// How the sheet is broken through.
+    pub sheet: Sheet,
+}
+
+impl IceSpec {
+    /// Crack events per second while the sheet has the one-sided kinetic energy `kinetic_j` and
+    /// is worn to `depth` (0 to 1) there.
+    ///
+    /// # Source
+    /// A Poisson process whose rate is the one-sided kinetic energy (paper, section 4.1.1); the
+    /// threshold and the weakness of broken ice are ours, and with both at zero it is the paper's.
+    #[must_use]
+    pub fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
+        let beyond = (kinetic_j - f64::from(self.calm_j)).max(0.0);
+        f64::from(self.onsets_per_j_s) * beyond * f64::from(1.0 + self.sheet.weakening * depth)
+    }
+}
+
+/// How a sheet of ice loses and regains its thickness.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sheet {
+    /// Share of its thickness that a joule breaks where it acts.
+    pub depth_per_j: f32,
+    /// Distance at which it breaks 1/e of that, in metres.
+    pub reach_m: f32,
+    /// How many times as often again ice cracks that is broken through.
+    pub weakening: f32,
+    /// How long broken ice takes to be whole again, in seconds; `None`: for ever.
+    pub refreeze_s: Option<f32>,
+}
+
+/// Which grains.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Grain {
+    /// Dry snow, which is packed underfoot.
+    Snow,
+    /// Gravel, which stays loose.
+    Gravel,
+    /// Sand, which flows aside.
+    Sand,
+}
+
+impl Grain {
+    /// The name that layouts call it by.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Snow => "Snow",
+            Self::Gravel => "Gravel",
+            Self::Sand => "Sand",
+        }
+    }
+}
+
+/// Many small grains.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GrainSpec {
+    /// Which grains they are: how they look.
+    pub grain: Grain,
+    /// The elastic bed that stirs them.
+    pub body: Body,
+    /// Collisions per second at `full_j`; fewer with the root of the energy.
+    pub collisions_per_s: f32,
+    /// Energy of the moving grains under one tile at which they collide as often and as hard as they
+    /// do, in joules.
+    pub full_j: f32,
+    /// Time in which moving grains lose all but 1/e of their energy, in seconds.
+    pub settle_s: f32,
+    /// How much energy single collisions take: only its shape counts, for the most is what `ring` says.
+    pub energy: EnergyLaw,
+    /// How they ring.
+    pub ring: Ring,
+    /// Share of the looseness that a joule of work packs where it acts.
+    pub packing_per_j: f32,
+    /// Distance at which it packs 1/e of that, in metres.
+    pub reach_m: f32,
+    /// What packed grains still move, as a share of loose ones, 0 to 1.
+    pub packed: f32,
+    /// How long the ground takes to lie loose again, in seconds; `None`: for ever.
+    pub renew_s: Option<f32>,
+}
+
+/// Planks.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WoodSpec {
+    /// The elastic plank.
+    pub body: Body,
+    /// Width of a plank, in metres.
+    pub plank_m: f32,
+    /// Which way planks lie.
+    pub along: Axis,
+    /// Force at which a joint slips, on average.
+    pub stick: Newtons,
+    /// How much that varies from slip to slip, as a share of it, 0 to 0.9.
+    pub scatter: f32,
+    /// Share of its strain that a joint loses when it slips, 0 to 1.
+    pub slip: f32,
+    /// How slips ring.
+    pub ring: Ring,
+}
+
+const WHITE_SPRUCE: Ring =
+    Ring { level: Newtons(9.0), modes: 5, low_hz: 70.0, high_hz: 420.0, shortest_s: 0.006, longest_s: 0.045 };
+
+impl IceSpec {
+    /// A pond of clear ice that bears who walks with care. Its numbers were tuned so: a step of ordinary walking
+    /// opens some ten cracks, loading a foot slowly next to none.
+    pub const POND: Self = Self {
+        body: Body { mass_kg: 60.0, damping_n_s_m: 5000.0, stiffness_n_m: 200_000.0 },
+        onsets_per_j_s: 6500.0,
+        calm_j: 0.012,
+        energy: EnergyLaw { gamma: -1.5, least_j: 0.1, most_j: 2.5 },
+        ring: Ring {
+            level: Newtons(16.0),
+            modes: 6,
+            low_hz: 70.0,
+            high_hz: 720.0,
+            shortest_s: 0.003,
+            longest_s: 0.07,
+        },
+        cracks: CrackRules {
+            apart_m: 0.15,
+            per_j_m: 0.045,
+            turn: 0.28,
+            branch: 0.16,
+            branch_rad: 0.65,
+            most: 2400,
+            refreeze_s: Some(90.0),
+        },
+        sheet: Sheet { depth_per_j: 0.035, reach_m: 0.11, weakening: 0.6, refreeze_s: Some(90.0) },
+    };
+}
+
+impl GrainSpec {
+    /// Dry snow: crunches while it is packed, and is quieter underfoot the second time.
+    pub const SNOW: Self = Self {
+        grain: Grain::Snow,
+        body: Body { mass_kg: 20.0, damping_n_s_m: 9000.0, stiffness_n_m: 90_000.0 },
+        collisions_per_s: 420.0,
+        full_j: 0.6,
+        settle_s: 0.03,
+        energy: EnergyLaw { gamma: -1.6, least_j: 0.02, most_j: 1.0 },
+        ring: Ring {
+            level: Newtons(7.0),
+            modes: 3,
+            low_hz: 110.0,
+            high_hz: 600.0,
+            shortest_s: 0.002,
+            longest_s: 0.010,
+        },
+        packing_per_j: 0.09,
+        reach_m: 0.075,
+        packed: 0.25,
+        renew_s: Some(240.0),
+    };
+
+    /// Gravel: few hard knocks, always loose.
+    pub const GRAVEL: Self = Self {
+        grain: Grain::Gravel,
+        body: Body { mass_kg: 30.0, damping_n_s_m: 7000.0, stiffness_n_m: 160_000.0 },
+        collisions_per_s: 260.0,
+        full_j: 0.35,
+        settle_s: 0.045,
+        energy: EnergyLaw { gamma: -1.3, least_j: 0.02, most_j: 1.0 },
+        ring: Ring {
+            level: Newtons(14.0),
+            modes: 2,
+            low_hz: 180.0,
+            high_hz: 740.0,
+            shortest_s: 0.002,
+            longest_s: 0.012,
+        },
+        packing_per_j: 0.03,
+        reach_m: 0.07,
+        packed: 0.85,
+        renew_s: Some(600.0),
+    };
+
+    /// Sand: a hiss of very many small grains that soon lie still.
+    pub const SAND: Self = Self {
+        grain: Grain::Sand,
+        body: Body { mass_kg: 25.0, damping_n_s_m: 12_000.0, stiffness_n_m: 120_000.0 },
+        collisions_per_s: 900.0,
+        full_j: 0.5,
+        settle_s: 0.02,
+        energy: EnergyLaw { gamma: -1.0, least_j: 0.05, most_j: 1.0 },
+        ring: Ring {
+            level: Newtons(3.0),
+            modes: 1,
+            low_hz: 240.0,
+            high_hz: 740.0,
+            shortest_s: 0.0015,
+            longest_s: 0.004,
+        },
+        packing_per_j: 0.07,
+        reach_m: 0.08,
+        packed: 0.6,
+        renew_s: Some(300.0),
+    };
+}
+
+impl WoodSpec {
+    /// Old floor boards.
+    pub const PLANKS: Self = Self {
+        body: Body { mass_kg: 15.0, damping_n_s_m: 3000.0, stiffness_n_m: 250_000.0 },
+        plank_m: 0.152,
+        along: Axis::East,
+        stick: Newtons(70.0),
+        scatter: 0.5,
+        slip: 0.4,
+        ring: WHITE_SPRUCE,
+    };
+}

@@ -1,0 +1,308 @@
+//! What the floor seems to be made of.
+//!
+//! ```ron
+//! grounds: [
+//!     Ice(at: (0, 0), size: (6, 4), seed: 7, cracks: (turn: 0.3), sheet: (refreeze_s: 60)),
+//!     Snow(at: (0, 4), size: (6, 2)),
+//! ]
+//! ```
+
+use std::ops::Range;
+
+use super::area::{Area, Placed};
+use super::behaviour::{optional, single, variant};
+use super::fields::Fields;
+use super::ground_parts as parts;
+use super::look::colour;
+use super::node::Node;
+use super::number::plain;
+use super::page;
+use super::problem::Problem;
+use super::units::Units;
+use crate::floor::Geometry;
+use crate::ground::{GrainSpec, IceSpec, Material, WoodSpec};
+use crate::layout::{Colour, Ground};
+use crate::units::Newtons;
+use crate::widget::Axis;
+
+/// Most grounds of one layout: each has state for every tile.
+const MOST: usize = 16;
+
+const NAMES: [&str; 5] = ["Ice", "Snow", "Gravel", "Sand", "Wood"];
+
+/// One ground as written. What could not be read is `None` and has been reported.
+pub(super) struct Plot {
+    /// `None` inside for the whole floor.
+    place: Option<Option<Placed>>,
+    page: Option<usize>,
+    seed: Option<u32>,
+    material: Option<Material>,
+    colours: Option<[Colour; 2]>,
+    pub(super) at: Range<usize>,
+}
+
+/// The grounds of a layout or of one of its pages.
+pub(super) fn read(fields: &mut Fields<'_>, page: Option<usize>) -> Vec<Plot> {
+    let Some(node) = fields.take("grounds") else { return Vec::new() };
+    let Some(nodes) = node.list("ground", MOST) else { return Vec::new() };
+    let plots: Vec<Option<Plot>> = nodes.into_iter().map(|node| Plot::read(node, page)).collect();
+    if plots.iter().any(Option::is_none) {
+        // What is no ground at all has been said; the others don't make a layout either.
+        return plots.into_iter().map(|plot| plot.unwrap_or_else(|| Plot::unreadable(node.span()))).collect();
+    }
+    plots.into_iter().flatten().collect()
+}
+
+impl Plot {
+    fn read(node: Node<'_>, page: Option<usize>) -> Option<Self> {
+        let (name, fields) = variant::read(node, &NAMES)?;
+        let standard = standard(name);
+        let (surface, deep) = colours(name);
+        let at = node.span();
+        let Some(mut fields) = fields else {
+            let whole = Some(None);
+            let (seed, colours) = (Some(1), Some([surface, deep]));
+            return Some(Self { place: whole, page, seed, material: Some(standard), colours, at });
+        };
+        let place = if fields.written_span("at").is_none() && fields.written_span("size").is_none() {
+            let _ = (fields.take("at"), fields.take("size"));
+            Some(None)
+        } else {
+            Placed::read(&mut fields).map(Some)
+        };
+        let seed = fields.read("seed", Some(1), |node| node.whole(0..=u32::MAX));
+        let surface = fields.read("surface", Some(surface), colour);
+        let deep = fields.read("deep", Some(deep), colour);
+        let material = match standard {
+            Material::Ice(base) => ice(&mut fields, &base).map(Material::Ice),
+            Material::Grain(base) => grains(&mut fields, &base).map(Material::Grain),
+            Material::Wood(base) => wood(&mut fields, &base).map(Material::Wood),
+        };
+        fields.finish();
+        let colours = surface.zip(deep).map(|(surface, deep)| [surface, deep]);
+        Some(Self { place, page, seed, material, colours, at })
+    }
+
+    fn unreadable(at: Range<usize>) -> Self {
+        Self { place: None, page: None, seed: None, material: None, colours: None, at }
+    }
+
+    /// Where it is, on a floor that is `floor`; `None` if that could not be read.
+    pub(super) fn area(&self, floor: &Area) -> Option<Area> {
+        Some(self.place.as_ref()?.as_ref().map_or(*floor, |place| place.area))
+    }
+
+    /// Where its place is written, if it is.
+    pub(super) fn placed(&self) -> Option<&Placed> {
+        self.place.as_ref()?.as_ref()
+    }
+
+    /// What messages call it.
+    pub(super) fn name(&self) -> &'static str {
+        self.material.map_or("ground", |material| material.name())
+    }
+
+    /// Whether both are ever there at the same time.
+    pub(super) fn meets(&self, other: &Self) -> bool {
+        self.page.is_none() || other.page.is_none() || self.page == other.page
+    }
+
+    /// The ground as the engine knows it; `None` if anything of it is missing.
+    pub(super) fn checked(&self, geometry: &Geometry, units: Units) -> Option<Ground> {
+        let area = self.area(&Area::of_floor(geometry, units))?.in_metres(geometry, units);
+        let [surface, deep] = self.colours?;
+        Some(Ground { area, page: self.page, seed: self.seed?, material: self.material?, surface, deep })
+    }
+}
+
+/// Notes what is wrong between grounds, and between them and the floor.
+pub(super) fn check(page: &page::Page<'_>, floor: &Area, report: impl Fn(Problem)) {
+    for (index, plot) in page.grounds.iter().enumerate() {
+        let Some(area) = plot.area(floor) else { continue };
+        let at = plot.placed().map_or(plot.at.clone(), |place| place.at.clone());
+        if !area.within(floor) {
+            let problem = Problem::error(at, format!("this {} reaches beyond the floor", plot.name()));
+            let help = format!("places count in {} from the floor's south-west corner", page.units.name());
+            report(problem.expected(format!("it spans {area}, the floor {floor}")).help(help));
+            continue;
+        }
+        let under = page.grounds[..index].iter().filter(|other| plot.meets(other)).find_map(|other| {
+            let shared = area.shared(&other.area(floor)?)?;
+            Some((other, shared))
+        });
+        if let Some((other, [width, depth])) = under {
+            let message = format!("this {} lies on {}", plot.name(), other.name());
+            let shared = format!("{} x {}{}", plain(width), plain(depth), page.units.suffix());
+            report(Problem::warning(at, message).expected(format!("both answer a foot on these {shared}")));
+        }
+    }
+}
+
+fn standard(name: &str) -> Material {
+    match name {
+        "Snow" => Material::Grain(GrainSpec::SNOW),
+        "Gravel" => Material::Grain(GrainSpec::GRAVEL),
+        "Sand" => Material::Grain(GrainSpec::SAND),
+        "Wood" => Material::Wood(WoodSpec::PLANKS),
+        _ => Material::Ice(IceSpec::POND),
+    }
+}
+
+/// Surface and depth.
+fn colours(name: &str) -> (Colour, Colour) {
+    match name {
+        "Snow" => (Colour::rgb(0xf4, 0xf8, 0xfc), Colour::rgb(0x8f, 0xa9, 0xc4)),
+        "Gravel" => (Colour::rgb(0xb4, 0xad, 0xa2), Colour::rgb(0x5a, 0x54, 0x4b)),
+        "Sand" => (Colour::rgb(0xe6, 0xd2, 0xa8), Colour::rgb(0xa9, 0x85, 0x52)),
+        "Wood" => (Colour::rgb(0xc9, 0x9b, 0x66), Colour::rgb(0x4a, 0x2f, 0x1b)),
+        _ => (Colour::rgb(0x9f, 0xd3, 0xd6), Colour::rgb(0x0b, 0x3a, 0x47)),
+    }
+}
+
+fn ice(fields: &mut Fields<'_>, base: &IceSpec) -> Option<IceSpec> {
+    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
+    let onsets =
+        fields.read("onsets_per_j_s", Some(base.onsets_per_j_s), |node| single(node, 0.0..=10_000_000.0));
+    let calm = fields.read("calm_j", Some(base.calm_j), |node| single(node, 0.0..=1000.0));
+    let energy = fields.read("energy", Some(base.energy), |node| parts::energy(node, base.energy));
+    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
+    let cracks = fields.read("cracks", Some(base.cracks), |node| parts::cracks(node, base.cracks));
+    let sheet = fields.read("sheet", Some(base.sheet), |node| parts::sheet(node, base.sheet));
+    let (mut cracks, sheet) = (cracks?, sheet?);
+    // Cracks freeze shut as the sheet around them does.
+    cracks.refreeze_s = sheet.refreeze_s;
+    Some(IceSpec {
+        body: body?,
+        onsets_per_j_s: onsets?,
+        calm_j: calm?,
+        energy: energy?,
+        ring: ring?,
+        cracks,
+        sheet,
+    })
+}
+
+fn grains(fields: &mut Fields<'_>, base: &GrainSpec) -> Option<GrainSpec> {
+    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
+    let collisions =
+        fields.read("collisions_per_s", Some(base.collisions_per_s), |node| single(node, 1.0..=10_000.0));
+    let full = fields.read("full_j", Some(base.full_j), |node| single(node, 0.0001..=1000.0));
+    let settle = fields.read("settle_ms", Some(base.settle_s * 1000.0), |node| single(node, 1.0..=5000.0));
+    let energy = fields.read("energy", Some(base.energy), |node| parts::energy(node, base.energy));
+    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
+    let packing = fields.read("packing_per_j", Some(base.packing_per_j), |node| single(node, 0.0..=100.0));
+    let reach = fields.read("reach_m", Some(base.reach_m), |node| single(node, 0.01..=2.0));
+    let packed = fields.read("packed", Some(base.packed), |node| single(node, 0.0..=1.0));
+    let renew = optional(fields, "renew_s", base.renew_s, |node| single(node, 1.0..=1_000_000.0));
+    Some(GrainSpec {
+        grain: base.grain,
+        body: body?,
+        collisions_per_s: collisions?,
+        full_j: full?,
+        settle_s: settle? / 1000.0,
+        energy: energy?,
+        ring: ring?,
+        packing_per_j: packing?,
+        reach_m: reach?,
+        packed: packed?,
+        renew_s: renew?,
+    })
+}
+
+fn wood(fields: &mut Fields<'_>, base: &WoodSpec) -> Option<WoodSpec> {
+    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
+    let plank = fields.read("plank_m", Some(base.plank_m), |node| single(node, 0.02..=5.0));
+    let along = fields
+        .read("along", Some(base.along), |node| node.choice(&[("East", Axis::East), ("North", Axis::North)]));
+    let stick = fields.read("stick_n", Some(base.stick.0), |node| single(node, 1.0..=2000.0));
+    let scatter = fields.read("scatter", Some(base.scatter), |node| single(node, 0.0..=0.9));
+    let slip = fields.read("slip", Some(base.slip), |node| single(node, 0.05..=1.0));
+    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
+    Some(WoodSpec {
+        body: body?,
+        plank_m: plank?,
+        along: along?,
+        stick: Newtons(stick?),
+        scatter: scatter?,
+        slip: slip?,
+        ring: ring?,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::floor::Geometry;
+    use crate::ground::Material;
+    use crate::schema::{Kinds, parse_layout};
+
+    fn read(grounds: &str) -> Result<crate::schema::Loaded, String> {
+        let text = format!("Layout(version: 1, grounds: [{grounds}])");
+        parse_layout(&text, "pond.ron", &Kinds::builtin(), &Geometry::default()).map_err(|it| it.to_string())
+    }
+
+    #[test]
+    fn a_ground_without_a_place_is_the_whole_floor() {
+        for name in super::NAMES {
+            for text in [name.to_owned(), format!("{name}()"), format!("{name}(seed: 3)")] {
+                let loaded = read(&text).unwrap();
+                let ground = &loaded.layout.grounds[0];
+                assert_eq!(ground.material.name(), name);
+                assert_eq!(ground.area, Geometry::default().bounds());
+                assert_eq!(loaded.warnings.to_string(), "", "no controls are needed");
+            }
+        }
+    }
+
+    #[test]
+    fn everything_of_ice_can_be_written() {
+        let text = "Ice(at: (1, 1), size: (4, 3), seed: 9, surface: \"#a0d0d0\", deep: \"#103040\",
+            body: (mass_kg: 50, damping_n_s_m: 4000, stiffness_n_m: 150000),
+            onsets_per_j_s: 3000, calm_j: 0,
+            energy: (gamma: -2, least_j: 0.05, most_j: 5),
+            ring: (level_n: 10, modes: 4, low_hz: 60, high_hz: 500, shortest_ms: 4, longest_ms: 90),
+            cracks: (apart_m: 0.3, growth_m_per_j: 0.02, turn: 0.1, branch: 0, branch_deg: 30, pieces: 500),
+            sheet: (depth_per_j: 0.1, reach_m: 0.2, weakening: 0, refreeze_s: None))";
+        let layout = read(text).unwrap().layout;
+        let Material::Ice(ice) = layout.grounds[0].material else { panic!("ice") };
+        assert_eq!((ice.body.mass_kg, ice.calm_j, ice.energy.gamma), (50.0, 0.0, -2.0));
+        assert_eq!((ice.ring.modes, ice.ring.longest_s), (4, 0.09));
+        assert_eq!((ice.cracks.per_j_m, ice.cracks.most, ice.cracks.refreeze_s), (0.02, 500, None));
+        assert!((ice.cracks.branch_rad - 30.0_f32.to_radians()).abs() < 1e-6);
+        assert!((layout.grounds[0].area.size().x - 4.0 * 0.304).abs() < 1e-5);
+    }
+
+    #[test]
+    fn mistakes_are_told_with_their_place_and_what_was_meant() {
+        let cases = [
+            ("Ise(seed: 1)", "did you mean Ice?"),
+            ("Ice(sed: 1)", "did you mean `seed`?"),
+            ("Ice(cracks: (turnn: 1))", "did you mean `turn`?"),
+            ("Ice(body: (mass_kg: 0))", "expected 0.01 to 10000 kg, found 0 kg"),
+            ("Ice(ring: (low_hz: 800, high_hz: 100))", "`high_hz` must not be below `low_hz`"),
+            ("Ice(energy: (least_j: 3))", "`most_j` must not be below `least_j`"),
+            ("Ice(at: (4, 0), size: (4, 2))", "this Ice reaches beyond the floor"),
+            ("Ice(at: (4, 0))", "lacks `size`"),
+            ("Sand(cracks: (turn: 1))", "unknown field `cracks`"),
+            ("Ice(sheet: (refreeze_s: 0))", "expected 1 to 1000000 s, found 0 s"),
+            ("Wood(along: Up)", "expected East or North"),
+            ("\"Ice\"", "names stand without quotes"),
+        ];
+        for (text, wanted) in cases {
+            let problems = read(text).unwrap_err();
+            assert!(problems.contains(wanted), "{text}:\n{problems}");
+            assert!(problems.contains("pond.ron:1:"), "{problems}");
+        }
+    }
+
+    #[test]
+    fn grounds_of_one_page_that_overlap_are_warned_of() {
+        let loaded = read("Ice(), Snow(at: (0, 0), size: (2, 2))").unwrap();
+        let warning = loaded.warnings.to_string();
+        assert!(warning.contains("this Snow lies on Ice") && warning.contains("2 x 2 tiles"), "{warning}");
+        let text = "Layout(version: 1, pages: [(id: \"a\", grounds: [Ice]), (id: \"b\", grounds: [Snow])])";
+        let loaded = parse_layout(text, "pages", &Kinds::builtin(), &Geometry::default()).unwrap();
+        assert_eq!(loaded.warnings.to_string(), "");
+        let pages: Vec<_> = loaded.layout.grounds.iter().map(|ground| ground.page).collect();
+        assert_eq!(pages, [Some(0), Some(1)]);
+    }
+}

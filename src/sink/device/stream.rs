@@ -1,0 +1,182 @@
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering};
+use std::sync::mpsc::Sender;
+use std::time::{Duration, Instant};
+
+use cpal::traits::{DeviceTrait, StreamTrait};
+use cpal::{Error, ErrorKind, FromSample, I24, OutputCallbackInfo, SampleFormat, SizedSample, U24};
+use rtrb::{Consumer, Producer, RingBuffer};
+
+use super::cards::Card;
+use super::choice::Choice;
+use super::paced::PacedStream;
+use super::player::Player;
+use super::priority::Promotion;
+use crate::feel::Priority;
+
+/// Errors that may wait to be looked at; what follows from the first ones is of no interest.
+const REPORTS: usize = 16;
+
+/// What the callbacks count, for whoever watches over them.
+#[derive(Debug, Default)]
+pub(super) struct Pulse {
+    pub(super) blocks: AtomicU64,
+    pub(super) underruns: AtomicU64,
+    /// Frames of the last block.
+    pub(super) frames: AtomicU32,
+    priority: AtomicU8,
+}
+
+impl Pulse {
+    pub(super) fn priority(&self) -> Priority {
+        match self.priority.load(Ordering::Relaxed) {
+            1 => Priority::RealTime,
+            2 => Priority::Denied,
+            _ => Priority::Hosts,
+        }
+    }
+
+    pub(super) fn set_priority(&self, priority: Priority) {
+        let number = match priority {
+            Priority::Hosts => 0,
+            Priority::RealTime => 1,
+            Priority::Denied => 2,
+        };
+        self.priority.store(number, Ordering::Relaxed);
+    }
+}
+
+/// What a device calls when it wants samples.
+///
+/// When the device lets go of it, the player in it goes home, so that it can play on another stream.
+pub(super) struct Callback {
+    /// `None` only while being dropped.
+    player: Option<Player>,
+    home: Sender<Player>,
+    pulse: Arc<Pulse>,
+    promotion: Promotion,
+    channels: usize,
+    sample_rate: u32,
+}
+
+impl Callback {
+    pub(super) fn new(
+        player: Player,
+        choice: Choice,
+        home: Sender<Player>,
+        pulse: Arc<Pulse>,
+        promotion: Promotion,
+    ) -> Self {
+        Self {
+            player: Some(player),
+            home,
+            pulse,
+            promotion,
+            channels: usize::from(choice.channels).max(1),
+            sample_rate: choice.sample_rate,
+        }
+    }
+
+    /// Fills a block whose first sample sounds in so much time, zero if that is not known.
+    ///
+    /// # Real-time
+    /// Once, soon after the start, the system is asked for priority; otherwise no allocation, lock or system call.
+    pub(super) fn run<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], sounds_in: Duration) {
+        let frames = out.len() / self.channels;
+        if let Some(player) = &mut self.player {
+            player.fill(out, sounds_in);
+        }
+        self.pulse.frames.store(frames as u32, Ordering::Relaxed);
+        self.pulse.blocks.fetch_add(1, Ordering::Relaxed);
+        if let Some(priority) = self.promotion.proceed(frames, self.sample_rate, Instant::now) {
+            self.pulse.set_priority(priority);
+        }
+    }
+}
+
+impl Drop for Callback {
+    fn drop(&mut self) {
+        if let Some(player) = self.player.take() {
+            // Nobody waits for it if the program ends.
+            let _ = self.home.send(player);
+        }
+    }
+}
+
+/// What a device calls when something is wrong; it may do so where nothing may be locked or allocated.
+pub(super) struct Ear {
+    pulse: Arc<Pulse>,
+    reports: Producer<Error>,
+}
+
+impl Ear {
+    /// An ear, and where the errors come out that are more than a late sample.
+    pub(super) fn new(pulse: Arc<Pulse>) -> (Self, Consumer<Error>) {
+        let (reports, heard) = RingBuffer::new(REPORTS);
+        (Self { pulse, reports }, heard)
+    }
+
+    fn hear(&mut self, error: Error) {
+        match error.kind() {
+            ErrorKind::Xrun => {
+                self.pulse.underruns.fetch_add(1, Ordering::Relaxed);
+            }
+            ErrorKind::RealtimeDenied => self.pulse.set_priority(Priority::Denied),
+            // If there are too many, the first ones tell.
+            _ => drop(self.reports.push(error)),
+        }
+    }
+}
+
+/// A device at work; dropping it stops it.
+pub(super) enum Stream {
+    System(#[expect(dead_code, reason = "it plays for as long as it is kept")] cpal::Stream),
+    Paced(#[expect(dead_code, reason = "it plays for as long as it is kept")] PacedStream),
+}
+
+/// Opens a card and starts it.
+pub(super) fn open(card: &Card, choice: Choice, callback: Callback, mut ear: Ear) -> Result<Stream, Error> {
+    let device = match card {
+        Card::System(device) => device,
+        Card::Paced => {
+            return PacedStream::start(choice, callback, move |error| ear.hear(error)).map(Stream::Paced);
+        }
+    };
+    let stream = match choice.format {
+        SampleFormat::I8 => build::<i8>(device, choice, callback, ear),
+        SampleFormat::I16 => build::<i16>(device, choice, callback, ear),
+        SampleFormat::I24 => build::<I24>(device, choice, callback, ear),
+        SampleFormat::I32 => build::<i32>(device, choice, callback, ear),
+        SampleFormat::U8 => build::<u8>(device, choice, callback, ear),
+        SampleFormat::U16 => build::<u16>(device, choice, callback, ear),
+        SampleFormat::U24 => build::<U24>(device, choice, callback, ear),
+        SampleFormat::U32 => build::<u32>(device, choice, callback, ear),
+        SampleFormat::F64 => build::<f64>(device, choice, callback, ear),
+        _ => build::<f32>(device, choice, callback, ear),
+    }?;
+    stream.play()?;
+    Ok(Stream::System(stream))
+}
+
+/// How long a host may take to open a device.
+const OPENING: Duration = Duration::from_secs(5);
+
+fn build<T: SizedSample + FromSample<f32>>(
+    device: &cpal::Device,
+    choice: Choice,
+    mut callback: Callback,
+    mut ear: Ear,
+) -> Result<cpal::Stream, Error> {
+    device.build_output_stream::<T, _, _>(
+        choice.stream_config(),
+        move |out, info| callback.run(out, sounds_in(info)),
+        move |error| ear.hear(error),
+        Some(OPENING),
+    )
+}
+
+/// How long after its callback a block sounds, as the host has it; zero if it does not say.
+fn sounds_in(info: &OutputCallbackInfo) -> Duration {
+    let times = info.timestamp();
+    times.playback.saturating_duration_since(times.callback)
+}
