@@ -467,11 +467,15 @@ fn an_effect_is_tuned_played_and_saved() {
     };
     assert_ne!(louder, effect);
     assert!(!room.window.get_by_label("Revert").accesskit_node().is_disabled());
+    room.window.get_by_label("Name to save as").focus();
+    room.run(2);
+    room.window.get_by_label("Name to save as").type_text("_2");
+    room.run(2);
     room.window.get_by_label("Save as RON").click();
     room.run(3);
     let Ok(PreviewCommand::SaveEffect { name, text }) = room.commands.try_recv() else { panic!("not saved") };
     let (saved, _) = crate::schema::parse_effect(&text, "saved.ron", &Default::default()).unwrap();
-    assert_eq!((name.as_str(), &saved.effect), ("crisp_click", &louder));
+    assert_eq!((name.as_str(), &saved.effect), ("crisp_click_2", &louder));
     assert_eq!(room.window.unnamed_widgets(), Vec::<String>::new());
     room.window.get_by_label("Effects").click();
     room.run(3);

@@ -75,7 +75,11 @@ impl Trace {
         let corner = |text: String, at: Pos2, anchor: Align2| {
             painter.text(at, anchor, text, FontId::proportional(11.5), color(theme.quiet));
         };
-        corner(format!("± {most:.1} N"), rect.left_top() + eframe::egui::vec2(7.0, 5.0), Align2::LEFT_TOP);
+        corner(
+            format!("± {most:.1} N"),
+            rect.left_bottom() + eframe::egui::vec2(7.0, -5.0),
+            Align2::LEFT_BOTTOM,
+        );
         let length = format!("{:.0} ms", 1000.0 * self.length_s);
         corner(length, rect.right_bottom() + eframe::egui::vec2(-7.0, -5.0), Align2::RIGHT_BOTTOM);
     }

@@ -249,7 +249,9 @@ impl<'r> Node<'r> {
             _ => return self.mismatch(NAMED_FIELDS),
         };
         if let Some(written) = written.filter(|written| written.name != name) {
-            let message = format!("this is a {}, not a {name}", written.name);
+            let a = |name: &str| if name.starts_with(['A', 'E', 'I', 'O']) { "an" } else { "a" };
+            let (found, wanted) = (&*written.name, name);
+            let message = format!("this is {} {found}, not {} {wanted}", a(found), a(wanted));
             self.report(Problem::error(open, message).expected(format!("expected {name}(...)")));
             return None;
         }

@@ -20,6 +20,10 @@ use crate::schema::{NamedEffect, write_named_effect};
 /// How long a hand rests before the effect is played again by itself, in seconds.
 const RESTS_S: f64 = 0.12;
 
+/// The order of kinds in the list: what answers once, what lasts, what a value drives.
+const KINDS: [&str; 9] =
+    ["Click", "Continuous", "Sequence", "Friction", "StickSlip", "Texture", "Grains", "Detents", "EndStop"];
+
 /// What is being tuned.
 pub(crate) struct Tuner {
     pub(crate) is_open: bool,
@@ -36,6 +40,14 @@ pub(crate) struct Tuner {
     played_s: Option<f64>,
     /// What it will be saved as.
     name: String,
+}
+
+/// Where an effect is tried.
+struct Place {
+    /// Column and row.
+    name: String,
+    /// The most that its actuator gives, in newtons.
+    full_scale: f32,
 }
 
 /// What a picture of the tuner asks for.
@@ -81,11 +93,11 @@ impl Tuner {
         self.effects.get(self.chosen).map_or("", |named| named.about.as_str())
     }
 
-    fn show(&mut self, ui: &mut Ui, theme: &Theme, now_s: f64) -> Wishes {
+    fn show(&mut self, ui: &mut Ui, theme: &Theme, now_s: f64, place: &Place) -> Wishes {
         let mut wishes = Wishes::default();
         self.heading(ui, theme, &mut wishes);
-        self.picture(ui, theme, now_s);
-        self.buttons(ui, theme, &mut wishes);
+        self.picture(ui, theme, now_s, place.full_scale);
+        self.buttons(ui, theme, place, &mut wishes);
         ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
             ui.set_width(ui.available_width() - 8.0);
             wishes.changed |= self.knobs(ui, theme);
@@ -102,7 +114,18 @@ impl Tuner {
             let name = self.effects.get(self.chosen).map_or("", |named| named.name.as_str());
             let menu = ComboBox::from_id_salt("effect").selected_text(name).width(190.0).height(420.0);
             let response = menu.show_ui(ui, |ui| {
-                for (index, named) in self.effects.iter().enumerate() {
+                // Those of a kind together.
+                let mut order: Vec<usize> = (0..self.effects.len()).collect();
+                order.sort_by_key(|&index| {
+                    KINDS.iter().position(|kind| *kind == self.effects[index].effect.kind.name())
+                });
+                let mut kind = "";
+                for index in order {
+                    let named = &self.effects[index];
+                    if named.effect.kind.name() != kind {
+                        kind = named.effect.kind.name();
+                        ui.label(quiet(theme, kind).size(11.5));
+                    }
                     let label = ui.selectable_label(index == self.chosen, &named.name);
                     if label.on_hover_text(&named.about).clicked() {
                         wishes.choose = Some(index);
@@ -120,18 +143,15 @@ impl Tuner {
     }
 
     /// Waveform, spectrum and the figures that matter.
-    fn picture(&mut self, ui: &mut Ui, theme: &Theme, now_s: f64) {
+    fn picture(&mut self, ui: &mut Ui, theme: &Theme, now_s: f64, full_scale: f32) {
         let effect = &self.effect;
         let trace = self.trace.get_or_insert_with(|| Trace::of(effect, &Gesture::usual(effect)));
         let width = ui.available_width();
         let figures = match &trace.heard {
-            Some(heard) => format!(
-                "peak {:.1} N,  {:.1} % within the band,  {:.0} Hz,  {:.0} ms to a tenth",
-                heard.peak,
-                100.0 * heard.within,
-                heard.centroid_hz,
-                1000.0 * heard.decay_s
-            ),
+            Some(heard) => {
+                let within = 100.0 * heard.within;
+                format!("{:.1} N peak,  {within:.1} % in band,  {:.0} Hz", heard.peak, heard.centroid_hz)
+            }
             None => "silence".to_owned(),
         };
         let (rect, response) = ui.allocate_exact_size(vec2(width, 92.0), Sense::hover());
@@ -142,17 +162,29 @@ impl Tuner {
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Spectrum"));
         trace.spectrum(&ui.painter_at(rect), theme, rect);
         let outside = trace.heard.as_ref().is_some_and(|heard| heard.within < 0.95);
-        let ink = if outside { theme.warning } else { theme.ink };
-        ui.label(RichText::new(figures).size(12.0).color(color(ink)));
+        let beyond = trace.heard.as_ref().is_some_and(|heard| heard.peak > full_scale);
+        let ink = if outside || beyond { theme.warning } else { theme.ink };
+        let label = ui.label(RichText::new(figures).size(12.5).color(color(ink)));
+        if beyond {
+            label
+                .on_hover_text(format!("Beyond the actuator's {full_scale:.0} N: the limiter holds it down"));
+        } else if outside {
+            label.on_hover_text("More than a twentieth of it lies where actuators move little");
+        }
     }
 
-    fn buttons(&mut self, ui: &mut Ui, theme: &Theme, wishes: &mut Wishes) {
+    fn buttons(&mut self, ui: &mut Ui, theme: &Theme, place: &Place, wishes: &mut Wishes) {
         ui.horizontal(|ui| {
             let play = Button::new(RichText::new("Play").strong()).min_size(vec2(82.0, 28.0));
             let play = ui.add(play.fill(color(theme.accent.mix(theme.plate, 0.72))));
             play.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Play"));
             wishes.play |= play.on_hover_text("Plays it on the tile that is looked at").clicked();
             ui.checkbox(&mut self.by_itself, "at each change");
+            ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
+                let text = quiet(theme, format!("on tile {}", place.name)).size(12.0);
+                ui.label(text)
+                    .on_hover_text("The tile that is looked at: shift-click another one on the floor");
+            });
         });
         ui.horizontal(|ui| {
             let is_name = crate::schema::is_effect_name(&self.name);
@@ -196,8 +228,10 @@ fn slider(ui: &mut Ui, knob: &Knob, value: &mut f32) -> bool {
     let mut shown = *value * knob.scale;
     let mut moved = false;
     ui.horizontal(|ui| {
+        // The same width for every value, so that sliders end below each other.
+        ui.spacing_mut().interact_size.x = 56.0;
         ui.spacing_mut().slider_width = (ui.available_width() - 178.0).max(60.0);
-        let (rect, _) = ui.allocate_exact_size(vec2(96.0, 18.0), Sense::hover());
+        let (rect, _) = ui.allocate_exact_size(vec2(100.0, 18.0), Sense::hover());
         let font = egui::FontId::proportional(13.0);
         let ink = ui.visuals().text_color();
         ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, knob.name, font, ink);
@@ -238,10 +272,16 @@ impl App {
         let (theme, now_s) = (self.theme, self.now_s);
         let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::left("tuner").frame(frame).resizable(true);
+        let index = self.floor.geometry.index(self.looked.tile()).unwrap_or(0);
+        let actuator = self.floor.actuators.get(index).copied().flatten();
+        let place = Place {
+            name: format!("{}, {}", self.looked.tile().column, self.looked.tile().row),
+            full_scale: actuator.map_or(f32::INFINITY, |actuator| actuator.full_scale.0),
+        };
         let wishes = panel
             .default_size(332.0)
             .size_range(290.0..=520.0)
-            .show(ui, |ui| tuner.show(ui, &theme, now_s))
+            .show(ui, |ui| tuner.show(ui, &theme, now_s, &place))
             .inner;
         if let Some(index) = wishes.choose {
             tuner.choose(index);
@@ -253,9 +293,8 @@ impl App {
         if wishes.play || rested {
             tuner.changed_s = None;
             tuner.played_s = Some(now_s);
-            let tile = self.floor.geometry.index(self.looked.tile()).unwrap_or(0);
             let (effect, gesture) = (Arc::clone(&tuner.effect), Gesture::usual(&tuner.effect));
-            self.command(PreviewCommand::Feel { effect, gesture, tile });
+            self.command(PreviewCommand::Feel { effect, gesture, tile: index });
         }
         if wishes.save {
             let about = tuner.about().to_owned();
