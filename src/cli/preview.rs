@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
-use std::time::Instant as HostInstant;
+use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::engine::Snapshot;
 use underfoot::feel::ScopeReader;
@@ -18,7 +18,7 @@ use underfoot::preview::{
 use underfoot::schema;
 use underfoot::sense::{Contact, Method};
 use underfoot::serve::{Command, Server};
-use underfoot::sim::{Foot, FootDriver, FootHandle, feet_by_hand};
+use underfoot::sim::{Encore, Foot, FootDriver, FootHandle, feet_by_hand};
 use underfoot::sink::{EventSink, Fanout};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, UdpSource};
 use underfoot::units::{HostClock, Instant};
@@ -68,6 +68,9 @@ pub(crate) fn has_display() -> bool {
 
 /// Events that may wait for the window; it takes them 60 times a second.
 const EVENTS_WAITING: usize = 4096;
+
+/// How long the floor stays empty before what is played begins anew.
+const PAUSE: Duration = Duration::from_secs(3);
 
 /// Opens the window and serves its floor on a thread of its own until the window is closed.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
@@ -172,7 +175,7 @@ impl Args {
         let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
             if self.session || self.scenario.is_some() {
                 let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
-                (Box::new(script), "scenario on a simulated floor", None)
+                (Box::new(Encore::new(script, PAUSE)), "scenario on a simulated floor", None)
             } else {
                 let (handle, driver) = feet_by_hand();
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))

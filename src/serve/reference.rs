@@ -108,8 +108,19 @@ impl Maker<'_> {
         let count = vec![argument("count", "i", "0 or more")];
         self.add(Direction::Out, "contacts", count, "How many contacts follow; 100 times a second at most.");
         self.add(Direction::Out, "contact", contact, "One contact, in the bundle of `contacts`.");
-        let states = vec![argument("state", "s", "waiting, live, partial or lost")];
-        self.add(Direction::Out, "health", states, "Whether the boards send, when that changes.");
+        let health = vec![
+            argument("state", "s", "waiting, live, partial or lost"),
+            argument("degraded", "i", "sensors"),
+            argument("silent", "i", "sensors"),
+            argument("faulty", "i", "sensors"),
+            argument("uncalibrated", "i", "sensors"),
+        ];
+        self.add(
+            Direction::Out,
+            "health",
+            health,
+            "How boards and sensors are doing, when that changes; then up to eight sensors in trouble, a string each.",
+        );
         let device = vec![
             argument("device", "s", ""),
             argument("state", "s", "playing, lost, faulty or unfit"),

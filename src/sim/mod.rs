@@ -34,6 +34,7 @@
 //! ```
 
 mod curve;
+mod encore;
 mod floor;
 mod foot;
 mod footprint;
@@ -52,6 +53,7 @@ mod track;
 mod way;
 mod written;
 
+pub use encore::Encore;
 pub use floor::{Sensing, SimConfig, SimFloor};
 pub use foot::{Foot, FootDriver, Load};
 pub use footprint::{Cell, Print, shoe_size};

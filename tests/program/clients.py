@@ -157,12 +157,13 @@ def play(program, layout):
         stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     simulate = None
     try:
-        expect(b"Listening" in run.stderr.readline(), "the program does not listen")
+        # The sound system may have something to say first.
+        expect(any(b"Listening" in line for line in run.stderr), "the program does not listen")
         simulate = subprocess.Popen([program, "simulate", "--send", f"{LOOPBACK}:{floor}"],
                                     stderr=subprocess.DEVNULL, stdout=subprocess.DEVNULL)
 
         # An app drives controls while nobody is on them.
-        wait_until("the boards are heard", lambda: ("live",) in osc.of("/lab/health"))
+        wait_until("the boards are heard", lambda: any(args[0] == "live" for args in osc.of("/lab/health")))
         app = App(floor)
         app.send("/lab/widget/satellite/set", 1)
         app.send("/lab/widget/satellite/label", "Karte")
