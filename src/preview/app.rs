@@ -11,6 +11,7 @@ use super::feet::Feet;
 use super::floor_view::Grip;
 use super::inbox::Inbox;
 use super::looked::Looked;
+use super::painter::Palette;
 use super::panel::Tuner;
 use super::rate::Rate;
 use super::scopes::Scopes;
@@ -35,6 +36,7 @@ pub(super) struct App {
     pub(super) looked: Looked,
     pub(super) watch: Watch,
     pub(super) scene: Scene,
+    pub(super) palette: Palette,
     pub(super) theme: Theme,
     /// Whether sensor forces are drawn on the floor.
     pub(super) marks: bool,
@@ -69,6 +71,7 @@ impl App {
             grip: Grip::default(),
             watch: Watch::default(),
             scene: Scene::new(),
+            palette: Palette::default(),
             theme: options.theme,
             marks: true,
             now_s: 0.0,

@@ -70,7 +70,7 @@ impl App {
         };
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
-        painter::paint(&painter, &self.scene, map);
+        painter::paint(&painter, &mut self.palette, &self.scene, map);
     }
 
     /// Chooses the tile that the side panel shows.

@@ -8,6 +8,8 @@ mod app;
 mod bars;
 mod feed;
 mod feet;
+mod fields;
+mod fine_line;
 mod floor_view;
 mod inbox;
 mod looked;
@@ -73,6 +75,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         dithering: false,
         ..Default::default()
     };
+    keep_memory();
     let app = app::App::new(input, options);
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         style::apply(&context.egui_ctx, &app.theme);
@@ -80,6 +83,16 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     });
     eframe::run_native(&options.title, native, start)
         .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
+}
+
+/// Lets freed memory stay with the program, for the next picture.
+///
+/// A graphics driver without a graphics card takes and frees some megabytes for each picture. The C library of
+/// Linux would give them back to the system each time, and the page faults cost a sixth of the picture; once a
+/// large block was freed it takes this for the custom, and keeps up to twice as much (mallopt(3), "dynamic mmap
+/// threshold", at most 32 MiB). Elsewhere this does nothing.
+fn keep_memory() {
+    drop(std::hint::black_box(Vec::<u8>::with_capacity(31 << 20)));
 }
 
 /// What a person can use of winit's message: the part after the source line that it names.

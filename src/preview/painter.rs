@@ -2,20 +2,31 @@ use eframe::egui;
 use eframe::egui::epaint::{
     self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape,
 };
-use eframe::egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Shape, StrokeKind, vec2};
+use eframe::egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Shape, StrokeKind, pos2, vec2};
 use glam::Vec2;
 
+use super::fields::Fields;
+use super::fine_line::FineLine;
 use super::transform::ScreenFromFloor;
 use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
 
+/// What is kept from picture to picture.
+#[derive(Default)]
+pub(super) struct Palette {
+    line: FineLine,
+    fields: Fields,
+}
+
 /// Draws a scene with egui.
-pub(super) fn paint(painter: &egui::Painter, scene: &Scene, map: ScreenFromFloor) {
-    let mut brush = Brush { painter, map, points: Vec::new() };
+pub(super) fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
+    palette.fields.begin();
+    let mut brush = Brush { painter, palette, map, points: Vec::new() };
     for mark in scene.marks() {
         brush.mark(scene, mark);
     }
+    brush.palette.fields.end();
 }
 
 /// egui's colour for one of ours.
@@ -31,6 +42,7 @@ pub(super) fn ink_color(ink: Ink) -> Color32 {
 
 struct Brush<'a> {
     painter: &'a egui::Painter,
+    palette: &'a mut Palette,
     map: ScreenFromFloor,
     points: Vec<Pos2>,
 }
@@ -65,7 +77,10 @@ impl Brush<'_> {
                     self.fan(ink_color(ink));
                 }
                 let stroke = self.plain_stroke(paint);
-                if stroke.width > 0.0 {
+                if !closed && FineLine::suits(stroke.width) {
+                    let mesh = self.palette.line.mesh(self.painter.ctx(), &self.points, stroke);
+                    self.painter.add(Shape::mesh(mesh));
+                } else if stroke.width > 0.0 {
                     let stroke = PathStroke::from(stroke);
                     let (points, closed) = (self.points.clone(), *closed);
                     self.painter.add(PathShape { points, closed, fill: Color32::TRANSPARENT, stroke });
@@ -81,23 +96,16 @@ impl Brush<'_> {
         }
     }
 
-    /// A rectangle of changing colour, as two triangles for each cell of its grid.
-    fn field(&self, area: floor::Rect, columns: u32, inks: &[Ink]) {
-        let rows = inks.len() as u32 / columns;
-        let cell = area.size() / Vec2::new((columns - 1) as f32, (rows - 1) as f32);
-        let mut mesh = Mesh::default();
-        mesh.reserve_vertices(inks.len());
-        mesh.reserve_triangles(2 * inks.len());
-        for (at, ink) in (0..).zip(inks) {
-            let grid = Vec2::new((at % columns) as f32, (at / columns) as f32);
-            mesh.colored_vertex(self.map.point(area.min + cell * grid), ink_color(*ink));
-            if at % columns > 0 && at >= columns {
-                let (west, south) = (at - 1, at - columns);
-                mesh.add_triangle(south - 1, south, at);
-                mesh.add_triangle(south - 1, at, west);
-            }
-        }
-        self.painter.add(Shape::mesh(mesh));
+    /// A rectangle of changing colour: a picture of one dot for each point of its grid, drawn large.
+    fn field(&mut self, area: floor::Rect, columns: u32, inks: &[Ink]) {
+        let size = [columns as usize, inks.len() / columns as usize];
+        let colors = inks.iter().map(|ink| ink_color(*ink));
+        let texture = self.palette.fields.show(self.painter.ctx(), size, colors);
+        // From the middle of the outermost dots; rows begin in the south.
+        let margin = vec2(0.5 / size[0] as f32, 0.5 / size[1] as f32);
+        let (west, east, south, north) = (margin.x, 1.0 - margin.x, margin.y, 1.0 - margin.y);
+        let uv = Rect::from_min_max(pos2(west, north), pos2(east, south));
+        self.painter.image(texture, self.map.rect(area), uv, Color32::WHITE);
     }
 
     /// Lines and the same lines further off, with what lies between.

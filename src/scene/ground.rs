@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
-use super::{Scene, View, outline};
+use super::{Scene, View, holds, outline, terrain};
 use crate::engine::{LinkState, TileState};
 use crate::floor::{Corner, Rect, TileId};
 use crate::layout::Colour;
@@ -25,6 +25,9 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         // Full colour at 700 N, one person on one foot; the root shows light steps too.
         let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
+        if terrain::hides(view, cell) {
+            continue;
+        }
         let active = view.layout.regions.iter().any(|region| holds(region.area, cell));
         let colour = theme.plate.mix(theme.accent, if active { TINT } else { 0.0 }).mix(theme.load, share);
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
@@ -33,12 +36,6 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
 
 /// How much of the accent's colour an active area has.
 const TINT: f32 = 0.045;
-
-/// Whether `area` has all of `cell`, give or take what rounding does to metres.
-fn holds(area: Rect, cell: Rect) -> bool {
-    let area = area.grown(1e-4);
-    cell.min.cmpge(area.min).all() && cell.max.cmple(area.max).all()
-}
 
 /// What is seen between the plates: a frame around all of them and lines between them.
 ///

@@ -52,6 +52,12 @@ fn magnification(geometry: &Geometry) -> f32 {
     geometry.bounds().size().x / Geometry::default().bounds().size().x
 }
 
+/// Whether `area` has all of `cell`, give or take what rounding does to metres.
+fn holds(area: Rect, cell: Rect) -> bool {
+    let area = area.grown(1e-4);
+    cell.min.cmpge(area.min).all() && cell.max.cmple(area.max).all()
+}
+
 /// What a drawing of this floor covers, in floor metres: the floor, and the room that words around it take.
 #[must_use]
 pub fn extent(geometry: &Geometry, show: Show) -> Rect {

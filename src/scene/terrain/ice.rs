@@ -21,7 +21,7 @@ pub(super) fn draw(scene: &mut Scene, land: &Land<'_>, spec: &IceSpec) {
     }
     for seed in &state.seeds {
         let fresh = freshness(land, spec, seed.latest);
-        star(scene, land, seed.number, seed.at, seed.energy_j, fresh);
+        star(scene, land, (seed.number, seed.at, seed.energy_j), fresh, detail);
     }
 }
 
@@ -132,13 +132,22 @@ struct Detail {
     ragged_m: f32,
     /// The width, as a share of the widest, from which on cracks show the dark gap.
     gap: f32,
+    /// The share of a star's splinters that is drawn.
+    splinters: f32,
+    /// Whether splinters are bent; a straight one has a point less.
+    bends: bool,
 }
 
 impl Detail {
     /// For so many pieces.
     fn of(pieces: usize) -> Self {
-        let many = ((pieces as f32 - 300.0) / 900.0).clamp(0.0, 1.0);
-        Self { ragged_m: 0.011 + 0.017 * many, gap: 0.6 * many }
+        let many = ((pieces as f32 - 300.0) / 1200.0).clamp(0.0, 1.0);
+        Self {
+            ragged_m: 0.011 + 0.025 * many,
+            gap: 0.75 * many,
+            splinters: 1.0 - 0.45 * many,
+            bends: many < 0.5,
+        }
     }
 }
 
@@ -225,13 +234,19 @@ fn rough(piece: &Crack, with_start: bool, spacing_m: f32) -> impl Iterator<Item 
 }
 
 /// Short splinters around a seed, where the foot came down.
-fn star(scene: &mut Scene, land: &Land<'_>, number: u32, at: Vec2, energy_j: f32, fresh: f32) {
+fn star(
+    scene: &mut Scene,
+    land: &Land<'_>,
+    (number, at, energy_j): (u32, Vec2, f32),
+    fresh: f32,
+    detail: Detail,
+) {
     if fresh <= 0.02 {
         return;
     }
     let (area, noise) = (land.area(), land.noise);
     let long = 0.010 + 0.007 * energy_j.max(0.0).sqrt().min(5.0);
-    let count = 7 + (noise.at(50, number) * 7.0) as u32;
+    let count = ((7.0 + noise.at(50, number) * 7.0) * detail.splinters) as u32;
     let ink: Colour = land.white;
     for splinter in 0..count {
         let n = number.wrapping_mul(32).wrapping_add(splinter);
@@ -240,7 +255,8 @@ fn star(scene: &mut Scene, land: &Land<'_>, number: u32, at: Vec2, energy_j: f32
         );
         let (near, far) = (long * 0.25 * noise.at(52, n), long * (0.45 + 0.9 * noise.at(53, n)));
         let bend = way.perp() * far * 0.18 * noise.signed(54, n);
-        let points = [at + way * near, at + way * (0.5 * (near + far)) + bend, at + way * far];
+        let middle = detail.bends.then_some(at + way * (0.5 * (near + far)) + bend);
+        let points = std::iter::once(at + way * near).chain(middle).chain([at + way * far]);
         let points = points.map(|point| point.clamp(area.min, area.max));
         let stroke = Stroke::new(0.0011 + 0.0010 * noise.at(55, n), Ink::faint(ink, 0.75 * fresh));
         scene.add_path(points, false, Paint::stroke(stroke));

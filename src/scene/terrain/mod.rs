@@ -22,10 +22,19 @@ const BLACK: Colour = Colour::rgb(0x00, 0x00, 0x00);
 /// How much darker grounds are in a darkened room.
 const DARKER: f32 = 0.32;
 
+/// Whether a ground that is shown hides all of `cell`.
+pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
+    view.layout.grounds.iter().any(|ground| is_shown(view, ground) && super::holds(ground.area, cell))
+}
+
+fn is_shown(view: &View<'_>, ground: &Ground) -> bool {
+    ground.page.is_none_or(|page| page == view.snapshot.page)
+}
+
 /// The grounds of the page that is shown.
 pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
     for (index, ground) in view.layout.grounds.iter().enumerate() {
-        if ground.page.is_some_and(|page| page != view.snapshot.page) {
+        if !is_shown(view, ground) {
             continue;
         }
         let land = Land::new(view, ground, view.snapshot.grounds.get(index), view.snapshot);

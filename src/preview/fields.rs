@@ -1,0 +1,57 @@
+use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
+
+/// The pictures of a scene's fields, which stay with the graphics card until they change.
+#[derive(Default)]
+pub(super) struct Fields {
+    shown: Vec<Field>,
+    /// How many of them the picture at hand has needed so far.
+    used: usize,
+}
+
+struct Field {
+    texture: TextureHandle,
+    image: ColorImage,
+}
+
+impl Fields {
+    /// Starts a picture.
+    pub(super) fn begin(&mut self) {
+        self.used = 0;
+    }
+
+    /// Ends a picture: fields that it did not have are given up.
+    pub(super) fn end(&mut self) {
+        self.shown.truncate(self.used);
+    }
+
+    /// The next field, `size` dots wide and high; sent to the graphics card if it has changed since the last picture.
+    pub(super) fn show(
+        &mut self,
+        ctx: &egui::Context,
+        size: [usize; 2],
+        colors: impl Iterator<Item = Color32>,
+    ) -> TextureId {
+        let at = self.used;
+        self.used += 1;
+        let Some(field) = self.shown.get_mut(at) else {
+            let image = ColorImage::new(size, colors.collect());
+            let texture = ctx.load_texture("field", image.clone(), TextureOptions::LINEAR);
+            let id = texture.id();
+            self.shown.push(Field { texture, image });
+            return id;
+        };
+        let mut changed = field.image.size != size;
+        if changed {
+            field.image = ColorImage::new(size, colors.collect());
+        } else {
+            for (dot, color) in field.image.pixels.iter_mut().zip(colors) {
+                changed |= *dot != color;
+                *dot = color;
+            }
+        }
+        if changed {
+            field.texture.set(field.image.clone(), TextureOptions::LINEAR);
+        }
+        field.texture.id()
+    }
+}

@@ -1,0 +1,125 @@
+use eframe::egui::epaint::{Mesh, Vertex};
+use eframe::egui::{
+    self, Color32, ColorImage, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Vec2, pos2, vec2,
+};
+
+/// Widest line that is drawn this way, in points.
+const WIDEST: f32 = 3.0;
+
+/// How far the picture of a line reaches beyond its edges, in points: as far as soft edges do.
+const SOFT: f32 = 1.0;
+
+/// Dots across the picture of a line, and widths that there are pictures of.
+const ACROSS: usize = 32;
+const WIDTHS: usize = 16;
+
+/// The farthest that a corner sticks out, in half widths.
+const MITRE: f32 = 2.0;
+
+/// Draws fine lines as one strip of triangles each, with the picture of a line on it.
+///
+/// egui makes soft edges of triangles of their own, side by side with the line's. For lines hardly wider
+/// than their edges that is two to three times the work, which counts where thousands of them are drawn
+/// without a graphics card.
+#[derive(Default)]
+pub(super) struct FineLine {
+    profile: Option<TextureHandle>,
+}
+
+impl FineLine {
+    /// Whether lines of this width, in points, look well this way.
+    pub(super) fn suits(width: f32) -> bool {
+        width > 0.0 && width <= WIDEST
+    }
+
+    /// An open line through `points`; nothing for less than two.
+    pub(super) fn mesh(&mut self, ctx: &egui::Context, points: &[Pos2], stroke: Stroke) -> Mesh {
+        let profile = self
+            .profile
+            .get_or_insert_with(|| ctx.load_texture("fine lines", profile(), TextureOptions::LINEAR));
+        strip(profile.id(), points, stroke)
+    }
+}
+
+/// How much of a dot, `away` from the middle of a line of this width, the line covers.
+fn coverage(width: f32, away: f32) -> f32 {
+    let (half, low, high) = (0.5 * width, away - 0.5, away + 0.5);
+    (high.min(half) - low.max(-half)).clamp(0.0, 1.0)
+}
+
+/// Across a line from left to right, and from no width to the widest from top to bottom.
+fn profile() -> ColorImage {
+    let dots = (0..WIDTHS).flat_map(|row| {
+        let width = WIDEST * row as f32 / (WIDTHS - 1) as f32;
+        (0..ACROSS).map(move |column| {
+            let share = (column as f32 + 0.5) / ACROSS as f32 - 0.5;
+            let covered = coverage(width, share * (width + 2.0 * SOFT));
+            Color32::from_white_alpha((255.0 * covered).round() as u8)
+        })
+    });
+    ColorImage::new([ACROSS, WIDTHS], dots.collect())
+}
+
+fn strip(profile: TextureId, points: &[Pos2], Stroke { width, color }: Stroke) -> Mesh {
+    let mut mesh = Mesh::with_texture(profile);
+    if points.len() < 2 {
+        return mesh;
+    }
+    mesh.reserve_vertices(2 * points.len());
+    mesh.reserve_triangles(2 * points.len());
+    let row = (width / WIDEST * (WIDTHS - 1) as f32 + 0.5) / WIDTHS as f32;
+    let half = 0.5 * width + SOFT;
+    let way = |from: usize, to: usize| match (points.get(from), points.get(to)) {
+        (Some(from), Some(to)) => (*to - *from).normalized(),
+        _ => Vec2::ZERO,
+    };
+    for (at, point) in points.iter().enumerate() {
+        let before = if at > 0 { way(at - 1, at) } else { Vec2::ZERO };
+        let aside = half * mitre(before, way(at, at + 1));
+        mesh.vertices.push(Vertex { pos: *point - aside, uv: pos2(0.0, row), color });
+        mesh.vertices.push(Vertex { pos: *point + aside, uv: pos2(1.0, row), color });
+    }
+    for first in (0..2 * points.len() as u32 - 2).step_by(2) {
+        mesh.add_triangle(first, first + 1, first + 2);
+        mesh.add_triangle(first + 1, first + 3, first + 2);
+    }
+    mesh
+}
+
+/// Which way the edge lies from a corner between two ways, as far as the edges of both are 1 away from them.
+fn mitre(before: Vec2, after: Vec2) -> Vec2 {
+    let along = (before + after).normalized();
+    let across = vec2(-along.y, along.x);
+    // The cosine of half the turn; a way of no length counts as straight on.
+    let straight = along.dot(if before == Vec2::ZERO { after } else { before });
+    if across == Vec2::ZERO { vec2(-before.y, before.x) } else { across / straight.max(1.0 / MITRE) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_line_covers_as_much_as_it_is_wide() {
+        let image = profile();
+        for (row, dots) in image.pixels.chunks(ACROSS).enumerate() {
+            let width = WIDEST * row as f32 / (WIDTHS - 1) as f32;
+            let each = (width + 2.0 * SOFT) / ACROSS as f32;
+            let covered: f32 = dots.iter().map(|dot| f32::from(dot.a()) / 255.0 * each).sum();
+            assert!((covered - width).abs() < 0.03, "{covered} of {width}");
+        }
+    }
+
+    #[test]
+    fn a_strip_keeps_its_width_around_corners_and_never_sticks_out_far() {
+        let stroke = Stroke::new(1.0, Color32::WHITE);
+        let points = [pos2(0.0, 0.0), pos2(10.0, 0.0), pos2(10.0, 10.0), pos2(10.0, 10.0), pos2(10.5, 0.0)];
+        let mesh = strip(TextureId::default(), &points, stroke);
+        assert_eq!((mesh.vertices.len(), mesh.indices.len()), (10, 24));
+        let width = |at: usize| mesh.vertices[2 * at].pos.distance(mesh.vertices[2 * at + 1].pos);
+        assert_eq!(width(0), 3.0);
+        assert!((width(1) - 3.0 * 2_f32.sqrt()).abs() < 1e-3, "a right angle");
+        assert!((2..5).all(|at| (2.9..=6.1).contains(&width(at))), "{:?}", mesh.vertices);
+        assert!(strip(TextureId::default(), &points[..1], stroke).is_empty());
+    }
+}
