@@ -376,10 +376,15 @@ impl Survey {
 fn write(column: &[f32; LANES], frame: &mut [f32]) {
     if let Some(frame) = frame.first_chunk_mut::<LANES>() {
         *frame = *column;
-    } else {
-        for (sample, from) in frame.iter_mut().zip(column) {
-            *sample = *from;
-        }
+        return;
+    }
+    // The last group is seldom full. By fours, since a copy of any length is a call for each frame.
+    let (fours, rest) = frame.as_chunks_mut::<4>();
+    for (samples, from) in fours.iter_mut().zip(column.as_chunks::<4>().0) {
+        *samples = *from;
+    }
+    for (sample, from) in rest.iter_mut().zip(&column[4 * fours.len()..]) {
+        *sample = *from;
     }
 }
 

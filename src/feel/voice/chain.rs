@@ -10,6 +10,9 @@ use crate::feel::{Band, Resonance};
 const RINGS: usize = 2;
 const STAGES: usize = 4;
 
+/// Filters in a row that make a narrow band.
+const NARROW: usize = 2;
+
 /// Where the band's filters begin to work, within the band, so that little is left outside.
 const INSET: (f32, f32) = (1.12, 0.86);
 
@@ -38,7 +41,6 @@ struct Filter {
 /// What a filter lets through.
 #[derive(Clone, Copy, Debug)]
 enum Pass {
-    All,
     Band,
     Low,
     High,
@@ -85,18 +87,24 @@ impl Chain {
         }
     }
 
-    /// Makes one lane let a narrow band around `hz` through.
+    /// Makes one lane let a narrow band around `hz` through, for [`Chain::step_narrow`].
     pub(super) fn narrow(&mut self, lane: usize, hz: f32, sharpness: f32, rate: f32) {
-        for filter in &mut self.rings {
-            filter.mix_in(lane, [0.0; 3]);
-        }
-        self.bare[lane] = 1.0;
-        for (stage, filter) in self.stages.iter_mut().enumerate() {
-            filter.set(lane, hz, sharpness, if stage < 2 { Pass::Band } else { Pass::All }, rate);
+        for filter in &mut self.stages[..NARROW] {
+            filter.set(lane, hz, sharpness, Pass::Band, rate);
         }
     }
 
-    /// The next sample: `force` strikes the two resonances, `bare` goes by them.
+    /// The next sample of lanes that let a narrow band through.
+    #[inline(always)]
+    pub(super) fn step_narrow(&mut self, force: Row) -> Row {
+        let mut sum = force;
+        for stage in 0..NARROW {
+            sum = self.stages[stage].step(sum);
+        }
+        sum
+    }
+
+    /// The next sample of lanes that are materials: `force` strikes the two resonances, `bare` goes by them.
     #[inline(always)]
     pub(super) fn step(&mut self, force: [Row; RINGS], bare: Row) -> Row {
         let mut sum = [0.0; LANES];
@@ -136,7 +144,6 @@ impl Filter {
         self.tune(lane, hz, sharpness, rate);
         let k = sharpness.recip();
         let mix = match pass {
-            Pass::All => [1.0, 0.0, 0.0],
             Pass::Band => [0.0, k, 0.0],
             Pass::Low => [0.0, 0.0, 1.0],
             Pass::High => [1.0, -k, -1.0],

@@ -98,6 +98,6 @@ impl Hiss {
 pub(super) fn render(hiss: &mut Hiss, chain: &mut Chain, out: &mut [Row]) {
     for row in out {
         let force = hiss.next();
-        *row = chain.step([[0.0; LANES]; 2], force);
+        *row = chain.step_narrow(force);
     }
 }
