@@ -7,7 +7,11 @@
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
-//! free of allocation, locks, logs and system calls.
+//! free of allocation, locks, logs and system calls. Two tools check that: clippy refuses the types, methods and
+//! macros that `clippy.toml` lists in all of this module, and `tests/measured` renders the busiest ten seconds under
+//! `assert_no_alloc`.
+
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 mod audition;
 mod click;
