@@ -299,6 +299,10 @@ impl Obeyed {
                     PreviewCommand::Enable { id, enabled: false } => {
                         Command::Control(ControlMessage::Disable { id })
                     }
+                    PreviewCommand::Mute(on) => Command::Control(ControlMessage::Mute { on }),
+                    PreviewCommand::MuteTile { tile, on } => {
+                        Command::Control(ControlMessage::MuteTile { tile, on })
+                    }
                     PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
                     PreviewCommand::Feel { effect, gesture, tile } => {
                         let tile = u16::try_from(tile).unwrap_or(u16::MAX);

@@ -5,6 +5,7 @@ use std::thread;
 use std::time::Duration;
 
 use tracing::info;
+use underfoot::feel::FeelCounters;
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
 use underfoot::sink::{Rank, claim_priority};
@@ -85,10 +86,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     claim_priority(Rank::Sensing);
     let served = server.run(&stop);
     let counters = server.counters();
-    let dropped = server.unsent_events();
+    let (dropped, felt) = (server.unsent_events(), server.feel_counters());
     // Ends the recording and sends what is still under way.
     drop(server);
     report(&counters, dropped);
+    report_felt(&felt);
     args.latency.tell(&latency)?;
     Ok(served?)
 }
@@ -99,6 +101,32 @@ fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
         thread::sleep(span);
         stop.store(true, Ordering::Relaxed);
     });
+}
+
+/// What was not felt as it should be; nothing is said if all was well.
+fn report_felt(felt: &FeelCounters) {
+    let FeelCounters { dropped, muted, late, unfelt, refused, stolen, .. } = *felt;
+    let FeelCounters { not_finite, overloaded, silenced, heated, .. } = *felt;
+    let counts = [
+        (dropped, "given up"),
+        (muted, "muted"),
+        (late, "late"),
+        (unfelt, "spots without actuator"),
+        (refused, "modes refused"),
+        (stolen, "voices that made room"),
+        (not_finite, "samples not finite"),
+        (overloaded, "samples overloaded"),
+        (silenced, "channels silenced"),
+        (heated, "times too hot"),
+    ];
+    let said: Vec<String> = counts
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{what} {count}"))
+        .collect();
+    if !said.is_empty() {
+        anstream::eprintln!("Cues: {}.", said.join(", "));
+    }
 }
 
 /// What came in and what was not used.

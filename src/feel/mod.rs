@@ -23,6 +23,7 @@ mod limiter;
 mod loudspeakers;
 mod mix;
 mod modal;
+mod muted;
 mod newest;
 mod player;
 mod push;
@@ -44,6 +45,7 @@ pub use effect::{
 };
 pub use heard::{Heard, heard};
 pub use modal::ModalBank;
+pub use muted::Muted;
 pub use player::{Player, key};
 pub use renderer::{Onset, Renderer, RendererConfig, renderer};
 pub use scope::{MinMax, ScopeReader};

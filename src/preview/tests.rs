@@ -400,6 +400,39 @@ fn notices_stay_until_they_are_put_away() {
 }
 
 #[test]
+fn the_floor_is_muted_by_button_and_key_and_says_so() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Mute").click();
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(true)));
+    assert!(!room.says("muted"), "it is once the floor says so");
+    let mut snapshot = at_rest(&map());
+    snapshot.muted.all = true;
+    room.write(snapshot.clone());
+    assert!(room.says("muted"));
+    let button = room.window.get_by_label("Mute");
+    assert_eq!(button.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+    room.window.key_press(Key::M);
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(false)));
+    // One tile: the one that is looked at.
+    snapshot.muted.all = false;
+    room.write(snapshot.clone());
+    let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();
+    room.window.get_by_label("Mute tile").click();
+    room.run(2);
+    let Ok(PreviewCommand::MuteTile { tile: looked, on: true }) = room.commands.try_recv() else {
+        panic!("not muted")
+    };
+    snapshot.muted.tiles = vec![looked, tile];
+    room.write(snapshot);
+    assert!(room.says("2 muted"));
+    room.window.get_by_label("Mute tile").click();
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::MuteTile { tile: looked, on: false }));
+}
+
+#[test]
 fn an_apps_part_can_be_played_from_the_panel() {
     let mut room = Room::simulated();
     room.window.get_by_label("Controls, as an app sets them").click();

@@ -54,7 +54,8 @@ impl App {
             DeviceState::Lost | DeviceState::Faulty | DeviceState::Unfit => theme.fault,
         };
         ui.add_space(2.0);
-        ui.label(egui::RichText::new(format!("Actuators: {status}")).color(color(colour)));
+        let muted = if self.snapshots.output_buffer().muted.all { ", muted" } else { "" };
+        ui.label(egui::RichText::new(format!("Actuators: {status}{muted}")).color(color(colour)));
     }
 
     /// What came over the wire and what was refused, by reason.
