@@ -5,7 +5,9 @@ use std::thread;
 use std::time::Duration;
 
 use tracing::info;
+use underfoot::engine::{Engine, Snapshot};
 use underfoot::feel::FeelCounters;
+use underfoot::ground::{GroundCounters, Material};
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
 use underfoot::sink::{Rank, claim_priority};
@@ -87,10 +89,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let served = server.run(&stop);
     let counters = server.counters();
     let (dropped, felt) = (server.unsent_events(), server.feel_counters());
+    let grounds = grounds(server.engine());
     // Ends the recording and sends what is still under way.
     drop(server);
     report(&counters, dropped);
     report_felt(&felt);
+    grounds.iter().for_each(|ground| anstream::eprintln!("{ground}"));
     args.latency.tell(&latency)?;
     Ok(served?)
 }
@@ -127,6 +131,27 @@ fn report_felt(felt: &FeelCounters) {
     if !said.is_empty() {
         anstream::eprintln!("Cues: {}.", said.join(", "));
     }
+}
+
+/// What gave way on each ground of the layout that is on the floor at the end, a line each.
+fn grounds(engine: &Engine) -> Vec<String> {
+    let mut snapshot = Snapshot::default();
+    engine.snapshot(&mut snapshot);
+    let grounds = engine.layout().grounds.iter().zip(&snapshot.grounds);
+    grounds
+        .map(|(ground, state)| {
+            let GroundCounters { events, unfelt, crowded_out } = state.counters;
+            let cracks = match ground.material {
+                Material::Ice(_) => format!(
+                    "; pieces of crack {}, seeds {}, crowded out {crowded_out}",
+                    state.cracks.len(),
+                    state.seeds.len()
+                ),
+                Material::Grain(_) | Material::Wood(_) => String::new(),
+            };
+            format!("{}: events {events}, too thick to be felt {unfelt}{cracks}.", ground.material.name())
+        })
+        .collect()
 }
 
 /// What came in and what was not used.

@@ -12,8 +12,10 @@ use super::app::App;
 use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
 use crate::engine::{LinkState, Snapshot};
 use crate::floor::{Corner, Floor, SensorId, TileId};
+use crate::ground::{Crack, GroundCounters, GroundState};
 use crate::layout::Layout;
 use crate::scene::sample::{at_rest, map, pressing};
+use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
 use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
@@ -430,6 +432,24 @@ fn the_floor_is_muted_by_button_and_key_and_says_so() {
     room.window.get_by_label("Mute tile").click();
     room.run(2);
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::MuteTile { tile: looked, on: false }));
+}
+
+#[test]
+fn the_panel_counts_what_gave_way_underfoot() {
+    let mut room = Room::simulated();
+    let text = builtin_layout("pond").unwrap();
+    let pond = parse_layout(text, "pond", &Kinds::builtin(), &Floor::default().geometry).unwrap().layout;
+    let mut snapshot = at_rest(&pond);
+    let layout = Arc::new(pond);
+    room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name: "pond".into() }).unwrap();
+    let counters = GroundCounters { events: 5, unfelt: 0, crowded_out: 2 };
+    let cracks = vec![Crack::default(); 3];
+    snapshot.grounds = vec![GroundState { cracks, counters, ..GroundState::default() }];
+    room.write(snapshot);
+    assert!(!room.says("crowded out"), "one line until it is opened");
+    room.window.get_by_label("Ice: 3 pieces").click();
+    room.run(20);
+    assert!(room.says("crowded out by new pieces: 2") && room.says("seeds: 0"));
 }
 
 #[test]
