@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = UdpSource::bind(args.listen, &floor)?.with_prefix(prefix.clone());
     let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
-        args.actuate.start(&floor, source.now(), &source.clock())?;
+        args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
     let stop = stop_flag()?;
     let (commands, inbox) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
