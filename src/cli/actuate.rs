@@ -1,7 +1,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-use underfoot::feel::{CueSender, Renderer, RendererConfig, ScopeReader, renderer};
+use underfoot::feel::{CueSender, Renderer, RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::sink::{
     ActuatorSink, LatencyProbe, LatencyStages, SilentSink, SinkError, WavOptions, WavSink, WhenFull,
@@ -74,8 +74,6 @@ pub(crate) struct Actuation {
     pub(crate) feel: CueSender,
     /// What plays the samples; it stays on the thread that made it.
     pub(crate) sink: Box<dyn ActuatorSink>,
-    /// What the window's scopes show.
-    pub(crate) scope: Option<ScopeReader>,
     /// How long packets take to be felt.
     pub(crate) latency: LatencyStages,
     /// Where the samples go, or why nobody hears them.
@@ -86,14 +84,14 @@ pub(crate) struct Actuation {
 struct Playing {
     feel: CueSender,
     sink: Box<dyn ActuatorSink>,
-    scope: Option<ScopeReader>,
     notice: String,
 }
 
 impl ActuateArgs {
     /// Starts what was asked for. Without a sound card that fits, the samples go nowhere and the notice says why.
     ///
-    /// `start` is the present on the floor's sample clock, `clock` the one that stamps packets.
+    /// `start` is the present on the floor's sample clock, `clock` the one that stamps packets. `prepare` sees the
+    /// renderer before it plays: of several, where more than one sound card is tried, the last one counts.
     ///
     /// # Errors
     /// The recording can't be begun, or the sound card asked for by name can't be used.
@@ -102,6 +100,7 @@ impl ActuateArgs {
         floor: &Floor,
         start: Instant,
         clock: &HostClock,
+        mut prepare: impl FnMut(&mut Renderer),
     ) -> Result<Actuation, Failure> {
         let latency = LatencyStages::default();
         let probe = LatencyProbe::of_stages(latency.clone(), clock.clone());
@@ -114,22 +113,22 @@ impl ActuateArgs {
                     ..WavOptions::default()
                 };
                 let notice = format!("Recording the actuators in {}.", path.display());
-                self.playing(floor, self.file_rate(), notice, |renderer| {
+                self.playing(floor, self.file_rate(), notice, &mut prepare, |renderer| {
                     Ok(Box::new(WavSink::create(path, renderer, options)?))
                 })?
             }
-            None => match self.on_sound_card(floor, &probe, clock) {
+            None => match self.on_sound_card(floor, &probe, clock, &mut prepare) {
                 Ok(playing) => playing,
                 Err(NoSound::Refused(error)) => return Err(error.into()),
                 Err(NoSound::Silent(reason)) => {
-                    self.playing(floor, self.file_rate(), reason, |renderer| {
+                    self.playing(floor, self.file_rate(), reason, &mut prepare, |renderer| {
                         Ok(Box::new(SilentSink::new(renderer, start, Some(probe))))
                     })?
                 }
             },
         };
-        let Playing { feel, sink, scope, notice } = playing;
-        Ok(Actuation { feel, sink, scope, latency, notice })
+        let Playing { feel, sink, notice } = playing;
+        Ok(Actuation { feel, sink, latency, notice })
     }
 
     /// Where to record, if that was asked for.
@@ -155,17 +154,24 @@ impl ActuateArgs {
         floor: &Floor,
         rate: u32,
         notice: String,
+        prepare: &mut dyn FnMut(&mut Renderer),
         sink: impl FnOnce(Renderer) -> Result<Box<dyn ActuatorSink>, SinkError>,
     ) -> Result<Playing, SinkError> {
         let config =
             RendererConfig { delay: self.delay_ms.unwrap_or_default(), ..RendererConfig::of(floor, rate) };
         let (feel, mut renderer) = renderer(config);
-        let scope = renderer.scope();
-        Ok(Playing { feel, sink: sink(renderer)?, scope, notice })
+        prepare(&mut renderer);
+        Ok(Playing { feel, sink: sink(renderer)?, notice })
     }
 
     #[cfg(not(feature = "audio"))]
-    fn on_sound_card(&self, _: &Floor, _: &LatencyProbe, _: &HostClock) -> Result<Playing, NoSound> {
+    fn on_sound_card(
+        &self,
+        _: &Floor,
+        _: &LatencyProbe,
+        _: &HostClock,
+        _: &mut dyn FnMut(&mut Renderer),
+    ) -> Result<Playing, NoSound> {
         Err(NoSound::Silent("This program was built without sound.".into()))
     }
 
@@ -175,6 +181,7 @@ impl ActuateArgs {
         floor: &Floor,
         probe: &LatencyProbe,
         clock: &HostClock,
+        prepare: &mut dyn FnMut(&mut Renderer),
     ) -> Result<Playing, NoSound> {
         let mixes: &[Mix] = match self.sound {
             Sound::Auto => &[Mix::PerActuator, Mix::Stereo],
@@ -196,7 +203,7 @@ impl ActuateArgs {
             let played = OutputDevice::find(floor, options).and_then(|device| {
                 let heard = if mix == Mix::Stereo { "all tiles in stereo" } else { "a channel per tile" };
                 let notice = format!("Sound: {}, {heard}.", device.name());
-                self.playing(floor, device.sample_rate(), notice, |renderer| {
+                self.playing(floor, device.sample_rate(), notice, prepare, |renderer| {
                     Ok(Box::new(device.play(renderer)?))
                 })
             });

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::engine::Snapshot;
-use underfoot::feel::ScopeReader;
+use underfoot::feel::{Renderer, ScopeReader};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
@@ -216,8 +216,10 @@ struct Served {
 impl Served {
     fn serve(self, stop: &AtomicBool, scopes: &Sender<Option<ScopeReader>>) -> Result<(), Failure> {
         // Sound is made here because not every system lets a stream change threads.
-        let Actuation { feel, sink, scope, notice, .. } =
-            self.actuate.start(&self.floor, self.source.now(), &self.clock)?;
+        let mut scope = None;
+        let watch = |renderer: &mut Renderer| scope = renderer.scope();
+        let Actuation { feel, sink, notice, .. } =
+            self.actuate.start(&self.floor, self.source.now(), &self.clock, watch)?;
         // A window that is closed already needs neither.
         let _ = scopes.send(scope);
         let _ = self.notices.send(notice);
@@ -298,6 +300,10 @@ impl Obeyed {
                     }
                     PreviewCommand::Enable { id, enabled: false } => {
                         Command::Control(ControlMessage::Disable { id })
+                    }
+                    PreviewCommand::Mute(on) => Command::Control(ControlMessage::Mute { on }),
+                    PreviewCommand::MuteTile { tile, on } => {
+                        Command::Control(ControlMessage::MuteTile { tile, on })
                     }
                     PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
                     PreviewCommand::Feel { effect, gesture, tile } => {

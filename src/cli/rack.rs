@@ -166,7 +166,7 @@ impl Walk {
     fn walk_on_device(&self, floor: &Floor, steps: &[(TileId, u16)]) -> Result<(), Failure> {
         let begun = HostInstant::now();
         let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
-        let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock)?;
+        let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock, |_| {})?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;
         anstream::eprintln!("{notice} Ctrl-C ends the walk.");
         let stop = stop_flag()?;

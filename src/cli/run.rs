@@ -5,6 +5,9 @@ use std::thread;
 use std::time::Duration;
 
 use tracing::info;
+use underfoot::engine::{Engine, Snapshot};
+use underfoot::feel::FeelCounters;
+use underfoot::ground::{GroundCounters, Material};
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
 use underfoot::sink::{Rank, claim_priority};
@@ -52,7 +55,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = UdpSource::bind(args.listen, &floor)?.with_prefix(prefix.clone());
     let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
-        args.actuate.start(&floor, source.now(), &source.clock())?;
+        args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
     let stop = stop_flag()?;
     let (commands, inbox) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
@@ -85,10 +88,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     claim_priority(Rank::Sensing);
     let served = server.run(&stop);
     let counters = server.counters();
-    let dropped = server.unsent_events();
+    let (dropped, felt) = (server.unsent_events(), server.feel_counters());
+    let grounds = grounds(server.engine());
     // Ends the recording and sends what is still under way.
     drop(server);
     report(&counters, dropped);
+    report_felt(&felt);
+    grounds.iter().for_each(|ground| anstream::eprintln!("{ground}"));
     args.latency.tell(&latency)?;
     Ok(served?)
 }
@@ -99,6 +105,53 @@ fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
         thread::sleep(span);
         stop.store(true, Ordering::Relaxed);
     });
+}
+
+/// What was not felt as it should be; nothing is said if all was well.
+fn report_felt(felt: &FeelCounters) {
+    let FeelCounters { dropped, muted, late, unfelt, refused, stolen, .. } = *felt;
+    let FeelCounters { not_finite, overloaded, silenced, heated, .. } = *felt;
+    let counts = [
+        (dropped, "given up"),
+        (muted, "muted"),
+        (late, "late"),
+        (unfelt, "spots without actuator"),
+        (refused, "modes refused"),
+        (stolen, "voices that made room"),
+        (not_finite, "samples not finite"),
+        (overloaded, "samples overloaded"),
+        (silenced, "channels silenced"),
+        (heated, "times too hot"),
+    ];
+    let said: Vec<String> = counts
+        .iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, what)| format!("{what} {count}"))
+        .collect();
+    if !said.is_empty() {
+        anstream::eprintln!("Cues: {}.", said.join(", "));
+    }
+}
+
+/// What gave way on each ground of the layout that is on the floor at the end, a line each.
+fn grounds(engine: &Engine) -> Vec<String> {
+    let mut snapshot = Snapshot::default();
+    engine.snapshot(&mut snapshot);
+    let grounds = engine.layout().grounds.iter().zip(&snapshot.grounds);
+    grounds
+        .map(|(ground, state)| {
+            let GroundCounters { events, unfelt, crowded_out } = state.counters;
+            let cracks = match ground.material {
+                Material::Ice(_) => format!(
+                    "; pieces of crack {}, seeds {}, crowded out {crowded_out}",
+                    state.cracks.len(),
+                    state.seeds.len()
+                ),
+                Material::Grain(_) | Material::Wood(_) => String::new(),
+            };
+            format!("{}: events {events}, too thick to be felt {unfelt}{cracks}.", ground.material.name())
+        })
+        .collect()
 }
 
 /// What came in and what was not used.

@@ -145,6 +145,12 @@ impl Engine {
         &self.layout
     }
 
+    /// The floor's measures.
+    #[must_use]
+    pub const fn geometry(&self) -> &Geometry {
+        &self.geometry
+    }
+
     /// Takes another layout, keeping the values of controls that both have.
     ///
     /// With a foot engaged, the change waits until the foot has let go; if the

@@ -158,9 +158,11 @@ impl Responses {
         }
         self.ends.push(&self.shares, now, rubs);
         for Sliding { widget, contact } in holding.clone() {
-            let hold = now.layout.widgets.get(widget).and_then(|widget| widget.feel.hold.as_ref());
-            if let (Some(effect), Some(contact)) = (hold, now.contact(contact)) {
-                self.player.hold(effect, contact.id.0, now.at, now.received, &spots(contact));
+            let Some(feel) = now.layout.widgets.get(widget).map(|widget| &widget.feel) else { continue };
+            if let (Some(effect), Some(contact)) = (&feel.hold, now.contact(contact)) {
+                let (at, received, to_air) = (now.at, now.received, feel.sound);
+                let cue = Cue { at, received, spots: spots(contact), to_air, ..Cue::default() };
+                self.player.hold(effect, contact.id.0, &cue);
             }
         }
         self.player.let_go(|owner| holding.clone().any(|holding| holding.contact.0 == owner));
@@ -218,7 +220,8 @@ fn steps(widget: &Widget) -> bool {
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.
 fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
-    let effect = layout.widgets.get(sliding.widget)?.feel.drag.as_ref()?;
+    let feel = &layout.widgets.get(sliding.widget)?.feel;
+    let effect = feel.drag.as_ref()?;
     let contact = contacts.iter().find(|contact| contact.id == sliding.contact)?;
     Some(Rub {
         key: key(contact.id.0, DRAG),
@@ -227,6 +230,7 @@ fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
         manner: effect.manner,
         speed_m_s: contact.velocity.length(),
         force: contact.force,
+        to_air: feel.sound,
     })
 }
 

@@ -2,7 +2,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use crate::feel::{DeviceStatus, FeelCounters};
+use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
@@ -42,6 +42,8 @@ pub struct Snapshot {
     pub health: SensorHealth,
     /// How the device that moves the actuators is doing; `None` without one.
     pub device: Option<DeviceStatus>,
+    /// What somebody has muted.
+    pub muted: Muted,
     /// What could not be felt as it should.
     pub feel: FeelCounters,
     /// Events that other programs could not be told.

@@ -229,7 +229,7 @@ impl Audition {
             self.pressed = true;
             let cue = cue(moment(press_s));
             if self.gesture.holds && !matches!(effect.kind, EffectKind::Click { .. }) {
-                self.player.hold(&effect, FOOT, cue.at, cue.received, &cue.spots);
+                self.player.hold(&effect, FOOT, &cue);
             } else {
                 self.player.play(&effect, FOOT, false, cue, cues);
             }
@@ -254,6 +254,7 @@ impl Audition {
             manner: self.effect.manner,
             speed_m_s: moment.speed_m_s,
             force: moment.force,
+            ..Rub::default()
         });
     }
 }

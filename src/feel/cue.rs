@@ -123,6 +123,8 @@ pub struct Rub {
     pub speed_m_s: f32,
     /// Normal force.
     pub force: Newtons,
+    /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
+    pub to_air: f32,
 }
 
 /// All that lasts at this moment; a rub that is not in it fades out.

@@ -5,13 +5,16 @@ use super::Spot;
 use super::mix::Output;
 use crate::floor::{Actuator, Loudspeaker};
 
-/// Loudspeakers that play one cue at most.
+/// Loudspeakers that play one cue or rub at most.
 pub(super) const NEAREST: usize = 3;
+
+/// Full scales per newton of a loudspeaker without a gain of its own: as a nominal actuator has them.
+pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 
 /// As near as a loudspeaker gets, in metres: nobody stands inside of one.
 const NEAR_M: f32 = 0.1;
 
-/// The loudspeakers that play one cue, and how much of it each gets.
+/// The loudspeakers that play one cue or rub, and how much of it each gets.
 pub(super) type Heard = ArrayVec<Output, NEAREST>;
 
 /// The loudspeakers around the floor.
@@ -26,18 +29,17 @@ pub(super) struct Loudspeakers {
 impl Loudspeakers {
     /// Those of `all` that a device of so many channels has, for a floor whose tiles have these centres.
     pub(super) fn new(all: &[Loudspeaker], centres: Vec<Vec2>, channels: usize) -> Self {
-        let nominal = Actuator::nominal(0).full_scale.0;
         let playable = all.iter().filter(|one| {
             usize::from(one.channel) < channels && one.at.is_finite() && one.gain_db.is_finite()
         });
         let all = playable.take(Loudspeaker::MOST).map(|one| {
-            let per_newton = 10_f32.powf(one.gain_db / 20.0) / nominal;
+            let per_newton = 10_f32.powf(one.gain_db / 20.0) * PER_NEWTON;
             (one.at, Output { channel: one.channel.into(), per_newton })
         });
         Self { all: all.collect(), centres: centres.into() }
     }
 
-    /// Where a cue on these spots is heard, of which `to_air` (0 to 1) is to be heard at all.
+    /// Where something on these spots is heard, of which `to_air` (0 to 1) is to be heard at all.
     ///
     /// The three nearest loudspeakers share it, the nearer the more, with the same
     /// power together wherever it is. The share of the third falls to nothing

@@ -7,7 +7,11 @@
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
-//! free of allocation, locks, logs and system calls.
+//! free of allocation, locks, logs and system calls. Two tools check that: clippy refuses the types, methods and
+//! macros that `clippy.toml` lists in all of this module, and `tests/measured` renders the busiest ten seconds under
+//! `assert_no_alloc`.
+
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 mod audition;
 mod click;
@@ -19,6 +23,7 @@ mod limiter;
 mod loudspeakers;
 mod mix;
 mod modal;
+mod muted;
 mod newest;
 mod player;
 mod push;
@@ -40,6 +45,7 @@ pub use effect::{
 };
 pub use heard::{Heard, heard};
 pub use modal::ModalBank;
+pub use muted::Muted;
 pub use player::{Player, key};
 pub use renderer::{Onset, Renderer, RendererConfig, renderer};
 pub use scope::{MinMax, ScopeReader};

@@ -32,6 +32,7 @@ struct Playing {
     received: Instant,
     next: usize,
     spots: Spots,
+    to_air: f32,
 }
 
 /// How far ahead of its time a part is handed out.
@@ -58,12 +59,11 @@ impl Player {
         }
     }
 
-    /// Plays `effect` from `at` on for as long as `owner` holds it; nothing happens if it is held already.
-    pub fn hold(&mut self, effect: &Arc<Effect>, owner: u32, at: Instant, received: Instant, spots: &Spots) {
+    /// Plays `effect` from when `cue` is due for as long as `owner` holds it; nothing happens if it is held already.
+    pub fn hold(&mut self, effect: &Arc<Effect>, owner: u32, cue: &Cue) {
         let is_same = |playing: &Playing| playing.held && playing.owner == owner;
         if !self.playing.iter().any(is_same) {
-            let cue = Cue { at, received, spots: spots.clone(), ..Cue::default() };
-            self.begin(effect, owner, true, &cue);
+            self.begin(effect, owner, true, cue);
         }
     }
 
@@ -89,6 +89,7 @@ impl Player {
             received: cue.received,
             next: 0,
             spots: cue.spots.clone(),
+            to_air: cue.to_air,
         });
     }
 
@@ -124,10 +125,10 @@ impl Playing {
             && let Some(part) = sequence.part(self.next)
         {
             self.next += 1;
-            let (spots, manner) = (self.spots.clone(), self.effect.manner);
+            let (spots, manner, to_air) = (self.spots.clone(), self.effect.manner, self.to_air);
             // What answers the foot is the first part; the others are never late.
             let received = if part.at_s > 0.0 { begins } else { self.received };
-            let cue = Cue { at: begins, received, spots, manner, ..Cue::default() };
+            let cue = Cue { at: begins, received, spots, manner, to_air, ..Cue::default() };
             match part.beat {
                 Beat::Click(click) => cues.push(Cue { click, ..cue }),
                 Beat::Tone(tone) if !self.held => cues.push(Cue { tone: Some(tone), ..cue }),
@@ -163,6 +164,7 @@ impl Playing {
             spots: self.spots.clone(),
             effect: Lasting::Hum(Hum { level: full * level, hz, noise }),
             manner: self.effect.manner,
+            to_air: self.to_air,
             ..Rub::default()
         });
     }
@@ -234,7 +236,7 @@ mod tests {
     #[test]
     fn parts_come_ahead_of_their_time_and_follow_the_foot() {
         let (mut player, mut cues, mut rubs) = (Player::default(), Vec::new(), Rubs::new());
-        let cue = Cue { at: at(10), received: at(10), spots: spots(3), ..Cue::default() };
+        let cue = Cue { at: at(10), received: at(10), spots: spots(3), to_air: 0.5, ..Cue::default() };
         player.play(&sequence(), 1, false, cue, &mut cues);
         assert!(cues.is_empty());
         let mut handed_out = Vec::new();
@@ -247,6 +249,7 @@ mod tests {
             handed_out.iter().map(|(ms, cue)| (*ms, cue.at.micros(), cue.spots[0].tile)).collect();
         assert_eq!(when, [(10, 10_000, 3), (22, 22_300, 4), (29, 30_000, 4)]);
         assert!(handed_out[2].1.tone.is_some() && rubs.is_empty());
+        assert!(handed_out.iter().all(|(_, cue)| cue.to_air == 0.5), "each part is heard as the first");
         assert!(player.playing.is_empty());
     }
 
@@ -256,9 +259,10 @@ mod tests {
         let held = Arc::new(Effect { kind: EffectKind::Continuous(tone()), manner: Manner::PLAIN });
         for ms in 0..3000 {
             let mut rubs = Rubs::new();
-            player.hold(&held, 7, at(0), at(0), &spots(1));
+            player.hold(&held, 7, &Cue { spots: spots(1), to_air: 0.25, ..Cue::default() });
             player.due(at(ms), |_| None, &mut cues, &mut rubs);
             assert_eq!(rubs.len(), 1, "a held tone goes on beyond its length");
+            assert_eq!(rubs[0].to_air, 0.25);
         }
         player.let_go(|owner| owner != 7);
         let mut rubs = Rubs::new();

@@ -35,7 +35,7 @@ pub struct RendererConfig {
     pub drive: Drive,
     /// The measured response of each tile's actuator, in tile-index order; may be shorter than `actuators`.
     pub responses: Vec<Option<Response>>,
-    /// The loudspeakers that cues with a share [`super::Cue::to_air`] are heard from.
+    /// The loudspeakers that cues and rubs with a share `to_air` are heard from.
     pub loudspeakers: Vec<Loudspeaker>,
     /// The centre of each tile, in floor metres and tile-index order: what is felt on a tile is heard from there.
     pub centres: Vec<Vec2>,
@@ -264,7 +264,7 @@ impl Renderer {
             return 0;
         }
         if self.rubs.update() {
-            let started = self.voices.follow(self.rubs.output_buffer(), &self.wiring);
+            let started = self.voices.follow(self.rubs.output_buffer(), &self.wiring, &self.loudspeakers);
             note(&self.shared, started);
         }
         let whole = out.len() - out.len() % self.channels;
@@ -335,7 +335,7 @@ impl Renderer {
                 // Voices go on up to the tone's own sample.
                 self.voices.render(&mut self.mix, self.voiced, frame - first);
                 self.voiced = frame - first;
-                let started = self.voices.start(&cue, tone, &self.wiring);
+                let started = self.voices.start(&cue, tone, &self.wiring, &self.loudspeakers);
                 felt = (started.unfelt as usize) < cue.spots.len();
                 note(&self.shared, started);
             }
@@ -358,8 +358,13 @@ impl Renderer {
                     self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());
                 }
             }
-            for output in self.loudspeakers.heard(&cue.spots, cue.to_air) {
-                strike(1.0, output);
+            if !cue.click.modes.is_empty() {
+                for output in self.loudspeakers.heard(&cue.spots, cue.to_air) {
+                    strike(1.0, output);
+                    if cue.manner.duck_db > 0.0 {
+                        self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());
+                    }
+                }
             }
             if felt && self.onsets.len() < WAITING {
                 self.onsets.push(Onset { frame, received: cue.received, sent });

@@ -4,7 +4,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use triple_buffer::Input;
 
 use super::newest::Writer;
-use super::{Cue, Rubs};
+use super::{Cue, Rubs, Spot};
 use crate::units::Instant;
 
 /// What the renderer could not do, counted since it was made.
@@ -12,7 +12,7 @@ use crate::units::Instant;
 pub struct FeelCounters {
     /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are given up first.
     pub dropped: u64,
-    /// Cues that came while everything was silenced.
+    /// Cues that came while everything was silenced, or a tile that they reach was muted.
     pub muted: u64,
     /// Cues that were played later than their time.
     pub late: u64,
@@ -123,13 +123,15 @@ pub struct CueSender {
 impl CueSender {
     /// Sends a cue to be played; the answer is whether it is on its way.
     ///
-    /// It isn't if everything is silenced. If the renderer has not taken any of
-    /// the last 256 cues, the oldest of them is given up. Both are counted.
+    /// It isn't if everything is silenced; one that reaches a muted tile is, but counted too. If the renderer has
+    /// not taken any of the last 256 cues, the oldest of them is given up. All of it is counted.
     pub fn send(&mut self, cue: &Cue) -> bool {
         if self.is_silenced() {
             count(&self.shared.muted, 1);
             return false;
         }
+        let is_muted = |spot: &Spot| spot.weight > 0.0 && self.mutes(spot.tile);
+        count(&self.shared.muted, u32::from(cue.spots.iter().any(is_muted)));
         self.cues.push(Message { cue: cue.clone(), turns: self.turns, sent: self.now });
         true
     }
@@ -175,6 +177,14 @@ impl CueSender {
         mute.store(muted, Ordering::Relaxed);
         self.shared.mute_changes.fetch_add(1, Ordering::Release);
         true
+    }
+
+    /// Whether the actuator of tile number `tile` is muted; false if nothing moves that tile.
+    #[must_use]
+    pub fn mutes(&self, tile: u16) -> bool {
+        let channel = self.shared.channels.get(usize::from(tile)).copied().flatten();
+        let mute = channel.and_then(|channel| self.shared.mutes.get(channel));
+        mute.is_some_and(|mute| mute.load(Ordering::Relaxed))
     }
 
     /// Whether [`CueSender::silence`] holds.

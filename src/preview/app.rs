@@ -86,6 +86,7 @@ impl App {
     /// One picture.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
+        self.heed_mute_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
         self.notices(ui);

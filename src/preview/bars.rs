@@ -2,7 +2,7 @@
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Align, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo, vec2};
+use eframe::egui::{Align, Key, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo, vec2};
 
 use super::app::App;
 use super::feed::PreviewCommand;
@@ -71,6 +71,16 @@ impl App {
         let snapshot = self.snapshots.output_buffer();
         let (text, colour) = link(snapshot.link, theme);
         pill(ui, colour, theme, text);
+        match &snapshot.muted {
+            muted if muted.all => {
+                pill(ui, theme.warning, theme, "muted").on_hover_text("Nothing is felt or heard");
+            }
+            muted if !muted.is_nothing() => {
+                let text = format!("{} muted", muted.tiles.len());
+                pill(ui, theme.warning, theme, &text).on_hover_text("Tiles that are not felt");
+            }
+            _ => {}
+        }
         let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
         let texts = [
             (74.0, format!("{} fps", rate(self.pictures.per_second())), "Pictures a second in this window"),
@@ -95,6 +105,13 @@ impl App {
         if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
             self.marks = !self.marks;
         }
+        if self.scopes.is_fed() {
+            let muted = self.snapshots.output_buffer().muted.all;
+            let button = ui.add(egui::Button::selectable(muted, "Mute").frame_when_inactive(true));
+            if button.on_hover_text("Let nothing be felt or heard; M does the same").clicked() {
+                self.command(PreviewCommand::Mute(!muted));
+            }
+        }
         if let Some(tuner) = &mut self.tuner {
             let button = ui.add(egui::Button::selectable(tuner.is_open, "Effects").frame_when_inactive(true));
             if button.on_hover_text("Tune what controls feel like: see, hear and save").clicked() {
@@ -118,6 +135,14 @@ impl App {
         }
     }
 
+    /// Mutes everything, or nothing any more, where nobody is writing.
+    pub(super) fn heed_mute_key(&self, ui: &Ui) {
+        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
+        if is_free && self.scopes.is_fed() && ui.input(|i| i.key_pressed(Key::M)) {
+            self.command(PreviewCommand::Mute(!self.snapshots.output_buffer().muted.all));
+        }
+    }
+
     /// How to work the floor.
     pub(super) fn help_bar(&self, ui: &mut Ui) {
         let theme = &self.theme;
@@ -131,9 +156,10 @@ impl App {
                     ("Right-drag, Q, E", "turn"),
                     ("Space", "stance foot here"),
                     ("Shift-click", "look at a tile"),
+                    ("M", "mute"),
                 ]
             } else {
-                &[("Click", "look at a tile"), ("Arrows", "the next one")]
+                &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]
             };
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 5.0;

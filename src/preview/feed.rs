@@ -5,7 +5,7 @@ use glam::Vec2;
 
 use crate::engine::Snapshot;
 use crate::feel::{Effect, Gesture};
-use crate::floor::Floor;
+use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
 use crate::scene::Shoe;
 use crate::schema::NamedEffect;
@@ -86,6 +86,15 @@ pub enum PreviewCommand {
         id: WidgetId,
         /// What it shall hold.
         value: Value,
+    },
+    /// Let nothing be felt or heard, or everything again.
+    Mute(bool),
+    /// Let the actuator of one tile not be felt, or again.
+    MuteTile {
+        /// Which tile.
+        tile: TileId,
+        /// Whether to.
+        on: bool,
     },
     /// Play an effect on a tile, in place of what was being played so.
     Feel {

@@ -12,8 +12,10 @@ use super::app::App;
 use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
 use crate::engine::{LinkState, Snapshot};
 use crate::floor::{Corner, Floor, SensorId, TileId};
+use crate::ground::{Crack, GroundCounters, GroundState};
 use crate::layout::Layout;
 use crate::scene::sample::{at_rest, map, pressing};
+use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
 use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
@@ -397,6 +399,57 @@ fn notices_stay_until_they_are_put_away() {
     room.window.get_by_label("Hide: No sound card was found.").click();
     room.run(3);
     assert!(!room.says("No sound card was found."));
+}
+
+#[test]
+fn the_floor_is_muted_by_button_and_key_and_says_so() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Mute").click();
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(true)));
+    assert!(!room.says("muted"), "it is once the floor says so");
+    let mut snapshot = at_rest(&map());
+    snapshot.muted.all = true;
+    room.write(snapshot.clone());
+    assert!(room.says("muted"));
+    let button = room.window.get_by_label("Mute");
+    assert_eq!(button.accesskit_node().toggled(), Some(egui::accesskit::Toggled::True));
+    room.window.key_press(Key::M);
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(false)));
+    // One tile: the one that is looked at.
+    snapshot.muted.all = false;
+    room.write(snapshot.clone());
+    let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();
+    room.window.get_by_label("Mute tile").click();
+    room.run(2);
+    let Ok(PreviewCommand::MuteTile { tile: looked, on: true }) = room.commands.try_recv() else {
+        panic!("not muted")
+    };
+    snapshot.muted.tiles = vec![looked, tile];
+    room.write(snapshot);
+    assert!(room.says("2 muted"));
+    room.window.get_by_label("Mute tile").click();
+    room.run(2);
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::MuteTile { tile: looked, on: false }));
+}
+
+#[test]
+fn the_panel_counts_what_gave_way_underfoot() {
+    let mut room = Room::simulated();
+    let text = builtin_layout("pond").unwrap();
+    let pond = parse_layout(text, "pond", &Kinds::builtin(), &Floor::default().geometry).unwrap().layout;
+    let mut snapshot = at_rest(&pond);
+    let layout = Arc::new(pond);
+    room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name: "pond".into() }).unwrap();
+    let counters = GroundCounters { events: 5, unfelt: 0, crowded_out: 2 };
+    let cracks = vec![Crack::default(); 3];
+    snapshot.grounds = vec![GroundState { cracks, counters, ..GroundState::default() }];
+    room.write(snapshot);
+    assert!(!room.says("crowded out"), "one line until it is opened");
+    room.window.get_by_label("Ice: 3 pieces").click();
+    room.run(20);
+    assert!(room.says("crowded out by new pieces: 2") && room.says("seeds: 0"));
 }
 
 #[test]

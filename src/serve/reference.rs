@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::floor::Floor;
+use crate::floor::{Floor, Geometry};
 use crate::ground::Material;
 use crate::layout::{Layout, Widget};
 use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
@@ -59,7 +59,7 @@ impl Reference {
         let mut maker = Maker { prefix, entries: Vec::new() };
         maker.floor(layout, floor);
         for widget in &layout.widgets {
-            maker.control(widget, layout);
+            maker.control(widget, layout, floor);
         }
         Self { entries: maker.entries }
     }
@@ -96,7 +96,7 @@ impl Maker<'_> {
         for command in COMMANDS.iter().filter(|command| !command.is_of_a_control()) {
             // Without pages there is none to show.
             if command.takes != Takes::Page || !layout.pages.is_empty() {
-                let arguments = taken(command, None, layout);
+                let arguments = taken(command, None, layout, &floor.geometry);
                 self.add(Direction::In, command.path, arguments, command.says);
             }
         }
@@ -145,18 +145,24 @@ impl Maker<'_> {
             self.add(Direction::Out, "page", page(&pages(layout)), "Another page is shown.");
         }
         self.add(Direction::Answer, "page", page("empty without pages"), "The page that is shown.");
+        let mute = || {
+            let tiles = argument("tiles", "i", "column and row of each single tile, 100 at most");
+            vec![argument("all", "i", "0 or 1"), tiles]
+        };
+        self.add(Direction::Out, "mute", mute(), "Something was muted, or no longer.");
+        self.add(Direction::Answer, "mute", mute(), "What is muted.");
         let error = vec![argument("address", "s", "as it was asked"), argument("why", "s", "")];
         self.add(Direction::Answer, "error", error, "A request was refused.");
     }
 
-    fn control(&mut self, widget: &Widget, layout: &Layout) {
+    fn control(&mut self, widget: &Widget, layout: &Layout, floor: &Floor) {
         let id = widget.id.as_str();
         let control = Control::new(&widget.behaviour, widget.area.size());
         for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
             // What only a foot can hold, no app can set.
             let settable = control.value().is_some_and(|value| control.clone().set_value(value).is_ok());
             if command.takes != Takes::Value || settable {
-                let arguments = taken(command, Some(widget), layout);
+                let arguments = taken(command, Some(widget), layout, &floor.geometry);
                 self.add(Direction::In, &command.path_of(id), arguments, command.says);
             }
         }
@@ -195,12 +201,18 @@ fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
 }
 
 /// What a command takes; of a value, what the control holds.
-fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout) -> Vec<Argument> {
+fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: &Geometry) -> Vec<Argument> {
     match command.takes {
         Takes::Nothing => Vec::new(),
         Takes::Label => vec![argument("label", "s", "64 characters at most")],
         Takes::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
         Takes::Page => vec![argument("page", "s", &pages(layout))],
+        Takes::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
+        Takes::TileFlag => vec![
+            argument("column", "i", &format!("0 to {}", geometry.columns().saturating_sub(1))),
+            argument("row", "i", &format!("0 to {}", geometry.rows().saturating_sub(1))),
+            argument("on", "i|f|T|F", "0 or 1"),
+        ],
         Takes::Value => {
             let Some(widget) = widget else { return Vec::new() };
             let held = Control::new(&widget.behaviour, widget.area.size()).value();

@@ -35,6 +35,8 @@ pub(super) fn meet(
             write_page(prefix, engine.page().unwrap_or_default(), answer);
             return Ok(true);
         }
+        // Not for the engine: the server's own business.
+        ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } | ControlMessage::GetMute => {}
     }
     Ok(false)
 }

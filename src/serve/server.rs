@@ -6,17 +6,18 @@ use std::time::Duration;
 use tracing::{info, warn};
 use triple_buffer::Input;
 
+use super::mute::{self, MuteError};
 use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, LinkState, Snapshot};
-use crate::feel::{CueSender, DeviceStatus, Effect, Gesture};
-use crate::floor::{Floor, SensorId};
+use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
+use crate::floor::{Floor, SensorId, TileId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{ControlMessage, LinkCounters, Prefix, Request, write_error};
+use crate::wire::{ControlMessage, LinkCounters, Prefix, Request, write_error, write_mute};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -73,6 +74,8 @@ pub struct Server {
     assembler: Assembler,
     engine: Engine,
     feel: Option<CueSender>,
+    /// What somebody has muted.
+    muted: Muted,
     /// An effect that somebody tries.
     trial: Option<Trial>,
     actuators: Option<Box<dyn ActuatorSink>>,
@@ -121,6 +124,7 @@ impl Server {
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
             engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
             feel: None,
+            muted: Muted::default(),
             trial: None,
             actuators: None,
             events: None,
@@ -202,6 +206,12 @@ impl Server {
         self.source.counters() + self.assembler.counters() + own
     }
 
+    /// What could not be felt as it should so far, or was not to be.
+    #[must_use]
+    pub fn feel_counters(&self) -> FeelCounters {
+        self.feel.as_ref().map(CueSender::counters).unwrap_or_default()
+    }
+
     /// Events that other programs could not be told so far.
     #[must_use]
     pub fn unsent_events(&self) -> u64 {
@@ -215,7 +225,8 @@ impl Server {
         snapshot.counters = self.counters();
         self.assembler.health(&mut snapshot.health);
         snapshot.device.clone_from(&self.device);
-        snapshot.feel = self.feel.as_ref().map(CueSender::counters).unwrap_or_default();
+        snapshot.muted.clone_from(&self.muted);
+        snapshot.feel = self.feel_counters();
         snapshot.unsent_events = self.unsent_events();
     }
 
@@ -332,12 +343,6 @@ impl Server {
     fn note_link(&mut self) {
         let link = self.settled_link();
         if link != self.link {
-            let lost = link == LinkState::Lost;
-            match &mut self.feel {
-                Some(feel) if lost => feel.silence(),
-                Some(feel) => feel.resume(),
-                None => {}
-            }
             match link {
                 LinkState::Lost => warn!("no sensor packets for 100 ms: every control is released"),
                 LinkState::Partial => warn!("some boards send nothing"),
@@ -345,6 +350,7 @@ impl Server {
                 LinkState::Waiting => {}
             }
             self.link = link;
+            self.heed_mute();
             self.note_uncalibrated();
             if let Some(events) = &mut self.events {
                 events.link(self.source.now(), link);
@@ -500,19 +506,67 @@ impl Server {
 
     /// Does what an app asks, and tells it what it wants to know or why it can't be done.
     fn meet(&mut self, request: &Request) {
-        let Self { engine, prefix, answer, .. } = self;
-        let told = match request::meet(engine, prefix, &request.message, answer) {
-            Ok(told) => told,
-            Err(error) => {
-                self.denied += 1;
-                let address = self.prefix.address(&request.message.path());
-                warn!("{address} refused: {error}");
-                write_error(&self.prefix, &address, &error.to_string(), &mut self.answer);
-                true
+        let met = match &request.message {
+            ControlMessage::Mute { on } => self.mute(*on).map(|()| false).map_err(|error| error.to_string()),
+            ControlMessage::MuteTile { tile, on } => {
+                self.mute_tile(*tile, *on).map(|()| false).map_err(|error| error.to_string())
             }
+            ControlMessage::GetMute => {
+                write_mute(&self.prefix, &self.muted, &mut self.answer);
+                Ok(true)
+            }
+            message => request::meet(&mut self.engine, &self.prefix, message, &mut self.answer)
+                .map_err(|error| error.to_string()),
         };
+        let told = met.unwrap_or_else(|why| {
+            self.denied += 1;
+            let address = self.prefix.address(&request.message.path());
+            warn!("{address} refused: {why}");
+            write_error(&self.prefix, &address, &why, &mut self.answer);
+            true
+        });
         if let Some(sender) = request.sender.filter(|_| told) {
             self.source.answer(sender, &self.answer);
         }
+    }
+
+    fn mute(&mut self, on: bool) -> Result<(), MuteError> {
+        if self.feel.is_none() {
+            return Err(MuteError::Unplayed);
+        }
+        if on != self.muted.all {
+            self.muted.all = on;
+            self.heed_mute();
+            self.tell_mute();
+        }
+        Ok(())
+    }
+
+    fn mute_tile(&mut self, tile: TileId, on: bool) -> Result<(), MuteError> {
+        let feel = self.feel.as_mut().ok_or(MuteError::Unplayed)?;
+        let before = self.muted.tiles.len();
+        mute::mute_tile(self.engine.geometry(), feel, tile, on, &mut self.muted)?;
+        if self.muted.tiles.len() != before {
+            self.tell_mute();
+        }
+        Ok(())
+    }
+
+    /// Lets nothing be felt while the floor is lost or somebody wants it so.
+    fn heed_mute(&mut self) {
+        match &mut self.feel {
+            Some(feel) if self.muted.all || self.link == LinkState::Lost => feel.silence(),
+            Some(feel) => feel.resume(),
+            None => {}
+        }
+    }
+
+    fn tell_mute(&mut self) {
+        if let Some(events) = &mut self.events {
+            events.muted(self.source.now(), &self.muted);
+        }
+        // A window is to show it at once, also while no frames come.
+        self.shown = Instant::START;
+        self.show(self.source.now());
     }
 }

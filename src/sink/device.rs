@@ -1,6 +1,10 @@
 //! Actuators and loudspeakers through the sound card; the only user of cpal.
+//!
+//! `callback`, and what it calls, runs on the device's own thread. Clippy checks there for locks, logs and calls that
+//! wait (`clippy.toml`), and the tests here run every callback under `assert_no_alloc`.
 
 mod block_clock;
+mod callback;
 mod cards;
 mod choice;
 mod mixdown;

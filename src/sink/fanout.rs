@@ -1,6 +1,6 @@
 use super::EventSink;
 use crate::engine::{LinkState, PageShown};
-use crate::feel::DeviceStatus;
+use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -65,6 +65,10 @@ impl EventSink for Fanout {
 
     fn device(&mut self, at: Instant, status: &DeviceStatus) {
         self.sinks.iter_mut().for_each(|sink| sink.device(at, status));
+    }
+
+    fn muted(&mut self, at: Instant, muted: &Muted) {
+        self.sinks.iter_mut().for_each(|sink| sink.muted(at, muted));
     }
 
     fn dropped(&self) -> u64 {

@@ -7,7 +7,7 @@ use super::crackle::{CrackNews, Crackle};
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
-use crate::feel::DeviceStatus;
+use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
@@ -23,6 +23,7 @@ use crate::wire::link_name;
 /// {"t_s":9.9,"event":"page","page":"settings"}
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
+/// {"t_s":9.9,"event":"mute","all":false,"tiles":[[2,1]]}
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
@@ -44,6 +45,7 @@ enum Job {
     Crack(CrackNews),
     Health(Instant, SensorHealth),
     Device(Instant, DeviceStatus),
+    Muted(Instant, Muted),
 }
 
 impl JsonSink {
@@ -98,6 +100,10 @@ impl EventSink for JsonSink {
         self.worker.offer(Job::Device(at, status.clone()));
     }
 
+    fn muted(&mut self, at: Instant, muted: &Muted) {
+        self.worker.offer(Job::Muted(at, muted.clone()));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped()
     }
@@ -142,6 +148,10 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
         }
         Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,
         Job::Device(at, status) => serde_json::to_vec(&DeviceLine::of(*at, status))?,
+        Job::Muted(at, Muted { all, tiles }) => {
+            let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
+            serde_json::to_vec(&MuteLine { t_s: seconds(*at), event: "mute", all: *all, tiles })?
+        }
     };
     line.push(b'\n');
     out.write_all(&line)
@@ -182,6 +192,14 @@ struct LinkLine {
     t_s: f64,
     event: &'static str,
     state: &'static str,
+}
+
+#[derive(Serialize)]
+struct MuteLine {
+    t_s: f64,
+    event: &'static str,
+    all: bool,
+    tiles: Vec<[u16; 2]>,
 }
 
 #[derive(Serialize)]
@@ -409,6 +427,17 @@ mod tests {
             sink.events(&[event(EventKind::Pressed, None)]);
             std::thread::yield_now();
         }
+    }
+
+    #[test]
+    fn what_is_muted_is_told_by_column_and_row() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        let muted = Muted { all: true, tiles: vec![crate::floor::TileId::new(2, 1)] };
+        sink.muted(Instant::from_millis(9900), &muted);
+        drop(sink);
+        let line: String = lines.iter().collect();
+        assert_eq!(line.trim_end(), r#"{"t_s":9.9,"event":"mute","all":true,"tiles":[[2,1]]}"#);
     }
 
     #[test]

@@ -22,7 +22,7 @@ mod worker;
 use thiserror::Error;
 
 use crate::engine::{LinkState, PageShown};
-use crate::feel::DeviceStatus;
+use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -79,6 +79,9 @@ pub trait EventSink: Send {
 
     /// Takes news of the device that moves the actuators; called when something has changed, once a second at most.
     fn device(&mut self, _at: Instant, _status: &DeviceStatus) {}
+
+    /// Takes news of what is muted; called when that changes.
+    fn muted(&mut self, _at: Instant, _muted: &Muted) {}
 
     /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {

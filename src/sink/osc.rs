@@ -9,20 +9,22 @@ use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
-use crate::feel::DeviceStatus;
+use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::widget::WidgetId;
-use crate::wire::{Prefix, write_contacts, write_crack, write_device, write_event, write_health, write_page};
+use crate::wire::{
+    Prefix, write_contacts, write_crack, write_device, write_event, write_health, write_mute, write_page,
+};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once more when there are none. The
 /// messages are those of [`write_event`], [`write_contacts`], [`write_crack`],
-/// [`write_page`], [`write_health`] and [`write_device`].
+/// [`write_page`], [`write_health`], [`write_device`] and [`write_mute`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
@@ -42,6 +44,7 @@ enum Job {
     Crack(CrackNews),
     Health(LinkState, SensorHealth),
     Device(DeviceStatus),
+    Muted(Muted),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -125,6 +128,10 @@ impl EventSink for OscSink {
         self.worker.offer(Job::Device(status.clone()));
     }
 
+    fn muted(&mut self, _at: Instant, muted: &Muted) {
+        self.worker.offer(Job::Muted(muted.clone()));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped() + self.undelivered.load(Ordering::Relaxed)
     }
@@ -172,6 +179,10 @@ impl Sender {
                 }
                 Job::Device(status) => {
                     write_device(&prefix, &status, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Muted(muted) => {
+                    write_mute(&prefix, &muted, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {

@@ -5,6 +5,7 @@ use std::net::SocketAddr;
 use glam::Vec2;
 use rosc::OscType;
 
+use crate::floor::TileId;
 use crate::widget::{Indicator, Value, WidgetId};
 
 /// Most characters of a label, as in layouts.
@@ -70,6 +71,20 @@ pub enum ControlMessage {
     },
     /// Tell the sender which page is shown.
     GetPage,
+    /// Let nothing be felt or heard, or everything again.
+    Mute {
+        /// Whether to.
+        on: bool,
+    },
+    /// Let one tile not be felt, or again.
+    MuteTile {
+        /// Which tile.
+        tile: TileId,
+        /// Whether to.
+        on: bool,
+    },
+    /// Tell the sender what is muted.
+    GetMute,
 }
 
 impl ControlMessage {
@@ -87,6 +102,9 @@ impl ControlMessage {
             Self::Get { id } => ("get", id),
             Self::ShowPage { .. } => return "page/set".into(),
             Self::GetPage => return "page/get".into(),
+            Self::Mute { .. } => return "mute/set".into(),
+            Self::MuteTile { .. } => return "mute/tile".into(),
+            Self::GetMute => return "mute/get".into(),
         };
         format!("widget/{id}/{verb}")
     }
@@ -121,6 +139,10 @@ pub enum Takes {
     Indicator,
     /// A string: the id of a page.
     Page,
+    /// 0 or 1, or OSC true or false.
+    Flag,
+    /// Two whole numbers, column and row of a tile, and then 0 or 1, or OSC true or false.
+    TileFlag,
 }
 
 /// One thing that apps may ask.
@@ -141,10 +163,12 @@ enum Argument {
     Value(Value),
     Text(String),
     Indicator(Indicator),
+    Flag(bool),
+    TileFlag(TileId, bool),
 }
 
 /// Everything that apps may ask.
-pub const COMMANDS: [Command; 10] = [
+pub const COMMANDS: [Command; 13] = [
     Command {
         path: "widget/<id>/set",
         takes: Takes::Value,
@@ -217,6 +241,30 @@ pub const COMMANDS: [Command; 10] = [
         says: "Answer with the page that is shown.",
         make: |_, _| Some(ControlMessage::GetPage),
     },
+    Command {
+        path: "mute/set",
+        takes: Takes::Flag,
+        says: "Let nothing be felt or heard (1), or everything again but single tiles that are muted (0).",
+        make: |_, argument| match argument {
+            Argument::Flag(on) => Some(ControlMessage::Mute { on }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "mute/tile",
+        takes: Takes::TileFlag,
+        says: "Let the actuator of one tile not be felt (1), or again (0); loudspeakers go on.",
+        make: |_, argument| match argument {
+            Argument::TileFlag(tile, on) => Some(ControlMessage::MuteTile { tile, on }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "mute/get",
+        takes: Takes::Nothing,
+        says: "Answer with what is muted.",
+        make: |_, _| Some(ControlMessage::GetMute),
+    },
 ];
 
 /// Why a message is no command.
@@ -274,15 +322,19 @@ impl Takes {
                 Some(Argument::Text(text.clone()))
             }
             (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
+            (Self::Flag, [on]) => flag(on).map(Argument::Flag),
+            (Self::TileFlag, [column, row, on]) => {
+                let tile = TileId::new(index(column)?, index(row)?);
+                flag(on).map(|on| Argument::TileFlag(tile, on))
+            }
             (Self::Indicator, [OscType::String(text)]) => {
                 let found = Indicator::ALL.into_iter().find(|indicator| indicator.name() == text);
                 found.map(Argument::Indicator)
             }
-            (Self::Indicator, [one]) => match value(one)? {
-                Value::Switch(true) | Value::Number(1.0) => Some(Argument::Indicator(Indicator::On)),
-                Value::Switch(false) | Value::Number(0.0) => Some(Argument::Indicator(Indicator::Off)),
-                _ => None,
-            },
+            (Self::Indicator, [one]) => {
+                let lamp = if flag(one)? { Indicator::On } else { Indicator::Off };
+                Some(Argument::Indicator(lamp))
+            }
             _ => None,
         }
     }
@@ -295,7 +347,28 @@ impl Takes {
             Self::Label => "one string of at most 64 characters",
             Self::Indicator => "off, on, busy or attention, or 0 or 1",
             Self::Page => "one string: the id of a page",
+            Self::Flag => "0 or 1, or true or false",
+            Self::TileFlag => "three numbers: column and row of a tile, and 0 or 1",
         }
+    }
+}
+
+/// On or off.
+fn flag(argument: &OscType) -> Option<bool> {
+    match value(argument)? {
+        Value::Switch(true) | Value::Number(1.0) => Some(true),
+        Value::Switch(false) | Value::Number(0.0) => Some(false),
+        _ => None,
+    }
+}
+
+/// A column or a row.
+fn index(argument: &OscType) -> Option<u16> {
+    match value(argument)? {
+        Value::Number(number) if number.fract() == 0.0 && (0.0..=f32::from(u16::MAX)).contains(&number) => {
+            Some(number as u16)
+        }
+        _ => None,
     }
 }
 

@@ -3,7 +3,7 @@ use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 use super::Prefix;
 use super::encode::write;
 use crate::engine::LinkState;
-use crate::feel::DeviceStatus;
+use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
 use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
 
@@ -86,6 +86,9 @@ pub fn write_contacts(
 /// Most sensors that one message names.
 const NAMED_SENSORS: usize = 8;
 
+/// Most tiles that one message names: it stays below 1500 bytes.
+const NAMED_TILES: usize = 100;
+
 /// Writes how the floor is doing as the OSC message `/underfoot/health`.
 ///
 /// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of
@@ -144,6 +147,17 @@ pub fn write_crack(
 pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
     bytes.clear();
     write(&message(prefix.address("page"), vec![OscType::String(page.into())]), bytes);
+}
+
+/// Writes what is muted as the OSC message `/underfoot/mute`.
+///
+/// First whether everything is (int, 0 or 1), then column and row of each single tile that is not felt (ints), 100
+/// tiles at most.
+pub fn write_mute(prefix: &Prefix, muted: &Muted, bytes: &mut Vec<u8>) {
+    let places = muted.tiles.iter().take(NAMED_TILES).flat_map(|tile| [tile.column, tile.row]);
+    let args = std::iter::once(u16::from(muted.all)).chain(places).map(|number| OscType::Int(number.into()));
+    bytes.clear();
+    write(&message(prefix.address("mute"), args.collect()), bytes);
 }
 
 /// Writes why a request was refused as the OSC message `/underfoot/error`: the address it came to, and a sentence.
@@ -341,6 +355,19 @@ mod tests {
         args.extend([3, 1, 20, 2].map(OscType::Int));
         args.extend((0..8).map(|column| OscType::String(format!("tile ({column}, 1) sw: stuck"))));
         assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
+    }
+
+    #[test]
+    fn what_is_muted_is_a_flag_and_tiles_by_column_and_row() {
+        let mut bytes = Vec::new();
+        let mut muted = Muted { all: false, tiles: vec![TileId::new(2, 1), TileId::new(5, 5)] };
+        write_mute(&Prefix::default(), &muted, &mut bytes);
+        let args = [0, 2, 1, 5, 5].map(OscType::Int);
+        assert_eq!(decoded(&bytes), message("/underfoot/mute".into(), args.into()));
+        // A floor of 32 x 32 tiles, all of them.
+        muted.tiles = (0..1024).map(|n| TileId::new(n % 32, n / 32)).collect();
+        write_mute(&Prefix::default(), &muted, &mut bytes);
+        assert!(bytes.len() < 1400, "{}", bytes.len());
     }
 
     #[test]

@@ -24,8 +24,8 @@ pub use decode::{Batch, Decoder, WireError};
 pub use encode::{EncodeError, SensorEncoder, SensorFormat};
 pub(crate) use event::link_name;
 pub use event::{
-    Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health, write_page,
-    write_readback,
+    Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health, write_mute,
+    write_page, write_readback,
 };
 pub use guard::{Limits, Malformed, check};
 pub use packet::{MAX_CHANNELS, Readings, SensorPacket};

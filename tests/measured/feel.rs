@@ -10,7 +10,7 @@ use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
 
 /// Ten seconds of forty rubs of every model, of clicks of eight modes struck by soft pushes and of tones, a new one
-/// every 2 ms, on four tiles each.
+/// every 2 ms, on four tiles each and most of them on loudspeakers.
 #[test]
 fn the_busiest_ten_seconds_do_not_allocate() {
     let (mut sender, mut renderer) = renderer(RendererConfig::of(&whole_floor(), 48_000));
@@ -104,5 +104,6 @@ fn rub(effects: &Effects, foot: u32, n: u64) -> Rub {
         manner: Manner { duck_db: (n % 7) as f32, priority: (foot % 10) as u8, ..Manner::PLAIN },
         speed_m_s: (n % 100) as f32 * 0.01,
         force: Newtons(300.0),
+        to_air: (n % 3) as f32 * 0.4,
     }
 }

@@ -171,9 +171,10 @@ impl Ends {
     pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, rubs: &mut Rubs) {
         self.0.retain(|pushing| {
             let Some(contact) = now.contact(pushing.contact) else { return false };
-            let Some(effect) =
-                now.layout.widgets.get(pushing.widget).and_then(|widget| widget.feel.end.as_ref())
-            else {
+            let Some(feel) = now.layout.widgets.get(pushing.widget).map(|widget| &widget.feel) else {
+                return false;
+            };
+            let Some(effect) = feel.end.as_ref() else {
                 return false;
             };
             let EffectKind::EndStop(end) = &effect.kind else { return false };
@@ -198,6 +199,7 @@ impl Ends {
                     manner: effect.manner,
                     speed_m_s: contact.velocity.length(),
                     force: contact.force,
+                    to_air: feel.sound,
                 };
                 push(rubs, Some(rub));
             }

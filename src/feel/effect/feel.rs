@@ -27,7 +27,7 @@ pub struct Feel {
     pub hold: Option<Arc<Effect>>,
     /// Felt while the foot slides along it.
     pub drag: Option<Arc<Effect>>,
-    /// How much of its clicks is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
+    /// How much of all this is also heard, from the floor's loudspeakers: 0 (not at all) to 1.
     pub sound: f32,
 }
 

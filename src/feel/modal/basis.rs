@@ -1,8 +1,6 @@
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 
-use std::sync::LazyLock;
-
 use super::multiply_add;
 
 /// Samples that one set of terms describes.
@@ -35,7 +33,11 @@ pub(crate) struct Basis {
     by_sample: [[f32; TERMS]; HALF],
 }
 
-static BASIS: LazyLock<Basis> = LazyLock::new(Basis::build);
+#[expect(
+    clippy::disallowed_types,
+    reason = "made by each bank's `new`: the callback finds it there and never waits"
+)]
+static BASIS: std::sync::LazyLock<Basis> = std::sync::LazyLock::new(Basis::build);
 
 impl Basis {
     /// The one basis that there is; takes memory and time when first asked for.

@@ -1,3 +1,4 @@
+use crate::feel::loudspeakers::NEAREST;
 use crate::feel::{MAX_SPOTS, Manner};
 
 /// Time in which what is ducked goes down, and comes back, to 1/e, in seconds (our choice: before a click's peak
@@ -83,5 +84,5 @@ impl Ducks {
     }
 }
 
-/// The channels that a voice reaches.
-pub(super) const MAX_REACHES: usize = 2 * MAX_SPOTS;
+/// The channels that a voice reaches: those it goes to, and as many that it has just left.
+pub(super) const MAX_REACHES: usize = 2 * (MAX_SPOTS + NEAREST);

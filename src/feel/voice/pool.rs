@@ -2,6 +2,7 @@ use super::duck::Ducks;
 use super::group::{Group, Model};
 use super::single::{STEP, Span, State, Voice};
 use super::{LANES, LowRate};
+use crate::feel::loudspeakers::Loudspeakers;
 use crate::feel::mix::{Mix, Wiring};
 use crate::feel::{Cue, MAX_RUBS, Manner, Rub, Rubs, Tone};
 
@@ -64,7 +65,7 @@ impl Voices {
     }
 
     /// Takes the rubs as they are now; a rub that is no longer among them fades out.
-    pub(in crate::feel) fn follow(&mut self, rubs: &Rubs, wiring: &Wiring) -> Started {
+    pub(in crate::feel) fn follow(&mut self, rubs: &Rubs, wiring: &Wiring, air: &Loudspeakers) -> Started {
         self.age = 0;
         for voice in &mut self.voices {
             if voice.state == State::Rubbing && !rubs.iter().any(|rub| rub.key == voice.key) {
@@ -74,14 +75,21 @@ impl Voices {
         let mut started = Started::default();
         for rub in rubs {
             let Some(number) = self.voice_for(rub, &mut started) else { continue };
-            started.unfelt += self.voices[number].follow(rub, wiring);
+            started.unfelt += self.voices[number].follow(rub, wiring, &air.heard(&rub.spots, rub.to_air));
         }
         started
     }
 
     /// Plays the tone of `cue` from now on.
-    pub(in crate::feel) fn start(&mut self, cue: &Cue, tone: &Tone, wiring: &Wiring) -> Started {
-        let (voice, unfelt) = Voice::sounding(tone, cue.manner, &cue.spots, wiring);
+    pub(in crate::feel) fn start(
+        &mut self,
+        cue: &Cue,
+        tone: &Tone,
+        wiring: &Wiring,
+        air: &Loudspeakers,
+    ) -> Started {
+        let heard = air.heard(&cue.spots, cue.to_air);
+        let (voice, unfelt) = Voice::sounding(tone, cue.manner, &cue.spots, wiring, &heard);
         let mut started = Started { unfelt, stolen: 0 };
         if let Some(number) = self.claim(Model::Hiss, cue.manner, tone.level.0, &mut started) {
             let (group, lane) = (self.voices[number].group, self.voices[number].lane);
@@ -175,7 +183,7 @@ impl Voices {
         }
     }
 
-    /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet.
+    /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet and of the loudspeakers.
     pub(in crate::feel) fn render(&mut self, mix: &mut Mix, start: usize, end: usize) {
         self.age = self.age.saturating_add(end.saturating_sub(start));
         if self.age as f32 > STALE_S * self.sample_rate {

@@ -3,6 +3,7 @@ use arrayvec::ArrayVec;
 use super::duck::{Ducks, MAX_REACHES};
 use super::group::Drive;
 use super::{Row, within};
+use crate::feel::loudspeakers::{Heard, PER_NEWTON};
 use crate::feel::mix::{Mix, Output, Wiring};
 use crate::feel::{Friction, Hum, Lasting, Manner, Rub, Spots, Tone};
 
@@ -60,7 +61,7 @@ struct Wish {
     hz: f32,
 }
 
-/// A channel under the foot, or one it has just left.
+/// A channel under the foot, or one it has just left; or that of a loudspeaker nearby.
 #[derive(Clone, Copy, Debug)]
 struct Reach {
     output: Output,
@@ -96,7 +97,13 @@ impl Voice {
     }
 
     /// A voice for a tone, heard from now on; the second number is how many spots no actuator can play.
-    pub(super) fn sounding(tone: &Tone, manner: Manner, spots: &Spots, wiring: &Wiring) -> (Self, u32) {
+    pub(super) fn sounding(
+        tone: &Tone,
+        manner: Manner,
+        spots: &Spots,
+        wiring: &Wiring,
+        heard: &Heard,
+    ) -> (Self, u32) {
         let hum = Hum { level: tone.level, hz: tone.hz, noise: tone.noise };
         let mut voice = Self {
             state: State::Sounding,
@@ -107,13 +114,14 @@ impl Voice {
             ..Self::default()
         };
         let unfelt = voice.reach(spots, wiring, true);
+        voice.sound(heard);
         // Where it begins there is nothing to slide from.
         voice.reaches.iter_mut().for_each(|reach| reach.weight = reach.wanted);
         (voice, unfelt)
     }
 
     /// Heads for what the rub is now; the answer is how many spots of a new rub no actuator can play.
-    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring) -> u32 {
+    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring, heard: &Heard) -> u32 {
         let new = self.state == State::Free;
         self.wanted = wish(rub);
         if new {
@@ -123,7 +131,9 @@ impl Voice {
         self.effect = rub.effect;
         self.manner = rub.manner;
         self.state = State::Rubbing;
-        self.reach(&rub.spots, wiring, new)
+        let unfelt = self.reach(&rub.spots, wiring, new);
+        self.sound(heard);
+        unfelt
     }
 
     /// Heads for these spots.
@@ -138,22 +148,35 @@ impl Voice {
                 unfelt += u32::from(new);
                 continue;
             };
-            if let Some(reach) = self.reaches.iter_mut().find(|reach| reach.output == output) {
-                reach.wanted += weight;
-                continue;
-            }
-            if self.reaches.is_full()
-                && let Some(left) = self.reaches.iter().position(|reach| reach.wanted == 0.0)
-            {
-                self.reaches.swap_remove(left);
-            }
-            // There is room: at most four spots are wanted at once.
-            let _ = self.reaches.try_push(Reach { output, weight: 0.0, wanted: weight, gain: 0.0 });
+            self.want(output, weight);
         }
         unfelt
     }
 
-    /// The channels that it is felt on.
+    /// Heads for these loudspeakers as well; to be called after [`Voice::reach`].
+    fn sound(&mut self, heard: &Heard) {
+        for Output { channel, per_newton } in heard {
+            // Where it is heard changes as the foot moves: that is a weight, so that nothing jumps.
+            let output = Output { channel: *channel, per_newton: PER_NEWTON };
+            self.want(output, per_newton / PER_NEWTON);
+        }
+    }
+
+    fn want(&mut self, output: Output, weight: f32) {
+        if let Some(reach) = self.reaches.iter_mut().find(|reach| reach.output == output) {
+            reach.wanted += weight;
+            return;
+        }
+        if self.reaches.is_full()
+            && let Some(left) = self.reaches.iter().position(|reach| reach.wanted == 0.0)
+        {
+            self.reaches.swap_remove(left);
+        }
+        // There is room: at most four spots and three loudspeakers are wanted at once.
+        let _ = self.reaches.try_push(Reach { output, weight: 0.0, wanted: weight, gain: 0.0 });
+    }
+
+    /// The channels that it is felt on and heard from.
     pub(super) fn channels(&self) -> impl Iterator<Item = usize> + '_ {
         self.reaches.iter().map(|reach| reach.output.channel)
     }

@@ -54,7 +54,8 @@ impl App {
             DeviceState::Lost | DeviceState::Faulty | DeviceState::Unfit => theme.fault,
         };
         ui.add_space(2.0);
-        ui.label(egui::RichText::new(format!("Actuators: {status}")).color(color(colour)));
+        let muted = if self.snapshots.output_buffer().muted.all { ", muted" } else { "" };
+        ui.label(egui::RichText::new(format!("Actuators: {status}{muted}")).color(color(colour)));
     }
 
     /// What came over the wire and what was refused, by reason.
@@ -75,14 +76,19 @@ fn headline(counters: &LinkCounters) -> String {
     format!("Link: {} lost, {} refused", grouped(counters.lost), grouped(counters.refused()))
 }
 
+/// A name and a count on a line of its own, marked where anything but zero is a `fault`.
+pub(super) fn figure(ui: &mut Ui, theme: &Theme, name: &str, count: u64, fault: bool) {
+    let figure = grouped(count);
+    let line = row(ui, 17.0, 12.5, &format!("{name}: {figure}"));
+    let seen = fault && count > 0;
+    line.left(0.04, 0.75, name, color(if seen { theme.warning } else { theme.quiet }));
+    line.right(1.0, &figure, color(if seen { theme.warning } else { theme.ink }));
+}
+
 fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
     ui.spacing_mut().item_spacing.y = 1.0;
     for (name, count, fault) in lines(counters) {
-        let figure = grouped(count);
-        let line = row(ui, 17.0, 12.5, &format!("{name}: {figure}"));
-        let seen = fault && count > 0;
-        line.left(0.04, 0.75, name, color(if seen { theme.warning } else { theme.quiet }));
-        line.right(1.0, &figure, color(if seen { theme.warning } else { theme.ink }));
+        figure(ui, theme, name, count, fault);
     }
     ui.spacing_mut().item_spacing.y = 5.0;
 }
@@ -111,7 +117,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 17] {
 }
 
 /// Digits in groups of three, so that millions can be read.
-fn grouped(count: u64) -> String {
+pub(super) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (at, digit) in digits.chars().enumerate() {

@@ -3,6 +3,7 @@
 mod contacts;
 mod controls;
 mod events;
+mod grounds;
 mod link;
 mod scopes;
 mod tile;
@@ -35,6 +36,7 @@ impl App {
                 self.events_part(ui, events);
                 self.scopes_part(ui);
                 self.controls_part(ui);
+                self.grounds_part(ui);
                 self.health_part(ui);
                 self.device_part(ui);
                 self.link_part(ui);

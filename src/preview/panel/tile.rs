@@ -3,10 +3,11 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};
 
 use super::super::app::App;
+use super::super::feed::PreviewCommand;
 use super::super::painter::color;
 use super::super::style::{panel_colour, quiet, section};
 use crate::engine::TileState;
-use crate::floor::Corner;
+use crate::floor::{Corner, TileId};
 use crate::layout::Colour;
 use crate::scene::Theme;
 use crate::sense::Quality;
@@ -20,14 +21,24 @@ impl App {
         let theme = self.theme;
         let tile = self.looked.tile();
         let pinned = self.looked.pinned().is_some();
-        let mut unpin = false;
+        let muted = self.snapshots.output_buffer().muted.tiles.contains(&tile);
+        let is_moved = self.scopes.is_fed() && self.is_moved(tile);
+        let (mut unpin, mut mute) = (false, false);
         section(ui, &theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
             if pinned {
                 unpin = ui.small_button("Follow the foot").clicked();
             } else {
                 ui.label(quiet(&theme, "follows the foot").size(12.0));
             }
+            if is_moved {
+                let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);
+                let hint = "Let this tile's actuator not be felt";
+                mute = ui.add(button).on_hover_text(hint).clicked();
+            }
         });
+        if mute {
+            self.command(PreviewCommand::MuteTile { tile, on: !muted });
+        }
         if unpin {
             self.looked.unpin();
         }
@@ -51,6 +62,12 @@ impl App {
             |at| format!("acts at {:.3}, {:.3} m", at.x, at.y),
         );
         ui.label(quiet(&theme, format!("{:.1} N in all, {place}", clean(state.force.0))));
+    }
+
+    /// Whether an actuator moves this tile.
+    fn is_moved(&self, tile: TileId) -> bool {
+        let index = self.floor.geometry.index(tile);
+        index.and_then(|index| self.floor.actuators.get(index)).is_some_and(Option::is_some)
     }
 }
 

@@ -1,3 +1,5 @@
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
+
 use std::f32::consts::FRAC_PI_2;
 
 use cpal::{FromSample, Sample};

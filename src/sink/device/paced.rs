@@ -5,8 +5,8 @@ use std::time::{Duration, Instant};
 
 use cpal::{BufferSize, Error, ErrorKind, SampleFormat, SupportedBufferSize, SupportedStreamConfigRange};
 
+use super::callback::Callback;
 use super::choice::Choice;
-use super::stream::Callback;
 
 /// The name that asks for it.
 pub(super) const PACED: &str = "paced";

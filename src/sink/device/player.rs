@@ -1,3 +1,5 @@
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
+
 use std::time::Duration;
 
 use cpal::{FromSample, Sample};

@@ -1,3 +1,5 @@
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
+
 use std::time::{Duration, Instant};
 
 use crate::feel::Priority;
@@ -70,6 +72,7 @@ pub(super) const FIX: &str = "the sound card's thread may not have real-time pri
     join the group `audio` and log in again";
 
 #[cfg(test)]
+#[expect(clippy::disallowed_methods, reason = "no callback runs here")]
 mod tests {
     use std::cell::Cell;
 

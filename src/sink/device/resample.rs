@@ -1,3 +1,5 @@
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
+
 use std::f64::consts::PI;
 
 /// Neighbours that make up one sample, at the slower of the two rates.

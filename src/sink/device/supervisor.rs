@@ -6,11 +6,12 @@ use std::time::Duration;
 use cpal::{BufferSize, Error, ErrorKind};
 use rtrb::Consumer;
 
+use super::callback::{Callback, Ear, Pulse};
 use super::cards::{Card, Cards};
 use super::choice::{self, Choice};
 use super::player::Player;
 use super::priority::{Ask, FIX, Promotion};
-use super::stream::{self, Callback, Ear, Pulse, Stream};
+use super::stream::{self, Stream};
 use super::watch::{Alarm, Watch};
 use super::{DeviceOptions, trouble};
 use crate::feel::{DeviceState, DeviceStatus, Priority};

@@ -126,6 +126,24 @@ fn what_is_held_is_felt_until_the_foot_lets_go_or_the_floor_is_lost() {
 }
 
 #[test]
+fn what_a_control_lets_be_heard_is_what_it_lets_be_felt() {
+    let mut slider = Bench::with(r#"kind: "slider", feel: (drag: "smooth", sound: 0.5)"#);
+    slider.press_at(0.5, 0.5);
+    slider.walker.take_rubs();
+    slider.slide_to(1.12, 0.5);
+    let (rubs, thuds) = (slider.walker.take_rubs(), slider.walker.take_cues());
+    assert!(rubs.iter().any(|rub| matches!(rub.effect, Lasting::Friction(_))), "it rubs");
+    assert!(rubs.iter().any(|rub| matches!(rub.effect, Lasting::Hum(_))), "and pushes");
+    assert!(rubs.iter().all(|rub| rub.to_air == 0.5));
+    assert!(!thuds.is_empty() && thuds.iter().all(|cue| cue.to_air == 0.5));
+    let mut hold = Bench::with(r#"kind: "hold", feel: (hold: "engine_hum", press: None, sound: 0.5)"#);
+    hold.press();
+    hold.wait(100);
+    let held = hold.walker.take_rubs();
+    assert!(!held.is_empty() && held.iter().all(|rub| rub.to_air == 0.5));
+}
+
+#[test]
 fn a_long_press_swells_and_then_says_that_it_was_long() {
     let mut bench = Bench::with(r#"kind: "gesture_button", feel: (press: None, release: None)"#);
     bench.press();

@@ -1,8 +1,11 @@
-//! Cues that are also heard: the same synthesis, in the same block, from where they are felt.
+//! What is also heard, once or for a while: the same synthesis, in the same block, from where it is felt.
 
-use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Spot, renderer};
+use underfoot::feel::{
+    Click, Cue, CueSender, Hum, Lasting, Mode, RendererConfig, Rub, Rubs, Spot, Tone, renderer,
+};
 use underfoot::floor::{Floor, Loudspeaker};
 use underfoot::glam::Vec2;
+use underfoot::schema::Effects;
 use underfoot::sink::{ActuatorSink, ManualSink, WavFormat, WavOptions, WavSink, WhenFull};
 use underfoot::units::{Instant, Newtons};
 
@@ -115,4 +118,113 @@ fn a_layout_that_does_not_ask_is_not_heard_and_half_is_half() {
     assert_eq!((heard(0.0), heard(f32::NAN)), (0.0, 0.0));
     assert!((heard(0.5) / heard(1.0) - 0.5).abs() < 1e-3);
     assert!((heard(9.0) / heard(1.0) - 1.0).abs() < 1e-6);
+}
+
+/// What lasts, one of every model.
+fn lasting() -> Vec<(&'static str, Lasting)> {
+    let effects = Effects::builtin();
+    let named = |name| (name, effects.get(name).unwrap().effect.kind.lasting().unwrap());
+    let hum = Lasting::Hum(Hum { level: Newtons(4.0), hz: 90.0, noise: 0.0 });
+    let mut all = ["smooth", "rubber", "grating", "gravel"].map(named).to_vec();
+    all.push(("a hum", hum));
+    all
+}
+
+fn rub(effect: Lasting, tile: u16, to_air: f32) -> Rubs {
+    let spots = [Spot { tile, weight: 1.0 }].into_iter().collect();
+    let force = Newtons(200.0);
+    [Rub { key: 1, spots, effect, speed_m_s: 0.2, force, to_air, ..Rub::default() }].into_iter().collect()
+}
+
+/// A millisecond after the other, with what rubs in it.
+fn slide(floor: &Floor, millis: u64, rubs: impl Fn(u64) -> Rubs) -> ManualSink {
+    let (mut sender, mut sink) = play(floor);
+    for ms in 0..millis {
+        sender.rubs(&rubs(ms));
+        sink.advance(Instant::from_millis(ms + 1)).unwrap();
+    }
+    sink
+}
+
+fn onset(samples: &[f32]) -> Option<usize> {
+    samples.iter().position(|sample| *sample != 0.0)
+}
+
+#[test]
+fn what_lasts_is_heard_as_it_is_felt_and_begins_within_one_sample() {
+    let floor = floor();
+    for (name, effect) in lasting() {
+        // After 20 ms of nothing; between three loudspeakers, so that each has a share.
+        let sink = slide(&floor, 300, |ms| if ms < 20 { Rubs::new() } else { rub(effect, 8, 1.0) });
+        let felt = sink.channel(8);
+        let begins = onset(felt).unwrap();
+        assert!(begins >= 20 * 96, "{name}: {begins}");
+        let heard = (36..40).filter_map(|channel| onset(sink.channel(channel))).min().unwrap();
+        assert!(begins.abs_diff(heard) <= 1, "{name} is felt from {begins} on and heard from {heard} on");
+        let gains: Vec<f64> =
+            (36..40).map(|channel| (energy(sink.channel(channel)) / energy(felt)).sqrt()).collect();
+        let power: f64 = gains.iter().zip([1.0, 1.0, 1.0, 2.0]).map(|(gain, own)| (gain * own).powi(2)).sum();
+        assert!((power - 1.0).abs() < 0.02, "{name}: {power}");
+        for (channel, gain) in (36..40).zip(&gains) {
+            let worst = sink.channel(channel).iter().zip(felt).fold(0.0_f64, |worst, (heard, felt)| {
+                worst.max((f64::from(*heard) - gain * f64::from(*felt)).abs())
+            });
+            // What is lasting may come near the limiter, which holds each channel by itself.
+            assert!(worst < 1e-3, "{name}, loudspeaker {channel}: {worst}");
+        }
+    }
+}
+
+#[test]
+fn a_tone_of_a_cue_is_heard_as_well() {
+    let (mut sender, mut sink) = play(&floor());
+    let tone = Tone { level: Newtons(4.0), hz: 90.0, length_s: 0.1, sustain: 1.0, ..Tone::default() };
+    let cue = Cue { click: Click::default(), tone: Some(tone), ..cue(Instant::from_micros(20_130), 0, 1.0) };
+    sender.send(&cue);
+    sink.advance(Instant::from_millis(300)).unwrap();
+    let (felt, heard) = (onset(sink.channel(0)).unwrap(), onset(sink.channel(36)).unwrap());
+    assert!(felt.abs_diff(heard) <= 1, "felt from {felt}, heard from {heard}");
+    assert!(energy(sink.channel(36)) > 0.8 * energy(sink.channel(0)));
+}
+
+/// A hum of 4 N that goes from the south-west corner to the north-east one, tile by tile.
+#[test]
+fn what_lasts_is_heard_from_where_the_foot_is_and_never_jumps() {
+    let effect = Lasting::Hum(Hum { level: Newtons(4.0), hz: 90.0, noise: 0.0 });
+    let sink = slide(&floor(), 1800, |ms| rub(effect, (ms / 300 * 7) as u16, 1.0));
+    // 200 ms of each tile, once the sound has come there; the fourth loudspeaker is set to half.
+    let loud = |channel: usize, step: usize| {
+        let own = if channel == 39 { 2.0 } else { 1.0 };
+        own * energy(&sink.channel(channel)[(300 * step + 90) * 96..(300 * step + 290) * 96]).sqrt()
+    };
+    let (west, east): (Vec<f64>, Vec<f64>) = (0..6).map(|step| (loud(36, step), loud(39, step))).unzip();
+    // The farthest of the four is silent: three share what is heard.
+    assert!(west.windows(2).all(|pair| pair[1] <= pair[0]), "{west:?}");
+    assert!(east.windows(2).all(|pair| pair[1] >= pair[0]), "{east:?}");
+    assert!(west[0] > 5.0 && east[0] == 0.0 && east[5] > 5.0 && west[5] == 0.0, "{west:?} {east:?}");
+    for channel in 36..40 {
+        let steps = sink.channel(channel).windows(2).map(|pair| (pair[1] - pair[0]).abs());
+        let steepest = steps.fold(0.0_f32, f32::max);
+        // A sine of 90 Hz and a tenth of full scale: 0.0006 a sample; moving it within 4 ms adds 0.0003.
+        assert!(steepest < 0.0012, "loudspeaker {channel}: {steepest}");
+    }
+}
+
+#[test]
+fn what_lasts_and_does_not_ask_is_exactly_silent_on_every_loudspeaker() {
+    for (name, effect) in lasting() {
+        for to_air in [0.0, -1.0, f32::NAN] {
+            let sink = slide(&floor(), 100, |_| rub(effect, 8, to_air));
+            assert!(energy(sink.channel(8)) > 0.0, "{name}");
+            assert!((36..40).all(|channel| onset(sink.channel(channel)).is_none()), "{name}: {to_air}");
+        }
+        let half = slide(&floor(), 100, |_| rub(effect, 0, 0.5));
+        let whole = slide(&floor(), 100, |_| rub(effect, 0, 1.0));
+        let share = (energy(half.channel(36)) / energy(whole.channel(36))).sqrt();
+        assert!((share - 0.5).abs() < 0.01, "{name}: {share}");
+        // It ends with the foot, but for what the direct-current block lets fade.
+        let lifted = slide(&floor(), 150, |ms| if ms < 100 { rub(effect, 0, 1.0) } else { Rubs::new() });
+        let (during, after) = lifted.channel(36).split_at(120 * 96);
+        assert!(energy(after) < 1e-4 * energy(during), "{name}: {} {}", energy(after), energy(during));
+    }
 }

@@ -144,6 +144,11 @@ fn a_muted_tile_fades_without_a_step_and_the_others_play_on() {
     assert!(sender.mute(0, true));
     assert!(!sender.mute(7, true), "there is no such tile");
     sink.advance(millis(150)).unwrap();
+    assert!(sender.mutes(0) && !sender.mutes(1) && !sender.mutes(7));
+    sender.send(&ringing(millis(140), 1, 100.0, 20.0));
+    assert_eq!(sender.counters().muted, 0, "the other tile is felt");
+    sender.send(&ringing(millis(140), 0, 100.0, 0.0));
+    assert_eq!(sender.counters().muted, 1);
     assert!(sender.mute(0, false));
     sink.advance(millis(200)).unwrap();
 

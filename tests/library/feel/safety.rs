@@ -164,9 +164,9 @@ prop_compose! {
     fn any_rub()(
         key in 0..4_u32,
         spots in any_spots(),
-        numbers in prop::array::uniform7(any_number()),
+        numbers in prop::array::uniform8(any_number()),
     ) -> Rub {
-        let [level, low_hz, high_hz, full_speed_m_s, full_force, speed_m_s, force] = numbers;
+        let [level, low_hz, high_hz, full_speed_m_s, full_force, speed_m_s, force, to_air] = numbers;
         let friction = Friction {
             level: Newtons(level),
             low_hz,
@@ -180,6 +180,7 @@ prop_compose! {
             effect: friction.into(),
             speed_m_s,
             force: Newtons(force),
+            to_air,
             ..Rub::default()
         }
     }

@@ -8,13 +8,15 @@ use std::time::Duration;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use rosc::{OscMessage, OscPacket, OscType};
+use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{Argument, Direction, Entry, Reference, Server};
-use underfoot::source::UdpSource;
+use underfoot::sink::SilentSink;
+use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Control, Indicator, Input, Value, WidgetEvent, WidgetId};
 use underfoot::wire::{Prefix, write_event};
@@ -73,8 +75,11 @@ impl Desk {
         let app = UdpSocket::bind("127.0.0.1:0").unwrap();
         app.connect(source.local_addr().unwrap()).unwrap();
         app.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
-        let server =
-            Server::new(&floor, layout, Method::default(), Box::new(source)).with_prefix(prefix.clone());
+        let (feel, renderer) = renderer(RendererConfig::of(&floor, 8000));
+        let played = SilentSink::new(renderer, source.now(), None);
+        let server = Server::new(&floor, layout, Method::default(), Box::new(source))
+            .with_feel(feel, Box::new(played))
+            .with_prefix(prefix.clone());
         Self { server, app }
     }
 
@@ -124,6 +129,10 @@ fn examples(argument: &Argument) -> [OscType; 2] {
             let [least, "to", most, ..] = words[..] else { panic!("{}", argument.range) };
             [OscType::Float(least.parse().unwrap()), OscType::Float(most.parse().unwrap())]
         }
+        ("i", "column" | "row") => {
+            let (least, most) = argument.range.split_once(" to ").unwrap();
+            [OscType::Int(least.parse().unwrap()), OscType::Int(most.parse().unwrap())]
+        }
         ("s|i", "indicator") => [OscType::String("busy".into()), OscType::Int(1)],
         ("s", "label") => [OscType::String("Größe".into()), OscType::String("L".repeat(64))],
         ("s", "page") => {
@@ -167,11 +176,12 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     let expected = [
         ("disable", 32),
         ("enable", 32),
-        ("get", 34),
+        ("get", 36),
         ("indicator", 32),
         ("label", 32),
         ("lock", 32),
-        ("set", 14),
+        ("set", 16),
+        ("tile", 2),
         ("unlock", 32),
     ];
     assert_eq!(tried, expected.map(|(verb, count)| (verb.to_owned(), count)).into());
@@ -179,6 +189,18 @@ fn every_address_in_is_understood_and_does_what_it_says() {
 
 /// Whether the engine and the answers say that a command was obeyed.
 fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscType], address: &str) {
+    if path.starts_with("mute/") {
+        if verb != "get" {
+            desk.send(&prefix.address("mute/get"), vec![]);
+        }
+        let muted: Vec<f32> = desk.answer()[&prefix.address("mute")].iter().map(number).collect();
+        match verb {
+            "set" => assert_eq!(muted[0], number(&args[0]), "{address}"),
+            "tile" => assert_eq!(muted.ends_with(&[5.0, 5.0]), number(&args[2]) == 1.0, "{address}"),
+            _ => {}
+        }
+        return;
+    }
     let Some(id) = path.strip_prefix("widget/").and_then(|path| path.split('/').next()) else {
         // What was shown is told to whoever asks.
         if verb == "set" {
@@ -247,7 +269,7 @@ fn reading_back_gives_what_was_set() {
 fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
     let string = |text: &str| vec![OscType::String(text.into())];
-    let cases: [(&str, Vec<OscType>, &str); 12] = [
+    let cases: [(&str, Vec<OscType>, &str); 15] = [
         // Wrong types: refused by the decoder.
         ("widget/slider/set", string("full"), "takes one finite number"),
         ("widget/slider/set", vec![OscType::Float(f32::NAN)], "takes one finite number"),
@@ -255,6 +277,8 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/slider/enable", vec![OscType::Int(1)], "takes no argument"),
         ("widget/slider/label", vec![OscType::Int(1)], "takes one string"),
         ("widget/slider/indicator", string("purple"), "takes off, on, busy or attention"),
+        ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
+        ("mute/tile", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
         // Understood, and can't be done: refused by the engine.
         ("widget/nowhere/enable", vec![], "there is no such control"),
         ("widget/button/set", vec![OscType::Int(1)], "does not hold that type of value"),
@@ -262,6 +286,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/run/set", vec![OscType::Int(1)], "only a foot"),
         ("widget/selector/set", vec![OscType::Int(7)], "no such option"),
         ("page/set", string("nowhere"), "there is no such"),
+        ("mute/tile", vec![OscType::Int(0), OscType::Int(6), OscType::Int(1)], "the floor has no such tile"),
     ];
     for (path, args, reason) in cases {
         let address = format!("/underfoot/{path}");
@@ -274,7 +299,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         assert!(why.contains(reason), "{address}: {why}");
     }
     let counters = desk.server.counters();
-    assert_eq!((counters.wrong_shape, counters.denied), (6, 6));
+    assert_eq!((counters.wrong_shape, counters.denied), (8, 7));
 
     // What nobody here understands is counted and not answered: an answer to an answer could go on for ever.
     for address in [

@@ -3,6 +3,7 @@
 mod addresses;
 mod assembler;
 mod hostile;
+mod mute;
 mod osc_out;
 mod server;
 mod tuio;

@@ -1,0 +1,141 @@
+//! What runs on the device's own thread: nothing here may allocate, lock, log or wait (clippy.toml).
+
+#![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, AtomicU32, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
+use cpal::{Error, ErrorKind, FromSample, SizedSample};
+use rtrb::{Consumer, Producer, RingBuffer};
+
+use super::choice::Choice;
+use super::player::Player;
+use super::priority::Promotion;
+use crate::feel::Priority;
+
+/// Errors that may wait to be looked at; what follows from the first ones is of no interest.
+const REPORTS: usize = 16;
+
+/// What the callbacks count, for whoever watches over them.
+#[derive(Debug, Default)]
+pub(super) struct Pulse {
+    pub(super) blocks: AtomicU64,
+    pub(super) underruns: AtomicU64,
+    /// Frames of the last block.
+    pub(super) frames: AtomicU32,
+    priority: AtomicU8,
+}
+
+impl Pulse {
+    pub(super) fn priority(&self) -> Priority {
+        match self.priority.load(Ordering::Relaxed) {
+            1 => Priority::RealTime,
+            2 => Priority::Denied,
+            _ => Priority::Hosts,
+        }
+    }
+
+    pub(super) fn set_priority(&self, priority: Priority) {
+        let number = match priority {
+            Priority::Hosts => 0,
+            Priority::RealTime => 1,
+            Priority::Denied => 2,
+        };
+        self.priority.store(number, Ordering::Relaxed);
+    }
+}
+
+/// The way home.
+#[expect(clippy::disallowed_types, reason = "gone only when the device has let go")]
+type Home = std::sync::mpsc::Sender<Player>;
+
+/// What a device calls when it wants samples.
+///
+/// When the device lets go of it, the player in it goes home, so that it can play on another stream.
+pub(super) struct Callback {
+    /// `None` only while being dropped.
+    player: Option<Player>,
+    home: Home,
+    pulse: Arc<Pulse>,
+    promotion: Promotion,
+    channels: usize,
+    sample_rate: u32,
+}
+
+impl Callback {
+    pub(super) fn new(
+        player: Player,
+        choice: Choice,
+        home: Home,
+        pulse: Arc<Pulse>,
+        promotion: Promotion,
+    ) -> Self {
+        Self {
+            player: Some(player),
+            home,
+            pulse,
+            promotion,
+            channels: usize::from(choice.channels).max(1),
+            sample_rate: choice.sample_rate,
+        }
+    }
+
+    /// Fills a block whose first sample sounds in so much time, zero if that is not known.
+    ///
+    /// # Real-time
+    /// Once, soon after the start, the system is asked for priority; otherwise no allocation, lock or system call.
+    #[expect(
+        clippy::disallowed_methods,
+        reason = "the clock is read, without a lock, until priority is settled"
+    )]
+    pub(super) fn run<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], sounds_in: Duration) {
+        let frames = out.len() / self.channels;
+        if let Some(player) = &mut self.player {
+            player.fill(out, sounds_in);
+        }
+        self.pulse.frames.store(frames as u32, Ordering::Relaxed);
+        self.pulse.blocks.fetch_add(1, Ordering::Relaxed);
+        if let Some(priority) = self.promotion.proceed(frames, self.sample_rate, Instant::now) {
+            self.pulse.set_priority(priority);
+        }
+    }
+}
+
+impl Drop for Callback {
+    fn drop(&mut self) {
+        if let Some(player) = self.player.take() {
+            // Nobody waits for it if the program ends.
+            #[expect(
+                clippy::disallowed_methods,
+                reason = "the device has let go: it asks for no more samples"
+            )]
+            let _ = self.home.send(player);
+        }
+    }
+}
+
+/// What a device calls when something is wrong; it may do so where nothing may be locked or allocated.
+pub(super) struct Ear {
+    pulse: Arc<Pulse>,
+    reports: Producer<Error>,
+}
+
+impl Ear {
+    /// An ear, and where the errors come out that are more than a late sample.
+    pub(super) fn new(pulse: Arc<Pulse>) -> (Self, Consumer<Error>) {
+        let (reports, heard) = RingBuffer::new(REPORTS);
+        (Self { pulse, reports }, heard)
+    }
+
+    pub(super) fn hear(&mut self, error: Error) {
+        match error.kind() {
+            ErrorKind::Xrun => {
+                self.pulse.underruns.fetch_add(1, Ordering::Relaxed);
+            }
+            ErrorKind::RealtimeDenied => self.pulse.set_priority(Priority::Denied),
+            // If there are too many, the first ones tell.
+            _ => drop(self.reports.push(error)),
+        }
+    }
+}
