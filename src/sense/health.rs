@@ -251,7 +251,7 @@ impl Health {
         let share = self.number as usize % SHARES;
         for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
             let heard = is_heard(&frame.quality[tile], &self.sensors[tile]);
-            if self.slow[tile].add(frame.forces[tile], heard) {
+            if self.slow[tile].add(frame.forces[tile], self.ends[tile], heard) {
                 self.finish_block(tile, frame.at);
             }
         }
@@ -260,7 +260,7 @@ impl Health {
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
         let foreign = self.is_foreign();
-        let Self { zeros, limits, ends, guessed, sensors, slow, .. } = self;
+        let Self { zeros, limits, guessed, sensors, slow, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
@@ -272,7 +272,7 @@ impl Health {
                 self.strange += usize::from(strange && !laden);
             }
             if !guessed[tile] && !foreign {
-                slow.judge(&block, ends[tile], alone, sensors);
+                slow.judge(&block, alone, sensors);
             }
             slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
         }

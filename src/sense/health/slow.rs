@@ -21,6 +21,9 @@ const STUCK_S: f32 = 2.0;
 const STILL_N: f32 = 1.0;
 const STILL_SHARE: f32 = 0.02;
 
+/// How much farther than its averages the readings of a still sensor may reach, noise and hum included.
+const STIRRED: f32 = 10.0;
+
 /// How much a load must change at a corner, besides what the plate estimate may err, to expect it to move.
 const CHANGE_N: f32 = 10.0;
 
@@ -39,6 +42,8 @@ pub(super) struct Slow {
     sums: [f32; 4],
     lows: [f32; 4],
     highs: [f32; 4],
+    /// The strangest end of its converter that each sensor was at.
+    ends: [End; 4],
     ended: Option<Instant>,
     loaded: bool,
     tracks: [Track; 4],
@@ -49,8 +54,11 @@ pub(super) struct Slow {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Block {
     pub(super) means: [f32; 4],
+    /// Lowest reading.
+    lows: [f32; 4],
     /// Highest less lowest reading.
     pub(super) spreads: [f32; 4],
+    ends: [End; 4],
     /// Since the block before.
     pub(super) seconds: f32,
 }
@@ -73,9 +81,10 @@ impl Slow {
     }
 
     /// Adds what the sensors read; true if the block is complete.
-    pub(super) fn add(&mut self, forces: [f32; 4], heard: bool) -> bool {
+    pub(super) fn add(&mut self, forces: [f32; 4], ends: [End; 4], heard: bool) -> bool {
         if self.visits == 0 {
             (self.sums, self.lows, self.highs, self.broken) = ([0.0; 4], forces, forces, false);
+            self.ends = ends;
         }
         self.visits += 1;
         self.broken |= !heard;
@@ -83,6 +92,9 @@ impl Slow {
             self.sums[corner] += force;
             self.lows[corner] = self.lows[corner].min(force);
             self.highs[corner] = self.highs[corner].max(force);
+            if self.ends[corner] != End::High {
+                self.ends[corner] = ends[corner];
+            }
         }
         self.visits == VISITS
     }
@@ -100,14 +112,17 @@ impl Slow {
         let means = self.sums.map(|sum| sum / f32::from(VISITS));
         let spreads = std::array::from_fn(|corner| self.highs[corner] - self.lows[corner]);
         self.loaded = means.iter().sum::<f32>().abs() > LOADED_N;
-        Some(Block { means, spreads, seconds })
+        Some(Block { means, lows: self.lows, spreads, ends: self.ends, seconds })
     }
 
     /// Finds stuck sensors, and gives those in trouble the chance to be found right again; `alone` says
     /// that no tile around carries anything.
-    pub(super) fn judge(&mut self, block: &Block, ends: [End; 4], alone: bool, sensors: &mut [Sensor; 4]) {
+    ///
+    /// A plate that tipped or a sensor that was beyond its range at any time of a block leaves a mean that
+    /// says nothing: after a stamp it is neither the load nor its absence.
+    pub(super) fn judge(&mut self, block: &Block, alone: bool, sensors: &mut [Sensor; 4]) {
         let out = sensors.map(|sensor| sensor.is_out());
-        let means = block.means;
+        let (means, ends) = (block.means, block.ends);
         for corner in 0..4 {
             let others = [corner ^ 1, corner ^ 2, corner ^ 3];
             let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
@@ -120,8 +135,8 @@ impl Slow {
                 sensor.review(own, is_right, alone, block.seconds);
                 continue;
             }
-            let lifted = own < plate::LIFTED_N && sensor.trouble().is_none();
-            let evidence = plate::evidence(means, ends, corner);
+            let lifted = block.lows[corner] < plate::LIFTED_N && sensor.trouble().is_none();
+            let evidence = plate::evidence(block.lows, ends, corner);
             if lifted || evidence == Evidence::None {
                 // Neither evidence for it nor against it.
                 continue;
@@ -138,7 +153,7 @@ impl Slow {
             // A reading at the end of the range stands still rightly under a heavy foot.
             if ends[corner] == End::High || sensor.is_out() {
                 self.tracks[corner] = Track::default();
-            } else if self.tracks[corner].follow(own, expected, load, block.seconds) {
+            } else if self.tracks[corner].follow(own, block.spreads[corner], expected, load, block.seconds) {
                 sensor.find(Trouble::Stuck, own);
             }
         }
@@ -147,10 +162,12 @@ impl Slow {
 
 impl Track {
     /// Adds a block; true if the sensor is stuck.
-    fn follow(&mut self, own: f32, expected: f32, load: f32, seconds: f32) -> bool {
+    fn follow(&mut self, own: f32, spread: f32, expected: f32, load: f32, seconds: f32) -> bool {
         let widened = |range: (f32, f32), value: f32| (range.0.min(value), range.1.max(value));
         let reach = widened(self.own, own);
-        if !self.begun || reach.1 - reach.0 > STILL_N + STILL_SHARE * own.abs() {
+        let still = STILL_N + STILL_SHARE * own.abs();
+        // Also what moved and came back within the block did not stand still.
+        if !self.begun || reach.1 - reach.0 > still || spread > STIRRED * still {
             let here = |value: f32| (value, value);
             *self = Self { begun: true, own: here(own), expected: here(expected), load, overdue: 0.0 };
             return false;

@@ -276,6 +276,23 @@ fn loads_at_the_edges_of_plates_that_tip_break_no_sensor() {
 }
 
 #[test]
+fn short_stamps_beyond_the_range_leave_no_sensor_stuck() {
+    // 1500 N, two bodies' weight: corners beyond their range, others in the air, and all of it over
+    // within one or two of the averages of 64 ms that stuck sensors are found by.
+    let mut walker = at_the_map();
+    let size = walker.geometry().bounds().size();
+    for step in 0..240_u16 {
+        // Spread evenly over the floor (multiples of the golden ratio's powers), whatever lies there.
+        let share = Vec2::new(0.754_877_7, 0.569_840_3) * f32::from(step + 1);
+        walker.step_at(share.fract() * size, Newtons(1500.0));
+        walker.wait(60);
+        walker.lift();
+        walker.wait(30);
+        assert_eq!(walker.assembler.troubles().next(), None, "after stamp {step}");
+    }
+}
+
+#[test]
 fn a_load_that_sways_on_the_edge_of_a_plate_leaves_no_sensor_stuck() {
     for seed in FLOORS {
         let mut bench = Bench::new_seed(Sensing::default(), seed);
