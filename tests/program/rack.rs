@@ -1,7 +1,5 @@
 //! `underfoot rack`, and `underfoot run` on the clock that stands in for a card.
 
-use std::net::UdpSocket;
-
 use serde_json::Value;
 
 use super::end_to_end::{channels, peak, said, underfoot};
@@ -75,7 +73,7 @@ fn devices_are_listed_with_what_they_can_do() {
 fn the_latency_of_clicks_on_a_paced_device_is_told_stage_by_stage() {
     let folder = tempfile::tempdir().unwrap();
     let table = folder.path().join("latency.csv");
-    let port = UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let port = std::net::UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let address = format!("127.0.0.1:{port}");
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/latency/layout.ron");
     let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/latency/scenario.ron");
