@@ -108,6 +108,11 @@ impl LoadedTiles {
         (place != NONE).then_some(place as usize)
     }
 
+    /// Position in [`Self::list`] of the tile at `index`; `None` past the last tile or without load.
+    pub(super) fn position(&self, index: u32) -> Option<u32> {
+        self.place.get(index as usize).copied().filter(|&place| place != NONE)
+    }
+
     /// What the tile at `index` feels; nothing for an index past the last tile.
     pub(super) fn reading(&self, index: usize) -> TileReading {
         let force = Newtons(self.sums.get(index).copied().unwrap_or_default());

@@ -3,9 +3,9 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
-use super::Tracker;
 use super::foot::{FORCE, Foot, LANDS_S};
 use super::landing::Landing;
+use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -49,15 +49,17 @@ impl Tracker {
                 continue;
             }
             let Some(newcomer) = self.newcomer(foot, list) else { continue };
-            let others = self.feet.iter().enumerate().filter(|&(other, _)| other != which);
+            // Whose foot it may be more of has its centre of pressure within a stride.
+            let others = self.near.around(newcomer.place).filter(|&other| other != which);
             let nearest = others
-                .map(|(other, foot)| {
+                .map(|other| (self.feet[other].centre().distance(newcomer.place), other))
+                .filter(|&(distance, other)| {
+                    let foot = &self.feet[other];
                     let beyond = foot.beyond(newcomer.place).min(foot.lands_about(newcomer.place));
-                    (other, beyond, foot.centre().distance(newcomer.place))
+                    beyond < 0.0 || distance < APART_M
                 })
-                .filter(|&(_, beyond, distance)| beyond < 0.0 || distance < APART_M)
-                .min_by(|a, b| a.2.total_cmp(&b.2));
-            if let Some((other, ..)) = nearest {
+                .min_by(first_of_least);
+            if let Some((_, other)) = nearest {
                 // Not a newcomer, but more of a foot that is already there.
                 let known = &mut self.feet[other];
                 for &position in &newcomer.tiles {
@@ -83,6 +85,8 @@ impl Tracker {
             }
             if !newborn.tiles.is_empty() {
                 self.feet[which].step_back();
+                self.near.moved(which, self.feet[which].centre());
+                self.near.add(newborn.centre());
                 self.feet.push(newborn);
             }
         }

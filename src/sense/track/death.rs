@@ -58,6 +58,7 @@ impl Tracker {
     /// Takes away feet that are not there: too light for too long, or no longer needed to
     /// explain what the tiles carry.
     pub(super) fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
+        self.near.renew(self.feet.iter().map(Foot::centre));
         for which in 0..self.feet.len() {
             let foot = &self.feet[which];
             let gone = if foot.shared {
@@ -76,20 +77,21 @@ impl Tracker {
             let foot = &mut self.feet[which];
             foot.faint = if haste > 0.0 { foot.faint + haste * dt } else { 0.0 };
             if foot.faint >= FAINT_S {
-                let group = foot.group;
-                for mate in self.feet.iter_mut().filter(|mate| mate.group == group) {
-                    mate.calm = CALM_S;
+                for mate in self.mates.of(foot.group) {
+                    self.feet[mate].calm = CALM_S;
                 }
             }
         }
+        let groups = self.feet.len();
         self.feet.retain(|foot| foot.faint < FAINT_S);
+        self.find_mates(groups);
         self.unite(tiles, dt);
     }
 
     /// Whether a foot has handed its weight over to the others: what little is left to it may as well be what
     /// is not known of them.
     fn handed_over(&self, foot: &Foot, list: &[LoadedTile]) -> bool {
-        let all: f64 = self.feet.iter().filter(|mate| mate.group == foot.group).map(Foot::force).sum();
+        let all: f64 = self.mates.of(foot.group).map(|mate| self.feet[mate].force()).sum();
         if foot.force() > OF_ITS_MOST * foot.peak || foot.force() > OF_ALL * all {
             return false;
         }
@@ -106,15 +108,15 @@ impl Tracker {
 
     /// The other feet of its group.
     fn mates(&self, foot: &Foot) -> impl Iterator<Item = &Foot> {
-        let (id, group) = (foot.id, foot.group);
-        self.feet.iter().filter(move |mate| mate.group == group && mate.id != id)
+        let id = foot.id;
+        self.mates.of(foot.group).map(|mate| &self.feet[mate]).filter(move |mate| mate.id != id)
     }
 
     /// Whether it is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both pressed.
     fn is_rim(&self, foot: &Foot) -> bool {
         let (place, force) = (foot.centre(), foot.force());
         foot.home.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self.feet.iter().any(|other| {
+            && self.near.around(place).map(|other| &self.feet[other]).any(|other| {
                 other.id != foot.id
                     && force < RIM_SHARE * other.force()
                     && other.centre().distance(place) < RIM_M
@@ -133,7 +135,7 @@ impl Tracker {
     fn unite(&mut self, tiles: &LoadedTiles, dt: f64) {
         for a in 0..self.feet.len() {
             let foot = &self.feet[a];
-            let mut mates = (0..self.feet.len()).filter(|&b| b != a && self.feet[b].group == foot.group);
+            let mut mates = self.mates.of(foot.group).filter(|&b| b != a);
             let (Some(b), None) = (mates.next(), mates.next()) else {
                 self.feet[a].spare = 0.0;
                 continue;
@@ -169,9 +171,8 @@ impl Tracker {
         if foot.age < FRESH_S {
             return false;
         }
-        let mut others =
-            self.feet.iter().enumerate().filter(|&(other, o)| other != which && o.group == foot.group);
-        let (Some((_, host)), None) = (others.next(), others.next()) else { return false };
+        let mut others = self.mates(foot);
+        let (Some(host), None) = (others.next(), others.next()) else { return false };
         if host.centre().distance(foot.centre()) < 0.6 * APART_M {
             return host.age >= foot.age;
         }

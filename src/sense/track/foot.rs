@@ -88,6 +88,8 @@ pub(super) struct Foot {
     pub calm: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
+    /// Where its links to others begin in the tracker's list, if it has any.
+    pub links_from: usize,
     /// Whether this foot is the first of a group of several.
     pub crowded: bool,
     /// Whether it is one more than the joint filter holds.
@@ -158,6 +160,7 @@ impl Foot {
             spare: 0.0,
             calm: 0.0,
             group: 0,
+            links_from: 0,
             crowded: false,
             beyond_filter: false,
             ambiguous: false,
@@ -535,11 +538,6 @@ impl Foot {
     /// Drops the slow loads that were not learnt from since the last call.
     pub(super) fn forget_loads(&mut self) {
         self.past.loads.retain(|load| std::mem::take(&mut load.seen));
-    }
-
-    /// Whether the tile at `index` was among its tiles in the last frame.
-    pub(super) fn had(&self, index: u32) -> bool {
-        self.past.loads.iter().any(|load| load.index == index)
     }
 
     /// The slow load of one tile, nothing if it had none.

@@ -22,6 +22,7 @@ mod joint;
 mod landing;
 mod lines;
 mod measure;
+mod near;
 mod patch;
 
 use glam::DVec2;
@@ -31,6 +32,7 @@ use self::joint::{Joint, MOST_FEET};
 use self::landing::Landing;
 use self::lines::{Axis, Lines};
 use self::measure::{observe, predict};
+use self::near::{Mates, Near};
 use super::contact::ContactId;
 use super::doubt::SensorDoubt;
 use super::loaded::LoadedTiles;
@@ -51,7 +53,11 @@ pub(super) struct Tracker {
     /// Per loaded tile: the first foot that reaches it, or `NOBODY`.
     owner: Vec<u32>,
     orphans: Vec<u32>,
+    /// Orphans, each with a foot that had it in the last frame.
+    keepers: Vec<(u32, u32)>,
     members: Vec<u32>,
+    near: Near,
+    mates: Mates,
 }
 
 const NOBODY: u32 = u32::MAX;
@@ -100,16 +106,21 @@ impl Cells {
     }
 }
 
+/// Orders by the first number, and what is equal by who came first.
+fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
+    a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
+}
+
 impl Tracker {
     pub(super) fn new(geometry: &Geometry, doubt: SensorDoubt) -> Self {
         let room = geometry.tile_count().min(1024);
+        let cells =
+            Cells { pitch: geometry.pitch_m().into(), columns: geometry.columns(), rows: geometry.rows() };
         Self {
             doubt,
-            cells: Cells {
-                pitch: geometry.pitch_m().into(),
-                columns: geometry.columns(),
-                rows: geometry.rows(),
-            },
+            near: Near::new(&cells, room),
+            mates: Mates::new(room),
+            cells,
             next: 1,
             feet: Vec::with_capacity(room),
             links: Vec::with_capacity(room),
@@ -117,6 +128,7 @@ impl Tracker {
             joint: Box::new(Joint::new()),
             owner: Vec::with_capacity(room),
             orphans: Vec::with_capacity(room),
+            keepers: Vec::with_capacity(room),
             members: Vec::with_capacity(room),
         }
     }
@@ -128,7 +140,8 @@ impl Tracker {
             foot.foretell(dt);
             foot.reach(tiles, self.cells.pitch);
         }
-        self.adopt(tiles.list());
+        self.near.renew(self.feet.iter().map(Foot::centre));
+        self.adopt(tiles);
         self.find_newcomers(tiles);
         self.note_partners();
         self.feet.retain(|foot| !foot.tiles.is_empty());
@@ -143,14 +156,13 @@ impl Tracker {
     fn note_partners(&mut self) {
         for which in 0..self.feet.len() {
             let here = self.feet[which].centre();
-            let others =
-                self.feet.iter().enumerate().filter(|&(other, foot)| other != which && foot.age > 0.1);
+            let others = self.near.around(here).filter(|&other| other != which && self.feet[other].age > 0.1);
             let nearest = others
-                .map(|(_, foot)| (foot.centre(), foot.centre().distance(here)))
-                .filter(|&(_, distance)| distance < STRIDE_M)
-                .min_by(|a, b| a.1.total_cmp(&b.1));
-            if let Some((place, _)) = nearest {
-                self.feet[which].partner = Some((place, 0.0));
+                .map(|other| (self.feet[other].centre().distance(here), other))
+                .filter(|&(distance, _)| distance < STRIDE_M)
+                .min_by(first_of_least);
+            if let Some((_, other)) = nearest {
+                self.feet[which].partner = Some((self.feet[other].centre(), 0.0));
             }
         }
     }
@@ -163,7 +175,8 @@ impl Tracker {
 
     /// Finds who reaches which tile, gives tiles nobody reaches to the nearest foot that
     /// may have grown onto them, and lets new feet land on the rest.
-    fn adopt(&mut self, list: &[LoadedTile]) {
+    fn adopt(&mut self, tiles: &LoadedTiles) {
+        let list = tiles.list();
         self.owner.clear();
         self.owner.resize(list.len(), NOBODY);
         for (which, foot) in self.feet.iter().enumerate() {
@@ -178,6 +191,7 @@ impl Tracker {
             let force = |position: u32| list[position as usize].wrench.force;
             force(b).total_cmp(&force(a)).then(a.cmp(&b))
         });
+        self.find_keepers(tiles);
         for orphan in 0..self.orphans.len() {
             let position = self.orphans[orphan];
             let tile = &list[position as usize];
@@ -187,14 +201,19 @@ impl Tracker {
                 foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
             };
             // What was loaded already is no newcomer: it stays with the nearest of those who had it.
-            let keeper = self.feet.iter().enumerate().filter(|(_, foot)| foot.had(tile.index));
-            let keeper = keeper.map(|(which, foot)| (which, foot.centre().distance(centroid)));
-            let nearest = keeper.min_by(|a, b| a.1.total_cmp(&b.1)).or_else(|| {
-                let feet = self.feet.iter().enumerate().map(|(which, foot)| (which, beyond(foot)));
-                feet.min_by(|a, b| a.1.total_cmp(&b.1)).filter(|&(_, beyond)| beyond < 0.0)
+            let from = self.keepers.partition_point(|&(kept, _)| kept < position);
+            let keepers = self.keepers[from..].iter().take_while(|&&(kept, _)| kept == position);
+            let away = keepers.map(|&(_, which)| {
+                let which = which as usize;
+                (self.feet[which].centre().distance(centroid), which)
+            });
+            let nearest = away.min_by(first_of_least).or_else(|| {
+                // Who may have grown onto it has its centre of pressure within a stride.
+                let feet = self.near.around(centroid).map(|which| (beyond(&self.feet[which]), which));
+                feet.filter(|&(beyond, _)| beyond < 0.0).min_by(first_of_least)
             });
             match nearest {
-                Some((which, _)) => {
+                Some((_, which)) => {
                     let foot = &mut self.feet[which];
                     foot.tiles.push(position);
                     if foot.age == 0.0 {
@@ -204,6 +223,7 @@ impl Tracker {
                         foot.state[FORCE] = whole;
                         foot.state[EAST] = centre.x;
                         foot.state[NORTH] = centre.y;
+                        self.near.moved(which, centre);
                     }
                     self.owner[position as usize] = which as u32;
                 }
@@ -212,17 +232,32 @@ impl Tracker {
                     foot.landing = self.landing_at(centroid);
                     foot.tiles.push(position);
                     self.owner[position as usize] = self.feet.len() as u32;
+                    self.near.add(foot.centre());
                     self.feet.push(foot);
                 }
             }
         }
     }
 
+    /// Finds, for each tile nobody reaches now, those who had it in the last frame.
+    fn find_keepers(&mut self, tiles: &LoadedTiles) {
+        self.keepers.clear();
+        if self.orphans.is_empty() {
+            return;
+        }
+        for (which, foot) in (0..).zip(&self.feet) {
+            let had = foot.past.loads.iter().filter_map(|load| tiles.position(load.index));
+            let orphans = had.filter(|&position| self.owner[position as usize] == NOBODY);
+            self.keepers.extend(orphans.map(|position| (position, which)));
+        }
+        self.keepers.sort_unstable();
+    }
+
     /// Beside whom a foot that lands at `place` does so, if somebody stands still there.
     fn landing_at(&self, place: DVec2) -> Option<Landing> {
-        let near = self.feet.iter().map(|foot| (foot, foot.centre().distance(place)));
-        let (host, _) =
-            near.filter(|&(_, distance)| distance < ASTRIDE_M).min_by(|a, b| a.1.total_cmp(&b.1))?;
+        let near = self.near.around(place).map(|which| (self.feet[which].centre().distance(place), which));
+        let (_, host) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
+        let host = &self.feet[host];
         (host.stands() && !host.shared).then_some(Landing { host: host.id, from: host.home })
     }
 
@@ -230,6 +265,7 @@ impl Tracker {
     fn group(&mut self, tiles: usize) {
         self.owner.clear();
         self.owner.resize(tiles, NOBODY);
+        self.mates.part(self.feet.len());
         for which in 0..self.feet.len() {
             self.feet[which].group = which as u32;
             self.feet[which].crowded = false;
@@ -243,15 +279,20 @@ impl Tracker {
                 let (mine, theirs) = (self.feet[which].group, self.feet[owner as usize].group);
                 if mine != theirs {
                     let (keep, drop) = (mine.min(theirs), mine.max(theirs));
-                    for foot in &mut self.feet[..=which] {
-                        if foot.group == drop {
-                            foot.group = keep;
-                        }
+                    for mate in self.mates.of(drop) {
+                        self.feet[mate].group = keep;
                     }
+                    self.mates.unite(keep, drop);
                     self.feet[keep as usize].crowded = true;
                 }
             }
         }
+        self.find_mates(self.feet.len());
+    }
+
+    /// Takes down who belongs to which group; groups are numbered below `groups`.
+    fn find_mates(&mut self, groups: usize) {
+        self.mates.renew(self.feet.iter().map(|foot| foot.group), groups);
     }
 
     /// Measures feet that are alone on their tiles, estimates those that are not.
@@ -275,10 +316,8 @@ impl Tracker {
                 continue;
             }
             self.members.clear();
-            for (other, foot) in self.feet.iter_mut().enumerate().skip(which) {
-                if foot.group != which as u32 {
-                    continue;
-                }
+            for other in self.mates.of(which as u32) {
+                let foot = &mut self.feet[other];
                 if !foot.shared {
                     foot.keep_shape();
                 }
@@ -330,8 +369,10 @@ impl Tracker {
         }
         for (first, &a) in members.iter().enumerate() {
             for (second, &b) in members.iter().enumerate().skip(first + 1) {
-                let (a, b) = (self.feet[a as usize].id, self.feet[b as usize].id);
-                if let Some(link) = self.links.iter().find(|link| link.first == a && link.second == b) {
+                let (a, b) = (&self.feet[a as usize], &self.feet[b as usize]);
+                let links = self.links.get(a.links_from..).unwrap_or_default();
+                let mut links = links.iter().take_while(|link| link.first == a.id);
+                if let Some(link) = links.find(|link| link.second == b.id) {
                     joint.link(first, second, &link.cross);
                 }
             }
@@ -350,6 +391,7 @@ impl Tracker {
             foot.surprise += weight * (surprise - foot.surprise);
         }
         for (first, &a) in members.iter().enumerate() {
+            self.feet[a as usize].links_from = self.new_links.len();
             for (second, &b) in members.iter().enumerate().skip(first + 1) {
                 self.new_links.push(Link {
                     first: self.feet[a as usize].id,

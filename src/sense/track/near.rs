@@ -1,0 +1,192 @@
+//! Who is near, and who shares tiles with whom: without looking at everybody.
+
+use glam::DVec2;
+
+use super::{Cells, NOBODY, STRIDE_M};
+
+/// The feet by where they are, in squares of a stride.
+///
+/// Whoever is within a stride of a place is in its square or in one of the eight around it. Only squares with
+/// feet are ever touched: what it costs grows with the feet and not with the floor.
+#[derive(Clone, Debug)]
+pub(super) struct Near {
+    columns: i32,
+    rows: i32,
+    /// Per square, the foot that was put there last.
+    last: Vec<u32>,
+    /// Per foot: its square, and the foot that was put there before it.
+    feet: Vec<(u32, u32)>,
+}
+
+impl Near {
+    pub(super) fn new(cells: &Cells, room: usize) -> Self {
+        let (_, size) = cells.bounds();
+        let count = |length: f64| (length / STRIDE_M).ceil().max(1.0) as i32;
+        let (columns, rows) = (count(size.x), count(size.y));
+        Self { columns, rows, last: vec![NOBODY; (columns * rows) as usize], feet: Vec::with_capacity(room) }
+    }
+
+    /// Takes down where everybody is now, foot by foot in their order.
+    pub(super) fn renew(&mut self, places: impl Iterator<Item = DVec2>) {
+        for &(square, _) in &self.feet {
+            self.last[square as usize] = NOBODY;
+        }
+        self.feet.clear();
+        places.for_each(|place| self.add(place));
+    }
+
+    /// Adds the next foot.
+    pub(super) fn add(&mut self, place: DVec2) {
+        let square = self.square(place);
+        let before = std::mem::replace(&mut self.last[square], self.feet.len() as u32);
+        self.feet.push((square as u32, before));
+    }
+
+    /// Foot `which` is elsewhere now.
+    pub(super) fn moved(&mut self, which: usize, place: DVec2) {
+        let (new, (old, before)) = (self.square(place), self.feet[which]);
+        if new == old as usize {
+            return;
+        }
+        let mut after = self.last[old as usize];
+        if after == which as u32 {
+            self.last[old as usize] = before;
+        } else {
+            while self.feet[after as usize].1 != which as u32 {
+                after = self.feet[after as usize].1;
+            }
+            self.feet[after as usize].1 = before;
+        }
+        let before = std::mem::replace(&mut self.last[new], which as u32);
+        self.feet[which] = (new as u32, before);
+    }
+
+    /// All feet within a stride of `place` and some that are farther away, in no order.
+    pub(super) fn around(&self, place: DVec2) -> impl Iterator<Item = usize> {
+        let (column, row) = self.column_and_row(place);
+        let columns = (column - 1).max(0)..=(column + 1).min(self.columns - 1);
+        let rows = (row - 1).max(0)..=(row + 1).min(self.rows - 1);
+        rows.flat_map(move |row| columns.clone().map(move |column| row * self.columns + column))
+            .flat_map(|square| self.from(self.last[square as usize]))
+    }
+
+    /// The foot `which` and those put into its square before it.
+    fn from(&self, which: u32) -> impl Iterator<Item = usize> {
+        let known = |which: u32| (which != NOBODY).then_some(which as usize);
+        std::iter::successors(known(which), move |&which| known(self.feet[which].1))
+    }
+
+    /// The square of a place; places beyond the floor belong to its outermost squares.
+    fn square(&self, place: DVec2) -> usize {
+        let (column, row) = self.column_and_row(place);
+        (row * self.columns + column) as usize
+    }
+
+    fn column_and_row(&self, place: DVec2) -> (i32, i32) {
+        let at = (place / STRIDE_M).floor().as_ivec2();
+        (at.x.clamp(0, self.columns - 1), at.y.clamp(0, self.rows - 1))
+    }
+}
+
+/// The members of each group of feet, in their order.
+#[derive(Clone, Debug)]
+pub(super) struct Mates {
+    /// Per group, its first and its last foot.
+    ends: Vec<(u32, u32)>,
+    /// Per foot, the next one of its group.
+    next: Vec<u32>,
+}
+
+impl Mates {
+    pub(super) fn new(room: usize) -> Self {
+        Self { ends: Vec::with_capacity(room), next: Vec::with_capacity(room) }
+    }
+
+    /// Starts over with `feet` feet, each a group of its own.
+    pub(super) fn part(&mut self, feet: usize) {
+        self.renew(0..feet as u32, feet);
+    }
+
+    /// Takes down the group of each foot, in their order; groups are numbered below `groups`.
+    pub(super) fn renew(&mut self, of_feet: impl Iterator<Item = u32>, groups: usize) {
+        self.ends.clear();
+        self.ends.resize(groups, (NOBODY, NOBODY));
+        self.next.clear();
+        for (which, group) in (0..).zip(of_feet) {
+            let (first, last) = &mut self.ends[group as usize];
+            match self.next.get_mut(*last as usize) {
+                Some(next) => *next = which,
+                None => *first = which,
+            }
+            *last = which;
+            self.next.push(NOBODY);
+        }
+    }
+
+    /// Lets the members of the group `drop` follow those of the group `keep`: in no order until the next `renew`.
+    pub(super) fn unite(&mut self, keep: u32, drop: u32) {
+        let (first, last) = std::mem::replace(&mut self.ends[drop as usize], (NOBODY, NOBODY));
+        let end = &mut self.ends[keep as usize].1;
+        if let Some(next) = self.next.get_mut(*end as usize) {
+            *next = first;
+            *end = last;
+        }
+    }
+
+    /// The feet of a group.
+    pub(super) fn of(&self, group: u32) -> impl Iterator<Item = usize> {
+        let known = |which: u32| (which != NOBODY).then_some(which as usize);
+        let first = self.ends.get(group as usize).map_or(NOBODY, |ends| ends.0);
+        std::iter::successors(known(first), move |&which| known(self.next[which]))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rand::{RngExt, SeedableRng};
+    use rand_pcg::Pcg64Mcg;
+
+    use super::*;
+
+    #[test]
+    fn nobody_within_a_stride_is_overlooked() {
+        let cells = Cells { pitch: 0.304, columns: 20, rows: 9 };
+        let mut rng = Pcg64Mcg::seed_from_u64(1);
+        // Some beside the floor, too: the guess of where a foot lands may lie there.
+        let mut place = || DVec2::new(rng.random_range(-0.5..6.5), rng.random_range(-0.5..3.2));
+        let mut near = Near::new(&cells, 8);
+        for _ in 0..20 {
+            let mut feet: Vec<DVec2> = (0..40).map(|_| place()).collect();
+            near.renew(feet[..30].iter().copied());
+            feet[30..].iter().for_each(|&foot| near.add(foot));
+            for which in [0, 7, 7, 39, 22] {
+                feet[which] = place();
+                near.moved(which, feet[which]);
+            }
+            for here in (0..50).map(|_| place()) {
+                let mut found: Vec<usize> = near.around(here).collect();
+                found.sort_unstable();
+                assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once: {found:?}");
+                let within = (0..40).filter(|&which| feet[which].distance(here) <= STRIDE_M);
+                within.for_each(|which| assert!(found.contains(&which), "{which} near {here}"));
+            }
+        }
+    }
+
+    #[test]
+    fn groups_that_become_one_have_all_members() {
+        let mut mates = Mates::new(4);
+        mates.part(6);
+        mates.unite(0, 3);
+        mates.unite(1, 2);
+        mates.unite(0, 1);
+        let mut all: Vec<usize> = mates.of(0).collect();
+        all.sort_unstable();
+        assert_eq!(all, [0, 1, 2, 3]);
+        assert_eq!((mates.of(1).count(), mates.of(4).count(), mates.of(99).count()), (0, 1, 0));
+        // Two feet are gone since.
+        mates.renew([0, 0, 4, 0].into_iter(), 6);
+        assert_eq!(mates.of(0).collect::<Vec<_>>(), [0, 1, 3]);
+        assert_eq!(mates.of(4).collect::<Vec<_>>(), [2]);
+    }
+}
