@@ -25,6 +25,8 @@ impl App {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     self.rates(ui);
                     self.buttons(ui);
+                    // Left of what is clicked on, which stays where it is.
+                    self.mutes(ui);
                     ui.with_layout(Layout::left_to_right(Align::Center), |ui| self.heading(ui));
                 });
             });
@@ -66,12 +68,9 @@ impl App {
         }
     }
 
-    fn rates(&self, ui: &mut Ui) {
+    fn mutes(&self, ui: &mut Ui) {
         let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
-        let (text, colour) = link(snapshot.link, theme);
-        pill(ui, colour, theme, text);
-        match &snapshot.muted {
+        match &self.snapshots.output_buffer().muted {
             muted if muted.all => {
                 pill(ui, theme.warning, theme, "muted").on_hover_text("Nothing is felt or heard");
             }
@@ -81,6 +80,13 @@ impl App {
             }
             _ => {}
         }
+    }
+
+    fn rates(&self, ui: &mut Ui) {
+        let theme = &self.theme;
+        let snapshot = self.snapshots.output_buffer();
+        let (text, colour) = link(snapshot.link, theme);
+        pill(ui, colour, theme, text);
         let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
         let texts = [
             (74.0, format!("{} fps", rate(self.pictures.per_second())), "Pictures a second in this window"),
