@@ -11,7 +11,7 @@ use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Foot, Script, SimFloor};
+use underfoot::sim::{Script, SimFloor};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
@@ -185,7 +185,7 @@ impl Camera {
         let snapshot = self.best.map_or(self.now, |(_, snapshot)| snapshot);
         let mut feet = Vec::new();
         script.feet_at(snapshot.at, &mut feet);
-        let shoes: Vec<Shoe> = feet.iter().map(shoe).collect();
+        let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
         let mut scene = Scene::new();
         let view = View {
             show: Show::PICTURE,
@@ -194,17 +194,5 @@ impl Camera {
         };
         scene::draw(&mut scene, &view);
         Ok(picture::write(&scene, path, PICTURE_WIDTH)?)
-    }
-}
-
-/// How a simulated foot is drawn.
-pub(super) fn shoe(foot: &Foot) -> Shoe {
-    Shoe {
-        position: foot.position,
-        heading_rad: foot.heading,
-        length_m: foot.length_m,
-        force: foot.force,
-        roll: foot.roll,
-        left: false,
     }
 }

@@ -267,15 +267,7 @@ impl Pond {
 
     fn picture(&self, feet: &[Foot]) -> Scene {
         let snapshot = self.snapshot();
-        let shoe = |foot: &Foot| Shoe {
-            position: foot.position,
-            heading_rad: foot.heading,
-            length_m: foot.length_m,
-            force: foot.force,
-            roll: foot.roll,
-            left: false,
-        };
-        let shoes: Vec<Shoe> = feet.iter().map(shoe).collect();
+        let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
         let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
         let mut scene = Scene::new();
         let view = View {

@@ -15,7 +15,7 @@ pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 const NEAR_M: f32 = 0.1;
 
 /// The loudspeakers that play one cue or rub, and how much of it each gets.
-pub(super) type Heard = ArrayVec<Output, NEAREST>;
+pub(super) type Panned = ArrayVec<Output, NEAREST>;
 
 /// The loudspeakers around the floor.
 #[derive(Clone, Debug)]
@@ -47,8 +47,8 @@ impl Loudspeakers {
     ///
     /// # Real-time
     /// No allocation.
-    pub(super) fn heard(&self, spots: &[Spot], to_air: f32) -> Heard {
-        let mut heard = Heard::new();
+    pub(super) fn heard(&self, spots: &[Spot], to_air: f32) -> Panned {
+        let mut heard = Panned::new();
         if to_air.is_nan() || to_air <= 0.0 || self.all.is_empty() {
             return heard;
         }
@@ -97,7 +97,7 @@ mod tests {
         Loudspeakers::new(&all, centres, 40)
     }
 
-    fn gains(heard: &Heard) -> [f32; 4] {
+    fn gains(heard: &Panned) -> [f32; 4] {
         let mut gains = [0.0; 4];
         for output in heard {
             gains[output.channel - 36] = output.per_newton * 40.0;

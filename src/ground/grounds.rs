@@ -115,7 +115,7 @@ impl Grounds {
         let passed = self.last.map_or(u64::MAX, |last| frame.at.since(last).as_millis() as u64);
         self.last = Some(frame.at);
         for (number, plot) in self.plots.iter_mut().enumerate() {
-            let is_shown = plot.ground.page.is_none_or(|own| own == page);
+            let is_shown = plot.ground.is_on(page);
             if !is_shown || passed > LONGEST_GAP {
                 plot.doze();
             }

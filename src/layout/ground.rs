@@ -18,3 +18,11 @@ pub struct Ground {
     /// Its colour in the depth: water under ice, the ground under snow, the gap between planks.
     pub deep: Colour,
 }
+
+impl Ground {
+    /// Whether it is on the page numbered `page` (0 without pages).
+    #[must_use]
+    pub fn is_on(&self, page: usize) -> bool {
+        self.page.is_none_or(|own| own == page)
+    }
+}

@@ -101,14 +101,9 @@ impl Scene {
 
     /// Adds straight lines through `points`; nothing for fewer than two.
     pub fn add_path(&mut self, points: impl IntoIterator<Item = Vec2>, closed: bool, paint: Paint) {
-        let start = self.points.len();
-        self.points.extend(points);
-        if self.points.len() < start + 2 {
-            self.points.truncate(start);
-            return;
+        if let Some(points) = self.line(points) {
+            self.marks.push(Mark::Path { points, closed, paint });
         }
-        let points = Span { start: start as u32, end: self.points.len() as u32 };
-        self.marks.push(Mark::Path { points, closed, paint });
     }
 
     /// Adds a rectangle of changing colour, its `inks` in rows of `columns` from the south-west on;
@@ -128,14 +123,20 @@ impl Scene {
 
     /// Adds what straight lines through `points` sweep when moved by `reach`; nothing for fewer than two points.
     pub fn add_band(&mut self, points: impl IntoIterator<Item = Vec2>, reach: Vec2, near: Ink, far: Ink) {
+        if let Some(points) = self.line(points) {
+            self.marks.push(Mark::Band { points, reach, near, far });
+        }
+    }
+
+    /// Keeps the points of a line; `None` for fewer than two.
+    fn line(&mut self, points: impl IntoIterator<Item = Vec2>) -> Option<Span> {
         let start = self.points.len();
         self.points.extend(points);
         if self.points.len() < start + 2 {
             self.points.truncate(start);
-            return;
+            return None;
         }
-        let points = Span { start: start as u32, end: self.points.len() as u32 };
-        self.marks.push(Mark::Band { points, reach, near, far });
+        Some(Span { start: start as u32, end: self.points.len() as u32 })
     }
 
     /// Adds a straight line.

@@ -4,6 +4,7 @@ use super::Theme;
 use crate::engine::{Snapshot, WidgetState};
 use crate::floor::{Geometry, TileId};
 use crate::layout::Layout;
+use crate::sim::Foot;
 use crate::units::Newtons;
 use crate::widget::Value;
 
@@ -22,6 +23,20 @@ pub struct Shoe {
     pub roll: f32,
     /// Whether it is a left shoe.
     pub left: bool,
+}
+
+impl From<&Foot> for Shoe {
+    /// A right shoe of the foot's own length: a simulated foot has no side.
+    fn from(foot: &Foot) -> Self {
+        Self {
+            position: foot.position,
+            heading_rad: foot.heading,
+            length_m: foot.length_m,
+            force: foot.force,
+            roll: foot.roll,
+            left: false,
+        }
+    }
 }
 
 /// Which parts of the floor's state are drawn.

@@ -6,7 +6,6 @@
 //! people who set a floor up.
 
 mod measure;
-mod mute;
 mod reference;
 mod request;
 mod server;

@@ -1,17 +1,19 @@
+mod mute;
+mod notices;
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use tracing::{info, warn};
+use tracing::warn;
 use triple_buffer::Input;
 
-use super::mute::{self, MuteError};
 use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, LinkState, Snapshot};
 use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
-use crate::floor::{Floor, SensorId, TileId};
+use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages};
@@ -33,13 +35,6 @@ const IDLE_LAG: Duration = Duration::from_millis(20);
 
 /// What is played after the last frame, so that the last click can ring out.
 const TAIL: Duration = Duration::from_millis(300);
-
-/// How long only some boards must have been heard for this to be news; controls on the others are long released.
-const SETTLING: Duration = Duration::from_millis(100);
-
-/// How often the sensors' health is looked at, and how often at most it is told.
-const HEALTH_LOOK: Duration = Duration::from_millis(100);
-const HEALTH_PERIOD: Duration = Duration::from_secs(1);
 
 /// Something an app or a window asks of a floor at work.
 #[derive(Clone, Debug)]
@@ -339,156 +334,6 @@ impl Server {
         self.snapshots = snapshots;
     }
 
-    /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
-    fn note_link(&mut self) {
-        let link = self.settled_link();
-        if link != self.link {
-            match link {
-                LinkState::Lost => warn!("no sensor packets for 100 ms: every control is released"),
-                LinkState::Partial => warn!("some boards send nothing"),
-                LinkState::Live => info!("packets arrive from every board"),
-                LinkState::Waiting => {}
-            }
-            self.link = link;
-            self.heed_mute();
-            self.note_uncalibrated();
-            if let Some(events) = &mut self.events {
-                events.link(self.source.now(), link);
-            }
-            // A lost floor has no frames that would show it.
-            self.shown = Instant::START;
-            self.show(self.source.now());
-        }
-        let tare = self.assembler.tare_outcome();
-        if tare != self.tare {
-            match tare {
-                TareOutcome::Measuring => info!("measuring the tare: keep off the floor"),
-                TareOutcome::Taken => info!("tare measured"),
-                TareOutcome::Refused { sensor, mean, deviation } => warn!(
-                    "the floor was never empty and quiet enough to tare: {sensor} read {:.1} N, scattered by {:.1} N; \
-                     going on with the floor file's tare",
-                    mean.0, deviation.0
-                ),
-                TareOutcome::FromFloor => {}
-            }
-            self.tare = tare;
-        }
-    }
-
-    /// Says once how many sensors go by nominal gains.
-    fn note_uncalibrated(&mut self) {
-        let uncalibrated = self.assembler.uncalibrated();
-        if uncalibrated > self.uncalibrated {
-            self.uncalibrated = uncalibrated;
-            warn!(
-                "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
-                 a third; `underfoot calibrate curves` measures them"
-            );
-        }
-    }
-
-    /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
-    fn settled_link(&mut self) -> LinkState {
-        let link = self.assembler.link_state();
-        if link != LinkState::Partial {
-            self.partial_since = None;
-            return link;
-        }
-        let now = self.source.now();
-        let since = *self.partial_since.get_or_insert(now);
-        if now.since(since) < SETTLING { self.link } else { link }
-    }
-
-    /// Says which sensors have fallen into trouble or got out of it.
-    fn note_troubles(&mut self) {
-        let changes = self.assembler.trouble_changes();
-        if changes == self.trouble_changes {
-            return;
-        }
-        self.trouble_changes = changes;
-        let now: Vec<_> = self.assembler.troubles().collect();
-        for (sensor, trouble) in now.iter().filter(|found| !self.troubles.contains(found)) {
-            warn!("{sensor}: {trouble}");
-        }
-        for (sensor, trouble) in &self.troubles {
-            if !now.iter().any(|(still, _)| still == sensor) {
-                info!("{sensor}: well again (was: {trouble})");
-            }
-        }
-        self.troubles = now;
-    }
-
-    /// Tells how the sensors are doing when that has changed, once a second at most.
-    fn note_health(&mut self) {
-        let now = self.source.now();
-        if now < self.looked {
-            return;
-        }
-        // Qualities come and go with single readings: what is told is looked at some times a second.
-        self.looked = now + HEALTH_LOOK;
-        self.note_foreign();
-        self.note_device(now);
-        self.assembler.health(&mut self.health);
-        let known = self.told.as_ref();
-        let is_due =
-            known.is_none_or(|(at, told)| now.since(*at) >= HEALTH_PERIOD && self.health.is_news_after(told));
-        if !is_due || self.link == LinkState::Waiting {
-            return;
-        }
-        // That all is well at first is no news.
-        let is_news = known.is_some() || self.health.is_news_after(&SensorHealth::default());
-        if let Some(events) = self.events.as_mut().filter(|_| is_news) {
-            events.health(now, &self.health);
-        }
-        match &mut self.told {
-            Some((at, told)) => {
-                *at = now;
-                told.clone_from(&self.health);
-            }
-            None => self.told = Some((now, self.health.clone())),
-        }
-    }
-
-    /// Tells how the device is doing when that has changed, once a second at most.
-    fn note_device(&mut self, now: Instant) {
-        let Some(actuators) = &self.actuators else { return };
-        let mut status = self.device.take().unwrap_or_default();
-        if !actuators.device(&mut status) {
-            return;
-        }
-        let is_news = match &self.device_told {
-            Some((at, told)) => now.since(*at) >= HEALTH_PERIOD && status.is_news_after(told),
-            None => true,
-        };
-        if is_news {
-            if let Some(events) = &mut self.events {
-                events.device(now, &status);
-            }
-            self.device_told = Some((now, status.clone()));
-        }
-        self.device = Some(status);
-    }
-
-    /// Says once that the floor file seems to be another floor's.
-    fn note_foreign(&mut self) {
-        if self.said_foreign {
-            return;
-        }
-        let counters = self.counters();
-        if self.assembler.is_foreign() {
-            self.said_foreign = true;
-            warn!(
-                "most tiles read otherwise than the floor file says of the empty floor: is it the file of another \
-                 floor, or was it tared long ago? No force can be trusted; `underfoot calibrate tare` measures it anew"
-            );
-        } else if counters.packets == 0 && counters.wrong_shape > 100 {
-            self.said_foreign = true;
-            warn!(
-                "the boards send another number of readings than the floor file says: is it the file of another floor?"
-            );
-        }
-    }
-
     fn obey(&mut self) {
         while let Some(request) = self.source.take_request() {
             self.meet(&request);
@@ -528,45 +373,5 @@ impl Server {
         if let Some(sender) = request.sender.filter(|_| told) {
             self.source.answer(sender, &self.answer);
         }
-    }
-
-    fn mute(&mut self, on: bool) -> Result<(), MuteError> {
-        if self.feel.is_none() {
-            return Err(MuteError::Unplayed);
-        }
-        if on != self.muted.all {
-            self.muted.all = on;
-            self.heed_mute();
-            self.tell_mute();
-        }
-        Ok(())
-    }
-
-    fn mute_tile(&mut self, tile: TileId, on: bool) -> Result<(), MuteError> {
-        let feel = self.feel.as_mut().ok_or(MuteError::Unplayed)?;
-        let before = self.muted.tiles.len();
-        mute::mute_tile(self.engine.geometry(), feel, tile, on, &mut self.muted)?;
-        if self.muted.tiles.len() != before {
-            self.tell_mute();
-        }
-        Ok(())
-    }
-
-    /// Lets nothing be felt while the floor is lost or somebody wants it so.
-    fn heed_mute(&mut self) {
-        match &mut self.feel {
-            Some(feel) if self.muted.all || self.link == LinkState::Lost => feel.silence(),
-            Some(feel) => feel.resume(),
-            None => {}
-        }
-    }
-
-    fn tell_mute(&mut self) {
-        if let Some(events) = &mut self.events {
-            events.muted(self.source.now(), &self.muted);
-        }
-        // A window is to show it at once, also while no frames come.
-        self.shown = Instant::START;
-        self.show(self.source.now());
     }
 }

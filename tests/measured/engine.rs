@@ -12,9 +12,8 @@ use underfoot::sense::{ForceFrame, Method, Quality};
 use underfoot::sim::Foot;
 use underfoot::units::Instant;
 
-#[test]
-fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
-    let geometry = Geometry::default();
+/// The frames of one person's visit, `times` as heavy, and how many milliseconds it lasts.
+fn visit(geometry: Geometry, times: f32) -> (Vec<ForceFrame>, u64) {
     let visit = Visit::of(3, &geometry).unwrap();
     let mut rig = Rig::ideal(geometry);
     let (mut frames, mut feet) = (Vec::<ForceFrame>::new(), Vec::<Foot>::new());
@@ -22,8 +21,16 @@ fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
     for ms in 1..length {
         feet.clear();
         visit.script().feet_at(Instant::from_millis(ms), &mut feet);
-        rig.step(feet.iter().map(Foot::as_load), |frame| frames.push(frame.clone()));
+        let heavy = |foot: &Foot| Foot { force: foot.force * times, ..*foot };
+        rig.step(feet.iter().map(|foot| heavy(foot).as_load()), |frame| frames.push(frame.clone()));
     }
+    (frames, length)
+}
+
+#[test]
+fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
+    let geometry = Geometry::default();
+    let (mut frames, length) = visit(geometry, 1.0);
     // A board that falls silent for a moment.
     for frame in &mut frames[4000..4100] {
         frame.quality[12..18].fill([Quality::Stale; 4]);
@@ -57,17 +64,8 @@ fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
 #[test]
 fn grounds_allocate_nothing_while_they_crack_and_heal() {
     let geometry = Geometry::default();
-    let visit = Visit::of(3, &geometry).unwrap();
-    let mut rig = Rig::ideal(geometry);
-    let (mut frames, mut feet) = (Vec::<ForceFrame>::new(), Vec::<Foot>::new());
-    let length = visit.script().duration().as_millis() as u64;
-    for ms in 1..length {
-        feet.clear();
-        visit.script().feet_at(Instant::from_millis(ms), &mut feet);
-        // A giant, so that much gives way.
-        let giant = |foot: &Foot| Foot { force: foot.force * 3.0, ..*foot };
-        rig.step(feet.iter().map(|foot| giant(foot).as_load()), |frame| frames.push(frame.clone()));
-    }
+    // A giant, so that much gives way.
+    let (frames, length) = visit(geometry, 3.0);
     for name in ["pond", "winter_walk"] {
         let text = builtin_layout(name).unwrap();
         let layout = parse_layout(text, name, &Kinds::builtin(), &geometry).unwrap().layout;

@@ -3,7 +3,7 @@ use arrayvec::ArrayVec;
 use super::duck::{Ducks, MAX_REACHES};
 use super::group::Drive;
 use super::{Row, within};
-use crate::feel::loudspeakers::{Heard, PER_NEWTON};
+use crate::feel::loudspeakers::{PER_NEWTON, Panned};
 use crate::feel::mix::{Mix, Output, Wiring};
 use crate::feel::{Friction, Hum, Lasting, Manner, Rub, Spots, Tone};
 
@@ -102,7 +102,7 @@ impl Voice {
         manner: Manner,
         spots: &Spots,
         wiring: &Wiring,
-        heard: &Heard,
+        heard: &Panned,
     ) -> (Self, u32) {
         let hum = Hum { level: tone.level, hz: tone.hz, noise: tone.noise };
         let mut voice = Self {
@@ -121,7 +121,7 @@ impl Voice {
     }
 
     /// Heads for what the rub is now; the answer is how many spots of a new rub no actuator can play.
-    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring, heard: &Heard) -> u32 {
+    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring, heard: &Panned) -> u32 {
         let new = self.state == State::Free;
         self.wanted = wish(rub);
         if new {
@@ -154,7 +154,7 @@ impl Voice {
     }
 
     /// Heads for these loudspeakers as well; to be called after [`Voice::reach`].
-    fn sound(&mut self, heard: &Heard) {
+    fn sound(&mut self, heard: &Panned) {
         for Output { channel, per_newton } in heard {
             // Where it is heard changes as the foot moves: that is a weight, so that nothing jumps.
             let output = Output { channel: *channel, per_newton: PER_NEWTON };

@@ -12,7 +12,7 @@ impl App {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
         for (number, (ground, state)) in self.inbox.layout.grounds.iter().zip(&snapshot.grounds).enumerate() {
-            if ground.page.is_some_and(|page| page != snapshot.page) {
+            if !ground.is_on(snapshot.page) {
                 continue;
             }
             ui.add_space(2.0);

@@ -24,17 +24,16 @@ const DARKER: f32 = 0.32;
 
 /// Whether a ground that is shown hides all of `cell`.
 pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
-    view.layout.grounds.iter().any(|ground| is_shown(view, ground) && super::holds(ground.area, cell))
-}
-
-fn is_shown(view: &View<'_>, ground: &Ground) -> bool {
-    ground.page.is_none_or(|page| page == view.snapshot.page)
+    view.layout
+        .grounds
+        .iter()
+        .any(|ground| ground.is_on(view.snapshot.page) && super::holds(ground.area, cell))
 }
 
 /// The grounds of the page that is shown.
 pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
     for (index, ground) in view.layout.grounds.iter().enumerate() {
-        if !is_shown(view, ground) {
+        if !ground.is_on(view.snapshot.page) {
             continue;
         }
         let land = Land::new(view, ground, view.snapshot.grounds.get(index), view.snapshot);

@@ -42,7 +42,7 @@ pub(super) struct Slow {
     sums: [f32; 4],
     lows: [f32; 4],
     highs: [f32; 4],
-    /// The strangest end of its converter that each sensor was at.
+    /// The end of its converter that each sensor was at last; the high one if it ever was there.
     ends: [End; 4],
     ended: Option<Instant>,
     loaded: bool,

@@ -9,6 +9,8 @@ use underfoot::schema::Effects;
 use underfoot::sink::{ActuatorSink, ManualSink, WavFormat, WavOptions, WavSink, WhenFull};
 use underfoot::units::{Instant, Newtons};
 
+use super::strike;
+
 /// The paper's floor with a loudspeaker at each corner, on channels 36 to 39; the last is half as loud.
 fn floor() -> Floor {
     let corners = [(0.0, 0.0), (1.824, 0.0), (0.0, 1.824), (1.824, 1.824)];
@@ -28,14 +30,7 @@ fn cue(at: Instant, tile: u16, to_air: f32) -> Cue {
     let modes = [(80.0, 0.02, 1.0), (210.0, 0.015, -0.6), (470.0, 0.01, 0.5)]
         .map(|(frequency_hz, decay_s, amplitude)| Mode { frequency_hz, decay_s, amplitude });
     let click = Click { modes: modes.into_iter().collect(), level: Newtons(8.0), ..Click::default() };
-    Cue {
-        at,
-        received: at,
-        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
-        click,
-        to_air,
-        ..Cue::default()
-    }
+    Cue { to_air, ..strike(at, tile, click) }
 }
 
 fn energy(samples: &[f32]) -> f64 {

@@ -2,10 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Spot, renderer};
+use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, renderer};
 use underfoot::floor::{Drive, Floor, Geometry, Response};
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
+
+use super::strike;
 
 const RATE: u32 = 48_000;
 
@@ -27,13 +29,7 @@ fn two_tiles() -> Floor {
 fn ringing(at: Instant, tile: u16, frequency_hz: f32, level: f32) -> Cue {
     let mode = Mode { frequency_hz, decay_s: 2.0, amplitude: 1.0 };
     let click = Click { modes: [mode].into_iter().collect(), level: Newtons(level), ..Click::default() };
-    Cue {
-        at,
-        received: at,
-        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
-        click,
-        ..Cue::default()
-    }
+    strike(at, tile, click)
 }
 
 /// Amplitude of `samples` at `hz` over whole periods.

@@ -7,6 +7,8 @@ use underfoot::glam::Vec2;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
 
+use super::strike;
+
 fn millis(millis: u64) -> Instant {
     Instant::from_millis(millis)
 }
@@ -33,16 +35,6 @@ fn click(level: f32, decay_s: f32) -> Click {
     Click { modes: modes.into_iter().collect(), level: Newtons(level), ..Click::default() }
 }
 
-fn cue(at: Instant, tile: u16, click: Click) -> Cue {
-    Cue {
-        at,
-        received: at,
-        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
-        click,
-        ..Cue::default()
-    }
-}
-
 fn rub(speed_m_s: f32, force: f32) -> Rub {
     let friction = Friction {
         level: Newtons(3.0),
@@ -58,12 +50,12 @@ fn rub(speed_m_s: f32, force: f32) -> Rub {
 #[test]
 fn stop_fades_out_in_5_ms_to_exact_zero_and_forgets_what_was_to_come() {
     let (mut sender, mut sink) = floor();
-    sender.send(&cue(millis(10), 0, click(20.0, 1.0)));
-    sender.send(&cue(millis(70), 0, click(20.0, 1.0)));
+    sender.send(&strike(millis(10), 0, click(20.0, 1.0)));
+    sender.send(&strike(millis(70), 0, click(20.0, 1.0)));
     sender.rubs(&[rub(0.3, 300.0)].into_iter().collect());
     sink.advance(millis(50)).unwrap();
     sender.silence();
-    assert!(!sender.send(&cue(millis(60), 1, click(20.0, 1.0))));
+    assert!(!sender.send(&strike(millis(60), 1, click(20.0, 1.0))));
     sink.advance(millis(100)).unwrap();
     for tile in [0, 3] {
         let samples = sink.channel(tile);
@@ -77,7 +69,7 @@ fn stop_fades_out_in_5_ms_to_exact_zero_and_forgets_what_was_to_come() {
     assert_eq!(sender.counters().muted, 2);
 
     sender.resume();
-    sender.send(&cue(millis(110), 1, click(20.0, 0.05)));
+    sender.send(&strike(millis(110), 1, click(20.0, 0.05)));
     sink.advance(millis(200)).unwrap();
     assert!(sink.channel(0)[100 * 48..].iter().all(|x| *x == 0.0), "what rang before does not come back");
     assert_eq!(sink.channel(1).iter().position(|x| *x != 0.0), Some(110 * 48));
@@ -86,7 +78,7 @@ fn stop_fades_out_in_5_ms_to_exact_zero_and_forgets_what_was_to_come() {
 #[test]
 fn a_stop_that_is_soon_lifted_is_not_missed() {
     let (mut sender, mut sink) = floor();
-    sender.send(&cue(millis(10), 0, click(20.0, 1.0)));
+    sender.send(&strike(millis(10), 0, click(20.0, 1.0)));
     sink.advance(millis(50)).unwrap();
     sender.silence();
     sender.resume();
@@ -111,7 +103,7 @@ fn a_rub_that_nobody_renews_fades_out() {
 fn everybody_stamping_at_once_stays_within_full_scale() {
     let (mut sender, mut sink) = floor();
     for n in 0..200 {
-        sender.send(&cue(millis(20 + n / 4), (n % 3) as u16, click(300.0, 1.0)));
+        sender.send(&strike(millis(20 + n / 4), (n % 3) as u16, click(300.0, 1.0)));
         sink.advance(millis(20 + n / 4)).unwrap();
     }
     sink.advance(millis(300)).unwrap();

@@ -3,12 +3,14 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use underfoot::feel::{Click, Cue, CueSender, Mode, Renderer, RendererConfig, Spot, renderer};
+use underfoot::feel::{Click, Cue, CueSender, Mode, Renderer, RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::sink::{
     ActuatorSink, LatencyMeter, LatencyProbe, ManualSink, WavFormat, WavOptions, WavSink, WhenFull,
 };
 use underfoot::units::{Instant, Newtons};
+
+use super::strike;
 
 fn floor() -> (CueSender, Renderer) {
     renderer(RendererConfig::of(&Floor::default(), 48_000))
@@ -17,13 +19,7 @@ fn floor() -> (CueSender, Renderer) {
 fn cue(at: Instant, tile: u16) -> Cue {
     let modes = [Mode { frequency_hz: 180.0, decay_s: 0.03, amplitude: 1.0 }];
     let click = Click { modes: modes.into_iter().collect(), level: Newtons(8.0), ..Click::default() };
-    Cue {
-        at,
-        received: at,
-        spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
-        click,
-        ..Cue::default()
-    }
+    strike(at, tile, click)
 }
 
 #[test]

@@ -1,0 +1,169 @@
+//! What a server says of its own accord: of the link, the tare, the sensors and the device.
+
+use std::time::Duration;
+
+use tracing::{info, warn};
+
+use super::Server;
+use crate::engine::LinkState;
+use crate::sense::{SensorHealth, TareOutcome};
+use crate::units::Instant;
+
+/// How long only some boards must have been heard for this to be news; controls on the others are long released.
+const SETTLING: Duration = Duration::from_millis(100);
+
+/// How often the sensors' health is looked at, and how often at most it is told.
+const HEALTH_LOOK: Duration = Duration::from_millis(100);
+const HEALTH_PERIOD: Duration = Duration::from_secs(1);
+
+impl Server {
+    /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
+    pub(super) fn note_link(&mut self) {
+        let link = self.settled_link();
+        if link != self.link {
+            match link {
+                LinkState::Lost => warn!("no sensor packets for 100 ms: every control is released"),
+                LinkState::Partial => warn!("some boards send nothing"),
+                LinkState::Live => info!("packets arrive from every board"),
+                LinkState::Waiting => {}
+            }
+            self.link = link;
+            self.heed_mute();
+            self.note_uncalibrated();
+            if let Some(events) = &mut self.events {
+                events.link(self.source.now(), link);
+            }
+            // A lost floor has no frames that would show it.
+            self.shown = Instant::START;
+            self.show(self.source.now());
+        }
+        let tare = self.assembler.tare_outcome();
+        if tare != self.tare {
+            match tare {
+                TareOutcome::Measuring => info!("measuring the tare: keep off the floor"),
+                TareOutcome::Taken => info!("tare measured"),
+                TareOutcome::Refused { sensor, mean, deviation } => warn!(
+                    "the floor was never empty and quiet enough to tare: {sensor} read {:.1} N, scattered by {:.1} N; \
+                     going on with the floor file's tare",
+                    mean.0, deviation.0
+                ),
+                TareOutcome::FromFloor => {}
+            }
+            self.tare = tare;
+        }
+    }
+
+    /// Says once how many sensors go by nominal gains.
+    fn note_uncalibrated(&mut self) {
+        let uncalibrated = self.assembler.uncalibrated();
+        if uncalibrated > self.uncalibrated {
+            self.uncalibrated = uncalibrated;
+            warn!(
+                "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
+                 a third; `underfoot calibrate curves` measures them"
+            );
+        }
+    }
+
+    /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
+    fn settled_link(&mut self) -> LinkState {
+        let link = self.assembler.link_state();
+        if link != LinkState::Partial {
+            self.partial_since = None;
+            return link;
+        }
+        let now = self.source.now();
+        let since = *self.partial_since.get_or_insert(now);
+        if now.since(since) < SETTLING { self.link } else { link }
+    }
+
+    /// Says which sensors have fallen into trouble or got out of it.
+    pub(super) fn note_troubles(&mut self) {
+        let changes = self.assembler.trouble_changes();
+        if changes == self.trouble_changes {
+            return;
+        }
+        self.trouble_changes = changes;
+        let now: Vec<_> = self.assembler.troubles().collect();
+        for (sensor, trouble) in now.iter().filter(|found| !self.troubles.contains(found)) {
+            warn!("{sensor}: {trouble}");
+        }
+        for (sensor, trouble) in &self.troubles {
+            if !now.iter().any(|(still, _)| still == sensor) {
+                info!("{sensor}: well again (was: {trouble})");
+            }
+        }
+        self.troubles = now;
+    }
+
+    /// Tells how the sensors are doing when that has changed, once a second at most.
+    pub(super) fn note_health(&mut self) {
+        let now = self.source.now();
+        if now < self.looked {
+            return;
+        }
+        // Qualities come and go with single readings: what is told is looked at some times a second.
+        self.looked = now + HEALTH_LOOK;
+        self.note_foreign();
+        self.note_device(now);
+        self.assembler.health(&mut self.health);
+        let known = self.told.as_ref();
+        let is_due =
+            known.is_none_or(|(at, told)| now.since(*at) >= HEALTH_PERIOD && self.health.is_news_after(told));
+        if !is_due || self.link == LinkState::Waiting {
+            return;
+        }
+        // That all is well at first is no news.
+        let is_news = known.is_some() || self.health.is_news_after(&SensorHealth::default());
+        if let Some(events) = self.events.as_mut().filter(|_| is_news) {
+            events.health(now, &self.health);
+        }
+        match &mut self.told {
+            Some((at, told)) => {
+                *at = now;
+                told.clone_from(&self.health);
+            }
+            None => self.told = Some((now, self.health.clone())),
+        }
+    }
+
+    /// Tells how the device is doing when that has changed, once a second at most.
+    fn note_device(&mut self, now: Instant) {
+        let Some(actuators) = &self.actuators else { return };
+        let mut status = self.device.take().unwrap_or_default();
+        if !actuators.device(&mut status) {
+            return;
+        }
+        let is_news = match &self.device_told {
+            Some((at, told)) => now.since(*at) >= HEALTH_PERIOD && status.is_news_after(told),
+            None => true,
+        };
+        if is_news {
+            if let Some(events) = &mut self.events {
+                events.device(now, &status);
+            }
+            self.device_told = Some((now, status.clone()));
+        }
+        self.device = Some(status);
+    }
+
+    /// Says once that the floor file seems to be another floor's.
+    fn note_foreign(&mut self) {
+        if self.said_foreign {
+            return;
+        }
+        let counters = self.counters();
+        if self.assembler.is_foreign() {
+            self.said_foreign = true;
+            warn!(
+                "most tiles read otherwise than the floor file says of the empty floor: is it the file of another \
+                 floor, or was it tared long ago? No force can be trusted; `underfoot calibrate tare` measures it anew"
+            );
+        } else if counters.packets == 0 && counters.wrong_shape > 100 {
+            self.said_foreign = true;
+            warn!(
+                "the boards send another number of readings than the floor file says: is it the file of another floor?"
+            );
+        }
+    }
+}
