@@ -5,7 +5,8 @@ use smallvec::SmallVec;
 
 use super::foot::{FORCE, Foot, LANDS_S};
 use super::landing::Landing;
-use super::{Tracker, first_of_least};
+use super::lines::vagueness;
+use super::{STRIDE_M, Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -17,8 +18,8 @@ const ADDED_N: f64 = 10.0;
 
 /// How far, in metres, and how fast, in metres per second, weight that is shifted to another foot moves the
 /// common centre of pressure at least.
-const SHIFT_M: f64 = 0.035;
-const SHIFT_M_S: f64 = 0.36;
+const SHIFT_M: f64 = 0.03;
+const SHIFT_M_S: f64 = 0.3;
 
 /// Distance between two feet that stand, before anything is known of it, in metres.
 const STANCE_M: f64 = 0.2;
@@ -45,7 +46,9 @@ impl Tracker {
             // A sensor that is no longer believed moves what its tile says: that is nobody's doing.
             let quality = foot.tiles.iter().map(|&position| list[position as usize].quality).max();
             if quality.is_some_and(|quality| quality != foot.quality) {
-                self.feet[which].startle(quality.unwrap_or_default());
+                // A sensor that is lost or found goes over to what the others say little by little.
+                let lasts = foot.tiles.iter().any(|&position| !list[position as usize].is_settled());
+                self.feet[which].startle(quality.unwrap_or_default(), lasts);
                 continue;
             }
             let Some(newcomer) = self.newcomer(foot, list) else { continue };
@@ -72,7 +75,7 @@ impl Tracker {
             if foot.centre().distance(newcomer.place) < APART_M {
                 continue;
             }
-            let landing = foot.stands().then_some(Landing { host: foot.id, from: foot.home });
+            let landing = foot.lingers().then_some(Landing { host: foot.id, from: foot.home });
             let mut newborn = Foot::new(self.name(), newcomer.force, newcomer.place, newcomer.deviation);
             newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
             newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
@@ -90,6 +93,14 @@ impl Tracker {
                 self.feet.push(newborn);
             }
         }
+    }
+
+    /// Whether nobody else is within a stride: no partner that is down already, however lately.
+    fn is_far_from_all(&self, foot: &Foot) -> bool {
+        let place = foot.centre();
+        let mut others =
+            self.near.around(place).map(|other| &self.feet[other]).filter(|other| other.id != foot.id);
+        others.all(|other| other.centre().distance(place) > STRIDE_M)
     }
 
     /// The foot that has landed among the tiles of `foot`, if one has.
@@ -130,19 +141,21 @@ impl Tracker {
         }
         // Weight that is shifted slowly: a foot that stood still does not begin to roll as fast, nor to the side.
         let shift = sum / whole - foot.home;
+        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
+        let doubt = vagueness(tiles, whole, self.cells.pitch);
         if foot.stands()
-            && foot.calm <= 0.0
+            && foot.unsettled <= 0.0
             && whole > 120.0
-            && foot.may_have_partner_towards(shift)
-            && shift.length() > SHIFT_M
-            && shift.length() > SHIFT_M_S * foot.away
+            && shift.length() > SHIFT_M + doubt
+            && (foot.is_drawn(shift, SHIFT_M) && self.is_far_from_all(foot)
+                || foot.may_have_partner_towards(shift) && shift.length() > SHIFT_M_S * foot.away)
         {
             let place = foot.home + shift.normalize() * STANCE_M;
             let force = whole * shift.length() / STANCE_M;
             return Some(Newcomer { force, place, deviation: 0.08, ..Newcomer::default() });
         }
         let leap = sum / whole - foot.past.centre;
-        if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 {
+        if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 + doubt {
             let moment = leap * whole;
             let added = (whole - foot.past.force).max(moment.length() / 0.45);
             if added < whole {

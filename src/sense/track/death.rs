@@ -1,9 +1,9 @@
 //! Feet that have left, and feet that never were.
 
-use super::Tracker;
 use super::birth::APART_M;
-use super::foot::{CALM_S, Foot, LANDS_S, SHOE_M};
+use super::foot::{Foot, LANDS_S, SHOE_M};
 use super::lines::{Axis, Lines};
+use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -16,10 +16,13 @@ const FAINT_S: f64 = 0.01;
 /// How long a foot must seem to have handed its weight over to be gone, in seconds.
 const HANDED_S: f64 = 0.04;
 
+/// How long it must do so if only a rim's load on some tile may still be its own, in seconds.
+const GHOST_S: f64 = 0.3;
+
 /// Shares of what it once pressed with, and of what all feet there press with, below which a foot may have
 /// handed its weight over.
 const OF_ITS_MOST: f64 = 0.5;
-const OF_ALL: f64 = 0.2;
+const OF_ALL: f64 = 0.23;
 
 /// How far the centre of pressure may then be from where the foot that has taken over rests, in metres.
 const TAKEN_OVER_M: f64 = 0.05;
@@ -28,6 +31,12 @@ const TAKEN_OVER_M: f64 = 0.05;
 /// one that seems to have handed over, and for one too light to be seen otherwise.
 const OWN_M: f64 = 0.17;
 const OWN_OF_FAINT_M: f64 = 0.23;
+
+/// Share of all below which a tile's load is no proof.
+const OWN_SHARE: f64 = 0.015;
+
+/// Least distance between feet side by side, in metres.
+const BESIDE_M: f64 = 0.11;
 
 /// A light load this near to a heavy foot, as a share of it, may be that foot's rim.
 const RIM_SHARE: f64 = 0.08;
@@ -38,6 +47,15 @@ const FAR_M: f64 = 0.12;
 
 /// How long one foot must have been enough before two become one, in seconds.
 const ENOUGH_S: f64 = 0.06;
+
+/// How long it takes until weight is shifted to a foot put down beside a standing one, in seconds.
+const SETTLES_S: f64 = 0.7;
+
+/// How near to it the centre of pressure lies once it has taken over all of it, in metres.
+const OVER_M: f64 = 0.025;
+
+/// How little, as a share of all, the standing foot then still carries.
+const LITTLE: f64 = 0.08;
 
 /// How long a foot that has just landed is not doubted, in seconds.
 const FRESH_S: f64 = 0.08;
@@ -62,15 +80,15 @@ impl Tracker {
         for which in 0..self.feet.len() {
             let foot = &self.feet[which];
             let gone = if foot.shared {
-                !self.has_own(foot, tiles.list(), OWN_OF_FAINT_M)
+                !self.has_own(foot, tiles.list(), OWN_OF_FAINT_M, 0.0)
                     && (foot.force() < FAINT_N || self.superfluous(which, tiles.list()))
             } else {
                 self.is_rim(foot)
             };
             let haste = if gone {
                 1.0
-            } else if foot.shared && self.handed_over(foot, tiles.list()) {
-                FAINT_S / HANDED_S
+            } else if foot.shared {
+                self.handed_over(foot, tiles.list()).map_or(0.0, |time_s| FAINT_S / time_s)
             } else {
                 0.0
             };
@@ -78,8 +96,13 @@ impl Tracker {
             foot.faint = if haste > 0.0 { foot.faint + haste * dt } else { 0.0 };
             if foot.faint >= FAINT_S {
                 for mate in self.mates.of(foot.group) {
-                    self.feet[mate].calm = CALM_S;
+                    self.feet[mate].be_calm();
                 }
+            }
+        }
+        for which in 0..self.feet.len() {
+            if self.feet[which].faint >= FAINT_S {
+                self.bequeath(which);
             }
         }
         let groups = self.feet.len();
@@ -88,22 +111,43 @@ impl Tracker {
         self.unite(tiles, dt);
     }
 
-    /// Whether a foot has handed its weight over to the others: what little is left to it may as well be what
-    /// is not known of them.
-    fn handed_over(&self, foot: &Foot, list: &[LoadedTile]) -> bool {
+    /// Leaves what foot `which`, which is gone, still pressed to the nearest of those it was with: that is no newcomer.
+    fn bequeath(&mut self, which: usize) {
+        let gone = &self.feet[which];
+        let mates = self.mates.of(gone.group).filter(|&mate| self.feet[mate].faint < FAINT_S);
+        let away = mates.map(|mate| (self.feet[mate].centre().distance(gone.centre()), mate));
+        // Farther away than a shoe is long, it is nothing of theirs.
+        let heir = away.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
+        let Some((_, heir)) = heir else { return };
+        self.feet[heir].tiles = self.feet[heir].tiles_with(gone);
+    }
+
+    /// How long a foot must seem to have handed its weight over to the others, as it does now, to be gone, in seconds:
+    /// what little is left to it may as well be what is not known of them.
+    fn handed_over(&self, foot: &Foot, list: &[LoadedTile]) -> Option<f64> {
         let all: f64 = self.mates.of(foot.group).map(|mate| self.feet[mate].force()).sum();
         if foot.force() > OF_ITS_MOST * foot.peak || foot.force() > OF_ALL * all {
-            return false;
+            return None;
         }
         let mut others = self.mates(foot);
         if let (Some(other), None) = (others.next(), others.next()) {
             let both = foot.tiles_with(other);
             let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
             if lines.middle.distance(other.home) > TAKEN_OVER_M {
-                return false;
+                return None;
+            }
+            // Nobody has a foot where the other one stands.
+            if other.landing.is_some_and(|landing| {
+                landing.host == foot.id && lines.middle.distance(landing.from) < BESIDE_M
+            }) {
+                return None;
             }
         }
-        !self.has_own(foot, list, OWN_M)
+        if !self.has_own(foot, list, OWN_M, 0.0) {
+            Some(HANDED_S)
+        } else {
+            (!self.has_own(foot, list, OWN_M, OWN_SHARE * all)).then_some(GHOST_S)
+        }
     }
 
     /// The other feet of its group.
@@ -123,10 +167,12 @@ impl Tracker {
             })
     }
 
-    /// Whether it presses a tile that none of the others can reach: proof that it is still there.
-    fn has_own(&self, foot: &Foot, list: &[LoadedTile], reach: f64) -> bool {
-        foot.tiles.iter().any(|&position| {
-            let place = list[position as usize].centroid.as_dvec2();
+    /// Whether it presses a tile with more than `least` newtons that none of the others can reach: proof that it is still
+    /// there.
+    fn has_own(&self, foot: &Foot, list: &[LoadedTile], reach: f64, least: f64) -> bool {
+        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
+        tiles.filter(|tile| f64::from(tile.wrench.force) > least).any(|tile| {
+            let place = tile.centroid.as_dvec2();
             self.mates(foot).all(|other| other.centre().distance(place) > reach)
         })
     }
@@ -157,7 +203,7 @@ impl Tracker {
                     let foot = &mut self.feet[stay];
                     foot.stand(lines.force, lines.middle);
                     foot.tiles = both;
-                    foot.calm = CALM_S;
+                    foot.be_calm();
                 }
             }
         }
@@ -200,14 +246,28 @@ impl Tracker {
     fn enough(&self, a: usize, b: usize, lines: &Lines) -> Option<usize> {
         let (first, second) = (&self.feet[a], &self.feet[b]);
         // Of a foot put down beside a standing one more is known than what one frame's tiles carry.
-        if first.has_landed_beside(second) || second.has_landed_beside(first) {
+        let age = first.age.min(second.age);
+        let guest = if first.has_landed_beside(second) {
+            Some(a)
+        } else {
+            second.has_landed_beside(first).then_some(b)
+        };
+        if guest.is_some() && age < SETTLES_S {
             return None;
         }
-        if first.age.min(second.age) < LANDS_S {
+        if age < LANDS_S {
+            return None;
+        }
+        let landing = guest.and_then(|guest| self.feet[guest].landing);
+        if landing.is_some_and(|landing| lines.middle.distance(landing.from) < BESIDE_M) {
             return None;
         }
         let apart = [first, second].map(|foot| foot.home.distance(lines.middle));
         let (near, stay) = if apart[0] <= apart[1] { (apart[0], a) } else { (apart[1], b) };
+        let gone = if stay == a { second } else { first };
+        if guest.is_some_and(|guest| guest != stay || near > OVER_M || gone.force() > LITTLE * lines.force) {
+            return None;
+        }
         let close = first.centre().distance(second.centre()) < HALVES_M;
         ((near < AT_HOME_M || close) && one_patch(lines, self.cells.pitch)).then_some(stay)
     }

@@ -4,7 +4,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::landing::Landing;
-use super::lines::{Axis, Habit, Lines};
+use super::lines::{Axis, Habit};
 use super::patch::PatchOnTile;
 use crate::sense::Quality;
 use crate::sense::contact::ContactId;
@@ -19,9 +19,9 @@ pub(super) const NORTH: usize = 4;
 pub(super) const HALF_EAST: usize = 6;
 pub(super) const HALF_NORTH: usize = 7;
 
-/// Half widths of the pressed patch, in metres: a toe's tip, and a whole long shoe.
+/// Half widths of the pressed patch, in metres: a toe's tip, and all of a long foot but its ends, which press little.
 pub(super) const HALF_LEAST: f64 = 0.015;
-pub(super) const HALF_MOST: f64 = 0.2;
+pub(super) const HALF_MOST: f64 = 0.11;
 /// What one expects before anything is seen: half a forefoot or heel-and-arch (our choice).
 pub(super) const HALF_REST: f64 = 0.075;
 
@@ -39,7 +39,7 @@ pub(super) const LANDS_S: f64 = 0.25;
 
 /// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
 /// while another one lands, in metres.
-const STRAY_LEAST_M: f64 = 0.012;
+const STRAY_LEAST_M: f64 = 0.01;
 const STRAY_MOST_M: f64 = 0.06;
 /// How far it strays per speed, in seconds: as long as two feet are down while one walks.
 const STRAY_S: f64 = 0.15;
@@ -54,17 +54,31 @@ pub(super) const CALM_S: f64 = 0.25;
 /// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
 const RESTLESS_M_S: f64 = 0.03;
 
+/// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
+const LINGERS_M_S: f64 = 0.15;
+
+/// How soon a foot that stood still is taken to roll, in metres per second squared.
+const ROUSED_M_S2: f64 = 0.2;
+
 /// Speed of its centre of pressure below which a foot stands still, in metres per second.
 const STILL_M_S: f64 = 0.12;
 /// How long it must have done so, and how long it may then move before it rolls, in seconds.
 const STILL_S: f64 = 0.08;
 const AWAY_S: f64 = 0.15;
 
+/// How long at most weight is taken over by a partner that lands, in seconds.
+const DRAWN_S: f64 = 0.6;
+
+/// From when until when after it has landed a foot rolls from its heel to its toes, in seconds.
+const ROLLS_S: (f64, f64) = (0.05, 0.45);
+
 /// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
 const PARTNER_S: f64 = 1.2;
 
-/// Time constant of a foot's habits, in seconds.
-const HABIT_S: f64 = 0.08;
+/// Speed towards a place from which on a foot slides there, in metres per second, and the force on one that slides, in
+/// newtons, at most.
+const AHEAD_M_S: f64 = 0.02;
+const SLIDING_N: f64 = 200.0;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
@@ -86,6 +100,8 @@ pub(super) struct Foot {
     pub spare: f64,
     /// Seconds for which its own sway is not to be taken for a newcomer.
     pub calm: f64,
+    /// Seconds for which not even a slow shift of weight is.
+    pub unsettled: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
     /// Where its links to others begin in the tracker's list, if it has any.
@@ -104,6 +120,8 @@ pub(super) struct Foot {
     pub surprise: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub restless: f64,
+    /// Seconds for which it has been alone on its tiles.
+    pub alone_s: f64,
     /// Where it was when last seen alone; `None` if it never was.
     pub alone_at: Option<DVec2>,
     /// Where its centre of pressure rests while it shares tiles, and how far it strays from there.
@@ -122,6 +140,8 @@ pub(super) struct Foot {
     /// Its centre of pressure when it landed, and the one farthest from there since.
     pub landed: DVec2,
     pub farthest: DVec2,
+    /// The way of its centre of pressure while it came down alone: from its heel to its toes.
+    pub rolled: DVec2,
 }
 
 /// A foot as its last few hundredths of a second foretell it: what a newcomer is measured against.
@@ -159,6 +179,7 @@ impl Foot {
             peak: 0.0,
             spare: 0.0,
             calm: 0.0,
+            unsettled: 0.0,
             group: 0,
             links_from: 0,
             crowded: false,
@@ -168,6 +189,7 @@ impl Foot {
             habits: SmallVec::new(),
             surprise: 0.0,
             restless: 0.4,
+            alone_s: 0.0,
             alone_at: None,
             home: centre,
             still: 0.0,
@@ -179,6 +201,7 @@ impl Foot {
             stray: STRAY_MOST_M,
             landed: centre,
             farthest: centre,
+            rolled: DVec2::ZERO,
         };
         foot.be_sure(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
@@ -227,8 +250,13 @@ impl Foot {
     }
 
     /// What of it falls on the cell from `low` to `high`.
-    pub(super) fn on(&self, (low, high): (DVec2, DVec2)) -> PatchOnTile {
-        PatchOnTile::new(low, high, self.centre(), self.half())
+    pub(super) fn on(&self, cell: (DVec2, DVec2)) -> PatchOnTile {
+        self.at(self.centre(), cell)
+    }
+
+    /// What of it would fall on the cell from `low` to `high` with its centre of pressure at `centre`.
+    pub(super) fn at(&self, centre: DVec2, (low, high): (DVec2, DVec2)) -> PatchOnTile {
+        PatchOnTile::new(low, high, centre, self.half())
     }
 
     /// How far `point` is beyond what can belong to this foot, in metres; negative within.
@@ -257,6 +285,11 @@ impl Foot {
         self.age > FLAT_S && self.still > STILL_S
     }
 
+    /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is somebody else's.
+    pub(super) fn lingers(&self) -> bool {
+        self.stands() || self.age > FLAT_S && self.restless < LINGERS_M_S
+    }
+
     /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
     /// been seen; negative within, infinite for every other foot.
     pub(super) fn lands_about(&self, point: DVec2) -> f64 {
@@ -278,17 +311,21 @@ impl Foot {
     /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.
     pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
         // A foot that shares its tiles is itself known only roughly.
-        let (share, reach) = if self.shared { (0.08, 0.25) } else { (0.02, 0.22) };
+        let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
+        let (share, reach) = match () {
+            () if self.shared => (0.08, 0.25),
+            // A foot that slides on comes onto the next tile with its rim.
+            () if ahead && self.force() < SLIDING_N => (0.1, 0.24),
+            () => (0.02, 0.22),
+        };
         if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
     }
 
-    /// Whether the other foot of its person may be landing on the side that `way` points to: not while
-    /// that foot is elsewhere, and not ahead of a foot that rolls after that one has left.
-    pub(super) fn may_have_partner_towards(&self, way: DVec2) -> bool {
-        self.partner.is_none_or(|(place, ago)| {
-            let side = place - self.home;
-            ago > 0.0 && way.dot(side) > 0.5 * way.length() * side.length()
-        })
+    /// Goes on standing still at `home`.
+    pub(super) fn stay(&mut self, home: DVec2) {
+        self.home = home;
+        self.stray = STRAY_LEAST_M;
+        self.restless = RESTLESS_M_S;
     }
 
     /// Remembers where the foot has been.
@@ -297,7 +334,9 @@ impl Foot {
         self.peak = self.peak.max(self.force());
         let rolls = !self.shared || self.age < FLAT_S;
         let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
-        self.restless += (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
+        // Weight that goes over to another foot draws it along for a moment: that is not its own.
+        let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
+        self.restless += change.min(ROUSED_M_S2 * dt);
         if rolls {
             self.stray = (STRAY_LEAST_M + STRAY_S * self.restless).min(STRAY_MOST_M);
         }
@@ -324,7 +363,8 @@ impl Foot {
             self.home += (centre - self.home) * drift(STILL_HOME_S);
         } else {
             self.away += dt;
-            if self.away > AWAY_S {
+            let rolls = self.away > AWAY_S && !self.is_drawn(centre - self.home, 0.0);
+            if rolls || self.away > DRAWN_S {
                 (self.still, self.home) = (0.0, centre);
             }
         }
@@ -333,7 +373,7 @@ impl Foot {
     /// Lists the loaded tiles that its patch may press.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
         self.tiles.clear();
-        let reach = self.half() * 1.1 + 0.01;
+        let reach = self.half() * 1.1 + 0.02;
         let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
         let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
         if self.habit_strength() > 0.3 {
@@ -354,8 +394,8 @@ impl Foot {
         }
     }
 
-    /// Takes the tiles as its own and nobody else's (Eq. 4).
-    pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
+    /// Takes the tiles as its own and nobody else's (Eq. 4); `until_now` it has shared them.
+    pub(super) fn alone(&mut self, list: &[LoadedTile], until_now: bool, dt: f64) {
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
@@ -366,6 +406,9 @@ impl Foot {
             sum += tile.centroid.as_dvec2() * weighed;
         }
         let centre = sum / weight;
+        if !until_now && (ROLLS_S.0..ROLLS_S.1).contains(&self.age) {
+            self.rolled += centre - self.centre();
+        }
         if dt > 0.0 {
             let weight = 1.0 - (-dt / 0.015).exp();
             let rate = (force - self.state[FORCE]) / dt;
@@ -381,112 +424,11 @@ impl Foot {
         self.ambiguous = false;
     }
 
-    /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
-    fn learn_halves(&mut self, lines: &Lines, pitch: f64, dt: f64) {
-        let fade = (-dt / 0.3).exp();
-        // The same error of the model is seen in many frames.
-        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
-        for axis in Axis::BOTH {
-            let half = axis.half();
-            self.state[half] = HALF_REST + fade * (self.state[half] - HALF_REST);
-            let mut variance = self.covariance[half][half];
-            variance = variance * fade * fade + 0.03_f64.powi(2) * (1.0 - fade * fade);
-            for line in lines.lines.iter().filter(|line| line.axis == axis) {
-                let slice = line.slice(pitch, axis.along(self.centre()), self.state[half]);
-                let seen = [line.force / lines.force - slice.share, line.moment / lines.force - slice.moment];
-                // A share that strays lies half a pitch from the line's middle.
-                let slopes = [slice.share_by[1], slice.moment_by[1]];
-                for (missing, slope, lever) in [(seen[0], slopes[0], 1.0), (seen[1], slopes[1], 0.5 * pitch)]
-                {
-                    let gain = variance * slope / (slope * slope * variance + doubt * lever * lever);
-                    self.state[half] = (self.state[half] + gain * missing).clamp(HALF_LEAST, HALF_MOST);
-                    variance *= 1.0 - gain * slope;
-                }
-            }
-            self.covariance[half][half] = variance;
-        }
-    }
-
-    /// Notes how the foot, alone on its tiles, differs from its model patch.
-    pub(super) fn learn_habits(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
-        let (centre, half) = (self.centre(), self.half());
-        let mut lines = Lines::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
-        for axis in Axis::BOTH {
-            let (c, h) = (axis.along(centre), axis.along(half));
-            for number in ((c - h) / pitch).floor() as i32..=((c + h) / pitch).floor() as i32 {
-                lines.line(axis, number);
-            }
-        }
-        self.learn_halves(&lines, pitch, dt);
-        let half = self.half();
-        // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
-        let weight =
-            if self.alone_at.is_none() || self.age < HABIT_S { 1.0 } else { 1.0 - (-dt / HABIT_S).exp() };
-        for habit in &mut self.habits {
-            habit.seen = false;
-        }
-        for line in &lines.lines {
-            let slice = line.slice(pitch, line.axis.along(centre), line.axis.along(half));
-            let now = [
-                line.force / lines.force - slice.share,
-                line.moment / lines.force - slice.moment,
-                line.cross / lines.force,
-            ];
-            let same = |habit: &Habit| habit.axis == line.axis && habit.number == line.number;
-            let position = self.habits.iter().position(same).unwrap_or_else(|| {
-                self.habits.push(Habit::none(line.axis, line.number));
-                self.habits.len() - 1
-            });
-            self.habits[position].learn(now, weight);
-        }
-        self.habits.retain(|habit| habit.seen);
-        let before = self.alone_at.unwrap_or(centre);
-        self.alone_at = Some(before + (centre - before) * weight);
-    }
-
-    /// Makes a foot that was alone until now be sure of its shape: its habits say how it
-    /// differs from the model, whatever the half widths are.
-    pub(super) fn keep_shape(&mut self) {
-        if self.alone_at.is_some() {
-            let deviation = 0.0005 + 0.03 * (-self.age / 0.05).exp();
-            for half in [HALF_EAST, HALF_NORTH] {
-                let variance = &mut self.covariance[half][half];
-                *variance = variance.min(deviation * deviation);
-            }
-        }
-    }
-
-    /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
-    pub(super) fn habit_strength(&self) -> f64 {
-        self.alone_at.map_or(0.0, |place| {
-            let moved = place.distance(self.centre()) / 0.05;
-            (-moved * moved).exp()
-        })
-    }
-
-    /// Its habit on one line, as far as it still holds; nothing where it has none.
-    pub(super) fn habit(&self, axis: Axis, number: i32) -> Habit {
-        self.habit_at(axis, number, self.habit_strength())
-    }
-
-    /// Its habit on one line, times `strength`.
-    pub(super) fn habit_at(&self, axis: Axis, number: i32, strength: f64) -> Habit {
-        self.habits
-            .iter()
-            .find(|habit| habit.axis == axis && habit.number == number)
-            .map(|habit| Habit {
-                share: habit.share * strength,
-                moment: habit.moment * strength,
-                cross: habit.cross * strength,
-                ..*habit
-            })
-            .unwrap_or(Habit::none(axis, number))
-    }
-
     /// Moves the slow past on by `dt`.
     pub(super) fn foretell(&mut self, dt: f64) {
         self.age += dt;
         self.calm = (self.calm - dt).max(0.0);
+        self.unsettled = (self.unsettled - dt).max(0.0);
         self.partner = self.partner.map(|(place, ago)| (place, ago + dt)).filter(|&(_, ago)| ago < PARTNER_S);
         self.past.centre += self.past.velocity * dt;
         self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
@@ -509,10 +451,18 @@ impl Foot {
     }
 
     /// Notes that its sensors are believed more or less than before, and takes nothing of the change for a newcomer.
-    pub(super) fn startle(&mut self, quality: Quality) {
+    ///
+    /// `lasts`: what they say goes on changing for a while.
+    pub(super) fn startle(&mut self, quality: Quality, lasts: bool) {
         self.quality = quality;
         self.startled = true;
         self.calm = CALM_S;
+        self.unsettled = if lasts { CALM_S } else { 0.0 };
+    }
+
+    /// Takes nothing of what happens in the next moment for a newcomer.
+    pub(super) fn be_calm(&mut self) {
+        (self.calm, self.unsettled) = (CALM_S, CALM_S);
     }
 
     /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.

@@ -134,6 +134,11 @@ impl Joint {
         missing * missing * scale
     }
 
+    /// The force of each foot that is in.
+    pub(super) fn forces(&self) -> impl Iterator<Item = f64> {
+        self.x[..self.states].iter().skip(FORCE).step_by(STATES).copied()
+    }
+
     /// Keeps every state where a foot can be.
     pub(super) fn confine(&mut self, (low, high): (DVec2, DVec2)) {
         for at in (0..self.states).step_by(STATES) {

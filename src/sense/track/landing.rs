@@ -12,7 +12,7 @@
 use glam::DVec2;
 
 use super::Cells;
-use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH};
+use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M};
 use super::lines::{Axis, Line, Lines};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
@@ -26,12 +26,24 @@ const TRIED: usize = 22;
 const USUAL_M: f64 = 0.22;
 const USUAL_SPREAD: f64 = 0.5;
 
-/// A foot as light as this, as a share of both, that presses mostly where the standing one does not, is
-/// better measured there: the way of the common centre of pressure is lost in the other's sway.
-const LIGHT: f64 = 0.25;
+/// Share of the way of the common centre of pressure that tiles which only the new foot presses account for, when
+/// it is better measured there: the rest of that way is lost in the standing foot's sway.
 const MOSTLY: f64 = 0.8;
+/// How far a standing foot sways in a moment, in metres.
+const SWAYS_M: f64 = 0.01;
 /// Share of the standing foot below which a tile is none of its own.
 const NOT_ITS_OWN: f64 = 0.02;
+
+/// Distance below which shoes side by side would touch, and how sharply that counts, in metres.
+const SIDE_BY_SIDE_M: f64 = 0.13;
+const TIGHT_M: f64 = 0.01;
+
+/// How much likelier it is that a foot takes over all weight than any other share of it: most steps end so (twice a
+/// logarithm).
+const STEPPED: f64 = 5.0;
+
+/// Share of all from which on that is all.
+const WHOLLY: f64 = 0.93;
 
 /// Half widths that the new foot's patch may have along an axis, in metres, and how much they vary.
 const HALVES: [f64; 4] = [0.045, 0.075, 0.105, 0.135];
@@ -71,12 +83,20 @@ struct Pair<'a> {
     guest_force: f64,
 }
 
-/// Whether `guest` is light and presses mostly on tiles that `host` does not press.
-pub(super) fn is_seen_alone(host: &Foot, guest: &Foot, list: &[LoadedTile], cells: &Cells) -> bool {
+/// Whether tiles that `host`, standing at `from`, does not press show nearly all that `lines` tell of `guest`.
+pub(super) fn is_seen_alone(
+    host: &Foot,
+    guest: &Foot,
+    from: DVec2,
+    lines: &Lines,
+    list: &[LoadedTile],
+    cells: &Cells,
+) -> bool {
     let tiles = guest.tiles.iter().map(|&position| &list[position as usize]);
-    let own = tiles.filter(|tile| host.on(cells.of(tile)).share() < NOT_ITS_OWN);
-    let own: f64 = own.map(|tile| f64::from(tile.wrench.force)).sum();
-    guest.force() < LIGHT * (host.force() + guest.force()) && own > MOSTLY * guest.force()
+    let own = tiles.filter(|tile| host.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
+    let own: DVec2 = own.map(|tile| (tile.centroid.as_dvec2() - from) * f64::from(tile.wrench.force)).sum();
+    let all = (lines.middle - from) * lines.force;
+    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAYS_M + lines.doubt) * lines.force
 }
 
 /// Places `guest` beside `host`, which stands still at `from`; `lines` is what the tiles of both carry.
@@ -85,7 +105,7 @@ pub(super) fn is_seen_alone(host: &Foot, guest: &Foot, list: &[LoadedTile], cell
 pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: Lines, cells: &Cells) -> bool {
     let (force, way) = (lines.force, lines.middle - from);
     let moment = force * way.length();
-    if moment < LEAST_MOMENT.max(LEAST_WAY_M * force) {
+    if moment < LEAST_MOMENT.max((LEAST_WAY_M + lines.doubt) * force) {
         return false;
     }
     let ahead = way / way.length();
@@ -101,13 +121,16 @@ pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: L
     let mut against = [f64::INFINITY; TRIED];
     for (misfit, distance) in against.iter_mut().zip(distances()) {
         let guest_force = moment / distance;
-        if guest_force > 1.03 * force {
+        let place = from + ahead * distance;
+        if guest_force > 1.03 * force || place.distance(guest.landed) > SHOE_M {
             continue;
         }
         let host_force = (force - guest_force).max(0.0);
-        let pair = Pair { host, from, host_force, place: from + ahead * distance, guest_force };
+        let pair = Pair { host, from, host_force, place, guest_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
-        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual;
+        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M;
+        let stepped = if guest_force > WHOLLY * force { STEPPED } else { 0.0 };
+        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual + tight * tight - stepped;
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);

@@ -6,6 +6,8 @@
 //! without any patch model. So the tiles of a group are summed by column and by
 //! row, and each sum suffers from one unknown half width only.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
@@ -90,6 +92,14 @@ impl Line {
     }
 }
 
+/// Standard deviation of the centroid of `tiles`, of `force` newtons together, that sensors at the end of their range
+/// or estimated from others leave open, in metres; `pitch` from tile to tile.
+pub(super) fn vagueness<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
+    let vague = tiles.flat_map(|tile| tile.vague).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
+    // Sensors are about half a diagonal from where the load is.
+    FRAC_1_SQRT_2 * pitch * vague / force
+}
+
 /// The columns and rows of some tiles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
@@ -98,6 +108,8 @@ pub(super) struct Lines {
     pub force: f64,
     /// Their centroid.
     pub middle: DVec2,
+    /// What is not known of it; see [`vagueness`].
+    pub doubt: f64,
 }
 
 impl Lines {
@@ -110,6 +122,7 @@ impl Lines {
             sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
         }
         sums.middle = sum / sums.force;
+        sums.doubt = vagueness(tiles.clone(), sums.force, pitch);
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();

@@ -24,7 +24,7 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64
     const SPEED: f64 = 0.4;
     const SPEED_LEAST: f64 = 0.05;
     const HALF_FADE_S: f64 = 0.3;
-    const HALF_SPREAD: f64 = 0.04;
+    const HALF_SPREAD: f64 = 0.03;
     for (which, &member) in members.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
@@ -53,7 +53,8 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64
     }
 }
 
-/// Shows the joint filter what the tiles of its feet carry; gives back how surprising that was on average.
+/// Shows the joint filter what the tiles of its feet carry; gives back how surprising that was on average, and the
+/// force of all those tiles.
 pub(super) fn observe(
     joint: &mut Joint,
     members: &[u32],
@@ -61,7 +62,7 @@ pub(super) fn observe(
     list: &[LoadedTile],
     cells: &Cells,
     dt: f64,
-) -> f64 {
+) -> (f64, f64) {
     let mut seen: ArrayVec<u32, 64> = ArrayVec::new();
     for &member in members {
         for &position in &feet[member as usize].tiles {
@@ -171,7 +172,7 @@ pub(super) fn observe(
             surprise += joint.observe(missing, &rows[row], variances[row]);
         }
     }
-    surprise / (3.0 * lines.lines.len() as f64)
+    (surprise / (3.0 * lines.lines.len() as f64), force)
 }
 
 /// The slopes of a line's force, moment and cross moment.

@@ -23,11 +23,13 @@ mod landing;
 mod lines;
 mod measure;
 mod near;
+mod partner;
 mod patch;
+mod shape;
 
 use glam::DVec2;
 
-use self::foot::{EAST, FORCE, Foot, NORTH, STATES};
+use self::foot::{EAST, FORCE, Foot, LANDS_S, NORTH, STATES};
 use self::joint::{Joint, MOST_FEET};
 use self::landing::Landing;
 use self::lines::{Axis, Lines};
@@ -61,6 +63,16 @@ pub(super) struct Tracker {
 }
 
 const NOBODY: u32 = u32::MAX;
+
+/// Largest force a foot can have of what its group's tiles carry, as a share, and in newtons beyond it.
+const MOST_SHARE: f64 = 1.3;
+const MOST_MORE_N: f64 = 50.0;
+
+/// How little is known of the place of a foot that the filter has lost, as a standard deviation in metres.
+const LOST_M: f64 = 0.05;
+
+/// How long a foot must have been down to be somebody's partner, in seconds.
+const SEEN_S: f64 = 0.03;
 
 /// Largest distance between the feet of one person, in metres.
 const STRIDE_M: f64 = 1.0;
@@ -144,6 +156,7 @@ impl Tracker {
         self.adopt(tiles);
         self.find_newcomers(tiles);
         self.note_partners();
+        self.keep_in_touch(tiles);
         self.feet.retain(|foot| !foot.tiles.is_empty());
         self.group(tiles.list().len());
         self.estimate(tiles, dt);
@@ -156,13 +169,23 @@ impl Tracker {
     fn note_partners(&mut self) {
         for which in 0..self.feet.len() {
             let here = self.feet[which].centre();
-            let others = self.near.around(here).filter(|&other| other != which && self.feet[other].age > 0.1);
+            let others =
+                self.near.around(here).filter(|&other| other != which && self.feet[other].age > SEEN_S);
             let nearest = others
                 .map(|other| (self.feet[other].centre().distance(here), other))
                 .filter(|&(distance, _)| distance < STRIDE_M)
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
                 self.feet[which].partner = Some((self.feet[other].centre(), 0.0));
+            }
+        }
+    }
+
+    /// Gives feet that have just landed, and are guessed to be beside all loaded tiles, the tiles they were noticed on.
+    fn keep_in_touch(&mut self, tiles: &LoadedTiles) {
+        for foot in &mut self.feet {
+            if foot.tiles.is_empty() && foot.age < LANDS_S {
+                foot.tiles.extend(foot.past.loads.iter().filter_map(|load| tiles.position(load.index)));
             }
         }
     }
@@ -258,7 +281,7 @@ impl Tracker {
         let near = self.near.around(place).map(|which| (self.feet[which].centre().distance(place), which));
         let (_, host) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
         let host = &self.feet[host];
-        (host.stands() && !host.shared).then_some(Landing { host: host.id, from: host.home })
+        (host.lingers() && !host.shared).then_some(Landing { host: host.id, from: host.home })
     }
 
     /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
@@ -304,14 +327,17 @@ impl Tracker {
             }
             if !self.feet[which].crowded {
                 let foot = &mut self.feet[which];
+                let before = foot.centre();
                 let until_now = std::mem::replace(&mut foot.shared, false);
-                foot.alone(tiles.list(), dt);
+                foot.alone(tiles.list(), until_now, dt);
                 let startled = std::mem::take(&mut foot.startled);
                 if until_now || startled {
                     foot.start_over();
                 }
                 if startled {
-                    foot.home = foot.centre();
+                    // Still it stands where it stood, only seen otherwise.
+                    foot.home =
+                        if foot.unsettled > 0.0 { foot.centre() } else { foot.home + foot.centre() - before };
                 }
                 continue;
             }
@@ -328,7 +354,8 @@ impl Tracker {
                     self.members.push(other as u32);
                 }
             }
-            if !self.place_landing(tiles.list()) {
+            let placed = self.place_landing(tiles.list());
+            if !placed {
                 self.estimate_together(tiles, dt);
             }
         }
@@ -350,11 +377,12 @@ impl Tracker {
             return false;
         };
         let Some(landing) = guest.landing else { return false };
-        if landing::is_seen_alone(host, guest, list, &self.cells) {
-            return false;
-        }
         let both = host.tiles_with(guest);
         let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        if landing::is_seen_alone(host, guest, landing.from, &lines, list, &self.cells) {
+            host.stay(landing.from);
+            return false;
+        }
         landing::place(host, guest, landing.from, lines, &self.cells)
     }
 
@@ -382,8 +410,15 @@ impl Tracker {
         for (which, &member) in members.iter().enumerate() {
             joint.take(which, &mut self.feet[member as usize]);
         }
-        let surprise = observe(joint, members, &self.feet, list, &self.cells, dt);
+        let (surprise, force) = observe(joint, members, &self.feet, list, &self.cells, dt);
         joint.confine(self.cells.bounds());
+        if !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
+            // A leap so far that slopes mean nothing: all stay where they were foretold, and are sure of nothing.
+            for &member in members {
+                self.feet[member as usize].be_sure(LOST_M);
+            }
+            return;
+        }
         let weight = 1.0 - (-dt / SURPRISE_S).exp();
         for (which, &member) in members.iter().enumerate() {
             let foot = &mut self.feet[member as usize];
