@@ -59,6 +59,9 @@ pub struct Step<'a> {
     pub contacts: &'a [Contact],
 }
 
+/// How many events and cues of controls a frame has room for without asking for memory: more than feet can set off.
+const CUES: usize = 64;
+
 impl Engine {
     /// An engine for the controls of `layout` on a floor of this geometry.
     ///
@@ -68,9 +71,11 @@ impl Engine {
         let interaction = Interaction::new(&layout, &geometry, 0);
         let mut responses = Responses::default();
         responses.begin(&layout, interaction.controls());
+        let grounds = Grounds::new(&layout.grounds, &geometry);
+        let cues = Vec::with_capacity(CUES + grounds.most_events());
         Self {
             interaction,
-            grounds: Grounds::new(&layout.grounds, &geometry),
+            grounds,
             sensing: Sensing::new(geometry, method),
             last_frame: ForceFrame::empty(&geometry),
             geometry,
@@ -83,9 +88,9 @@ impl Engine {
             page_told: None,
             labels: Labels::default(),
             responses,
-            pending: Vec::new(),
-            events: Vec::new(),
-            cues: Vec::new(),
+            pending: Vec::with_capacity(CUES),
+            events: Vec::with_capacity(CUES),
+            cues,
             rubs: Rubs::new(),
         }
     }
@@ -367,6 +372,7 @@ impl Engine {
         interaction.inherit(&mut self.interaction);
         let mut grounds = Grounds::new(&layout.grounds, &self.geometry);
         grounds.inherit(&mut self.grounds);
+        self.cues.reserve(CUES + grounds.most_events());
         self.grounds = grounds;
         self.waiting_page = waiting_page;
         self.interaction = interaction;

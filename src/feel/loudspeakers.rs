@@ -17,6 +17,9 @@ const NEAR_M: f32 = 0.1;
 /// The loudspeakers that play one cue or rub, and how much of it each gets.
 pub(super) type Panned = ArrayVec<Output, NEAREST>;
 
+/// A share of a sound below this (-100 dB) is none.
+const INAUDIBLE: f32 = 1e-5;
+
 /// The loudspeakers around the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Loudspeakers {
@@ -62,7 +65,8 @@ impl Loudspeakers {
                 place += *centre * spot.weight;
             }
         }
-        if sum == 0.0 || !sum.is_finite() {
+        let level = to_air.min(1.0) * sum.min(1.0);
+        if level < INAUDIBLE || !sum.is_finite() {
             return heard;
         }
         let place = place / sum;
@@ -73,7 +77,7 @@ impl Loudspeakers {
         // A fourth as near as the first takes no part, but then the first must not fall silent.
         let share = |distance: f32| distance.recip() - beyond + 1e-4;
         let power: f32 = near.iter().take(NEAREST).map(|(distance, _)| share(*distance).powi(2)).sum();
-        let loudness = to_air.min(1.0) * sum.min(1.0) / power.sqrt();
+        let loudness = level / power.sqrt();
         for (distance, output) in near.into_iter().take(NEAREST) {
             let per_newton = output.per_newton * loudness * share(distance);
             heard.push(Output { per_newton, ..output });
@@ -136,9 +140,15 @@ mod tests {
     #[test]
     fn nothing_is_heard_that_is_not_meant_to_be_or_makes_no_sense() {
         let speakers = corners();
-        for (tile, weight, to_air) in
-            [(0, 1.0, 0.0), (0, 1.0, f32::NAN), (0, f32::NAN, 1.0), (0, f32::INFINITY, 1.0), (999, 1.0, 1.0)]
-        {
+        // The last is so little that it would sound in denormal numbers.
+        for (tile, weight, to_air) in [
+            (0, 1.0, 0.0),
+            (0, 1.0, f32::NAN),
+            (0, f32::NAN, 1.0),
+            (0, f32::INFINITY, 1.0),
+            (999, 1.0, 1.0),
+            (0, 1e-35, 1.0),
+        ] {
             assert!(speakers.heard(&[Spot { tile, weight }], to_air).is_empty());
         }
         assert!(

@@ -77,6 +77,11 @@ impl Grounds {
         Self { plots, last: None, events }
     }
 
+    /// How many events one frame gives at most.
+    pub(crate) fn most_events(&self) -> usize {
+        MOST_EVENTS * self.plots.len()
+    }
+
     /// Keeps the state of grounds that both have, so that editing one leaves the cracks in the other.
     pub fn inherit(&mut self, old: &mut Self) {
         self.last = old.last;
