@@ -54,18 +54,18 @@ impl Zone {
 ///
 /// # Source
 /// Measured on 60 simulated floors of the paper's parts, calibrated, each sensor's zero off by half a
-/// newton: `underfoot experiment place --floors 60`.
+/// newton and followed for a second: `underfoot experiment place --floors 60`.
 const P95_CM: [[f32; 6]; 3] = [
-    [2.36, 1.96, 1.79, 1.66, 1.63, 1.43],
-    [2.34, 1.99, 1.89, 1.83, 1.81, 1.60],
-    [2.09, 2.04, 2.04, 2.08, 2.07, 1.74],
+    [1.45, 1.43, 1.43, 1.47, 1.58, 1.42],
+    [1.71, 1.62, 1.61, 1.69, 1.77, 1.58],
+    [1.78, 1.87, 1.94, 2.02, 2.01, 1.75],
 ];
 
 /// The same with position maps.
 const MAPPED_P95_CM: [[f32; 6]; 3] = [
-    [2.03, 1.38, 1.07, 0.75, 0.50, 0.33],
-    [1.69, 1.19, 0.94, 0.65, 0.45, 0.34],
-    [1.11, 0.83, 0.61, 0.47, 0.32, 0.35],
+    [0.56, 0.42, 0.34, 0.30, 0.27, 0.27],
+    [0.78, 0.41, 0.34, 0.27, 0.23, 0.30],
+    [0.45, 0.36, 0.26, 0.15, 0.16, 0.32],
 ];
 
 /// The error that 95 in 100 feet keep to which press somewhere in `area` with `force`, in metres:

@@ -65,64 +65,58 @@ pub struct Way {
     pub method: Method,
     /// Whether the tiles' position maps are used.
     pub mapped: bool,
-    /// Whether the floor has been empty for a while before, so that the zeros could be followed.
-    pub settled: bool,
     /// What it is called in tables.
     pub name: &'static str,
 }
 
 impl Way {
     /// All that are compared, in the order of the tables: the paper's own first.
-    pub const ALL: [Self; 4] = [
-        Self { method: Method::Eq4, mapped: false, settled: false, name: "Eq. 4" },
-        Self { method: Method::Tracker, mapped: false, settled: false, name: "tracker" },
-        Self { method: Method::Tracker, mapped: true, settled: false, name: "with map" },
-        Self { method: Method::Tracker, mapped: true, settled: true, name: "settled" },
+    pub const ALL: [Self; 3] = [
+        Self { method: Method::Eq4, mapped: false, name: "Eq. 4" },
+        Self { method: Method::Tracker, mapped: false, name: "tracker" },
+        Self { method: Method::Tracker, mapped: true, name: "with map" },
     ];
 }
 
-/// How long a settled floor has been empty: its zeros, half a newton off, are followed at a newton a minute.
-const SETTLED_MS: u32 = 100_000;
+/// How long a floor has been empty at least before somebody comes.
+const EMPTY_MS: u32 = 1_000;
 
 /// A floor of three by three tiles, of which the middle one is tried.
 pub(super) struct Bench {
-    /// The floor just after its zeros have moved, and after nobody has been on it for a while.
-    rigs: [Rig; 2],
+    rig: Rig,
     sensing: [Sensing; Way::ALL.len()],
     tried: usize,
 }
 
 impl Bench {
     pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
-        let fresh = Rig::of_mapped_parts(geometry(), seed)?;
-        let mut settled = fresh.clone();
-        settled.hold(SETTLED_MS, &[], |_| {});
-        Ok(Self::over([fresh, settled]))
+        let mut rig = Rig::of_mapped_parts(geometry(), seed)?;
+        rig.hold(EMPTY_MS, &[], |_| {});
+        Ok(Self::over(rig))
     }
 
-    fn over(rigs: [Rig; 2]) -> Self {
-        let sensing = Way::ALL.map(|Way { method, mapped, settled, .. }| {
-            let rig = &rigs[usize::from(settled)];
-            if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
-        });
-        Self { rigs, sensing, tried: 0 }
+    fn over(rig: Rig) -> Self {
+        let sensing =
+            Way::ALL.map(
+                |Way { method, mapped, .. }| {
+                    if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
+                },
+            );
+        Self { rig, sensing, tried: 0 }
     }
 
     /// Where each way finds the thing, and how sure it is: its heaviest contact; `None` if it finds none.
     pub(super) fn find(&mut self, thing: Thing, at: Vec2, force: Newtons) -> [Option<Found>; Way::ALL.len()] {
         self.tried += 1;
         let load = thing.load(at, force, self.tried);
-        for (settled, rig) in [false, true].into_iter().zip(&mut self.rigs) {
-            let ways = Way::ALL.iter().zip(&mut self.sensing).filter(|(way, _)| way.settled == settled);
-            let mut sensing: Vec<_> = ways.map(|(_, sensing)| sensing).collect();
-            let mut sense = |frame: &_| {
-                for sensing in &mut sensing {
-                    sensing.update(frame);
-                }
-            };
-            rig.hold(PAUSE_MS, &[], &mut sense);
-            rig.hold(SETTLE_MS, &[load], &mut sense);
-        }
+        let sensing = &mut self.sensing;
+        let mut sense = |frame: &_| {
+            for sensing in sensing.iter_mut() {
+                sensing.update(frame);
+            }
+        };
+        self.rig.hold(PAUSE_MS, &[], &mut sense);
+        self.rig.hold(SETTLE_MS, &[load], &mut sense);
         self.sensing.each_ref().map(|sensing| {
             let heaviest = sensing.contacts().iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0));
             heaviest.map(|contact| Found { off: contact.centroid - at, covariance: contact.covariance })
@@ -399,7 +393,7 @@ mod tests {
 
     #[test]
     fn an_ideal_floor_finds_points_and_feet_where_they_are() {
-        let mut bench = Bench::over([(); 2].map(|()| Rig::ideal(geometry())));
+        let mut bench = Bench::over(Rig::ideal(geometry()));
         for thing in Thing::ALL {
             for at in raster(&geometry(), 4).chain((0..8).map(place_at_a_seam)) {
                 for found in bench.find(thing, at, Newtons(100.0)) {

@@ -9,12 +9,21 @@
 //!
 //! A foot that stands is never near zero, so no standing foot is taken off, however long
 //! it stands and creeps. The worst that can be zeroed away is a resting touch of 4 N.
+//!
+//! What a zero is off by within a newton is no drift but what any tare leaves, and costs light
+//! feet half a centimetre: that much is followed at once, once it has been quiet for a moment.
 
 use super::slow::Block;
 use super::trouble::{Sensor, Trouble};
 
 /// The fastest the zero follows, in newtons per second: one newton a minute.
 const RATE: f32 = 1.0 / 60.0;
+
+/// How far from where it has been followed to so slowly a zero is followed at once, in newtons, after how long, and how
+/// soon, in seconds.
+const SMALL_N: f32 = 1.0;
+const MOMENT_S: f32 = 0.2;
+const SOON_S: f32 = 0.15;
 
 /// How far the zero is followed, as a share of the sensor's range.
 pub(super) const LIMIT: f32 = 0.2;
@@ -37,6 +46,8 @@ const PATIENCE_S: f32 = 2.0;
 pub(in crate::sense) struct Drift {
     /// The averages when it became quiet.
     since: [f32; 4],
+    /// How far each zero has been followed slowly.
+    slowly: [f32; 4],
     quiet_for: f32,
     /// Seconds for which each sensor has scattered on the empty tile, or has not.
     noisy_for: [f32; 4],
@@ -70,15 +81,18 @@ impl Drift {
             return;
         }
         self.quiet_for += block.seconds;
-        if self.quiet_for < PATIENCE_S {
+        if self.quiet_for < MOMENT_S {
             return;
         }
         // What it follows must not in the end look like unrest.
         self.since = block.means;
-        let most = RATE * block.seconds;
+        let most = if self.quiet_for < PATIENCE_S { 0.0 } else { RATE * block.seconds };
+        let soon = 1.0 - (-block.seconds / SOON_S).exp();
         for corner in known.collect::<arrayvec::ArrayVec<usize, 4>>() {
             let (sensor, limit, zero) = (&mut sensors[corner], limits[corner], &mut zeros[corner]);
-            let moved = *zero + block.means[corner].clamp(-most, most);
+            let slowly = &mut self.slowly[corner];
+            *slowly += (*zero + block.means[corner] - *slowly).clamp(-most, most);
+            let moved = *slowly + (*zero + soon * block.means[corner] - *slowly).clamp(-SMALL_N, SMALL_N);
             *zero = moved.clamp(-limit, limit);
             if moved.abs() > limit {
                 sensor.find(Trouble::Drifted, block.means[corner]);

@@ -119,7 +119,8 @@ impl Tracker {
         // Farther away than a shoe is long, it is nothing of theirs.
         let heir = away.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
         let Some((_, heir)) = heir else { return };
-        self.feet[heir].tiles = self.feet[heir].tiles_with(gone);
+        let left = std::mem::take(&mut self.feet[which].tiles);
+        self.feet[heir].inherit(&left);
     }
 
     /// How long a foot must seem to have handed its weight over to the others, as it does now, to be gone, in seconds:
@@ -202,7 +203,7 @@ impl Tracker {
                 if self.feet[gone].spare > ENOUGH_S {
                     let foot = &mut self.feet[stay];
                     foot.stand(lines.force, lines.middle);
-                    foot.tiles = both;
+                    foot.inherit(&both);
                     foot.be_calm();
                 }
             }

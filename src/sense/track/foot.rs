@@ -1,5 +1,6 @@
 //! One foot: what is known of it, and how that changes with time.
 
+use arrayvec::ArrayVec;
 use glam::DVec2;
 use smallvec::SmallVec;
 
@@ -115,7 +116,7 @@ pub(super) struct Foot {
     /// Whether other feet share its tiles.
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
-    pub habits: SmallVec<[Habit; 6]>,
+    pub habits: SmallVec<[Habit; 8]>,
     /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
     pub surprise: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
@@ -152,7 +153,7 @@ pub(super) struct Past {
     pub centre: DVec2,
     pub velocity: DVec2,
     /// Slow force and moment (about the tile's centre) per tile.
-    pub loads: SmallVec<[SlowLoad; 8]>,
+    pub loads: SmallVec<[SlowLoad; 12]>,
 }
 
 #[derive(Clone, Copy, Debug, Default)]
@@ -301,11 +302,24 @@ impl Foot {
         self.landing.is_some_and(|landing| landing.host == host.id)
     }
 
-    /// Its tiles and those of `other`, each once.
-    pub(super) fn tiles_with(&self, other: &Self) -> SmallVec<[u32; 12]> {
-        let mut both = self.tiles.clone();
-        both.extend(other.tiles.iter().copied().filter(|position| !self.tiles.contains(position)));
+    /// Its tiles and those of `other`, each once, as far as there is room: far more than two feet cover.
+    pub(super) fn tiles_with(&self, other: &Self) -> ArrayVec<u32, 32> {
+        let mut both = ArrayVec::new();
+        for &position in self.tiles.iter().chain(&other.tiles) {
+            if !both.is_full() && !both.contains(&position) {
+                both.push(position);
+            }
+        }
         both
+    }
+
+    /// Takes over `tiles` as far as there is room without asking for memory.
+    pub(super) fn inherit(&mut self, tiles: &[u32]) {
+        for &position in tiles {
+            if self.tiles.len() < self.tiles.capacity() && !self.tiles.contains(&position) {
+                self.tiles.push(position);
+            }
+        }
     }
 
     /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.

@@ -36,6 +36,25 @@ fn s4_drift_on_an_empty_floor_is_followed_and_presses_nothing() {
 }
 
 #[test]
+fn what_a_tare_leaves_is_gone_in_a_second_and_what_rests_there_is_not() {
+    let mut bench = Bench::new(Sensing::default());
+    let off = |bench: &mut Bench, offsets: [f32; 4]| {
+        for (corner, offset) in Corner::ALL.into_iter().zip(offsets) {
+            let fault = SensorFault::Offset(Newtons(offset));
+            bench.sim.set_fault(SensorId { tile: TILE, corner }, Some(fault));
+        }
+        bench.run(1000);
+        bench.snapshot().tiles[0].forces
+    };
+    let tared = off(&mut bench, [0.6, -0.5, 0.4, 0.8]);
+    assert!(tared.iter().all(|force| force.abs() < 0.1), "{tared:?}");
+    // A light thing on one corner: of that only a newton is taken for the sensor's own.
+    let laid = off(&mut bench, [2.6, -0.5, 0.4, 0.8]);
+    assert!(laid[0] > 1.2, "{laid:?}");
+    assert_eq!(bench.events, []);
+}
+
+#[test]
 fn s4_drift_too_fast_to_follow_presses_nothing_either() {
     let mut bench = Bench::new(Sensing::default());
     // The whole tile by 30 N a corner, twice what a press takes, in five minutes.

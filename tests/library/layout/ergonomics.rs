@@ -40,13 +40,14 @@ fn sizes_of_shoes() {
 }
 
 #[test]
-fn a_light_press_is_found_less_exactly_and_wants_a_larger_control() {
-    let press = |newtons: u32| {
-        of_one(&format!("at: (0.9, 0.9), size: (0.3, 0.09), press_n: {newtons}, release_n: 20"))
-    };
-    // Half of 9 cm is 4.5 cm; half of that lies between the errors of 2.0 cm at 60 N and 2.4 cm at 40 N.
-    assert_eq!(press(60), ["U101"]);
-    assert_eq!(press(40), ["U101", "U105"]);
+fn where_maps_leave_nothing_else_a_light_press_is_found_less_exactly() {
+    let mut floor = Floor::default();
+    let area = Rect::from_centre_size(Vec2::splat(0.36), Vec2::splat(0.02));
+    let error = |floor: &Floor, newtons: f32| predicted_error_m(floor, area, Newtons(newtons));
+    // Without maps the parts' spread is most of it, and that grows with the force.
+    assert!(error(&floor, 40.0) > 0.012);
+    floor.position_maps.fill(Some(PositionMap::NONE));
+    assert!(error(&floor, 40.0) > 1.5 * error(&floor, 120.0));
 }
 
 #[test]
