@@ -8,6 +8,9 @@ use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, NORTH, STATES};
 pub(super) const MOST_FEET: usize = 8;
 const MOST: usize = MOST_FEET * STATES;
 
+/// Variance below which a number is as well known as it ever will be.
+const LEAST_VARIANCE: f64 = 1e-9;
+
 /// An extended Kalman filter over the states of up to [`MOST_FEET`] feet.
 ///
 /// Tiles that two feet share say only what the two add up to; which foot has
@@ -153,8 +156,16 @@ impl Joint {
                 state[half] = state[half].clamp(super::foot::HALF_LEAST, super::foot::HALF_MOST);
             }
         }
-        for state in 0..self.states {
-            self.p[state][state] = self.p[state][state].max(1e-12);
+        let n = self.states;
+        for state in 0..n {
+            if self.p[state][state] < LEAST_VARIANCE {
+                // What rounding has left of it has nothing to do with the others any more.
+                for other in 0..n {
+                    self.p[state][other] = 0.0;
+                    self.p[other][state] = 0.0;
+                }
+                self.p[state][state] = LEAST_VARIANCE;
+            }
         }
     }
 }
