@@ -208,7 +208,7 @@ fn s7_hum_under_people() {
         assert_found("hum of 1 N", seed, &mild, 0.97);
         // The worst of the table, 5 N, looks like light feet everywhere. None of them presses.
         let bad = visited(newtons(seed), seed, hum(4.0));
-        assert_found("hum of 4 N", seed, &bad, 0.45);
+        assert_found("hum of 4 N", seed, &bad, 0.6);
         assert_eq!(bad.worst, Quality::Degraded);
     }
 }
@@ -244,7 +244,7 @@ fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
         let (followed, troubles) = (&visited.followed, &visited.troubles);
         // One foot alone is always found; of two on one tile the sum is, and the doubt about each is told.
         assert!(followed.one_foot.quantile(0.5).unwrap() < 0.02, "{}", followed.one_foot);
-        assert!(followed.share_missed() < 0.25, "{}", followed.share_missed());
+        assert!(followed.share_missed() < 0.08, "{}", followed.share_missed());
         assert_eq!(troubles, &[]);
     }
 }
