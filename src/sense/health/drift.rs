@@ -6,17 +6,19 @@
 //!   what counts as load, so whatever stands there operates nothing anyway;
 //! - none of the eight tiles around may carry anything, for a foot's edge may reach over;
 //! - all of this must have been so, and quiet, for two seconds on end: a person sways.
+//!   For the first newton, a fifth of a second is enough; see below.
 //!
 //! A foot that stands is never near zero, so no standing foot is taken off, however long
 //! it stands and creeps. The worst that can be zeroed away is a resting touch of 4 N.
 //!
 //! What a zero is off by within a newton is no drift but what any tare leaves, and costs light
-//! feet half a centimetre: that much is followed at once, once it has been quiet for a moment.
+//! feet half a centimetre: that much, about where the zero has been followed to slowly, is
+//! followed at once.
 
 use super::slow::Block;
 use super::trouble::{Sensor, Trouble};
 
-/// The fastest the zero follows, in newtons per second: one newton a minute.
+/// The fastest the zero follows beyond [`SMALL_N`], in newtons per second: one newton a minute.
 const RATE: f32 = 1.0 / 60.0;
 
 /// How far from where it has been followed to so slowly a zero is followed at once, in newtons, after how long, and how
@@ -38,7 +40,7 @@ const QUIET_N: f32 = 0.5;
 /// How far readings may scatter within a block on a sensor that is not noisy, in newtons.
 const SCATTER_N: f32 = 4.0;
 
-/// For how long a tile must be empty and quiet, in seconds.
+/// For how long a tile must be empty and quiet before its zeros are followed slowly, in seconds.
 const PATIENCE_S: f32 = 2.0;
 
 /// One tile's state as far as drift is concerned.
@@ -46,7 +48,7 @@ const PATIENCE_S: f32 = 2.0;
 pub(in crate::sense) struct Drift {
     /// The averages when it became quiet.
     since: [f32; 4],
-    /// How far each zero has been followed slowly.
+    /// How far each zero has been followed slowly, in newtons.
     slowly: [f32; 4],
     quiet_for: f32,
     /// Seconds for which each sensor has scattered on the empty tile, or has not.
@@ -54,6 +56,11 @@ pub(in crate::sense) struct Drift {
 }
 
 impl Drift {
+    /// Forgets what it has seen of the tile, for frames are missing, but not how far its zeros have been followed.
+    pub(super) fn interrupt(&mut self) {
+        *self = Self { slowly: self.slowly, ..Self::default() };
+    }
+
     /// Adds a block, and moves the `zeros` if the tile is empty and quiet; `alone`
     /// says that no tile around it carries anything.
     pub(super) fn follow(
@@ -115,5 +122,30 @@ impl Drift {
                 sensor.review(block.means[corner], !scatters, true, block.seconds);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gap_in_the_frames_undoes_nothing_of_what_was_followed() {
+        let (mut drift, mut zeros, mut sensors) = (Drift::default(), [0.0; 4], [Sensor::default(); 4]);
+        let mut empty = |drift: &mut Drift, zeros: &mut [f32; 4], offset: f32, blocks: u32| {
+            for _ in 0..blocks {
+                let means = zeros.map(|zero| offset - zero);
+                let block = Block { means, lows: means, seconds: 0.064, ..Block::default() };
+                drift.follow(&block, true, &[100.0; 4], zeros, &mut sensors);
+            }
+        };
+        // Eight newtons in ten minutes, as fast as a zero may drift to be followed.
+        for tenth in 0..80_u8 {
+            empty(&mut drift, &mut zeros, f32::from(tenth) / 10.0, 117);
+        }
+        assert!(zeros.iter().all(|zero| (zero - 7.9).abs() < 0.1), "{zeros:?}");
+        drift.interrupt();
+        empty(&mut drift, &mut zeros, 7.9, 100);
+        assert!(zeros.iter().all(|zero| (zero - 7.9).abs() < 0.1), "{zeros:?}");
     }
 }

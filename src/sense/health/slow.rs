@@ -51,14 +51,14 @@ pub(super) struct Slow {
 }
 
 /// The averages of one block.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Block {
     pub(super) means: [f32; 4],
     /// Lowest reading.
-    lows: [f32; 4],
+    pub(super) lows: [f32; 4],
     /// Highest less lowest reading.
     pub(super) spreads: [f32; 4],
-    ends: [End; 4],
+    pub(super) ends: [End; 4],
     /// Since the block before.
     pub(super) seconds: f32,
 }
@@ -106,7 +106,7 @@ impl Slow {
         let seconds = seconds.filter(|&seconds| !self.broken && seconds <= GAP_S);
         let Some(seconds) = seconds else {
             self.tracks = Default::default();
-            self.drift = Drift::default();
+            self.drift.interrupt();
             return None;
         };
         let means = self.sums.map(|sum| sum / f32::from(VISITS));
