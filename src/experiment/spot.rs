@@ -96,12 +96,10 @@ impl Bench {
     }
 
     fn over(rig: Rig) -> Self {
-        let sensing =
-            Way::ALL.map(
-                |Way { method, mapped, .. }| {
-                    if mapped { rig.sensing(method) } else { rig.sensing_without_maps(method) }
-                },
-            );
+        let sensing = Way::ALL.map(|way| match way.mapped {
+            true => rig.sensing(way.method),
+            false => rig.sensing_without_maps(way.method),
+        });
         Self { rig, sensing, tried: 0 }
     }
 

@@ -2,7 +2,7 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 
 use super::Spot;
-use super::mix::Output;
+use super::mix::{FAINT, Output};
 use crate::floor::{Actuator, Loudspeaker};
 
 /// Loudspeakers that play one cue or rub at most.
@@ -16,9 +16,6 @@ const NEAR_M: f32 = 0.1;
 
 /// The loudspeakers that play one cue or rub, and how much of it each gets.
 pub(super) type Panned = ArrayVec<Output, NEAREST>;
-
-/// A share of a sound below this (-100 dB) is none.
-const INAUDIBLE: f32 = 1e-5;
 
 /// The loudspeakers around the floor.
 #[derive(Clone, Debug)]
@@ -66,7 +63,7 @@ impl Loudspeakers {
             }
         }
         let level = to_air.min(1.0) * sum.min(1.0);
-        if level < INAUDIBLE || !sum.is_finite() {
+        if level < FAINT || !sum.is_finite() {
             return heard;
         }
         let place = place / sum;

@@ -5,6 +5,9 @@ use crate::floor::Actuator;
 /// Channels that the output stage works on side by side.
 pub(super) const LANES: usize = 16;
 
+/// A share of a sound below this (-100 dB) is none.
+pub(super) const FAINT: f32 = 1e-5;
+
 /// Where a tile's share of a cue goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Output {

@@ -4,7 +4,7 @@ use super::duck::{Ducks, MAX_REACHES};
 use super::group::Drive;
 use super::{Row, within};
 use crate::feel::loudspeakers::{PER_NEWTON, Panned};
-use crate::feel::mix::{Mix, Output, Wiring};
+use crate::feel::mix::{FAINT, Mix, Output, Wiring};
 use crate::feel::{Friction, Hum, Lasting, Manner, Rub, Spots, Tone};
 
 /// Time in which level, speed and pitch follow the foot to 1/e.
@@ -12,9 +12,6 @@ const FOLLOW_S: f32 = 0.004;
 
 /// Time in which a new rub fades in, and one that is over fades out.
 const FADE_S: f32 = 0.015;
-
-/// A share of a texture below this (-100 dB) is none.
-const FAINT: f32 = 1e-5;
 
 /// Strongest that one voice plays, in newtons: far above anything an actuator gives.
 const STRONGEST_N: f32 = 1000.0;

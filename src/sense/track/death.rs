@@ -35,7 +35,8 @@ const OWN_OF_FAINT_M: f64 = 0.23;
 /// Share of all below which a tile's load is no proof.
 const OWN_SHARE: f64 = 0.015;
 
-/// Least distance between feet side by side, in metres.
+/// How far from where the standing foot stands the common centre of pressure lies at least once another foot has taken
+/// over, in metres: shoes do not overlap.
 const BESIDE_M: f64 = 0.11;
 
 /// A light load this near to a heavy foot, as a share of it, may be that foot's rim.
@@ -123,8 +124,8 @@ impl Tracker {
         self.feet[heir].inherit(&left);
     }
 
-    /// How long a foot must seem to have handed its weight over to the others, as it does now, to be gone, in seconds:
-    /// what little is left to it may as well be what is not known of them.
+    /// For how many seconds a foot must seem to have handed its weight over to the others, as it does now, to be gone:
+    /// what little is left to it may as well be what is not known of them. `None` if it does not seem so.
     fn handed_over(&self, foot: &Foot, list: &[LoadedTile]) -> Option<f64> {
         let all: f64 = self.mates.of(foot.group).map(|mate| self.feet[mate].force()).sum();
         if foot.force() > OF_ITS_MOST * foot.peak || foot.force() > OF_ALL * all {
@@ -144,10 +145,12 @@ impl Tracker {
                 return None;
             }
         }
-        if !self.has_own(foot, list, OWN_M, 0.0) {
-            Some(HANDED_S)
+        if self.has_own(foot, list, OWN_M, OWN_SHARE * all) {
+            None
+        } else if self.has_own(foot, list, OWN_M, 0.0) {
+            Some(GHOST_S)
         } else {
-            (!self.has_own(foot, list, OWN_M, OWN_SHARE * all)).then_some(GHOST_S)
+            Some(HANDED_S)
         }
     }
 

@@ -40,7 +40,7 @@ pub(super) const LANDS_S: f64 = 0.25;
 
 /// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
 /// while another one lands, in metres.
-const STRAY_LEAST_M: f64 = 0.01;
+pub(super) const STRAY_LEAST_M: f64 = 0.01;
 const STRAY_MOST_M: f64 = 0.06;
 /// How far it strays per speed, in seconds: as long as two feet are down while one walks.
 const STRAY_S: f64 = 0.15;
@@ -326,11 +326,13 @@ impl Foot {
     pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
         // A foot that shares its tiles is itself known only roughly.
         let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
-        let (share, reach) = match () {
-            () if self.shared => (0.08, 0.25),
+        let (share, reach) = if self.shared {
+            (0.08, 0.25)
+        } else if ahead && self.force() < SLIDING_N {
             // A foot that slides on comes onto the next tile with its rim.
-            () if ahead && self.force() < SLIDING_N => (0.1, 0.24),
-            () => (0.02, 0.22),
+            (0.1, 0.24)
+        } else {
+            (0.02, 0.22)
         };
         if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
     }

@@ -12,7 +12,7 @@
 use glam::DVec2;
 
 use super::Cells;
-use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M};
+use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M, STRAY_LEAST_M};
 use super::lines::{Axis, Line, Lines};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
@@ -29,8 +29,7 @@ const USUAL_SPREAD: f64 = 0.5;
 /// Share of the way of the common centre of pressure that tiles which only the new foot presses account for, when
 /// it is better measured there: the rest of that way is lost in the standing foot's sway.
 const MOSTLY: f64 = 0.8;
-/// How far a standing foot sways in a moment, in metres.
-const SWAYS_M: f64 = 0.01;
+
 /// Share of the standing foot below which a tile is none of its own.
 const NOT_ITS_OWN: f64 = 0.02;
 
@@ -96,7 +95,7 @@ pub(super) fn is_seen_alone(
     let own = tiles.filter(|tile| host.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
     let own: DVec2 = own.map(|tile| (tile.centroid.as_dvec2() - from) * f64::from(tile.wrench.force)).sum();
     let all = (lines.middle - from) * lines.force;
-    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAYS_M + lines.doubt) * lines.force
+    (all - own).length() < (1.0 - MOSTLY) * all.length() + (STRAY_LEAST_M + lines.doubt) * lines.force
 }
 
 /// Places `guest` beside `host`, which stands still at `from`; `lines` is what the tiles of both carry.

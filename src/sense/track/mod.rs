@@ -68,8 +68,8 @@ const NOBODY: u32 = u32::MAX;
 const MOST_SHARE: f64 = 1.3;
 const MOST_MORE_N: f64 = 50.0;
 
-/// How little is known of the place of a foot that the filter has lost, as a standard deviation in metres.
-const LOST_M: f64 = 0.05;
+/// How little is known of the place of a foot that the filter has thrown about, as a standard deviation in metres.
+const THROWN_M: f64 = 0.05;
 
 /// How long a foot must have been down to be somebody's partner, in seconds.
 const SEEN_S: f64 = 0.03;
@@ -354,8 +354,7 @@ impl Tracker {
                     self.members.push(other as u32);
                 }
             }
-            let placed = self.place_landing(tiles.list());
-            if !placed {
+            if !self.place_landing(tiles.list()) {
                 self.estimate_together(tiles, dt);
             }
         }
@@ -415,7 +414,7 @@ impl Tracker {
         if !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
             // A leap so far that slopes mean nothing: all stay where they were foretold, and are sure of nothing.
             for &member in members {
-                self.feet[member as usize].be_sure(LOST_M);
+                self.feet[member as usize].be_sure(THROWN_M);
             }
             return;
         }
