@@ -7,9 +7,10 @@
 //! ```
 //!
 //! [`plate`] knows what a rigid plate allows, [`slow`] averages each tile over
-//! 64 ms and looks for what takes seconds, [`drift`] follows the zero. What must
-//! be known before a control could be pressed is decided here, in the same frame.
+//! 64 ms and looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
+//! lingers of a load. What must be known before a control could be pressed is decided here, in the same frame.
 
+mod creep;
 mod drift;
 mod plate;
 mod report;
@@ -23,6 +24,7 @@ use crate::units::{Instant, Newtons};
 pub use report::SensorHealth;
 pub use trouble::Trouble;
 
+use self::creep::{Creep, Memory, Parts};
 use self::slow::{SHARES, Slow};
 use self::trouble::Sensor;
 
@@ -70,6 +72,12 @@ pub(super) struct Health {
     geometry: Geometry,
     /// What each sensor reads without load beyond its tare, as followed so far.
     zeros: Vec<[f32; 4]>,
+    /// What each reads too much besides, for it creeps, and why.
+    crept: Vec<[f32; 4]>,
+    memories: Vec<Memory>,
+    creep: Creep,
+    /// When each share of the floor was last visited.
+    visited: [Option<Instant>; SHARES],
     /// How far each may be followed: 20 % of the sensor's range.
     limits: Vec<[f32; 4]>,
     ends: Vec<[End; 4]>,
@@ -131,6 +139,10 @@ impl Health {
         Self {
             geometry: floor.geometry,
             zeros: vec![[0.0; 4]; tiles],
+            crept: vec![[0.0; 4]; tiles],
+            memories: vec![Memory::default(); tiles],
+            creep: Creep::default(),
+            visited: [None; SHARES],
             limits: (0..tiles).map(limits).collect(),
             ends: vec![[End::Within; 4]; tiles],
             guessed: vec![false; tiles],
@@ -154,7 +166,7 @@ impl Health {
 
     /// What to take off a reading of this sensor besides its tare.
     pub(super) fn zero(&self, tile: usize, corner: usize) -> f32 {
-        self.zeros[tile][corner]
+        self.zeros[tile][corner] + self.crept[tile][corner]
     }
 
     /// Notes that a sensor has read `force` newtons (tared, zero taken off) by this law, at this end of its
@@ -249,10 +261,15 @@ impl Health {
     fn visit_share(&mut self, frame: &ForceFrame) {
         let tiles = self.slow.len();
         let share = self.number as usize % SHARES;
+        let last = self.visited[share].replace(frame.at);
+        let parts = Parts::of(last.map_or(0.0, |last| frame.at.since(last).as_secs_f32()));
         for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
             let heard = is_heard(&frame.quality[tile], &self.sensors[tile]);
             if self.slow[tile].add(frame.forces[tile], self.ends[tile], heard) {
                 self.finish_block(tile, frame.at);
+            }
+            if heard && self.memories[tile].follow(frame.forces[tile], &parts) {
+                self.crept[tile] = self.creep.of(&self.memories[tile]);
             }
         }
     }
@@ -260,7 +277,7 @@ impl Health {
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
         let foreign = self.is_foreign();
-        let Self { zeros, limits, guessed, sensors, slow, .. } = self;
+        let Self { zeros, limits, guessed, sensors, slow, crept, memories, creep, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
@@ -273,6 +290,11 @@ impl Health {
             }
             if !guessed[tile] && !foreign {
                 slow.judge(&block, alone, sensors);
+            }
+            let is_sound = sensors.iter().all(|sensor| sensor.trouble().is_none());
+            if is_sound && !block.ends.contains(&End::High) {
+                let reads: f32 = block.means.iter().chain(&crept[tile]).sum();
+                creep.learn(&mut memories[tile], reads, block.seconds);
             }
             slow.drift.follow(&block, alone, &limits[tile], &mut zeros[tile], sensors);
         }

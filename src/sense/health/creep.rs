@@ -1,0 +1,177 @@
+//! Undoing the creep of sensors: how a reading goes on growing under a steady force, and lingers after it.
+//!
+//! Force-sensing resistors creep by some per cent for each decade of time. Under a foot that hardly matters; but
+//! when it leaves, what lingers looks like a light foot that stays, for seconds. A sensor that creeps by the share
+//! c of its load for each decade reads c m more than it should, where m sums how well the load is remembered over
+//! a tenth of a second, over one, ten and a hundred seconds. How large c is, feet that leave tiles show: what is
+//! left of them, over m, is c, a moment later and a second later. What a foot leaves that goes on resting there
+//! does not fade with the memory, and teaches nothing.
+
+/// Over which times loads are remembered, in seconds: a decade apart.
+const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
+
+/// Least memory of a tile, its sensors' together, that shows how they creep, in newtons.
+const TELLS_N: f32 = 60.0;
+
+/// What is left on a tile, as a share of its memory, that may be creep; more is load.
+const MOST: f32 = 0.12;
+
+/// Creep below which sensors count as free of it, and above which it is something else, as shares for each decade (the
+/// maker's figure for the usual part is 0.05).
+const LEAST: f32 = 0.02;
+const WORST: f32 = 0.1;
+
+/// When after a foot has left a tile it is looked at what lingers, in seconds, and by how much, as a share of itself,
+/// the two looks may differ.
+const LOOKS_S: [f32; 2] = [0.25, 1.0];
+const ALIKE: f32 = 0.25;
+
+/// How much what one foot left moves the estimate, how much more what the first one does, and which share of feet
+/// leaves less. One foot alone proves nothing.
+const STEP: f32 = 0.004;
+const FIRST: f32 = 0.045;
+const QUANTILE: f32 = 0.4;
+
+/// Load that leaves nothing to speak of, in newtons.
+const NOTHING_N: f32 = 0.5;
+
+/// How far in the past one look may lie for the next, in seconds.
+const GAP_S: f32 = 0.5;
+
+/// How a floor's sensors creep, as far as is known.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Creep {
+    /// Share of a load for each decade.
+    share: f32,
+    /// How many feet it was learnt from.
+    feet: f32,
+}
+
+/// What the sensors of one tile remember of their loads.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Memory {
+    loads: [[f32; 4]; TIMES_S.len()],
+    /// Whether there is anything to forget.
+    is_stirred: bool,
+    /// Seconds since a foot has left the tile, and what share of the memory lingered at the first look.
+    left_for: f32,
+    lingered: f32,
+}
+
+/// How much of a new load each memory takes in over some time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Parts([f32; TIMES_S.len()]);
+
+impl Parts {
+    /// Over `dt` seconds.
+    pub(super) fn of(dt: f32) -> Self {
+        Self(TIMES_S.map(|time_s| 1.0 - (-dt.min(GAP_S) / time_s).exp()))
+    }
+}
+
+impl Creep {
+    /// Learns from what the sensors of a tile read together, nothing taken off for creep, `seconds` after the last look.
+    pub(super) fn learn(&mut self, memory: &mut Memory, reads: f32, seconds: f32) {
+        let whole: f32 = memory.sums().iter().sum();
+        if whole < TELLS_N || reads.abs() > MOST * whole {
+            memory.left_for = 0.0;
+            return;
+        }
+        let before = memory.left_for;
+        memory.left_for += seconds;
+        let is_now = |look: f32| before < look && memory.left_for >= look;
+        let lingers = reads / whole;
+        if is_now(LOOKS_S[0]) {
+            memory.lingered = lingers;
+        } else if is_now(LOOKS_S[1]) {
+            let differs = (lingers - memory.lingered).abs();
+            if differs < ALIKE * memory.lingered.abs() || lingers.max(memory.lingered) < LEAST {
+                let less = lingers < self.share;
+                self.feet += 1.0;
+                let step = STEP + FIRST / self.feet;
+                self.share += step * if less { QUANTILE - 1.0 } else { QUANTILE };
+                self.share = self.share.clamp(0.0, WORST);
+            }
+        }
+    }
+
+    /// What each sensor of a tile reads too much, in newtons.
+    pub(super) fn of(&self, memory: &Memory) -> [f32; 4] {
+        if self.share < LEAST { [0.0; 4] } else { memory.sums().map(|sum| self.share * sum) }
+    }
+}
+
+impl Memory {
+    /// Lets some time pass under these forces; true if anything has changed.
+    pub(super) fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
+        if !self.is_stirred && forces.iter().all(|&force| force < NOTHING_N) {
+            return false;
+        }
+        for (loads, part) in self.loads.iter_mut().zip(parts) {
+            for (load, force) in loads.iter_mut().zip(forces) {
+                if force.is_finite() {
+                    *load += part * (force.max(0.0) - *load);
+                }
+            }
+        }
+        self.is_stirred = self.loads.iter().flatten().any(|&load| load > NOTHING_N);
+        if !self.is_stirred {
+            self.loads = Default::default();
+        }
+        true
+    }
+
+    /// How well each sensor's load is remembered, all times together, in newtons.
+    pub(super) fn sums(&self) -> [f32; 4] {
+        std::array::from_fn(|corner| self.loads.iter().map(|loads| loads[corner]).sum())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Feet of 150 N per sensor step on a tile for a second and leave it for two, `times`; gives what a sensor
+    /// that creeps by `creep` then still seems to carry, and the largest error under the last foot.
+    fn walked_over(creep: f32, times: u32, left_n: f32) -> (f32, f32) {
+        let (mut known, mut memory, mut truth) = (Creep::default(), Memory::default(), Memory::default());
+        let parts = Parts::of(0.008);
+        let (mut after, mut worst) = (0.0, 0.0_f32);
+        for step in 0..times * 375 {
+            let force = if step % 375 < 125 { 150.0 } else { left_n };
+            truth.follow([force; 4], &parts);
+            let reads = force + creep * truth.sums()[0];
+            let off = known.of(&memory)[0];
+            memory.follow([reads - off; 4], &parts);
+            if step % 8 == 0 {
+                known.learn(&mut memory, 4.0 * reads, 0.064);
+            }
+            let error = reads - off - force;
+            if step % 375 == 160 {
+                after = error;
+            }
+            if step >= (times - 1) * 375 && step % 375 < 125 {
+                worst = worst.max(error.abs());
+            }
+        }
+        (after, worst)
+    }
+
+    #[test]
+    fn what_lingers_after_a_foot_is_learnt_and_taken_off() {
+        let (before, _) = walked_over(0.05, 1, 0.0);
+        assert!(
+            before > 4.0,
+            "a quarter of a second later {before} N on each of four sensors look like a foot"
+        );
+        let (after, under) = walked_over(0.05, 40, 0.0);
+        assert!(after.abs() < 1.0 && under < 5.0, "{after} N after and {under} N under the last foot");
+    }
+
+    #[test]
+    fn nothing_is_taken_off_sensors_that_do_not_creep() {
+        assert_eq!(walked_over(0.0, 40, 0.0), (0.0, 0.0));
+        // A foot that presses and then rests there with a twentieth of that, time and again.
+        assert_eq!(walked_over(0.0, 40, 7.5), (0.0, 0.0));
+    }
+}
