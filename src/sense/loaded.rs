@@ -3,7 +3,8 @@ use std::time::Duration;
 use glam::Vec2;
 use multiversion::multiversion;
 
-use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading, Wrench, counted, is_possible, known_corners};
+use super::corners::{is_possible, known_corners};
+use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading, Wrench, counted};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap};
 use crate::units::{Instant, Newtons};

@@ -1,6 +1,7 @@
 use glam::Vec2;
 
 use super::Quality;
+use super::corners::{self, known_corners};
 use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::Newtons;
 
@@ -59,52 +60,6 @@ impl Wrench {
     }
 }
 
-/// Whether a floor can produce such forces: no NaN, none above 1 MN.
-pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
-    forces.iter().all(|force| force.abs() <= 1e6)
-}
-
-/// The forces of a tile's sensors, one unknown filled in, and how far they can be trusted.
-///
-/// With one sensor out, its force is estimated from the other three: four equal
-/// springs under a rigid plate carry f_sw + f_ne = f_se + f_nw. The tile is then
-/// [`Quality::Degraded`]. With two out, or numbers no floor can produce (NaN,
-/// above 1 MN), `None`: such a tile carries no contact.
-#[must_use]
-#[inline]
-pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4], Quality)> {
-    if quality == [Quality::Live; 4] {
-        return is_possible(&forces).then_some((forces, Quality::Live));
-    }
-    let mut forces = forces;
-    let mut out = None;
-    let mut worst = Quality::Live;
-    for (corner, &quality) in quality.iter().enumerate() {
-        match quality {
-            Quality::Live | Quality::Degraded => worst = worst.max(quality),
-            Quality::Stale | Quality::Faulty if out.is_none() => out = Some(corner),
-            Quality::Stale | Quality::Faulty => return None,
-        }
-    }
-    if let Some(corner) = out {
-        // In the order sw, se, nw, ne: side neighbours differ in one bit, the diagonal in both.
-        let sides: f32 = forces[corner ^ 1] + forces[corner ^ 2];
-        forces[corner] = (sides - forces[corner ^ 3]).max(0.0);
-        worst = Quality::Degraded;
-    }
-    is_possible(&forces).then_some((forces, worst))
-}
-
-/// The forces of a tile whose heaviest loaded sensor reads "at least": no less than the plate demands by the other three.
-///
-/// Only a bound itself where the diagonal has lifted off.
-pub(super) fn at_least(mut forces: [f32; 4]) -> [f32; 4] {
-    let heaviest = (0..4).max_by(|&a, &b| forces[a].total_cmp(&forces[b])).unwrap_or_default();
-    let demanded = forces[heaviest ^ 1] + forces[heaviest ^ 2] - forces[heaviest ^ 3];
-    forces[heaviest] = forces[heaviest].max(demanded);
-    forces
-}
-
 /// One tile with a load on it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LoadedTile {
@@ -155,16 +110,6 @@ pub(super) fn counted(force: f32) -> f32 {
 
 /// The 95th percentile of a distance in the plane over its standard deviation along each axis.
 const P95_PER_DEVIATION: f32 = 2.4477;
-
-/// How far a corner's force estimated from the other three is off, as a share of the tile's force (one
-/// standard deviation; measured on simulated floors of parts and supports as the paper's).
-const ESTIMATED: f32 = 0.15;
-
-/// How far a sensor is off that nobody has calibrated, as a share of its reading (parts differ by a quarter).
-const UNSURE: f32 = 0.2;
-
-/// How far the force at a sensor that reads "at least" may be above its reading, as a share of it (our choice).
-const AT_LEAST: f32 = 0.5;
 
 /// How a tile gets from what a sensor read to what the others say of it, or back, without a leap of its
 /// centroid that could be taken for another foot.
@@ -246,18 +191,7 @@ impl LoadedTile {
 
     /// Judges its vagueness by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
     pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
-        for (vague, (corner, quality)) in self.vague.iter_mut().zip(sensors.into_iter().enumerate()) {
-            *vague = match quality {
-                Quality::Live => 0.0,
-                Quality::Degraded if may_start => UNSURE * self.corners[corner].abs(),
-                Quality::Degraded => AT_LEAST * self.corners[corner].abs(),
-                Quality::Stale | Quality::Faulty => {
-                    // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
-                    let lifted = (-self.corners[corner ^ 3]).max(0.0);
-                    ESTIMATED * self.wrench.force + lifted
-                }
-            };
-        }
+        self.vague = corners::vague(self.corners, sensors, may_start);
     }
 
     /// Whether nothing of its past has to be remembered: every sensor was live, and none has just been found or lost.
@@ -295,12 +229,12 @@ impl LoadedTile {
         before: Option<&Self>,
         dt: f32,
     ) -> (Option<f32>, Option<Self>) {
-        let known = known_corners(forces, quality);
+        // What one sensor tells of another holds as well as both are known.
+        let known = known_corners(map.map_or(forces, |map| map.trimmed(forces)), quality);
         let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
         let carried = is_lost.then(|| known.map_or(0.0, |(corners, _)| corners.iter().sum()));
         let Some((corners, worst)) = known else { return (carried, None) };
-        let corners = if may_start { corners } else { at_least(corners) };
-        let corners = map.map_or(corners, |map| map.trimmed(corners));
+        let corners = if may_start { corners } else { corners::raised(corners, quality) };
         let lag = Lag::new(quality, before, dt);
         let lag_n = lag.of(corners);
         let corners = std::array::from_fn(|corner| corners[corner] + lag_n[corner]);
@@ -400,15 +334,6 @@ mod tests {
             let wrench = Wrench::of_corners(known, REACH);
             assert!(wrench.arm(0.152).distance(at) < 1e-5, "corner {corner}: {wrench:?}");
         }
-    }
-
-    #[test]
-    fn two_sensors_are_too_few_and_nonsense_is_no_load() {
-        let two_out = [Quality::Live, Quality::Stale, Quality::Live, Quality::Faulty];
-        assert_eq!(known_corners([1.0; 4], two_out), None);
-        assert_eq!(known_corners([f32::NAN; 4], LIVE), None);
-        assert_eq!(known_corners([f32::INFINITY; 4], LIVE), None);
-        assert_eq!(known_corners([3e38; 4], LIVE), None);
     }
 
     #[test]

@@ -4,6 +4,7 @@
 //! from it in one bit of its number, its diagonal in both.
 
 use super::End;
+use crate::sense::corners::{LIFTED_N, expected};
 
 /// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
 const ALONE_N: f32 = 8.0;
@@ -17,23 +18,12 @@ const ANSWER: f32 = 0.1;
 const LEAST_ANSWER_N: f32 = 1.0;
 const MOST_ANSWER_N: f32 = 3.0;
 
-/// A corner that reads this little has lifted off, or is about to: what rests on it by weight is gone.
-pub(super) const LIFTED_N: f32 = -2.0;
-
 /// How much of a tile's load the rigid-plate estimate of a corner may be off: unequal
 /// supports (a tenth) and gains (a twentieth), three deviations (our choice).
 pub(super) const SLACK: f32 = 0.15;
 
 /// The same for a verdict from a single frame, which no later one confirms.
 const AT_ONCE_SLACK: f32 = 0.3;
-
-/// What the other three corners say this one carries, in newtons; below zero where it lifts off.
-///
-/// # Source
-/// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw.
-pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
-    forces[corner ^ 1] + forces[corner ^ 2] - forces[corner ^ 3]
-}
 
 /// The sensor that alone reads a load (or the lack of one), if no foot could press like that.
 ///

@@ -2,6 +2,7 @@ use super::drift::Drift;
 use super::plate::Evidence;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
+use crate::sense::corners::{LIFTED_N, expected};
 use crate::units::Instant;
 
 /// Every how many frames a tile is visited.
@@ -135,13 +136,13 @@ impl Slow {
                 sensor.review(own, is_right, alone, block.seconds);
                 continue;
             }
-            let lifted = block.lows[corner] < plate::LIFTED_N && sensor.trouble().is_none();
+            let lifted = block.lows[corner] < LIFTED_N && sensor.trouble().is_none();
             let evidence = plate::evidence(block.lows, ends, corner);
             if lifted || evidence == Evidence::None {
                 // Neither evidence for it nor against it.
                 continue;
             }
-            let expected = plate::expected(means, corner).max(0.0);
+            let expected = expected(means, corner).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
             let is_right =
                 own >= expected - slack && (own <= expected + slack || evidence == Evidence::AtLeast);

@@ -19,7 +19,18 @@ const ADDED_N: f64 = 10.0;
 /// How far, in metres, and how fast, in metres per second, weight that is shifted to another foot moves the
 /// common centre of pressure at least.
 const SHIFT_M: f64 = 0.03;
-const SHIFT_M_S: f64 = 0.3;
+const SHIFT_M_S: f64 = 0.25;
+
+/// How much of what saturated sensors leave open changes while weight goes over: mostly the same ones stay at the end
+/// of their range (our choice).
+const SLOWLY: f64 = 0.5;
+
+/// How far from the foot a newcomer may lie that is seen by its leap alone, in metres: as far as the tiles that both
+/// press allow.
+const LEAPS_M: [f64; 3] = [0.45, 0.35, 0.25];
+
+/// How far beside those tiles its centre may be guessed to lie, in metres.
+const BESIDE_TILE_M: f64 = 0.05;
 
 /// Distance between two feet that stand, before anything is known of it, in metres.
 const STANCE_M: f64 = 0.2;
@@ -146,7 +157,7 @@ impl Tracker {
         if foot.stands()
             && foot.unsettled <= 0.0
             && whole > 120.0
-            && shift.length() > SHIFT_M + doubt
+            && shift.length() > SHIFT_M + SLOWLY * doubt
             && (foot.is_drawn(shift, SHIFT_M) && self.is_far_from_all(foot)
                 || foot.may_have_partner_towards(shift) && shift.length() > SHIFT_M_S * foot.away)
         {
@@ -157,11 +168,21 @@ impl Tracker {
         let leap = sum / whole - foot.past.centre;
         if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 + doubt {
             let moment = leap * whole;
-            let added = (whole - foot.past.force).max(moment.length() / 0.45);
-            if added < whole {
-                let place = foot.past.centre + moment / added;
-                return Some(Newcomer { force: added, place, deviation: 0.08, ..Newcomer::default() });
-            }
+            return LEAPS_M.into_iter().find_map(|away| {
+                let force = (whole - foot.past.force).max(moment.length() / away);
+                let place = foot.past.centre + moment / force;
+                let is_on = |tile: &LoadedTile| {
+                    let (low, high) = self.cells.of(tile);
+                    place.cmpge(low - BESIDE_TILE_M).all() && place.cmple(high + BESIDE_TILE_M).all()
+                };
+                let seen = foot.tiles.iter().any(|&position| is_on(&list[position as usize]));
+                (force < whole && seen).then(|| Newcomer {
+                    force,
+                    place,
+                    deviation: 0.08,
+                    ..Newcomer::default()
+                })
+            });
         }
         None
     }

@@ -140,7 +140,7 @@ impl Tracker {
             }
             // Nobody has a foot where the other one stands.
             if other.landing.is_some_and(|landing| {
-                landing.host == foot.id && lines.middle.distance(landing.from) < BESIDE_M
+                landing.host == foot.id && lines.middle.distance(landing.from) < BESIDE_M - lines.doubt
             }) {
                 return None;
             }
@@ -263,7 +263,7 @@ impl Tracker {
             return None;
         }
         let landing = guest.and_then(|guest| self.feet[guest].landing);
-        if landing.is_some_and(|landing| lines.middle.distance(landing.from) < BESIDE_M) {
+        if landing.is_some_and(|landing| lines.middle.distance(landing.from) < BESIDE_M - lines.doubt) {
             return None;
         }
         let apart = [first, second].map(|foot| foot.home.distance(lines.middle));

@@ -165,7 +165,7 @@ pub(super) struct SlowLoad {
 }
 
 /// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
-const PAST_S: f64 = 0.025;
+const PAST_S: f64 = 0.05;
 
 impl Foot {
     pub(super) fn new(id: ContactId, force: f64, centre: DVec2, deviation: f64) -> Self {

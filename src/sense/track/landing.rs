@@ -54,7 +54,7 @@ const LEAST_MOMENT: f64 = 1.0;
 const LEAST_WAY_M: f64 = 0.006;
 
 /// What is not known of how a foot divides over two tiles, as a share of its force.
-const UNLIKE: f64 = 0.08;
+const UNLIKE: f64 = 0.1;
 
 /// The least of it, as a share of a foot that lies on one tile.
 const UNLIKE_LEAST: f64 = 0.02;
@@ -127,7 +127,7 @@ pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: L
         let host_force = (force - guest_force).max(0.0);
         let pair = Pair { host, from, host_force, place, guest_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
-        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M;
+        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(lines.doubt);
         let stepped = if guest_force > WHOLLY * force { STEPPED } else { 0.0 };
         *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual + tight * tight - stepped;
     }

@@ -1,6 +1,7 @@
 //! What the joint filter knows of feet and tiles: how feet change, and what they press.
 
 use arrayvec::ArrayVec;
+use glam::DVec2;
 
 use super::Cells;
 use super::foot::{EAST, FLAT_S, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
@@ -10,6 +11,10 @@ use crate::sense::tile::LoadedTile;
 
 /// How far force that strays over a seam is spread along it, as a standard deviation.
 const SPREAD_M: f64 = 0.05;
+
+/// How many times as far from its home as it is expected to stray a foot is held that stood before the others came:
+/// what draws it farther is theirs.
+const HELD: f64 = 1.5;
 
 /// What a patch may divide otherwise over two tiles than a foot does, as a share of its force: one seen
 /// standing there alone, and in addition one that was not.
@@ -39,7 +44,10 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64
         if foot.age > FLAT_S && dt > 0.0 {
             // A foot that has come down flat strays about its home: in the long run no further than `stray`.
             let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
-            let variance = foot.stray.powi(4) / spread;
+            let away = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.home);
+            let stood = members.iter().all(|&other| feet[other as usize].age <= foot.age);
+            let held = stood && away > HELD * foot.stray;
+            let variance = if held { foot.stray.powi(2) } else { foot.stray.powi(4) / spread };
             for (place, home) in [(EAST, foot.home.x), (NORTH, foot.home.y)] {
                 joint.observe(home - joint.x[at + place], &[(at + place, 1.0)], variance);
             }

@@ -15,6 +15,12 @@ const TOWARDS: f64 = 0.7;
 /// over its big toe, as far to the side as to the front.
 const ACROSS: f64 = 0.87;
 
+/// Sine of how far to its side a partner must have been lifted for that side to be known.
+const BEHIND: f64 = 0.15;
+
+/// How long after landing a foot without a partner may still roll on the way it has rolled, in seconds.
+const ROLLED_S: f64 = 0.5;
+
 /// How long a partner must not have been seen to be lifted, in seconds.
 const LIFTED_S: f64 = 0.005;
 
@@ -23,12 +29,17 @@ const ROLLED_M: f64 = 0.04;
 
 impl Foot {
     /// Whether the other foot of its person may be landing on the side that `way` points to: not while
-    /// that foot is elsewhere, and not ahead of a foot that rolls after that one has left.
+    /// that foot is elsewhere, and not ahead of a foot that rolls: after that one has left, or when none was down before.
     pub(super) fn may_have_partner_towards(&self, way: DVec2) -> bool {
-        self.partner.is_none_or(|(place, ago)| {
-            let side = place - self.home;
-            ago > LIFTED_S && way.dot(side) > 0.5 * way.length() * side.length()
-        })
+        match self.partner {
+            Some((place, ago)) => {
+                let side = place - self.home;
+                ago > LIFTED_S && way.dot(side) > 0.5 * way.length() * side.length()
+            }
+            None => {
+                way.dot(self.rolled) <= TOWARDS * way.length() * self.rolled.length() || self.age > ROLLED_S
+            }
+        }
     }
 
     /// Whether its centre of pressure cannot have gone along `way` from its home by itself: towards where its partner
@@ -37,7 +48,10 @@ impl Foot {
         let Some((partner, ago)) = self.partner else { return false };
         let (side, axis) = (partner - self.home, self.rolled);
         let towards = way.dot(side) > TOWARDS * way.length() * side.length();
-        let aside = axis.perp_dot(way) * axis.perp_dot(side).signum();
+        let across = axis.perp_dot(side);
+        // One that is straight behind may have been lifted from either side.
+        let told = across.abs() > BEHIND * axis.length() * side.length();
+        let aside = if told { axis.perp_dot(way) * across.signum() } else { axis.perp_dot(way).abs() };
         let over = aside > axis.length() * least.max(ACROSS * way.length());
         ago > LIFTED_S && (towards || over && axis.length() > ROLLED_M)
     }
@@ -62,6 +76,24 @@ mod tests {
         assert!(beside.is_drawn(DVec2::new(0.04, 0.0), 0.035), "the partner comes down where it was");
         assert!(!beside.is_drawn(DVec2::new(0.0, 0.06), 0.035), "it pushes off");
         assert!(!beside.is_drawn(DVec2::new(-0.04, 0.0), 0.035), "nobody is over there");
+    }
+
+    #[test]
+    fn a_partner_straight_behind_may_come_down_on_either_side() {
+        let walker = foot(DVec2::new(-0.08, -0.7));
+        assert!(
+            walker.is_drawn(DVec2::new(0.04, 0.0), 0.035) && walker.is_drawn(DVec2::new(-0.04, 0.0), 0.035)
+        );
+        assert!(!walker.is_drawn(DVec2::new(0.0, 0.06), 0.035), "it pushes off");
+    }
+
+    #[test]
+    fn the_first_foot_on_the_floor_rolls_on_for_a_moment() {
+        let first = Foot { partner: None, age: 0.35, ..foot(DVec2::ZERO) };
+        assert!(!first.may_have_partner_towards(DVec2::new(0.0, 0.04)), "it rolls on the way it has rolled");
+        assert!(first.may_have_partner_towards(DVec2::new(0.04, 0.0)), "not to the side");
+        let later = Foot { age: 1.0, ..first };
+        assert!(later.may_have_partner_towards(DVec2::new(0.0, 0.04)), "it has come down flat long ago");
     }
 
     #[test]
