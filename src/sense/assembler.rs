@@ -318,6 +318,13 @@ impl Assembler {
         self.health.drift()
     }
 
+    /// How much the floor's sensors are found to creep, as a share of their load for each decade of time: 0 to 0.1. What
+    /// lingers of a load is taken off accordingly; below 0.02, nothing is.
+    #[must_use]
+    pub const fn creep(&self) -> f32 {
+        self.health.creep()
+    }
+
     /// What came in and what was dropped; datagrams and refusals are counted by the source.
     #[must_use]
     pub const fn counters(&self) -> LinkCounters {

@@ -352,6 +352,11 @@ impl Health {
         })
     }
 
+    /// How much the sensors creep, as a share of their load for each decade.
+    pub(super) const fn creep(&self) -> f32 {
+        self.creep.share()
+    }
+
     /// How far each sensor's zero has been followed, per tile and corner.
     pub(super) fn drift(&self) -> impl ExactSizeIterator<Item = [Newtons; 4]> + '_ {
         self.zeros.iter().map(|zeros| zeros.map(Newtons))

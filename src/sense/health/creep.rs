@@ -95,6 +95,11 @@ impl Creep {
         }
     }
 
+    /// Share of a load for each decade, as far as is known.
+    pub(super) const fn share(&self) -> f32 {
+        self.share
+    }
+
     /// What each sensor of a tile reads too much, in newtons.
     pub(super) fn of(&self, memory: &Memory) -> [f32; 4] {
         if self.share < LEAST { [0.0; 4] } else { memory.sums().map(|sum| self.share * sum) }
