@@ -262,7 +262,9 @@ impl Health {
         let tiles = self.slow.len();
         let share = self.number as usize % SHARES;
         let last = self.visited[share].replace(frame.at);
-        let parts = Parts::of(last.map_or(0.0, |last| frame.at.since(last).as_secs_f32()));
+        let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
+        let parts = Parts::of(dt);
+        self.creep.ease(dt / SHARES as f32);
         for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
             let heard = is_heard(&frame.quality[tile], &self.sensors[tile]);
             if self.slow[tile].add(frame.forces[tile], self.ends[tile], heard) {

@@ -32,6 +32,9 @@ const STEP: f32 = 0.004;
 const FIRST: f32 = 0.045;
 const QUANTILE: f32 = 0.4;
 
+/// How fast what is taken off follows what is learnt, as a share a second: nobody who stands there is to feel a step.
+const EASE: f32 = 0.01;
+
 /// Load that leaves nothing to speak of, in newtons.
 const NOTHING_N: f32 = 0.5;
 
@@ -43,6 +46,8 @@ const GAP_S: f32 = 0.5;
 pub(super) struct Creep {
     /// Share of a load for each decade.
     share: f32,
+    /// What of it is taken off already.
+    used: f32,
     /// How many feet it was learnt from.
     feet: f32,
 }
@@ -95,6 +100,12 @@ impl Creep {
         }
     }
 
+    /// Lets `dt` seconds pass.
+    pub(super) fn ease(&mut self, dt: f32) {
+        let aim = if self.share < LEAST { 0.0 } else { self.share };
+        self.used += (aim - self.used).clamp(-EASE * dt, EASE * dt);
+    }
+
     /// Share of a load for each decade, as far as is known.
     pub(super) const fn share(&self) -> f32 {
         self.share
@@ -102,7 +113,7 @@ impl Creep {
 
     /// What each sensor of a tile reads too much, in newtons.
     pub(super) fn of(&self, memory: &Memory) -> [f32; 4] {
-        if self.share < LEAST { [0.0; 4] } else { memory.sums().map(|sum| self.share * sum) }
+        memory.sums().map(|sum| self.used * sum)
     }
 }
 
@@ -148,6 +159,7 @@ mod tests {
             let reads = force + creep * truth.sums()[0];
             let off = known.of(&memory)[0];
             memory.follow([reads - off; 4], &parts);
+            known.ease(0.008);
             if step % 8 == 0 {
                 known.learn(&mut memory, 4.0 * reads, 0.064);
             }

@@ -176,10 +176,10 @@ fn s4_a_floor_that_has_drifted_by_ten_newtons_in_ten_minutes() {
 fn s5_parts_that_creep_under_people() {
     for seed in PEOPLE {
         let visited = visited(creeping(seed), seed, ());
-        // What lingers where a foot has just been is learnt in a few steps; until then it looks like a light foot.
-        assert_found("creeping", seed, &visited, 0.97);
+        // What lingers where a foot has been is learnt in the first ten steps; until then it looks like a light foot.
+        assert_found("creeping", seed, &visited, 0.93);
         let extra = visited.followed.share_extra();
-        assert!(extra < 0.04, "{extra} more feet than there are");
+        assert!(extra < 0.08, "{extra} more feet than there are");
         assert_eq!(visited.troubles, []);
     }
 }
