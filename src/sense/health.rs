@@ -25,7 +25,7 @@ pub use report::SensorHealth;
 pub use trouble::Trouble;
 
 use self::creep::{Creep, Memory, Parts};
-use self::slow::{SHARES, Slow};
+use self::slow::{GAP_S, SHARES, Slow};
 use self::trouble::Sensor;
 
 /// Force beside zero from which on a tile is looked at in every frame: the least that counts as load.
@@ -262,7 +262,7 @@ impl Health {
         let tiles = self.slow.len();
         let share = self.number as usize % SHARES;
         let last = self.visited[share].replace(frame.at);
-        let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
+        let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32().min(GAP_S));
         let parts = Parts::of(dt);
         self.creep.ease(dt / SHARES as f32);
         for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {

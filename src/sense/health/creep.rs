@@ -38,9 +38,6 @@ const EASE: f32 = 0.01;
 /// Load that leaves nothing to speak of, in newtons.
 const NOTHING_N: f32 = 0.5;
 
-/// How far in the past one look may lie for the next, in seconds.
-const GAP_S: f32 = 0.5;
-
 /// How a floor's sensors creep, as far as is known.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Creep {
@@ -70,7 +67,7 @@ pub(super) struct Parts([f32; TIMES_S.len()]);
 impl Parts {
     /// Over `dt` seconds.
     pub(super) fn of(dt: f32) -> Self {
-        Self(TIMES_S.map(|time_s| 1.0 - (-dt.min(GAP_S) / time_s).exp()))
+        Self(TIMES_S.map(|time_s| 1.0 - (-dt / time_s).exp()))
     }
 }
 

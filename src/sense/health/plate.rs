@@ -1,7 +1,6 @@
 //! What a rigid plate on four supports allows its sensors to read.
 //!
-//! Corners are in the order sw, se, nw, ne: the neighbours of a corner differ
-//! from it in one bit of its number, its diagonal in both.
+//! Corners are numbered as in [`crate::sense::corners`].
 
 use super::End;
 use crate::sense::corners::{LIFTED_N, expected};

@@ -12,7 +12,7 @@ pub(super) const SHARES: usize = 8;
 const VISITS: u8 = 8;
 
 /// Longest time between blocks that says something of change, in seconds; after a gap everything starts afresh.
-const GAP_S: f32 = 0.5;
+pub(super) const GAP_S: f32 = 0.5;
 
 /// How long a sensor must stand still after the load around it has changed to be stuck.
 const STUCK_S: f32 = 2.0;

@@ -2,6 +2,7 @@
 
 use super::birth::APART_M;
 use super::foot::{Foot, LANDS_S, SHOE_M};
+use super::landing::Landing;
 use super::lines::{Axis, Lines};
 use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
@@ -139,9 +140,7 @@ impl Tracker {
                 return None;
             }
             // Nobody has a foot where the other one stands.
-            if other.landing.is_some_and(|landing| {
-                landing.host == foot.id && lines.middle.distance(landing.from) < BESIDE_M - lines.doubt
-            }) {
+            if other.landing.is_some_and(|landing| landing.host == foot.id && is_on_host(landing, &lines)) {
                 return None;
             }
         }
@@ -263,7 +262,7 @@ impl Tracker {
             return None;
         }
         let landing = guest.and_then(|guest| self.feet[guest].landing);
-        if landing.is_some_and(|landing| lines.middle.distance(landing.from) < BESIDE_M - lines.doubt) {
+        if landing.is_some_and(|landing| is_on_host(landing, lines)) {
             return None;
         }
         let apart = [first, second].map(|foot| foot.home.distance(lines.middle));
@@ -275,6 +274,11 @@ impl Tracker {
         let close = first.centre().distance(second.centre()) < HALVES_M;
         ((near < AT_HOME_M || close) && one_patch(lines, self.cells.pitch)).then_some(stay)
     }
+}
+
+/// Whether the common centre of pressure still lies where only the foot stands that another has landed beside.
+fn is_on_host(landing: Landing, lines: &Lines) -> bool {
+    lines.middle.distance(landing.from) < BESIDE_M - lines.doubt
 }
 
 /// Whether one foot's patch can divide over the lines as their loads do.
