@@ -56,16 +56,16 @@ impl Zone {
 /// Measured on 60 simulated floors of the paper's parts, calibrated, each sensor's zero off by half a
 /// newton and followed for a second: `underfoot experiment place --floors 60`.
 const P95_CM: [[f32; 6]; 3] = [
-    [1.45, 1.43, 1.43, 1.47, 1.58, 1.42],
-    [1.71, 1.62, 1.61, 1.69, 1.77, 1.58],
-    [1.78, 1.87, 1.94, 2.02, 2.01, 1.75],
+    [1.42, 1.43, 1.46, 1.48, 1.58, 1.42],
+    [1.61, 1.62, 1.60, 1.69, 1.77, 1.58],
+    [1.77, 1.84, 1.90, 2.01, 2.03, 1.75],
 ];
 
 /// The same with position maps.
 const MAPPED_P95_CM: [[f32; 6]; 3] = [
-    [0.56, 0.42, 0.34, 0.30, 0.27, 0.27],
-    [0.78, 0.41, 0.34, 0.27, 0.23, 0.30],
-    [0.45, 0.36, 0.26, 0.15, 0.16, 0.32],
+    [0.36, 0.28, 0.22, 0.15, 0.12, 0.18],
+    [0.47, 0.28, 0.22, 0.16, 0.15, 0.27],
+    [0.29, 0.21, 0.16, 0.12, 0.14, 0.30],
 ];
 
 /// The error that 95 in 100 feet keep to which press somewhere in `area` with `force`, in metres:

@@ -19,6 +19,10 @@ const UNSURE: f32 = 0.2;
 /// no other tells (our choice).
 const AT_LEAST: f32 = 0.5;
 
+/// What it carries then for each newton that it reads: of loads just beyond the end there are more than of loads
+/// far beyond (our choice: it halves the worst error of points of 400 N, and moves one that is just beyond by 6 mm).
+const BEYOND: f32 = 1.1;
+
 /// How far it is off where the others do tell, as a share of the tile's force and for each sensor that is at
 /// its end (one standard deviation; measured on simulated floors with position maps).
 const TOLD: f32 = 0.05;
@@ -67,14 +71,20 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
 }
 
 /// The forces of a tile some of whose sensors, the [`Quality::Degraded`] ones, read "at least": each no less than
-/// the others say.
+/// the others say, or a little more than it reads where they can't.
 pub(super) fn raised(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     let at_end = |corner: usize| quality[corner] == Quality::Degraded;
     let lifted = |corner: usize| forces[corner] < LIFTED_N;
     std::array::from_fn(|corner| {
         let reads = forces[corner];
-        if !at_end(corner) || lifted(corner ^ 1) || lifted(corner ^ 2) {
+        if !at_end(corner) {
             return reads;
+        }
+        if lifted(corner ^ 1) || lifted(corner ^ 2) {
+            return BEYOND * reads;
+        }
+        if lifted(corner ^ 3) {
+            return expected(forces, corner).max(BEYOND * reads);
         }
         let more = (expected(forces, corner) - reads).max(0.0);
         // Which of two on one diagonal carries it, nobody tells.
@@ -149,11 +159,11 @@ mod tests {
     }
 
     #[test]
-    fn beside_a_corner_in_the_air_nothing_is_told() {
+    fn beside_a_corner_in_the_air_nothing_is_told_but_that_it_is_more() {
         // A very heavy foot over sw, ne in the air: nw and se are its neighbours, and carry what they read.
         let over_sw = [685.0, 335.0, 245.0, -11.0];
         let south = [END, END, Quality::Live, Quality::Live];
-        assert_eq!(raised(over_sw, south), over_sw);
+        assert_eq!(raised(over_sw, south), [753.5, 368.5, 245.0, -11.0]);
         assert_eq!(vague(over_sw, south, false)[1], 0.5 * 335.0);
         // With all on their supports the plate tells it five times as well.
         let flat = vague(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);

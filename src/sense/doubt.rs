@@ -13,18 +13,25 @@ pub struct SensorDoubt {
     pub gain: f32,
 }
 
-/// How far from the centroid the load acts that no tile is seen to carry, in metres, if it is as much as four
-/// sensors' zeros may hide (by the coverage of feet of 50 N).
-const UNSEEN_M: f32 = 0.07;
+/// The arm over which what a map leaves of a place is what it leaves of each sensor, in metres: about a sensor's
+/// distance from the load (by the coverage of points and feet of 50 to 400 N on simulated floors, as the next two).
+const ARM_M: f32 = 0.125;
+
+/// What it leaves of a sensor that carries next to nothing, in parts of that.
+const LIGHT: f32 = 0.6;
+
+/// The load at which as much again is left, in newtons; beyond, it grows with the square: few presses teach a
+/// sensor how it reads near the end of its range.
+const HEAVY_N: f32 = 105.0;
 
 impl Default for SensorDoubt {
-    /// A fifth of a newton of offset, 13.5 % of gain: what remains once an empty floor's zeros have been followed, and
-    /// after a calibration.
+    /// An eighth of a newton of offset, 13.5 % of gain: what remains once an empty floor's zeros have been followed,
+    /// and after a calibration.
     ///
     /// The paper's 5 % (section 2.2) are of full scale. Of a reading it is more, and the ellipses hold 95 % of
     /// the true places on simulated parts like the paper's with this much.
     fn default() -> Self {
-        Self { offset_n: 0.2, gain: 0.135 }
+        Self { offset_n: 0.13, gain: 0.135 }
     }
 }
 
@@ -38,7 +45,7 @@ impl SensorDoubt {
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
     /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + vague², the
     /// last for a sensor that is estimated, not calibrated or at the end of its range. On a tile with a
-    /// position map, what that leaves ([`crate::floor::PositionMap::residual_m`]) takes the place of the gain.
+    /// position map the gain follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
     pub fn covariance(
         &self,
@@ -48,19 +55,15 @@ impl SensorDoubt {
         point: Vec2,
         force: f32,
     ) -> Covariance {
-        let mut sum = Covariance::default();
         let reach = geometry.sensor_reach_m();
         let scale = 1.0 / (force * force).max(1e-6);
-        let gain = if tile.mapped_m().is_some() { 0.0 } else { self.gain };
-        // What a map leaves shifts the tile's own part of the load.
-        let left = tile.mapped_m().unwrap_or_default() * share * tile.wrench.force;
-        // Tiles that the load strays to are as uncertain as their sensors' zeros, and some load is not seen at all.
-        let unseen = self.offset_n * self.offset_n * (tile.strayed_m2() + 4.0 * UNSEEN_M * UNSEEN_M);
-        let all = (left * left + unseen) * scale;
-        sum += Covariance { xx: all, xy: 0.0, yy: all };
+        // Tiles that the load strays to are as uncertain as their sensors' zeros.
+        let strayed = self.offset_n * self.offset_n * tile.strayed_m2() * scale;
+        let mut sum = Covariance { xx: strayed, xy: 0.0, yy: strayed };
         for corner in Corner::ALL {
             let arm = tile.centre + corner.direction() * reach - point;
-            let gained = gain * share * tile.corners[corner.index()];
+            let load = tile.corners[corner.index()];
+            let gained = self.gain_at(load, tile.mapped_m()) * share * load;
             let vague = share * tile.vague[corner.index()];
             let variance = (self.offset_n * self.offset_n + gained * gained + vague * vague) * scale;
             sum.xx += arm.x * arm.x * variance;
@@ -68,6 +71,13 @@ impl SensorDoubt {
             sum.yy += arm.y * arm.y * variance;
         }
         sum
+    }
+
+    /// The gain's standard deviation at a sensor that carries `load` newtons, on a tile whose map leaves `mapped_m`
+    /// along each axis.
+    fn gain_at(&self, load: f32, mapped_m: Option<f32>) -> f32 {
+        let heavy = load / HEAVY_N;
+        mapped_m.map_or(self.gain, |left| (left / ARM_M * (LIGHT + heavy * heavy)).min(self.gain))
     }
 }
 

@@ -183,7 +183,7 @@ mod tests {
             sensing.update(&frame)[0].covariance.ellipse_95_m().0
         };
         let (light, heavy) = (radius(10.0), radius(400.0));
-        assert!(light > 1.1 * heavy && heavy < 0.05, "{light} and {heavy} m");
+        assert!(light > 1.05 * heavy && heavy < 0.05, "{light} and {heavy} m");
     }
 
     #[test]

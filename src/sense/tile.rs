@@ -97,9 +97,9 @@ pub struct LoadedTile {
 }
 
 /// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
-/// choice: one and four deviations of what four sensors with half a newton of offset each add up to).
-pub(super) const NO_WEIGHT: f32 = 1.0;
-const FULL_WEIGHT: f32 = 4.0;
+/// choice: two and eight deviations of what four sensors add up to on an empty floor whose zeros were followed).
+pub(super) const NO_WEIGHT: f32 = 0.5;
+const FULL_WEIGHT: f32 = 2.0;
 
 /// What `force` on one tile counts for in a centroid over several.
 ///

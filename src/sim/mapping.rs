@@ -29,6 +29,9 @@ const AIM_M: f32 = 0.0005;
 /// Readings averaged at each point and force.
 const READINGS: usize = 32;
 
+/// Error of the load cell in the pressing tool, as a share of its reading (one standard deviation).
+const CELL_ERROR: f32 = 0.005;
+
 /// A tile that no map could be fitted to.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("tile {tile}: {source}")]
@@ -43,8 +46,8 @@ pub struct MappingError {
 /// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
 ///
 /// 9 x 9 points of each tile are pressed with 45, 150 and 380 N each, hit within
-/// half a millimetre, and [`MapFit::of_presses`] makes the map; the force
-/// counts as unknown. Saturated presses are left out. The same `seed` gives the
+/// half a millimetre and with a force that is known within half a per cent, and
+/// [`MapFit::of_presses`] makes the map. Saturated presses are left out. The same `seed` gives the
 /// same maps. A floor whose boards send newtons keeps the maps it had, and so
 /// does a tile that no map improves.
 ///
@@ -76,17 +79,21 @@ pub fn mapped(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Mapping
 /// Empty but for its header for a floor whose boards send newtons.
 #[must_use]
 pub fn press_table(floor: &Floor, sim: &SimFloor, seed: u64) -> String {
-    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n");
+    let mut table = String::from("x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n");
     if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
         return table;
     }
     let mut rng = Pcg64Mcg::seed_from_u64(seed);
     for (index, tile) in sim.geometry().tiles().enumerate() {
-        for Press { at, forces: [sw, se, nw, ne], .. } in press(floor, sim, index, &mut rng) {
+        for Press { at, forces: [sw, se, nw, ne], force } in press(floor, sim, index, &mut rng) {
             let Vec2 { x, y } = sim.geometry().centre(tile) + at;
             let (column, row) = (tile.column, tile.row);
             // Writing to a String cannot fail.
-            let _ = writeln!(table, "{x:.5},{y:.5},{column},{row},{sw:.3},{se:.3},{nw:.3},{ne:.3}");
+            let _ = writeln!(
+                table,
+                "{x:.5},{y:.5},{column},{row},{sw:.3},{se:.3},{nw:.3},{ne:.3},{:.2}",
+                force.unwrap_or_default()
+            );
         }
     }
     table
@@ -119,7 +126,7 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
                 sum / READINGS as f32 - tares[corner.index()].0
             });
             if !saturated {
-                presses.push(Press { at, forces, force: None });
+                presses.push(Press { at, forces, force: Some(force * (1.0 + CELL_ERROR * normal(rng))) });
             }
         }
     }

@@ -98,7 +98,7 @@ fn maps_are_kept_and_taken_away_when_the_curves_change() {
     assert_eq!(output.status.code(), Some(0), "{}", said(&output));
     let mapped = load_floor(&folder.path().join("mapped.ron")).unwrap();
     assert!(mapped.position_maps.iter().all(Option::is_some));
-    assert!(mapped.map_records.iter().flatten().all(|record| record.residual_m < 0.006));
+    assert!(mapped.map_records.iter().flatten().all(|record| record.residual_m < 0.007));
     assert_eq!(mapped.calibration, calibrated.calibration);
 
     let output = underfoot(folder.path(), &["calibrate", "curves", "loads.csv", "--floor", "mapped.ron"]);

@@ -11,8 +11,9 @@ use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
 /// What `underfoot calibrate map` is asked to do.
 ///
 /// Press at least 16 known points on a tile, up to its edges, each with several forces from a light foot's to a
-/// person's weight. `underfoot measure --json` gives what the sensors read meanwhile. Errors with the map are
-/// those of points that it was not made from.
+/// person's weight. `underfoot measure --json` gives what the sensors read meanwhile. Press with weights that you
+/// know, or a tool with a load cell: what a tile weighs as a whole decides where a foot is found that stands on two.
+/// Errors with the map are those of points that it was not made from.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
     /// CSV with the header `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if it is known),
