@@ -226,7 +226,7 @@ impl LoadedTiles {
         }
     }
 
-    /// Gives the load of the unlisted tile at `index` to the listed one at `position`, if that is the nearest.
+    /// Gives the load of the unlisted tile at `index` to the listed one at `position`, if no other has a better claim.
     fn give(&mut self, index: usize, position: usize, frame: &ForceFrame) {
         // One with a sensor out is too uncertain to say anything of so little.
         if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
@@ -238,13 +238,19 @@ impl LoadedTiles {
         let centre = self.geometry.centre(stray);
         let half = 0.5 * self.geometry.pitch_m();
         let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
-        let mine = away(&self.list[position]);
-        let nearer = AROUND.iter().any(|(east, north)| {
+        // A rim is the smaller part of a foot, and another rim's only if there is no foot that it can be of.
+        let claim = |position: usize| {
+            let listed = &self.list[position];
+            let (away, is_rim) = (away(listed), listed.wrench.force < FOOT_PER_RIM * self.sums[index]);
+            (away >= REACH_M, is_rim, away, position)
+        };
+        let mine = claim(position);
+        let beaten = AROUND.iter().any(|(east, north)| {
             let other = self.find(column + east, row + north).filter(|&other| other != position);
-            other.is_some_and(|other| (away(&self.list[other]), other) < (mine, position))
+            other.is_some_and(|other| claim(other) < mine)
         });
-        let share = ((REACH_M - mine) / REACH_FADE_M).clamp(0.0, 1.0);
-        if nearer || share <= 0.0 {
+        let share = ((REACH_M - mine.2) / REACH_FADE_M).clamp(0.0, 1.0);
+        if beaten || share <= 0.0 {
             return;
         }
         let map = self.maps.get(index).and_then(Option::as_ref);
@@ -308,6 +314,9 @@ const REACH_FADE_M: f32 = 0.05;
 const RIM_M: f32 = 0.03;
 const RIM_N: f32 = 4.0;
 
+/// How many times as much as its rim a foot carries at least on the tile it stands on (our choice).
+const FOOT_PER_RIM: f32 = 2.0;
+
 const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 #[cfg(test)]
@@ -348,6 +357,25 @@ mod tests {
         frame.quality[3][0] = Quality::Stale;
         tiles.update(&frame);
         assert!(tiles.list().is_empty());
+    }
+
+    #[test]
+    fn a_light_rim_belongs_to_the_foot_and_not_to_its_other_rim() {
+        let geometry = Geometry::default();
+        let mut tiles = LoadedTiles::new(geometry, LoadThreshold::default());
+        // The foot stands in the north-east of its tile (7) and reaches over both edges: 8 N on the tile to the
+        // east (8), near their common edge, and 5 N, less than makes a tile count, on the one to the north (13).
+        let mut frame = frame_with(&geometry, 7, [40.0, 110.0, 110.0, 240.0]);
+        frame.forces[8] = [0.0, 0.0, 7.0, 1.0];
+        frame.forces[13] = [1.0, 4.0, 0.0, 0.0];
+        tiles.update(&frame);
+        let force = |index| tiles.list().iter().find(|tile| tile.index == index).unwrap().wrench.force;
+        assert_eq!([force(7), force(8)], [505.0, 8.0]);
+        // Without the foot there is nobody else.
+        frame.forces[7] = [0.0; 4];
+        tiles.update(&frame);
+        assert_eq!(tiles.list().len(), 1);
+        assert!(tiles.list()[0].wrench.force > 8.0);
     }
 
     #[test]

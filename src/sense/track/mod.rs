@@ -378,7 +378,8 @@ impl Tracker {
         let Some(landing) = guest.landing else { return false };
         let both = host.tiles_with(guest);
         let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
-        if landing::is_seen_alone(host, guest, landing.from, &lines, list, &self.cells) {
+        // Where what the filter says of both has not fitted for some time, they are looked for anew.
+        if !host.ambiguous && landing::is_seen_alone(host, guest, landing.from, &lines, list, &self.cells) {
             host.stay(landing.from);
             return false;
         }

@@ -25,7 +25,7 @@ const ROLLED_S: f64 = 0.5;
 const LIFTED_S: f64 = 0.005;
 
 /// How far its centre of pressure must have gone while it came down for a foot to be known to point there, in metres.
-const ROLLED_M: f64 = 0.04;
+const ROLLED_M: f64 = 0.03;
 
 impl Foot {
     /// Whether the other foot of its person may be landing on the side that `way` points to: not while
