@@ -41,6 +41,9 @@ const TIGHT_M: f64 = 0.01;
 /// logarithm).
 const STEPPED: f64 = 5.0;
 
+/// Share of all weight from which on the new foot is where the common centre of pressure is.
+const TAKEN_OVER: f64 = 0.8;
+
 /// Share of all from which on that is all.
 const WHOLLY: f64 = 0.93;
 
@@ -135,6 +138,10 @@ pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: L
     let part = (moment / distance.mean).min(force);
     host.put(force - part, from);
     guest.put(part, from + ahead * distance.mean);
+    if part > TAKEN_OVER * force {
+        // What was once guessed of its place is no home to go back to.
+        guest.home = guest.centre();
+    }
     // The farther away it lies, the less it presses.
     let force_variance = distance.variance * (part / distance.mean).powi(2) + 9.0;
     host.covariance[FORCE][FORCE] = force_variance;
