@@ -225,8 +225,8 @@ impl Tracker {
         if host.centre().distance(foot.centre()) < 0.6 * APART_M {
             return host.age >= foot.age;
         }
-        if foot.centre().distance(foot.landed) > SHOE_M {
-            // Too far from where it landed to be the same foot still.
+        if foot.alone_at.is_none() && foot.centre().distance(foot.landed) > SHOE_M {
+            // Never seen by itself, and too far from where it landed to be the same foot still.
             return true;
         }
         let Some(home) = host.alone_at else { return false };
