@@ -20,8 +20,8 @@ const ARM_M: f32 = 0.125;
 /// What it leaves of a sensor that carries next to nothing, in parts of that.
 const LIGHT: f32 = 0.6;
 
-/// The load at which as much again is left, in newtons; beyond, it grows with the square: few presses teach a
-/// sensor how it reads near the end of its range.
+/// The load at which one part more is left, in newtons; it grows with the square, up to the gain of a tile without
+/// a map: few presses teach a sensor how it reads near the end of its range.
 const HEAVY_N: f32 = 105.0;
 
 impl Default for SensorDoubt {

@@ -23,7 +23,7 @@ const RANGE: f32 = 0.97;
 const READINGS: usize = 16;
 
 /// Error of the load cell, as a share of its reading (one standard deviation).
-const CELL_ERROR: f32 = 0.005;
+pub(super) const CELL_ERROR: f32 = 0.005;
 
 /// Readings averaged on the empty floor for the tare.
 const TARE_READINGS: usize = 200;

@@ -8,7 +8,7 @@ use rand_pcg::Pcg64Mcg;
 use thiserror::Error;
 
 use super::floor::SimFloor;
-use super::loadcell::read;
+use super::loadcell::{CELL_ERROR, read};
 use super::sensor::normal;
 use crate::floor::{Calibration, Corner, Floor, TileId};
 use crate::sense::{MapError, MapFit, Press};
@@ -29,9 +29,6 @@ const AIM_M: f32 = 0.0005;
 /// Readings averaged at each point and force.
 const READINGS: usize = 32;
 
-/// Error of the load cell in the pressing tool, as a share of its reading (one standard deviation).
-const CELL_ERROR: f32 = 0.005;
-
 /// A tile that no map could be fitted to.
 #[derive(Clone, Copy, Debug, PartialEq, Error)]
 #[error("tile {tile}: {source}")]
@@ -46,7 +43,7 @@ pub struct MappingError {
 /// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
 ///
 /// 9 x 9 points of each tile are pressed with 45, 150 and 380 N each, hit within
-/// half a millimetre and with a force that is known within half a per cent, and
+/// half a millimetre by a tool with a load cell that is wrong by 0.5 %, and
 /// [`MapFit::of_presses`] makes the map. Saturated presses are left out. The same `seed` gives the
 /// same maps. A floor whose boards send newtons keeps the maps it had, and so
 /// does a tile that no map improves.

@@ -68,8 +68,8 @@ const NOBODY: u32 = u32::MAX;
 const MOST_SHARE: f64 = 1.3;
 const MOST_MORE_N: f64 = 50.0;
 
-/// How far from where it was first seen the filter may put a foot at once, in metres: half a shoe.
-const LEAP_M: f64 = 0.15;
+/// How far from where a foot was first seen the filter's first step may put it, in metres: half a shoe.
+const FIRST_STEP_M: f64 = 0.15;
 
 /// How little is known of the place of a foot that the filter has thrown about, as a standard deviation in metres.
 const THROWN_M: f64 = 0.05;
@@ -418,7 +418,8 @@ impl Tracker {
         let centre = |at: usize| DVec2::new(joint.x[at * STATES + EAST], joint.x[at * STATES + NORTH]);
         let mut newborn =
             members.iter().enumerate().map(|(which, &member)| (which, &self.feet[member as usize]));
-        let leaps = newborn.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > LEAP_M);
+        let leaps =
+            newborn.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
         if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
             // A leap so far that slopes mean nothing: all stay where they were foretold, and are sure of nothing.
             for &member in members {
