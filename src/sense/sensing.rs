@@ -200,4 +200,42 @@ mod tests {
         assert_eq!(readings[1].quality, Quality::Degraded);
         assert_eq!(readings[0], TileReading { centroid: None, ..TileReading::live() });
     }
+
+    /// The names of all contacts of a point with this force and place after so many milliseconds, in order.
+    fn names_of(point: impl Fn(f32) -> (f32, Vec2), millis: u16) -> Vec<u32> {
+        let geometry = Geometry::default();
+        let mut sensing = Sensing::new(geometry, Method::Tracker);
+        let mut names = Vec::new();
+        for milli in 0..millis {
+            let mut frame = ForceFrame::empty(&geometry);
+            frame.at = Instant::from_millis(milli.into());
+            let (force, at) = point(milli.into());
+            press(&mut frame, &geometry, at, force);
+            names.extend(sensing.update(&frame).iter().map(|contact| contact.id.0));
+        }
+        names.sort_unstable();
+        names.dedup();
+        names
+    }
+
+    #[test]
+    fn a_foot_that_leaves_over_the_tip_of_its_toes_stays_one() {
+        // As recorded walkers do: with a sixth of the weight left, the centre of pressure runs at 2.5 m/s.
+        let toe_off = |milli: f32| {
+            let [rolling, leaving, running] = [250.0, 600.0, 680.0].map(|from| (milli - from).max(0.0));
+            ((800.0 - 8.2 * leaving).max(130.0), Vec2::new(0.31 + 0.0002 * rolling + 0.0025 * running, 0.45))
+        };
+        assert_eq!(names_of(toe_off, 730), [1]);
+    }
+
+    #[test]
+    fn weight_that_rushes_aside_has_gone_over_to_another_foot() {
+        // A foot of 1100 N rolls north; within a quarter of a second all weight is 15 cm beside it, on the same tile.
+        let goes_over = |milli: f32| {
+            let over = ((milli - 900.0) / 250.0).clamp(0.0, 1.0);
+            let aside = 0.15 * over * over * (3.0 - 2.0 * over);
+            (1100.0, Vec2::new(0.36 + aside, 0.36 + 0.0002 * (milli - 600.0).clamp(0.0, 300.0)))
+        };
+        assert_eq!(names_of(goes_over, 1150).len(), 2);
+    }
 }

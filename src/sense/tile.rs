@@ -234,7 +234,7 @@ impl LoadedTile {
         let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
         let carried = is_lost.then(|| known.map_or(0.0, |(corners, _)| corners.iter().sum()));
         let Some((corners, worst)) = known else { return (carried, None) };
-        let corners = if may_start { corners } else { corners::raised(corners, quality) };
+        let corners = if may_start { corners } else { corners::mended(corners, quality) };
         let lag = Lag::new(quality, before, dt);
         let lag_n = lag.of(corners);
         let corners = std::array::from_fn(|corner| corners[corner] + lag_n[corner]);

@@ -25,6 +25,21 @@ const SHIFT_M_S: f64 = 0.25;
 /// of their range (our choice).
 const SLOWLY: f64 = 0.5;
 
+/// Least force, in newtons, that shows by where it acts that a newcomer has part in it.
+const LEAST_N: f64 = 120.0;
+
+/// Share of the most it has pressed with below which a foot is leaving: its centre of pressure runs to the tip of its
+/// toes, faster than any newcomer draws it.
+const LEAVING: f64 = 0.3;
+
+/// Least leap of the common centre of pressure that shows a newcomer, in metres, and how long a foot must have been
+/// down for it, in seconds: its heel has struck.
+const LEAP_M: f64 = 0.02;
+const ROLLS_ON_S: f64 = 0.12;
+
+/// How well the place of a newcomer is guessed that no tile shows by itself, as a standard deviation in metres.
+const GUESSED_M: f64 = 0.08;
+
 /// How far from the foot a newcomer may lie that is seen by its leap alone, in metres: as far as the tiles that both
 /// press allow.
 const LEAPS_M: [f64; 3] = [0.45, 0.35, 0.25];
@@ -116,22 +131,23 @@ impl Tracker {
 
     /// The foot that has landed among the tiles of `foot`, if one has.
     fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
-        let mut whole = 0.0;
-        let mut sum = DVec2::ZERO;
+        let seen = Seen::of(foot, list, self.cells.pitch);
+        self.added(foot, list).or_else(|| self.shifted(foot, &seen)).or_else(|| self.leapt(foot, list, &seen))
+    }
+
+    /// A newcomer whose load has been added to tiles, where the foot itself cannot have put it.
+    fn added(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
         let mut found = Newcomer::default();
         for &position in &foot.tiles {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
-            let centroid = tile.centroid.as_dvec2();
-            whole += force;
-            sum += centroid * force;
             let slow = foot.slow_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
             if added < ADDED_N {
                 continue;
             }
-            let moment = (centroid - centre) * force - slow.moment;
+            let moment = (tile.centroid.as_dvec2() - centre) * force - slow.moment;
             // Moment of what was added about the foot's own centre of pressure.
             let about = moment + (centre - foot.past.centre) * added;
             let place = centre + moment / added;
@@ -147,43 +163,75 @@ impl Tracker {
                 found.tiles.push(position);
             }
         }
-        if found.force > 0.0 {
-            return Some(found);
-        }
-        // Weight that is shifted slowly: a foot that stood still does not begin to roll as fast, nor to the side.
-        let shift = sum / whole - foot.home;
-        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
-        let doubt = vagueness(tiles, whole, self.cells.pitch);
-        if foot.stands()
-            && foot.unsettled <= 0.0
-            && whole > 120.0
-            && shift.length() > SHIFT_M + SLOWLY * doubt
-            && (foot.is_drawn(shift, SHIFT_M) && self.is_far_from_all(foot)
-                || foot.may_have_partner_towards(shift) && shift.length() > SHIFT_M_S * foot.away)
+        (found.force > 0.0).then_some(found)
+    }
+
+    /// A newcomer to whom weight is shifted little by little: a foot that stood still does not begin to roll as fast,
+    /// nor to the side, and none that bears its weight moves as fast as weight goes over.
+    fn shifted(&self, foot: &Foot, seen: &Seen) -> Option<Newcomer> {
+        let shift = seen.middle - foot.home;
+        if foot.unsettled > 0.0
+            || seen.force < LEAST_N
+            || shift.length() < SHIFT_M + SLOWLY * seen.doubt
+            || !(foot.stands() || foot.is_rushed())
         {
-            let place = foot.home + shift.normalize() * STANCE_M;
-            let force = whole * shift.length() / STANCE_M;
-            return Some(Newcomer { force, place, deviation: 0.08, ..Newcomer::default() });
+            return None;
         }
-        let leap = sum / whole - foot.past.centre;
-        if foot.age > 0.12 && foot.calm <= 0.0 && whole > 120.0 && leap.length() > 0.02 + doubt {
-            let moment = leap * whole;
-            return LEAPS_M.into_iter().find_map(|away| {
-                let force = (whole - foot.past.force).max(moment.length() / away);
-                let place = foot.past.centre + moment / force;
-                let is_on = |tile: &LoadedTile| {
-                    let (low, high) = self.cells.of(tile);
-                    place.cmpge(low - BESIDE_TILE_M).all() && place.cmple(high + BESIDE_TILE_M).all()
-                };
-                let seen = foot.tiles.iter().any(|&position| is_on(&list[position as usize]));
-                (force < whole && seen).then(|| Newcomer {
-                    force,
-                    place,
-                    deviation: 0.08,
-                    ..Newcomer::default()
-                })
-            });
+        let drawn = foot.is_drawn(shift, SHIFT_M) && self.is_far_from_all(foot);
+        let hasty = foot.may_have_partner_towards(shift) && shift.length() > SHIFT_M_S * foot.away;
+        (foot.is_rushed() || drawn || hasty).then(|| Newcomer {
+            force: seen.force * shift.length() / STANCE_M,
+            place: foot.home + shift.normalize() * STANCE_M,
+            deviation: GUESSED_M,
+            ..Newcomer::default()
+        })
+    }
+
+    /// A newcomer that makes the common centre of pressure leap.
+    fn leapt(&self, foot: &Foot, list: &[LoadedTile], seen: &Seen) -> Option<Newcomer> {
+        let leap = seen.middle - foot.past.centre;
+        if foot.age < ROLLS_ON_S
+            || foot.calm > 0.0
+            || seen.force < LEAST_N.max(LEAVING * foot.peak)
+            || leap.length() < LEAP_M + seen.doubt
+        {
+            return None;
         }
-        None
+        let moment = leap * seen.force;
+        LEAPS_M.into_iter().find_map(|away| {
+            let force = (seen.force - foot.past.force).max(moment.length() / away);
+            let place = foot.past.centre + moment / force;
+            let is_on = |tile: &LoadedTile| {
+                let (low, high) = self.cells.of(tile);
+                place.cmpge(low - BESIDE_TILE_M).all() && place.cmple(high + BESIDE_TILE_M).all()
+            };
+            let is_seen = foot.tiles.iter().any(|&position| is_on(&list[position as usize]));
+            (force < seen.force && is_seen).then(|| Newcomer {
+                force,
+                place,
+                deviation: GUESSED_M,
+                ..Newcomer::default()
+            })
+        })
+    }
+}
+
+/// What all tiles of a foot carry together.
+struct Seen {
+    force: f64,
+    middle: DVec2,
+    /// What is not known of it; see [`vagueness`].
+    doubt: f64,
+}
+
+impl Seen {
+    fn of(foot: &Foot, list: &[LoadedTile], pitch: f64) -> Self {
+        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
+        let (mut force, mut sum) = (0.0, DVec2::ZERO);
+        for tile in tiles.clone() {
+            force += f64::from(tile.wrench.force);
+            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+        }
+        Self { force, middle: sum / force, doubt: vagueness(tiles, force, pitch) }
     }
 }

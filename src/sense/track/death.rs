@@ -14,6 +14,9 @@ const FAINT_N: f64 = 4.0;
 /// How long a foot must have seemed to be gone before it is, in seconds.
 const FAINT_S: f64 = 0.01;
 
+/// How fast it then is no longer taken to be, in seconds per second: a rim that comes and goes proves nothing.
+const RECOVERS: f64 = 0.2;
+
 /// How long a foot must seem to have handed its weight over to be gone, in seconds.
 const HANDED_S: f64 = 0.04;
 
@@ -95,7 +98,8 @@ impl Tracker {
                 0.0
             };
             let foot = &mut self.feet[which];
-            foot.faint = if haste > 0.0 { foot.faint + haste * dt } else { 0.0 };
+            let change = if haste > 0.0 { haste } else { -RECOVERS };
+            foot.faint = (foot.faint + change * dt).max(0.0);
             if foot.faint >= FAINT_S {
                 for mate in self.mates.of(foot.group) {
                     self.feet[mate].be_calm();

@@ -29,6 +29,21 @@ fn both_feet_of_people_who_walk_turn_and_stand() {
 }
 
 #[test]
+fn people_whose_feet_once_changed_their_names() {
+    // Each made 3 to 15 changes, one false foot dragging the next behind it, until the cause was found.
+    for (seed, why) in [
+        (40_246, "118 kg on one tile: a sensor near its end reads a fifth too much"),
+        (60_166, "108 kg, 16 cm apart: in 120 ms the weight goes over to a foot on the same tile"),
+        (72_159, "of a foot that has left, the rim of the other one is taken for the rest"),
+        (60_029, "the last weight of the partner beside it was taken for the roll of the foot it left"),
+    ] {
+        let mut table = PeopleTable::default();
+        table.add_person(seed).unwrap();
+        assert_eq!(table.whole(1).swaps, 0, "person {seed}, {why}:\n{table}");
+    }
+}
+
+#[test]
 fn both_feet_of_people_who_arrive_and_stand_narrowly() {
     // 16 to 21 cm apart both feet are often on one tile: only how weight comes over to the second one tells of it.
     let (mut found, mut all) = (0, 0);
