@@ -6,7 +6,9 @@ use smallvec::SmallVec;
 
 use super::landing::Landing;
 use super::lines::{Axis, Habit};
+use super::past::Past;
 use super::patch::PatchOnTile;
+use super::rest::STRAY_MOST_M;
 use crate::sense::Quality;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
@@ -38,42 +40,8 @@ pub(super) const FLAT_S: f64 = 0.3;
 /// How long a foot takes to land: until then more of it may touch the floor anywhere under its shoe, in seconds.
 pub(super) const LANDS_S: f64 = 0.25;
 
-/// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
-/// while another one lands, in metres.
-pub(super) const STRAY_LEAST_M: f64 = 0.01;
-const STRAY_MOST_M: f64 = 0.06;
-/// How far it strays per speed, in seconds: as long as two feet are down while one walks.
-const STRAY_S: f64 = 0.15;
-/// How soon a foot that shares tiles has another home, in seconds.
-const HOME_S: f64 = 1.0;
-/// How soon one that stands still alone has.
-const STILL_HOME_S: f64 = 0.03;
-
 /// How long its own sway is not taken for a newcomer after a companion has gone or a sensor was lost, in seconds.
 pub(super) const CALM_S: f64 = 0.25;
-
-/// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
-const RESTLESS_M_S: f64 = 0.03;
-
-/// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
-const LINGERS_M_S: f64 = 0.15;
-
-/// How soon a foot that stood still is taken to roll, in metres per second squared.
-const ROUSED_M_S2: f64 = 0.2;
-
-/// Speed of its centre of pressure below which a foot stands still, in metres per second.
-const STILL_M_S: f64 = 0.12;
-/// How long it must have done so, and how long it may then move before it rolls, in seconds.
-const STILL_S: f64 = 0.08;
-const AWAY_S: f64 = 0.15;
-
-/// Speed that the centre of pressure of one foot does not have while it bears its weight, in metres per second, and the
-/// share of the most it has pressed with from which on it does so (a recorded walk, played up to a third faster, stayed below 0.7 m/s).
-const RUSHED_M_S: f64 = 0.8;
-const BEARS: f64 = 0.7;
-
-/// How long at most weight is taken over by a partner that lands, in seconds.
-const DRAWN_S: f64 = 0.6;
 
 /// From when until when after it has landed a foot rolls from its heel to its toes, in seconds.
 const ROLLS_S: (f64, f64) = (0.05, 0.45);
@@ -87,7 +55,7 @@ const PARTNER_S: f64 = 1.2;
 /// Speed towards a place from which on a foot slides there, in metres per second, and the force on one that slides, in
 /// newtons, at most.
 const AHEAD_M_S: f64 = 0.02;
-const SLIDING_N: f64 = 200.0;
+pub(super) const SLIDING_N: f64 = 200.0;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
@@ -152,28 +120,6 @@ pub(super) struct Foot {
     /// The way of its centre of pressure while it came down alone: from its heel to its toes.
     pub rolled: DVec2,
 }
-
-/// A foot as its last few hundredths of a second foretell it: what a newcomer is measured against.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Past {
-    pub force: f64,
-    pub force_rate: f64,
-    pub centre: DVec2,
-    pub velocity: DVec2,
-    /// Slow force and moment (about the tile's centre) per tile.
-    pub loads: SmallVec<[SlowLoad; 12]>,
-}
-
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct SlowLoad {
-    pub index: u32,
-    pub force: f64,
-    pub moment: DVec2,
-    pub seen: bool,
-}
-
-/// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
-const PAST_S: f64 = 0.05;
 
 impl Foot {
     pub(super) fn new(id: ContactId, force: f64, centre: DVec2, deviation: f64) -> Self {
@@ -289,23 +235,6 @@ impl Foot {
         beyond
     }
 
-    /// Whether it stands still alone, or has only just begun to move.
-    pub(super) fn stands(&self) -> bool {
-        self.age > FLAT_S && self.still > STILL_S
-    }
-
-    /// Whether its centre of pressure moves as that of no foot does that bears its weight: weight goes over to another.
-    pub(super) fn is_rushed(&self) -> bool {
-        self.age > FLAT_S
-            && self.force() > SLIDING_N.max(BEARS * self.peak)
-            && self.velocity().length() > RUSHED_M_S
-    }
-
-    /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is somebody else's.
-    pub(super) fn lingers(&self) -> bool {
-        self.stands() || self.age > FLAT_S && self.restless < LINGERS_M_S
-    }
-
     /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
     /// been seen; negative within, infinite for every other foot.
     pub(super) fn lands_about(&self, point: DVec2) -> f64 {
@@ -350,58 +279,6 @@ impl Foot {
             (0.02, 0.22)
         };
         if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
-    }
-
-    /// Goes on standing still at `home`.
-    pub(super) fn stay(&mut self, home: DVec2) {
-        self.home = home;
-        self.stray = STRAY_LEAST_M;
-        self.restless = RESTLESS_M_S;
-    }
-
-    /// Remembers where the foot has been.
-    pub(super) fn roll(&mut self, dt: f64) {
-        let centre = self.centre();
-        self.peak = self.peak.max(self.force());
-        let rolls = !self.shared || self.age < FLAT_S;
-        let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
-        // Weight that goes over to another foot draws it along for a moment: that is not its own.
-        let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
-        self.restless += change.min(ROUSED_M_S2 * dt);
-        if rolls {
-            self.stray = (STRAY_LEAST_M + STRAY_S * self.restless).min(STRAY_MOST_M);
-        }
-        self.rest(dt, rolls);
-        if self.age < 0.01 {
-            self.landed = centre;
-            self.farthest = centre;
-        } else if centre.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
-            self.farthest = centre;
-        }
-    }
-
-    /// Notes where the foot rests, and for how long it has stood still or been on the move.
-    fn rest(&mut self, dt: f64, rolls: bool) {
-        let centre = self.centre();
-        let drift = |time_s: f64| 1.0 - (-dt / time_s).exp();
-        if self.shared {
-            (self.still, self.away) = (0.0, 0.0);
-            let soon = if rolls { 1.0 } else { drift(HOME_S) };
-            self.home += (centre - self.home) * soon;
-        } else if self.velocity().length() < STILL_M_S {
-            self.still += dt;
-            self.away = 0.0;
-            self.home += (centre - self.home) * drift(STILL_HOME_S);
-        } else {
-            self.away += dt;
-            let rolls = self.away > AWAY_S && !self.is_drawn(centre - self.home, 0.0);
-            if rolls || self.away > DRAWN_S {
-                self.still = 0.0;
-                if !self.is_rushed() {
-                    self.home = centre;
-                }
-            }
-        }
     }
 
     /// Lists the loaded tiles that its patch may press.
@@ -474,22 +351,6 @@ impl Foot {
         self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
     }
 
-    /// Lets the slow past learn from where the foot is now.
-    pub(super) fn learn_past(&mut self, dt: f64) {
-        if dt <= 0.0 {
-            return;
-        }
-        // A critically damped alpha-beta filter: no overshoot, steady motion followed without lag.
-        let keep = (-dt / PAST_S).exp();
-        let (alpha, beta) = (1.0 - keep * keep, (1.0 - keep) * (1.0 - keep) / dt);
-        let offset = self.centre() - self.past.centre;
-        let gain = self.force() - self.past.force;
-        self.past.centre += alpha * offset;
-        self.past.velocity += beta * offset;
-        self.past.force += alpha * gain;
-        self.past.force_rate += beta * gain;
-    }
-
     /// Notes that its sensors are believed more or less than before, and takes nothing of the change for a newcomer.
     ///
     /// `lasts`: what they say goes on changing for a while.
@@ -505,36 +366,6 @@ impl Foot {
         (self.calm, self.unsettled) = (CALM_S, CALM_S);
     }
 
-    /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.
-    pub(super) fn start_over(&mut self) {
-        self.past = Past { force: self.force(), centre: self.centre(), ..Past::default() };
-    }
-
-    /// Lets the slow load of one tile learn; `force` and `moment` are the foot's own part of it.
-    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64, fresh: bool) {
-        let weight = 1.0 - (-dt / PAST_S).exp();
-        let loads = &mut self.past.loads;
-        let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
-            loads.push(SlowLoad { index, ..SlowLoad::default() });
-            loads.len() - 1
-        });
-        let load = &mut loads[position];
-        let weight = if fresh { 1.0 } else { weight };
-        load.force += weight * (force - load.force);
-        load.moment += weight * (moment - load.moment);
-        load.seen = true;
-    }
-
-    /// Drops the slow loads that were not learnt from since the last call.
-    pub(super) fn forget_loads(&mut self) {
-        self.past.loads.retain(|load| std::mem::take(&mut load.seen));
-    }
-
-    /// The slow load of one tile, nothing if it had none.
-    pub(super) fn slow_load(&self, index: u32) -> SlowLoad {
-        self.past.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
-    }
-
     /// Stands alone with this force and centre of pressure from now on.
     pub(super) fn stand(&mut self, force: f64, centre: DVec2) {
         self.state[FORCE] = force;
@@ -542,17 +373,5 @@ impl Foot {
         self.state[NORTH] = centre.y;
         self.home = centre;
         self.be_sure(0.01);
-    }
-
-    /// Goes back to where its past foretold it: somebody else is to blame for the difference.
-    pub(super) fn step_back(&mut self) {
-        self.state[FORCE] = self.past.force.min(self.state[FORCE]);
-        self.state[FORCE + 1] = self.past.force_rate.clamp(-2e4, 2e4);
-        self.state[EAST] = self.past.centre.x;
-        self.state[NORTH] = self.past.centre.y;
-        self.state[EAST + 1] = self.past.velocity.x.clamp(-2.0, 2.0);
-        self.state[NORTH + 1] = self.past.velocity.y.clamp(-2.0, 2.0);
-        self.be_sure(0.005);
-        self.covariance[FORCE][FORCE] = 400.0;
     }
 }

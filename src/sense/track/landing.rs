@@ -12,8 +12,9 @@
 use glam::DVec2;
 
 use super::Cells;
-use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M, STRAY_LEAST_M};
+use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M};
 use super::lines::{Axis, Line, Lines};
+use super::rest::STRAY_LEAST_M;
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
