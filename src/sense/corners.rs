@@ -24,9 +24,9 @@ const AT_LEAST: f32 = 0.5;
 /// those just beyond).
 const BEYOND: f32 = 1.1;
 
-/// How far a sensor that reads "at least" may be below what it carries, and how far above it where its part strays
-/// from its law, as shares of its reading (our choice: of seven pairs tried, those with three to
-/// five times as much below as above told people's feet apart best).
+/// How far a sensor that reads "at least" may be below what it carries where others tell, and how far above it where
+/// its part strays from its law, as shares of its reading (our choice: of seven pairs tried, those with three to five
+/// times as much below as above told people's feet apart best).
 const BELOW: f32 = 0.3;
 const ABOVE: f32 = 0.1;
 

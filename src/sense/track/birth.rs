@@ -5,7 +5,7 @@ use smallvec::SmallVec;
 
 use super::foot::{FORCE, Foot, LANDS_S};
 use super::landing::Landing;
-use super::lines::vagueness;
+use super::lines::Whole;
 use super::{STRIDE_M, Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -131,7 +131,8 @@ impl Tracker {
 
     /// The foot that has landed among the tiles of `foot`, if one has.
     fn newcomer(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
-        let seen = Seen::of(foot, list, self.cells.pitch);
+        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
+        let seen = Whole::of(tiles, self.cells.pitch);
         self.added(foot, list).or_else(|| self.shifted(foot, &seen)).or_else(|| self.leapt(foot, list, &seen))
     }
 
@@ -168,7 +169,7 @@ impl Tracker {
 
     /// A newcomer to whom weight is shifted little by little: a foot that stood still does not begin to roll as fast,
     /// nor to the side, and none that bears its weight moves as fast as weight goes over.
-    fn shifted(&self, foot: &Foot, seen: &Seen) -> Option<Newcomer> {
+    fn shifted(&self, foot: &Foot, seen: &Whole) -> Option<Newcomer> {
         let shift = seen.middle - foot.home;
         if foot.unsettled > 0.0
             || seen.force < LEAST_N
@@ -188,7 +189,7 @@ impl Tracker {
     }
 
     /// A newcomer that makes the common centre of pressure leap.
-    fn leapt(&self, foot: &Foot, list: &[LoadedTile], seen: &Seen) -> Option<Newcomer> {
+    fn leapt(&self, foot: &Foot, list: &[LoadedTile], seen: &Whole) -> Option<Newcomer> {
         let leap = seen.middle - foot.past.centre;
         if foot.age < ROLLS_ON_S
             || foot.calm > 0.0
@@ -213,25 +214,5 @@ impl Tracker {
                 ..Newcomer::default()
             })
         })
-    }
-}
-
-/// What all tiles of a foot carry together.
-struct Seen {
-    force: f64,
-    middle: DVec2,
-    /// What is not known of it; see [`vagueness`].
-    doubt: f64,
-}
-
-impl Seen {
-    fn of(foot: &Foot, list: &[LoadedTile], pitch: f64) -> Self {
-        let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
-        let (mut force, mut sum) = (0.0, DVec2::ZERO);
-        for tile in tiles.clone() {
-            force += f64::from(tile.wrench.force);
-            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
-        }
-        Self { force, middle: sum / force, doubt: vagueness(tiles, force, pitch) }
     }
 }

@@ -46,9 +46,6 @@ pub(super) const CALM_S: f64 = 0.25;
 /// From when until when after it has landed a foot rolls from its heel to its toes, in seconds.
 const ROLLS_S: (f64, f64) = (0.05, 0.45);
 
-/// Largest distance between the feet of somebody who stands with one beside the other, in metres.
-const BESIDE_M: f64 = 0.25;
-
 /// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
 const PARTNER_S: f64 = 1.2;
 
@@ -69,7 +66,7 @@ pub(super) struct Foot {
     pub past: Past,
     /// Positions of the tiles it may press, in the list of loaded tiles.
     pub tiles: SmallVec<[u32; 12]>,
-    /// Seconds for which it has been too light to be there.
+    /// Seconds for which it has been too light to be there, less what has worn off of them.
     pub faint: f64,
     /// The most it has pressed with.
     pub peak: f64,
@@ -333,12 +330,6 @@ impl Foot {
         self.state[NORTH] = centre.y;
         self.be_sure(0.003);
         self.ambiguous = false;
-    }
-
-    /// Whether the last of the weight of a companion that stood beside it may still be going over: what that moves is no
-    /// roll of its own.
-    fn is_being_left(&self) -> bool {
-        self.calm > 0.0 && self.partner.is_some_and(|(place, _)| place.distance(self.centre()) < BESIDE_M)
     }
 
     /// Moves the slow past on by `dt`.

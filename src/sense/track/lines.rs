@@ -100,6 +100,26 @@ pub(super) fn vagueness<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: 
     FRAC_1_SQRT_2 * pitch * vague / force
 }
 
+/// What some tiles carry together.
+pub(super) struct Whole {
+    pub force: f64,
+    /// Their centroid; not a number without force.
+    pub middle: DVec2,
+    /// What is not known of it; see [`vagueness`].
+    pub doubt: f64,
+}
+
+impl Whole {
+    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
+        let (mut force, mut sum) = (0.0, DVec2::ZERO);
+        for tile in tiles.clone() {
+            force += f64::from(tile.wrench.force);
+            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
+        }
+        Self { force, middle: sum / force, doubt: vagueness(tiles, force, pitch) }
+    }
+}
+
 /// The columns and rows of some tiles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
@@ -115,14 +135,8 @@ pub(super) struct Lines {
 impl Lines {
     /// Sums up `tiles`; what is beyond [`MOST_LINES`] is in `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
-        let mut sums = Self::default();
-        let mut sum = DVec2::ZERO;
-        for tile in tiles.clone() {
-            sums.force += f64::from(tile.wrench.force);
-            sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
-        }
-        sums.middle = sum / sums.force;
-        sums.doubt = vagueness(tiles.clone(), sums.force, pitch);
+        let Whole { force, middle, doubt } = Whole::of(tiles.clone(), pitch);
+        let mut sums = Self { force, middle, doubt, ..Self::default() };
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();

@@ -27,7 +27,17 @@ const LIFTED_S: f64 = 0.005;
 /// How far its centre of pressure must have gone while it came down for a foot to be known to point there, in metres.
 const ROLLED_M: f64 = 0.03;
 
+/// Largest distance between the feet of somebody who stands with one beside the other, in metres.
+const STANDS_BESIDE_M: f64 = 0.25;
+
 impl Foot {
+    /// Whether the last of the weight of a companion that stood beside it may still be going over: what that moves is no
+    /// roll of its own.
+    pub(super) fn is_being_left(&self) -> bool {
+        self.calm > 0.0
+            && self.partner.is_some_and(|(place, _)| place.distance(self.centre()) < STANDS_BESIDE_M)
+    }
+
     /// Whether the other foot of its person may be landing on the side that `way` points to: not while
     /// that foot is elsewhere, and not ahead of a foot that rolls: after that one has left, or when none was down before.
     pub(super) fn may_have_partner_towards(&self, way: DVec2) -> bool {

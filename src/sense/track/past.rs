@@ -8,7 +8,7 @@ use super::foot::{EAST, FORCE, Foot, NORTH};
 /// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
 const PAST_S: f64 = 0.05;
 
-/// A foot as its last few hundredths of a second foretell it: what a newcomer is measured against.
+/// Force, place and rates of a foot as its last few hundredths of a second foretell them.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Past {
     pub force: f64,
