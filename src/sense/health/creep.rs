@@ -5,7 +5,7 @@
 //! c of its load for each decade reads c m more than it should, where m sums how well the load is remembered over
 //! a tenth of a second, over one, ten and a hundred seconds. How large c is, feet that leave tiles show: what is
 //! left of them, over m, is c, a moment later and a second later. What a foot leaves that goes on resting there
-//! does not fade with the memory, and teaches nothing.
+//! does not fade with the memory, what comes and goes leaps: they teach nothing.
 
 /// Over which times loads are remembered, in seconds: a decade apart.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
@@ -25,6 +25,14 @@ const WORST: f32 = 0.1;
 /// the two looks may differ.
 const LOOKS_S: [f32; 2] = [0.25, 1.0];
 const ALIKE: f32 = 0.25;
+
+/// What is left of the memory at the second look, at most, as a share of the first: of a tile that was loaded for
+/// minutes it fades so little that a load that rests there would look alike.
+const FADED: f32 = 0.75;
+
+/// How much what lingers may change from one time to the next, in newtons and as a share: it fades, it never leaps.
+const LEAP_N: f32 = 1.0;
+const LEAP: f32 = 0.2;
 
 /// How much what one foot left moves the estimate, how much more what the first one does, and which share of feet
 /// leaves less. One foot alone proves nothing.
@@ -55,9 +63,39 @@ pub(super) struct Memory {
     loads: [[f32; 4]; TIMES_S.len()],
     /// Whether there is anything to forget.
     is_stirred: bool,
-    /// Seconds since a foot has left the tile, and what share of the memory lingered at the first look.
-    left_for: f32,
-    lingered: f32,
+    left: Left,
+}
+
+/// What lingers on a tile that a foot has left.
+#[derive(Clone, Copy, Debug, Default)]
+struct Left {
+    /// For how long, in seconds.
+    seconds: f32,
+    /// What the tile reads, in newtons.
+    reads: f32,
+    /// What it read at the first look, and the memory then, in newtons.
+    first: (f32, f32),
+}
+
+impl Left {
+    /// The share of the `memory` that lingers, once it is known: when the second look agrees with the first.
+    fn look(&mut self, reads: f32, memory: f32, seconds: f32) -> Option<f32> {
+        let leaps = (reads - self.reads).abs() > LEAP_N + LEAP * self.reads.abs();
+        self.reads = reads;
+        if leaps {
+            self.seconds = 0.0;
+            return None;
+        }
+        let before = self.seconds;
+        self.seconds += seconds;
+        let is_now = |look: f32| before < look && self.seconds >= look;
+        if is_now(LOOKS_S[0]) {
+            self.first = (reads, memory);
+        }
+        let (lingered, lingers) = (self.first.0 / self.first.1, reads / memory);
+        let is_alike = (lingers - lingered).abs() < ALIKE * lingered.abs() || lingers.max(lingered) < LEAST;
+        (is_now(LOOKS_S[1]) && memory < FADED * self.first.1 && is_alike).then_some(lingers)
+    }
 }
 
 /// How much of a new load each memory takes in over some time.
@@ -76,25 +114,15 @@ impl Creep {
     pub(super) fn learn(&mut self, memory: &mut Memory, reads: f32, seconds: f32) {
         let whole: f32 = memory.sums().iter().sum();
         if whole < TELLS_N || reads.abs() > MOST * whole {
-            memory.left_for = 0.0;
+            memory.left = Left::default();
             return;
         }
-        let before = memory.left_for;
-        memory.left_for += seconds;
-        let is_now = |look: f32| before < look && memory.left_for >= look;
-        let lingers = reads / whole;
-        if is_now(LOOKS_S[0]) {
-            memory.lingered = lingers;
-        } else if is_now(LOOKS_S[1]) {
-            let differs = (lingers - memory.lingered).abs();
-            if differs < ALIKE * memory.lingered.abs() || lingers.max(memory.lingered) < LEAST {
-                let less = lingers < self.share;
-                self.feet += 1.0;
-                let step = STEP + FIRST / self.feet;
-                self.share += step * if less { QUANTILE - 1.0 } else { QUANTILE };
-                self.share = self.share.clamp(0.0, WORST);
-            }
-        }
+        let Some(lingers) = memory.left.look(reads, whole, seconds) else { return };
+        let less = lingers < self.share;
+        self.feet += 1.0;
+        let step = STEP + FIRST / self.feet;
+        self.share += step * if less { QUANTILE - 1.0 } else { QUANTILE };
+        self.share = self.share.clamp(0.0, WORST);
     }
 
     /// Lets `dt` seconds pass.
@@ -187,5 +215,34 @@ mod tests {
         assert_eq!(walked_over(0.0, 40, 0.0), (0.0, 0.0));
         // A foot that presses and then rests there with a twentieth of that, time and again.
         assert_eq!(walked_over(0.0, 40, 7.5), (0.0, 0.0));
+    }
+
+    /// What is learnt of a sensor that does not creep, on a tile that carries `load(seconds)` newtons.
+    fn learnt_under(load: impl Fn(f32) -> f32, seconds: usize) -> f32 {
+        let (mut known, mut memory) = (Creep::default(), Memory::default());
+        let parts = Parts::of(0.008);
+        for step in 0..seconds * 125 {
+            let force = load(step as f32 * 0.008);
+            memory.follow([force; 4], &parts);
+            if step % 8 == 0 {
+                known.learn(&mut memory, 4.0 * force, 0.064);
+            }
+        }
+        known.share()
+    }
+
+    #[test]
+    fn a_busy_tile_on_which_light_feet_rest_or_come_and_go_teaches_nothing() {
+        // Of a tile that is loaded for minutes the memory hardly fades within a second: what rests there fades as little.
+        let rests = |at: f32| if at % 60.0 < 57.0 { 150.0 } else { 20.0 };
+        assert_eq!(learnt_under(rests, 600), 0.0);
+        // After a heavy foot a light one taps twice, the second time as much lighter as creep would have faded.
+        let steps = |at: f32| match at % 3.0 {
+            ..1.0 => 150.0,
+            1.15..1.35 => 6.0,
+            1.85..2.15 => 3.0,
+            _ => 0.0,
+        };
+        assert_eq!(learnt_under(steps, 600), 0.0);
     }
 }
