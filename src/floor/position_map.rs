@@ -11,7 +11,7 @@ use super::Geometry;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PositionMap {
     /// Per sensor ([`super::Corner::ALL`] order), what is added to a factor of one at each of
-    /// [`PositionMap::TRIM_LOADS_N`]; straight lines between, constant outside.
+    /// [`PositionMap::TRIM_LOADS_N`]; a smooth curve between, constant outside.
     pub trims: [[f32; PositionMap::TRIMS]; 4],
     /// For the shift east and north, what each of [`PositionMap::terms`] counts, in half pitches.
     pub bends: [[f32; PositionMap::BENDS]; 2],
@@ -22,12 +22,15 @@ pub struct PositionMap {
 impl PositionMap {
     /// Loads on one sensor, tared, at which its trim is known, in newtons.
     ///
-    /// Closer where feet work: a part strays from its law in about two waves over its range (our choice).
-    pub const TRIM_LOADS_N: [f32; Self::TRIMS] =
-        [0.0, 10.0, 25.0, 45.0, 70.0, 100.0, 140.0, 190.0, 250.0, 320.0, 400.0];
+    /// A part strays from its law in waves that are the shorter the lighter its load (our choice, by trying). Below
+    /// zero a load beyond the sensors' square lifts the plate off it, down to the plate's own weight.
+    pub const TRIM_LOADS_N: [f32; Self::TRIMS] = [
+        -12.0, -9.0, -6.0, -3.0, 0.0, 5.0, 11.0, 20.0, 32.0, 47.0, 64.0, 82.0, 102.0, 122.0, 145.0, 170.0,
+        200.0, 240.0, 290.0, 340.0, 400.0,
+    ];
 
     /// Trims of one sensor.
-    pub const TRIMS: usize = 11;
+    pub const TRIMS: usize = 21;
 
     /// Terms of the shift along one axis.
     pub const BENDS: usize = 10;
@@ -51,12 +54,21 @@ impl PositionMap {
     /// What a map leaves of which that is not known, in metres: a little more than most (our choice).
     pub const SOME_RESIDUAL_M: f32 = 0.004;
 
-    /// Where `force` lies between two of [`PositionMap::TRIM_LOADS_N`]: the lower one's place and how far on, 0 to 1.
-    pub(crate) fn between(force: f32) -> (usize, f32) {
+    /// What each of four neighbouring trims counts at a load of `force` newtons, and the number of the first of them.
+    ///
+    /// # Source
+    /// Cubic Hermite interpolation; the slope at each load is that of the parabola through it and its two neighbours.
+    #[inline]
+    pub(crate) fn shares(force: f32) -> (usize, [f32; 4]) {
         let loads = &Self::TRIM_LOADS_N;
         let below = loads[1..Self::TRIMS - 1].partition_point(|&load| load <= force);
-        let share = (force - loads[below]) / (loads[below + 1] - loads[below]);
-        (below, share.clamp(0.0, 1.0))
+        let along = ((force - loads[below]) / (loads[below + 1] - loads[below])).clamp(0.0, 1.0);
+        let cubic = &CUBICS[below];
+        let share = |trim: usize| {
+            let [c0, c1, c2, c3] = cubic[trim];
+            c0 + along * (c1 + along * (c2 + along * c3))
+        };
+        (first_of(below), [share(0), share(1), share(2), share(3)])
     }
 
     /// The cubic polynomial's terms at `u`, in half pitches from the tile's centre.
@@ -69,12 +81,14 @@ impl PositionMap {
     /// The sensors' forces with their trims, in newtons. A force that is not a number stays so.
     ///
     /// # Real-time
-    /// Some forty operations; allocates nothing.
+    /// Some hundred operations; allocates nothing.
     #[must_use]
     pub fn trimmed(&self, mut corners: [f32; 4]) -> [f32; 4] {
         for (force, trims) in corners.iter_mut().zip(&self.trims) {
-            let (below, share) = Self::between(*force);
-            *force *= 1.0 + trims[below] + (trims[below + 1] - trims[below]) * share;
+            let (first, shares) = Self::shares(*force);
+            let trim: f32 =
+                trims[first..first + 4].iter().zip(shares).map(|(trim, share)| trim * share).sum();
+            *force *= (1.0 + trim).max(0.0);
         }
         corners
     }
@@ -91,6 +105,64 @@ impl PositionMap {
         let shift = Vec2::from_array(shift).clamp(-most, most);
         (arm + shift * half).clamp(Vec2::splat(-half), Vec2::splat(half))
     }
+}
+
+/// The first of the four trims that count between load `below` and the next.
+const fn first_of(below: usize) -> usize {
+    match below {
+        0 => 0,
+        below if below > PositionMap::TRIMS - 3 => PositionMap::TRIMS - 4,
+        below => below - 1,
+    }
+}
+
+/// Between each load and the next, the polynomial (its four factors, of the lowest power first) of how far the way
+/// between them has come that says what each of four trims counts.
+static CUBICS: [[[f32; 4]; 4]; PositionMap::TRIMS - 1] = {
+    let mut cubics = [[[0.0; 4]; 4]; PositionMap::TRIMS - 1];
+    let mut below = 0;
+    while below < cubics.len() {
+        let first = first_of(below);
+        let step = PositionMap::TRIM_LOADS_N[below + 1] - PositionMap::TRIM_LOADS_N[below];
+        let (start, end) = (slope(below), slope(below + 1));
+        let mut trim = 0;
+        while trim < 4 {
+            let (from, to) = ((first + trim == below) as u8 as f32, (first + trim == below + 1) as u8 as f32);
+            let (start, end) = (start[first + trim] * step, end[first + trim] * step);
+            cubics[below][trim] =
+                [from, start, 3.0 * (to - from) - 2.0 * start - end, 2.0 * (from - to) + start + end];
+            trim += 1;
+        }
+        below += 1;
+    }
+    cubics
+};
+
+/// What each trim counts in the curve's slope at load number `at`, per newton.
+const fn slope(at: usize) -> [f32; PositionMap::TRIMS] {
+    let loads = &PositionMap::TRIM_LOADS_N;
+    let last = PositionMap::TRIMS - 1;
+    let mut slope = [0.0; PositionMap::TRIMS];
+    // How much of it is the slope of the chord before, and of the one after.
+    let (before, after) = match at {
+        0 => (0.0, 1.0),
+        at if at == last => (1.0, 0.0),
+        at => {
+            let share = (loads[at + 1] - loads[at]) / (loads[at + 1] - loads[at - 1]);
+            (share, 1.0 - share)
+        }
+    };
+    if at > 0 {
+        let per = before / (loads[at] - loads[at - 1]);
+        slope[at] += per;
+        slope[at - 1] -= per;
+    }
+    if at < last {
+        let per = after / (loads[at + 1] - loads[at]);
+        slope[at + 1] += per;
+        slope[at] -= per;
+    }
+    slope
 }
 
 impl Default for PositionMap {
@@ -115,19 +187,34 @@ mod tests {
     }
 
     #[test]
-    fn trims_go_straight_from_load_to_load() {
+    fn trims_hold_at_their_loads_and_are_smooth_between() {
         let mut map = PositionMap::NONE;
-        map.trims[1][4] = 0.1;
-        let read = |force: f32| map.trimmed([0.0, force, force, 0.0]);
-        assert_eq!(read(70.0)[2], 70.0);
-        assert!((read(70.0)[1] - 77.0).abs() < 1e-4);
-        assert!((read(85.0)[1] - 85.0 * 1.05).abs() < 1e-4);
-        assert!((read(45.0)[1] - 45.0).abs() < 1e-4);
-        map.trims[1][PositionMap::TRIMS - 1] = 0.2;
-        assert!((map.trimmed([0.0, 1000.0, 0.0, 0.0])[1] - 1200.0).abs() < 1e-2);
+        // A parabola over the load is met everywhere but next to the ends, where there is no third load.
+        let trim = |load: f32| 0.1 - 0.001 * load + 2e-6 * load * load;
+        map.trims[1] = PositionMap::TRIM_LOADS_N.map(trim);
+        let factor = |force: f32| map.trimmed([0.0, force, force, 0.0])[1] / force;
+        for load in [-10.0, -9.0, -4.5, 3.0, 5.0, 27.0, 64.0, 73.0, 139.0, 200.0, 333.0, 340.0, 400.0] {
+            let expected = 1.0 + trim(load);
+            assert!((factor(load) - expected).abs() < 1e-4, "{load}: {}", factor(load));
+        }
+        assert_eq!(map.trimmed([0.0, 73.0, 73.0, 0.0])[2], 73.0);
+        // Constant outside.
+        assert_eq!(factor(1000.0), 1.0 + trim(400.0));
+        assert_eq!(factor(-30.0), 1.0 + trim(-12.0));
     }
 
     proptest! {
+        #[test]
+        fn no_trims_turn_a_load_around(
+            trims in proptest::array::uniform4(proptest::array::uniform21(-0.6f32..=0.6)),
+            force in -20.0f32..500.0,
+        ) {
+            let map = PositionMap { trims, ..PositionMap::NONE };
+            for trimmed in map.trimmed([force; 4]) {
+                prop_assert!(trimmed * force >= 0.0 && trimmed.abs() < 2.0 * force.abs() + 1e-3, "{trimmed}");
+            }
+        }
+
         #[test]
         fn no_map_puts_a_load_off_its_tile_or_makes_numbers_of_none(
             bends in proptest::array::uniform2(proptest::array::uniform10(-2.0f32..2.0)),

@@ -119,7 +119,7 @@ mod tests {
             "`tared` is no day",
             "`calibrated` needs `residual` beside it",
             "expected 4",
-            "expected 11",
+            "expected 21",
             "`bends` is out of range",
             "`residual_m` needs `mapped` beside it",
             "the map of tile (1, 0) comes twice",

@@ -9,7 +9,8 @@ use crate::floor::{Corner, Geometry};
 pub struct SensorDoubt {
     /// Standard deviation of a sensor's zero, in newtons.
     pub offset_n: f32,
-    /// Standard deviation of a sensor's gain after calibration, as a share of the reading.
+    /// Standard deviation of a sensor's gain after calibration under light loads, as a share of the reading; half as
+    /// much again from 60 N on, where parts stray farther from their laws.
     pub gain: f32,
 }
 
@@ -18,20 +19,32 @@ pub struct SensorDoubt {
 const ARM_M: f32 = 0.125;
 
 /// What it leaves of a sensor that carries next to nothing, in parts of that.
-const LIGHT: f32 = 0.6;
+const LIGHT: f32 = 0.25;
 
 /// The load at which one part more is left, in newtons; it grows with the square, up to the gain of a tile without
 /// a map: few presses teach a sensor how it reads near the end of its range.
-const HEAVY_N: f32 = 105.0;
+const HEAVY_N: f32 = 102.0;
+
+/// The load from which on the gain of a tile without a map is as doubtful as it gets, in newtons, and how much more
+/// than under a light one, as a share (by the same coverage).
+const STRAYS_N: f32 = 60.0;
+const STRAYS: f32 = 0.55;
+
+/// The load from which on it is no longer the share that is as doubtful, but the newtons: a law is fitted to those.
+const FITTED_N: f32 = 180.0;
+
+/// Standard deviation of what each sensor of a tile that the load strays to carries without being counted, in newtons
+/// (by the same coverage, of feet of 50 N).
+const UNSEEN_N: f32 = 0.27;
 
 impl Default for SensorDoubt {
-    /// An eighth of a newton of offset, 13.5 % of gain: what remains once an empty floor's zeros have been followed,
+    /// A ninth of a newton of offset, 10.7 % of gain: what remains once an empty floor's zeros have been followed,
     /// and after a calibration.
     ///
     /// The paper's 5 % (section 2.2) are of full scale. Of a reading it is more, and the ellipses hold 95 % of
     /// the true places on simulated parts like the paper's with this much.
     fn default() -> Self {
-        Self { offset_n: 0.13, gain: 0.135 }
+        Self { offset_n: 0.11, gain: 0.107 }
     }
 }
 
@@ -57,8 +70,7 @@ impl SensorDoubt {
     ) -> Covariance {
         let reach = geometry.sensor_reach_m();
         let scale = 1.0 / (force * force).max(1e-6);
-        // Tiles that the load strays to are as uncertain as their sensors' zeros.
-        let strayed = self.offset_n * self.offset_n * tile.strayed_m2() * scale;
+        let strayed = UNSEEN_N * UNSEEN_N * tile.strayed_m2() * scale;
         let mut sum = Covariance { xx: strayed, xy: 0.0, yy: strayed };
         for corner in Corner::ALL {
             let arm = tile.centre + corner.direction() * reach - point;
@@ -76,8 +88,10 @@ impl SensorDoubt {
     /// The gain's standard deviation at a sensor that carries `load` newtons, on a tile whose map leaves `mapped_m`
     /// along each axis.
     fn gain_at(&self, load: f32, mapped_m: Option<f32>) -> f32 {
+        let strays = 1.0 + STRAYS * (load / STRAYS_N).clamp(0.0, 1.0);
+        let unmapped = self.gain * strays * (FITTED_N / load.max(FITTED_N));
         let heavy = load / HEAVY_N;
-        mapped_m.map_or(self.gain, |left| (left / ARM_M * (LIGHT + heavy * heavy)).min(self.gain))
+        mapped_m.map_or(unmapped, |left| (left / ARM_M * (LIGHT + heavy * heavy)).min(unmapped))
     }
 }
 

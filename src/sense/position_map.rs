@@ -122,21 +122,16 @@ impl MapFit {
         let pressed: Vec<Press> =
             presses.iter().copied().filter(|press| press.forces.iter().sum::<f32>() > LEAST_N).collect();
         let found = |map: &PositionMap, press: &Press| placed(map, press, geometry);
-        let fit = |presses: &[Press], parts: Parts| {
-            let mut map = PositionMap::NONE;
-            if parts.trims {
-                map.trims = trims(presses, geometry);
-            }
-            if parts.bends {
-                let sightings: Vec<_> = presses
-                    .iter()
-                    .map(|press| Sighting { at: press.at, estimate: found(&map, press) })
-                    .collect();
-                map.bends = bends(&sightings, geometry);
-            }
-            map
+        let candidates = |presses: &[Press]| {
+            let bent = |map: PositionMap| {
+                let sighting = |press: &Press| Sighting { at: press.at, estimate: found(&map, press) };
+                let sightings: Vec<_> = presses.iter().map(sighting).collect();
+                PositionMap { bends: bends(&sightings, geometry), ..map }
+            };
+            let trimmed = PositionMap { trims: trims(presses, geometry), ..PositionMap::NONE };
+            [bent(trimmed), trimmed, bent(PositionMap::NONE)]
         };
-        best(&pressed, |press| press.at, geometry, &Parts::ALL, fit, found)
+        best(&pressed, |press| press.at, geometry, candidates, found)
     }
 
     /// The map of a tile by points seen through the whole floor; only bends can be learnt from them.
@@ -149,11 +144,9 @@ impl MapFit {
             return Err(MapError::NotFinite { index });
         }
         let found = |map: &PositionMap, sighting: &Sighting| map.unbent(sighting.estimate, geometry);
-        let fit = |sightings: &[Sighting], _| PositionMap {
-            bends: bends(sightings, geometry),
-            ..PositionMap::NONE
-        };
-        best(sightings, |sighting| sighting.at, geometry, &[Parts { trims: false, bends: true }], fit, found)
+        let candidates =
+            |sightings: &[Sighting]| [PositionMap { bends: bends(sightings, geometry), ..PositionMap::NONE }];
+        best(sightings, |sighting| sighting.at, geometry, candidates, found)
     }
 }
 
@@ -169,21 +162,6 @@ impl Errors {
     }
 }
 
-/// Which corrections a map makes.
-#[derive(Clone, Copy, Debug)]
-struct Parts {
-    trims: bool,
-    bends: bool,
-}
-
-impl Parts {
-    const ALL: [Self; 3] = [
-        Self { trims: true, bends: true },
-        Self { trims: true, bends: false },
-        Self { trims: false, bends: true },
-    ];
-}
-
 /// Lighter presses say nothing of a place, in newtons.
 const LEAST_N: f32 = 10.0;
 
@@ -193,13 +171,12 @@ fn placed(map: &PositionMap, press: &Press, geometry: &Geometry) -> Vec2 {
     map.unbent(Press { forces, ..*press }.estimate(geometry), geometry)
 }
 
-/// The best of the maps made of these parts, judged by points each has not seen.
-fn best<T: Copy>(
+/// The best of the maps that `candidates` makes of points, each kind judged by points it has not seen.
+fn best<T: Copy, const KINDS: usize>(
     points: &[T],
     at: impl Fn(&T) -> Vec2,
     geometry: &Geometry,
-    parts: &[Parts],
-    fit: impl Fn(&[T], Parts) -> PositionMap,
+    candidates: impl Fn(&[T]) -> [PositionMap; KINDS],
     found: impl Fn(&PositionMap, &T) -> Vec2,
 ) -> Result<MapFit, MapError> {
     if points.len() < MapFit::MIN_POINTS {
@@ -209,31 +186,30 @@ fn best<T: Copy>(
     let folds = folds(points.iter().map(&at));
     let distance = |map: &PositionMap, point: &T| found(map, point).distance(at(point));
     let before: Vec<f32> = points.iter().map(|point| distance(&PositionMap::NONE, point)).collect();
-    let judged = parts.iter().map(|&parts| {
-        let mut left = Vec::with_capacity(points.len());
-        for fold in 0..MapFit::FOLDS {
-            let chosen = |inside: bool| {
-                let pairs = points.iter().zip(&folds);
-                pairs.filter(move |(_, own)| (**own == fold) == inside).map(|(point, _)| *point)
-            };
-            let map = fit(&chosen(false).collect::<Vec<_>>(), parts);
+    let mut judged = [(); KINDS].map(|()| Vec::with_capacity(points.len()));
+    for fold in 0..MapFit::FOLDS {
+        let chosen = |inside: bool| {
+            let pairs = points.iter().zip(&folds);
+            pairs.filter(move |(_, own)| (**own == fold) == inside).map(|(point, _)| *point)
+        };
+        let maps = candidates(&chosen(false).collect::<Vec<_>>());
+        for (left, map) in judged.iter_mut().zip(maps) {
             left.extend(chosen(true).map(|point| distance(&map, &point)));
         }
-        (parts, left)
-    });
-    let least = judged.min_by(|a, b| rms(&a.1).total_cmp(&rms(&b.1)));
+    }
+    let least = judged.into_iter().zip(candidates(points)).min_by(|a, b| rms(&a.0).total_cmp(&rms(&b.0)));
     match least {
-        Some((parts, left)) if rms(&left) < WORTH_IT * rms(&before) => {
+        Some((left, map)) if rms(&left) < WORTH_IT * rms(&before) => {
             let after = Errors::of(left);
             Ok(MapFit {
-                map: PositionMap { residual_m: after.p95_m, ..fit(points, parts) },
+                map: PositionMap { residual_m: after.p95_m, ..map },
                 points: points.len(),
                 before: Errors::of(before),
                 after,
             })
         }
         least => Err(MapError::NoBetter {
-            rms_mm: 1e3 * least.map_or(0.0, |(_, left)| rms(&left)),
+            rms_mm: 1e3 * least.map_or(0.0, |(left, _)| rms(&left)),
             before_mm: 1e3 * rms(&before),
         }),
     }
@@ -283,16 +259,18 @@ fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 
         let total: f32 = press.forces.iter().sum();
         // Each newton metre off balance moves the centroid by one part of the force.
         let weight = f64::from(1.0 / (reach * total.max(FULL_N)));
-        let mut rows = [[0.0; COUNT]; 3];
+        // Each row: the four trims that count at each sensor.
+        let mut rows = [[(0, 0.0); 16]; 3];
         let mut left = [0.0; 3];
         for (corner, &force) in Corner::ALL.iter().zip(&press.forces) {
             let lever = corner.direction() * reach - press.at;
-            let (below, share) = PositionMap::between(force);
-            let column = corner.index() * PositionMap::TRIMS + below;
+            let (first, shares) = PositionMap::shares(force);
+            let first = corner.index() * PositionMap::TRIMS + first;
             for (row, lever) in [lever.x, lever.y, reach].into_iter().enumerate() {
                 let moment = f64::from(force * lever) * weight;
-                rows[row][column] = moment * f64::from(1.0 - share);
-                rows[row][column + 1] = moment * f64::from(share);
+                for (number, share) in shares.into_iter().enumerate() {
+                    rows[row][4 * corner.index() + number] = (first + number, moment * f64::from(share));
+                }
                 left[row] -= moment;
             }
         }
@@ -325,9 +303,9 @@ fn trims(presses: &[Press], geometry: &Geometry) -> [[f32; PositionMap::TRIMS]; 
 /// Presses below this force count less, for their errors are the sensors' zeros, in newtons.
 const FULL_N: f32 = 30.0;
 
-/// How strongly trims are held near zero, and near straight lines over the loads (our choice, by trying).
-const TRIM_SIZE: f64 = 0.05;
-const TRIM_BEND: f64 = 0.005;
+/// How strongly trims are held near zero, and near straight lines from load to load (our choice, by trying).
+const TRIM_SIZE: f64 = 0.002;
+const TRIM_BEND: f64 = 0.01;
 
 /// The bends that bring all sightings closest to where they belong.
 fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BENDS]; 2] {
@@ -336,7 +314,8 @@ fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BEN
         let mut sums = Normal::new(PositionMap::BENDS);
         for sighting in sightings {
             let terms = PositionMap::terms(sighting.estimate / half).map(f64::from);
-            sums.add(&terms, f64::from(along(sighting.at - sighting.estimate) / half));
+            let factors: [_; PositionMap::BENDS] = std::array::from_fn(|term| (term, terms[term]));
+            sums.add(&factors, f64::from(along(sighting.at - sighting.estimate) / half));
         }
         for term in 0..PositionMap::BENDS {
             sums.hold(&[(term, 1.0)], BEND_SIZE);
@@ -350,7 +329,7 @@ fn bends(sightings: &[Sighting], geometry: &Geometry) -> [[f32; PositionMap::BEN
 }
 
 /// How strongly bends are held near zero (our choice).
-const BEND_SIZE: f64 = 0.1;
+const BEND_SIZE: f64 = 0.3;
 
 /// To four decimals: files stay short, and a hundredth of a per cent is nothing.
 fn rounded(number: f32) -> f32 {
@@ -359,6 +338,7 @@ fn rounded(number: f32) -> f32 {
 
 /// The normal equations of a linear least-squares problem.
 struct Normal {
+    /// Its lower triangle; it is symmetric.
     matrix: DMatrix<f64>,
     right: DVector<f64>,
 }
@@ -368,20 +348,18 @@ impl Normal {
         Self { matrix: DMatrix::zeros(unknowns, unknowns), right: DVector::zeros(unknowns) }
     }
 
-    /// Asks for `row · x = value`.
-    fn add(&mut self, row: &[f64], value: f64) {
-        for (i, &a) in row.iter().enumerate().filter(|(_, a)| **a != 0.0) {
+    /// Asks for the sum of these unknowns, each times its factor, to be `value`.
+    fn add(&mut self, factors: &[(usize, f64)], value: f64) {
+        for &(i, a) in factors {
             self.right[i] += a * value;
-            for (j, &b) in row.iter().enumerate().filter(|(_, b)| **b != 0.0) {
-                self.matrix[(i, j)] += a * b;
-            }
         }
+        self.hold(factors, 1.0);
     }
 
     /// Asks for the sum of these unknowns, each times its factor, to be near zero.
     fn hold(&mut self, factors: &[(usize, f64)], strength: f64) {
         for &(i, a) in factors {
-            for &(j, b) in factors {
+            for &(j, b) in factors.iter().filter(|&&(j, _)| j <= i) {
                 self.matrix[(i, j)] += strength * a * b;
             }
         }
@@ -401,11 +379,11 @@ mod tests {
 
     const REACH: f32 = 0.132;
 
-    /// A raster of 7 x 7 points, each pressed with some forces; `gain` is what each sensor makes of a force.
+    /// A raster of 9 x 9 points, each pressed with some forces; `gain` is what each sensor makes of a force.
     fn presses(share: f32, gain: impl Fn(usize, f32) -> f32) -> Vec<Press> {
         let mut presses = Vec::new();
-        for step in 0..49_u8 {
-            let at = Vec2::new(f32::from(step % 7) - 3.0, f32::from(step / 7) - 3.0) * (share * 0.152 / 3.0);
+        for step in 0..81_u8 {
+            let at = Vec2::new(f32::from(step % 9) - 4.0, f32::from(step / 9) - 4.0) * (share * 0.152 / 4.0);
             for force in [40.0, 90.0, 200.0, 300.0] {
                 let forces = Corner::ALL.map(|corner| {
                     let load = 0.25 * force * (1.0 + corner.direction().dot(at / REACH));
@@ -426,7 +404,7 @@ mod tests {
         // Each part strays by up to 15 % in a wave of its own over its load.
         let gain = |sensor: usize, load: f32| 1.0 + 0.15 * (load / 60.0 + sensor as f32).sin();
         let found = fit(&presses(0.9, gain)).unwrap();
-        assert_eq!(found.points, 196);
+        assert_eq!(found.points, 324);
         assert!(found.before.p95_m > 0.012, "{found:?}");
         assert!(found.after.p95_m < 0.003, "{found:?}");
         // And between the places and forces it was made from.

@@ -176,14 +176,16 @@ mod tests {
 
     #[test]
     fn a_light_contact_is_less_certain_than_a_heavy_one() {
-        let (geometry, mut sensing) = eq4();
+        let (geometry, sensing) = eq4();
+        // Of tiles with a map, for without one the doubt about each part's law outweighs its zero.
+        let mut sensing = sensing.with_maps(&vec![Some(PositionMap::NONE); geometry.tile_count()]);
         let mut radius = |force| {
             let mut frame = ForceFrame::empty(&geometry);
             press(&mut frame, &geometry, Vec2::splat(0.45), force);
             sensing.update(&frame)[0].covariance.ellipse_95_m().0
         };
-        let (light, heavy) = (radius(10.0), radius(400.0));
-        assert!(light > 1.05 * heavy && heavy < 0.05, "{light} and {heavy} m");
+        let (light, heavy) = (radius(10.0), radius(100.0));
+        assert!(light > 3.0 * heavy && light < 0.05, "{light} and {heavy} m");
     }
 
     #[test]

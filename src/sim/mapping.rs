@@ -1,5 +1,6 @@
 //! Mapping a simulated floor the way people on site do: pressing points whose places are known.
 
+use std::f32::consts::PI;
 use std::fmt::Write;
 
 use glam::Vec2;
@@ -18,7 +19,7 @@ use crate::wire::Readings;
 const POINTS: usize = 9;
 
 /// The forces each point is pressed with, in newtons: from a light foot to more than half a person.
-const FORCES: [f32; 3] = [45.0, 150.0, 380.0];
+const FORCES: [f32; 4] = [45.0, 100.0, 200.0, 380.0];
 
 /// How far inside the plate's edge the outermost points lie, in metres.
 const MARGIN_M: f32 = 0.008;
@@ -42,7 +43,7 @@ pub struct MappingError {
 
 /// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
 ///
-/// 9 x 9 points of each tile are pressed with 45, 150 and 380 N each, hit within
+/// 9 x 9 points of each tile, closer together towards its edges, are pressed with 45, 100, 200 and 380 N each, hit within
 /// half a millimetre by a tool with a load cell that is wrong by 0.5 %, and
 /// [`MapFit::of_presses`] makes the map. Saturated presses are left out. The same `seed` gives the
 /// same maps. A floor whose boards send newtons keeps the maps it had, and so
@@ -102,7 +103,8 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
         return Vec::new();
     };
     let side = 0.5 * sim.geometry().tile_m() - MARGIN_M;
-    let step = |number: usize| side * (2.0 * number as f32 / (POINTS - 1) as f32 - 1.0);
+    // Closer together towards the edges: what is fitted has points on one side only there.
+    let step = |number: usize| side * (PI * (number as f32 / (POINTS - 1) as f32 - 0.5)).sin();
     let points = (0..POINTS).flat_map(|row| (0..POINTS).map(move |column| (column, row)));
     let mut presses = Vec::with_capacity(POINTS * POINTS * FORCES.len());
     for (column, row) in points {
