@@ -68,7 +68,7 @@ impl PositionMap {
             let [c0, c1, c2, c3] = cubic[trim];
             c0 + along * (c1 + along * (c2 + along * c3))
         };
-        (first_of(below), [share(0), share(1), share(2), share(3)])
+        (first_of(below), std::array::from_fn(share))
     }
 
     /// The cubic polynomial's terms at `u`, in half pitches from the tile's centre.
@@ -116,8 +116,8 @@ const fn first_of(below: usize) -> usize {
     }
 }
 
-/// Between each load and the next, the polynomial (its four factors, of the lowest power first) of how far the way
-/// between them has come that says what each of four trims counts.
+/// For each gap between neighbouring loads and each of the four trims that count there: how much the trim counts, as a
+/// cubic of the way through the gap (0 to 1), lowest power first.
 static CUBICS: [[[f32; 4]; 4]; PositionMap::TRIMS - 1] = {
     let mut cubics = [[[0.0; 4]; 4]; PositionMap::TRIMS - 1];
     let mut below = 0;

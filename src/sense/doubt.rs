@@ -25,9 +25,10 @@ const LIGHT: f32 = 0.25;
 /// a map: few presses teach a sensor how it reads near the end of its range.
 const HEAVY_N: f32 = 102.0;
 
-/// The load from which on the gain of a tile without a map is as doubtful as it gets, in newtons, and how much more
-/// than under a light one, as a share (by the same coverage).
+/// The load from which on the gain of a tile without a map is as doubtful as it gets, in newtons.
 const STRAYS_N: f32 = 60.0;
+
+/// How much more doubtful it is there than under a light load, as a share (both by the same coverage).
 const STRAYS: f32 = 0.55;
 
 /// The load from which on it is no longer the share that is as doubtful, but the newtons: a law is fitted to those.

@@ -136,8 +136,8 @@ fn s3_an_open_and_a_short_circuit_under_people() {
             let shares = visited.followed.share_inside();
             inside.iter_mut().zip(shares).for_each(|(sum, share)| *sum += share / PEOPLE.len() as f32);
         }
-        // The three others say where a foot is, and how sure that is. Both feet of two people stand in few places,
-        // each seconds long: of the second one a millimetre beside the ellipse.
+        // The three others say where a foot is, and how sure that is. Two people stand in few places, each for seconds:
+        // in one of them the second one's contact is a millimetre off for all that time, just beyond its ellipse.
         let [alone, both] = inside;
         assert!(alone > 0.85 && both > 0.75, "within the 95 % ellipse: {alone}, {both}");
     }
