@@ -1,4 +1,4 @@
-use glam::Vec2;
+use glam::{Vec2, Vec4};
 
 use super::contact::Covariance;
 use super::tile::LoadedTile;
@@ -61,6 +61,7 @@ impl SensorDoubt {
     /// last for a sensor that is estimated, not calibrated or at the end of its range. On a tile with a
     /// position map the gain follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
+    #[inline]
     pub fn covariance(
         &self,
         geometry: &Geometry,
@@ -69,30 +70,32 @@ impl SensorDoubt {
         point: Vec2,
         force: f32,
     ) -> Covariance {
-        let reach = geometry.sensor_reach_m();
         let scale = 1.0 / (force * force).max(1e-6);
         let strayed = UNSEEN_N * UNSEEN_N * tile.strayed_m2() * scale;
-        let mut sum = Covariance { xx: strayed, xy: 0.0, yy: strayed };
-        for corner in Corner::ALL {
-            let arm = tile.centre + corner.direction() * reach - point;
-            let load = tile.corners[corner.index()];
-            let gained = self.gain_at(load, tile.mapped_m()) * share * load;
-            let vague = share * tile.vague[corner.index()];
-            let variance = (self.offset_n * self.offset_n + gained * gained + vague * vague) * scale;
-            sum.xx += arm.x * arm.x * variance;
-            sum.xy += arm.x * arm.y * variance;
-            sum.yy += arm.y * arm.y * variance;
+        let reach = geometry.sensor_reach_m();
+        let arms = Corner::ALL.map(|corner| tile.centre + corner.direction() * reach - point);
+        let x = Vec4::from_array(arms.map(|arm| arm.x));
+        let y = Vec4::from_array(arms.map(|arm| arm.y));
+        let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
+        let vague = share * Vec4::from_array(tile.vague);
+        let offset = Vec4::splat(self.offset_n);
+        let variance = (offset * offset + misread * misread + vague * vague) * scale;
+        Covariance {
+            xx: strayed + (x * x).dot(variance),
+            xy: (x * y).dot(variance),
+            yy: strayed + (y * y).dot(variance),
         }
-        sum
     }
 
-    /// The gain's standard deviation at a sensor that carries `load` newtons, on a tile whose map leaves `mapped_m`
-    /// along each axis.
-    fn gain_at(&self, load: f32, mapped_m: Option<f32>) -> f32 {
-        let strays = 1.0 + STRAYS * (load / STRAYS_N).clamp(0.0, 1.0);
-        let unmapped = self.gain * strays * (FITTED_N / load.max(FITTED_N));
-        let heavy = load / HEAVY_N;
-        mapped_m.map_or(unmapped, |left| (left / ARM_M * (LIGHT + heavy * heavy)).min(unmapped))
+    /// Standard deviation of what the gains of four sensors that carry `loads` put on them, in newtons, on a tile
+    /// whose map leaves `mapped_m` along each axis.
+    fn misread_n(&self, loads: Vec4, mapped_m: Option<f32>) -> Vec4 {
+        let strays = Vec4::ONE + STRAYS * (loads / STRAYS_N).clamp(Vec4::ZERO, Vec4::ONE);
+        let unmapped = self.gain * strays * loads.min(Vec4::splat(FITTED_N));
+        let Some(left) = mapped_m else { return unmapped };
+        let heavy = loads / HEAVY_N;
+        let mapped = left / ARM_M * (Vec4::splat(LIGHT) + heavy * heavy) * loads;
+        mapped.abs().min(unmapped.abs())
     }
 }
 

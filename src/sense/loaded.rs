@@ -15,6 +15,9 @@ const NONE: u32 = u32::MAX;
 /// The bit that tells [`Quality::Stale`] and [`Quality::Faulty`], of which one is estimated, from the better two.
 const LOST: u8 = 2;
 
+/// Marks a block with a tile that carries something, but too little to be loaded.
+const LIGHT: u8 = 4;
+
 /// Tiles looked at together.
 const BLOCK: usize = 16;
 
@@ -55,7 +58,7 @@ pub(super) struct LoadedTiles {
     list: Vec<LoadedTile>,
     /// The list of the last frame.
     last: Vec<LoadedTile>,
-    /// Per block of tiles, whether one of them is worth a closer look: 1 if one is loaded, [`LOST`] if a sensor is lost.
+    /// Per block of tiles, what there is: 1 where one is loaded, [`LOST`] where a sensor is, [`LIGHT`].
     blocks: Vec<u8>,
     /// Indices that pass the lower threshold, reused.
     candidates: Vec<u32>,
@@ -134,8 +137,10 @@ impl LoadedTiles {
             rest.fill(0.0);
         }
         survey(&mut self.sums, &frame.forces, &frame.quality, off, &mut self.blocks);
+        let mut is_any_light = false;
         for (block, &worth) in self.blocks.iter().enumerate() {
-            if worth == 0 {
+            is_any_light |= worth & LIGHT != 0;
+            if worth & !LIGHT == 0 {
                 continue;
             }
             let from = block * BLOCK;
@@ -154,6 +159,10 @@ impl LoadedTiles {
             }
         }
         self.sift(frame);
+        // Without light tiles there is nothing to gather, as in nearly every frame of a small floor.
+        if is_any_light || self.candidates.len() > self.list.len() {
+            self.gather(frame);
+        }
     }
 
     /// From candidates to loaded tiles.
@@ -163,12 +172,12 @@ impl LoadedTiles {
         self.list.clear();
         for &index in &self.candidates {
             let index = index as usize;
-            let (forces, quality) = (frame.forces[index], frame.quality[index]);
+            let (forces, quality) = (&frame.forces[index], &frame.quality[index]);
             let before = self.last.get(self.place[index] as usize);
             let least = if before.is_some() { self.threshold.off } else { self.threshold.on };
             let map = self.maps.get(index).and_then(Option::as_ref);
-            if quality == [Quality::Live; 4] && before.is_none_or(LoadedTile::is_settled) {
-                if is_possible(&forces) {
+            if *quality == [Quality::Live; 4] && before.is_none_or(LoadedTile::is_settled) {
+                if is_possible(forces) {
                     self.list.extend(LoadedTile::new(self.places[index], &self.geometry, forces, least, map));
                 }
                 continue;
@@ -178,7 +187,7 @@ impl LoadedTiles {
             let (carried, tile) = LoadedTile::in_doubt(
                 self.places[index],
                 &self.geometry,
-                (forces, quality, may_start),
+                (*forces, *quality, may_start),
                 least,
                 map,
                 before,
@@ -196,7 +205,6 @@ impl LoadedTiles {
         for (position, loaded) in self.list.iter().enumerate() {
             self.place[loaded.index as usize] = position as u32;
         }
-        self.gather(frame);
     }
 
     /// Counts what lies on tiles too light to be listed to the listed tile it most likely belongs to.
@@ -267,8 +275,8 @@ impl LoadedTiles {
     }
 }
 
-/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more (1), or lacks a
-/// sensor ([`LOST`]).
+/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more (1), lacks a
+/// sensor ([`LOST`]) or carries less than `off` but more than nothing ([`LIGHT`]).
 ///
 /// Without branches, over plain arrays: compiled for what the processor offers.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
@@ -301,8 +309,9 @@ fn survey_block<const TILES: usize>(
         *sum = (sw + se) + (nw + ne);
     }
     let loaded = sums.iter().fold(0, |loaded, sum| loaded | u8::from(*sum >= off));
+    let light = sums.iter().fold(0, |light, sum| light | u8::from((*sum > NO_WEIGHT) & (*sum < off)));
     let doubt = quality.as_flattened().iter().fold(0, |worst, &quality| worst | quality as u8);
-    loaded | (doubt & LOST)
+    loaded | (doubt & LOST) | (light * LIGHT)
 }
 
 /// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which
@@ -371,11 +380,14 @@ mod tests {
         tiles.update(&frame);
         let force = |index| tiles.list().iter().find(|tile| tile.index == index).unwrap().wrench.force;
         assert_eq!([force(7), force(8)], [505.0, 8.0]);
-        // Without the foot there is nobody else.
+        // Without the foot there is nobody else, whether the rim could keep a tile loaded or not.
         frame.forces[7] = [0.0; 4];
-        tiles.update(&frame);
-        assert_eq!(tiles.list().len(), 1);
-        assert!(tiles.list()[0].wrench.force > 8.0);
+        for light in [[1.0, 4.0, 0.0, 0.0], [0.5, 1.5, 0.0, 0.0]] {
+            frame.forces[13] = light;
+            tiles.update(&frame);
+            assert_eq!(tiles.list().len(), 1);
+            assert!(tiles.list()[0].wrench.force > 8.0);
+        }
     }
 
     #[test]

@@ -206,13 +206,13 @@ impl LoadedTile {
     pub(super) fn new(
         place: Place,
         geometry: &Geometry,
-        corners: [f32; 4],
+        corners: &[f32; 4],
         least: Newtons,
         map: Option<&PositionMap>,
     ) -> Option<Self> {
         match map {
-            Some(map) => Self::of_corners(place, geometry, map.trimmed(corners), least, Some(map)),
-            None => Self::of_corners(place, geometry, corners, least, None),
+            Some(map) => Self::of_corners(place, geometry, map.trimmed(*corners), least, Some(map)),
+            None => Self::of_corners(place, geometry, *corners, least, None),
         }
     }
 
