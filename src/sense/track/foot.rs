@@ -111,7 +111,7 @@ pub(super) struct Foot {
     pub startled: bool,
     /// Beside whom it has landed.
     pub landing: Option<Landing>,
-    /// Its centre of pressure when it landed, and the one farthest from there since.
+    /// Its centre of pressure when it landed, and the one farthest from there since, as its past foretold it.
     pub landed: DVec2,
     pub farthest: DVec2,
     /// The way of its centre of pressure while it came down alone: from its heel to its toes.
@@ -216,7 +216,7 @@ impl Foot {
     /// All its centres of pressure since it landed, and everything else it
     /// presses, lie under one shoe. Until it has come down flat, nothing is known
     /// of where the shoe's other end lies; from then on what it presses is around
-    /// its centre of pressure.
+    /// its centre of pressure, as its past foretells it: a newcomer draws along what is measured.
     pub(super) fn beyond(&self, point: DVec2) -> f64 {
         let whole = point.distance(self.landed).max(point.distance(self.farthest)) - SHOE_M;
         let path = self.farthest - self.landed;
@@ -227,7 +227,7 @@ impl Foot {
             beyond = beyond.max(across - ASIDE_M);
         }
         if self.age > FLAT_S {
-            beyond = beyond.max(point.distance(self.centre()) - AROUND_M);
+            beyond = beyond.max(point.distance(self.past.centre) - AROUND_M);
         }
         beyond
     }

@@ -70,7 +70,7 @@ impl Foot {
 
     /// Remembers where the foot has been.
     pub(super) fn roll(&mut self, dt: f64) {
-        let centre = self.centre();
+        let (centre, foretold) = (self.centre(), self.past.centre);
         self.peak = self.peak.max(self.force());
         let rolls = !self.shared || self.age < FLAT_S;
         let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
@@ -84,8 +84,8 @@ impl Foot {
         if self.age < 0.01 {
             self.landed = centre;
             self.farthest = centre;
-        } else if centre.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
-            self.farthest = centre;
+        } else if foretold.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
+            self.farthest = foretold;
         }
     }
 
@@ -110,6 +110,29 @@ impl Foot {
                     self.home = centre;
                 }
             }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::foot::{EAST, NORTH};
+    use super::*;
+    use crate::sense::contact::ContactId;
+
+    #[test]
+    fn a_newcomer_that_draws_a_rolling_foots_centre_along_stays_beyond_it() {
+        // It has rolled 8 cm north.
+        let mut foot = Foot::new(ContactId(1), 700.0, DVec2::ZERO, 0.01);
+        foot.age = 0.5;
+        foot.past.centre = DVec2::new(0.0, 0.08);
+        foot.farthest = foot.past.centre;
+        // A centimetre farther than a foot presses to the side of its roll, and around where it presses.
+        for newcomer in [DVec2::new(0.12, 0.08), DVec2::new(0.0, 0.26)] {
+            let drawn = foot.past.centre + 0.25 * (newcomer - foot.past.centre);
+            (foot.state[EAST], foot.state[NORTH]) = (drawn.x, drawn.y);
+            foot.roll(0.001);
+            assert!((foot.beyond(newcomer) - 0.01).abs() < 1e-9, "{newcomer}: {}", foot.beyond(newcomer));
         }
     }
 }

@@ -30,11 +30,19 @@ fn both_feet_of_people_who_walk_turn_and_stand() {
 
 #[test]
 fn people_whose_feet_once_changed_their_names() {
-    // Each made 3 to 15 changes, one false foot dragging the next behind it, until the cause was found.
+    // Each made 3 to 46 changes, one false foot dragging the next behind it, until the cause was found.
     for (seed, why) in [
         (40_246, "118 kg on one tile: a sensor near its end reads a fifth too much"),
         (60_166, "108 kg, 16 cm apart: in 120 ms the weight goes over to a foot on the same tile"),
         (72_159, "of a foot that has left, the rim of the other one is taken for the rest"),
+        (
+            33_043,
+            "103 kg: the second foot draws the first one's farthest place along, as if it were rolling there",
+        ),
+        (
+            72_046,
+            "the second foot draws the first one's centre along, as if it pressed where that comes down",
+        ),
         (60_029, "the last weight of the partner beside it was taken for the roll of the foot it left"),
     ] {
         let mut table = PeopleTable::default();
