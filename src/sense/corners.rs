@@ -41,11 +41,43 @@ pub(super) fn is_possible(forces: &[f32; 4]) -> bool {
 
 /// What the other three corners say this one carries, in newtons; below zero where it lifts off.
 ///
+/// How that is to be read, [`told`] says.
+///
 /// # Source
-/// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw. Springs push but do not pull: with its
-/// diagonal in the air, a corner carries that much or more, with a neighbour in the air that much or less.
+/// Four equal springs under a rigid plate: f_sw + f_ne = f_se + f_nw.
 pub(super) fn expected(forces: [f32; 4], corner: usize) -> f32 {
     forces[corner ^ 1] + forces[corner ^ 2] - forces[corner ^ 3]
+}
+
+/// How [`expected`] of a corner is to be read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Told {
+    /// As it is, but for unequal supports and gains.
+    Exactly,
+    /// This corner carries that much or more.
+    AtLeast,
+    /// Nothing is known.
+    Nothing,
+}
+
+/// What the other three say of `corner`, some of which have `lifted` off their supports.
+///
+/// # Source
+/// Springs push but do not pull: with its diagonal in the air, a corner carries what is [`expected`] or more, with a
+/// neighbour in the air that or less, for the plate tips over it.
+pub(super) fn told(lifted: [bool; 4], corner: usize) -> Told {
+    if lifted[corner ^ 1] || lifted[corner ^ 2] {
+        Told::Nothing
+    } else if lifted[corner ^ 3] {
+        Told::AtLeast
+    } else {
+        Told::Exactly
+    }
+}
+
+/// Which corners have lifted off, by what they read alone.
+fn lifted(forces: [f32; 4]) -> [bool; 4] {
+    forces.map(|force| force < LIFTED_N)
 }
 
 /// The forces of a tile's sensors, one unknown filled in, and how far they can be trusted.
@@ -81,36 +113,37 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
 /// as the plate's other corners say, or a little more than they read where these can't.
 ///
 /// Near its end a part may also read more than it carries: then it is lowered.
+pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
+    let at_end = quality.map(|quality| quality == Quality::Degraded);
+    let lifted = lifted(forces);
+    std::array::from_fn(|corner| {
+        let reads = forces[corner];
+        match told(lifted, corner) {
+            _ if !at_end[corner] => reads,
+            Told::Nothing => BEYOND * reads,
+            Told::AtLeast => expected(forces, corner).max(BEYOND * reads),
+            Told::Exactly => reads + lacking(forces, at_end, corner),
+        }
+    })
+}
+
+/// What the reading of `corner` lacks of what it carries, on a plate that rests on all its supports: of what does not
+/// add up, each sensor that is `at_end` bears as much as it may be wrong in the way that mends it.
 ///
 /// # Source
 /// The most likely forces given f_sw + f_ne = f_se + f_nw ([`expected`]), known to [`TOLD`], and readings known to
 /// [`BELOW`] and [`ABOVE`]: what is missing goes to each in proportion to its variance.
-pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
-    let at_end = |corner: usize| quality[corner] == Quality::Degraded;
-    let lifted = |corner: usize| forces[corner] < LIFTED_N;
-    std::array::from_fn(|corner| {
-        let reads = forces[corner];
-        if !at_end(corner) {
-            return reads;
-        }
-        if lifted(corner ^ 1) || lifted(corner ^ 2) {
-            return BEYOND * reads;
-        }
-        if lifted(corner ^ 3) {
-            return expected(forces, corner).max(BEYOND * reads);
-        }
-        // What does not add up is shared out: each bears as much of it as it may be wrong in the way that mends it.
-        let lacks = expected(forces, corner) - reads;
-        let variance = |other: usize| {
-            // To mend it, the diagonal must change as this one does, the neighbours the other way.
-            let rises = (lacks > 0.0) == (other == corner || other == corner ^ 3);
-            let wrong = if rises { BELOW } else { ABOVE } * forces[other];
-            if at_end(other) { wrong * wrong } else { 0.0 }
-        };
-        let whole: f32 = forces.iter().sum();
-        let all = (0..4).map(variance).sum::<f32>() + (TOLD * whole).powi(2).max(f32::MIN_POSITIVE);
-        reads + lacks * variance(corner) / all
-    })
+fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
+    let missing = expected(forces, corner) - forces[corner];
+    let variance = |other: usize| {
+        // To mend it, the diagonal must change as this one does, the neighbours the other way.
+        let rises = (missing > 0.0) == (other == corner || other == corner ^ 3);
+        let wrong = if rises { BELOW } else { ABOVE } * forces[other];
+        if at_end[other] { wrong * wrong } else { 0.0 }
+    };
+    let whole: f32 = forces.iter().sum();
+    let all = (0..4).map(variance).sum::<f32>() + (TOLD * whole).powi(2).max(f32::MIN_POSITIVE);
+    missing * variance(corner) / all
 }
 
 /// The standard deviation of each of `forces` beyond what is unknown of any sensor, in newtons, by the quality of
@@ -118,13 +151,14 @@ pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
 pub(super) fn vague(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
+    let lifted = lifted(forces);
     let one = |corner: usize| match quality[corner] {
         Quality::Live => 0.0,
         Quality::Degraded if may_start => UNSURE * forces[corner].abs(),
         Quality::Degraded => {
             let unseen = AT_LEAST * forces[corner].abs();
-            let tips = (0..4).any(|other| other != corner && forces[other] < LIFTED_N);
-            if tips { unseen } else { unseen.min(TOLD * at_end * whole) }
+            let is_told = told(lifted, corner) == Told::Exactly;
+            if is_told { unseen.min(TOLD * at_end * whole) } else { unseen }
         }
         Quality::Stale | Quality::Faulty => {
             // Once the diagonal has lifted off, all that this corner bears beyond is unseen.
@@ -161,6 +195,14 @@ mod tests {
         assert_eq!(known_corners([f32::NAN; 4], LIVE), None);
         assert_eq!(known_corners([f32::INFINITY; 4], LIVE), None);
         assert_eq!(known_corners([3e38; 4], LIVE), None);
+    }
+
+    #[test]
+    fn of_a_corner_nothing_is_told_while_the_plate_tips_over_its_neighbour() {
+        let air = |corner| [0, 1, 2, 3].map(|other| other == corner);
+        let of_sw = [0, 1, 2, 3].map(|corner| told(air(corner), 0));
+        assert_eq!(of_sw, [Told::Exactly, Told::Nothing, Told::Nothing, Told::AtLeast]);
+        assert_eq!(told([false; 4], 0), Told::Exactly);
     }
 
     #[track_caller]

@@ -3,7 +3,7 @@
 //! Corners are numbered as in [`crate::sense::corners`].
 
 use super::End;
-use crate::sense::corners::{LIFTED_N, expected};
+use crate::sense::corners::{LIFTED_N, Told, expected, told};
 
 /// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
 const ALONE_N: f32 = 8.0;
@@ -38,32 +38,14 @@ pub(super) fn unanswered(forces: [f32; 4], out: [bool; 4]) -> Option<usize> {
     (force > ALONE_N && answerable && quiet).then_some(loudest)
 }
 
-/// How [`expected`] of a corner is to be read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Evidence {
-    /// As it is, but for unequal supports and gains.
-    Exact,
-    /// The diagonal is in the air: this corner carries that much or more.
-    AtLeast,
-    /// The plate tips over this corner's neighbours, or one of the others bears more than it can read.
-    None,
-}
-
-/// What the other three say about `corner`.
+/// What the other three say about `corner`: nothing either if one of them bears more than it can read.
 ///
-/// A corner in the air would have to pull for [`expected`] to hold: of the diagonal that makes it a lower
-/// bound, of a neighbour an upper one. A part that misses its law where it is light may read no less in
-/// the air than at rest; that it reads next to nothing tells all the same.
-pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Evidence {
-    let mut others = (0..4).filter(|&other| other != corner);
-    let tips = [corner ^ 1, corner ^ 2].into_iter().any(|other| has_lifted(forces, ends, other));
-    if tips || others.any(|other| ends[other] == End::High) {
-        Evidence::None
-    } else if has_lifted(forces, ends, corner ^ 3) {
-        Evidence::AtLeast
-    } else {
-        Evidence::Exact
-    }
+/// A part that misses its law where it is light may read no less in the air than at rest; that it reads next to
+/// nothing tells all the same.
+pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Told {
+    let is_beyond = (0..4).any(|other| other != corner && ends[other] == End::High);
+    let lifted = [0, 1, 2, 3].map(|corner| has_lifted(forces, ends, corner));
+    if is_beyond { Told::Nothing } else { told(lifted, corner) }
 }
 
 fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
@@ -91,7 +73,7 @@ pub(super) fn should_bear_more(
     }
     let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
     fell && !others.iter().any(|&other| out[other])
-        && evidence(forces, ends, corner) == Evidence::Exact
+        && evidence(forces, ends, corner) == Told::Exactly
         && expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
 }
 
@@ -150,10 +132,13 @@ mod tests {
     }
 
     #[test]
-    fn a_diagonal_in_the_air_is_evidence_that_a_corner_bears_much() {
-        let within = [End::Within; 4];
-        assert_eq!(evidence([0.0, 80.0, 90.0, -11.0], within, 0), Evidence::AtLeast);
-        assert_eq!(evidence([0.0, -11.0, 90.0, 10.0], within, 0), Evidence::None);
-        assert_eq!(evidence([0.0, 80.0, 90.0, 70.0], within, 0), Evidence::Exact);
+    fn beside_a_corner_at_the_end_of_its_range_nothing_is_told() {
+        let forces = [0.0, 80.0, 90.0, 70.0];
+        assert_eq!(evidence(forces, [End::Within; 4], 0), Told::Exactly);
+        let mut ends = [End::Within; 4];
+        ends[1] = End::High;
+        assert_eq!(evidence(forces, ends, 0), Told::Nothing);
+        // It does not speak of itself.
+        assert_eq!(evidence(forces, ends, 1), Told::Exactly);
     }
 }

@@ -1,8 +1,7 @@
 use super::drift::Drift;
-use super::plate::Evidence;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
-use crate::sense::corners::{LIFTED_N, expected};
+use crate::sense::corners::{LIFTED_N, Told, expected};
 use crate::units::Instant;
 
 /// Every how many frames a tile is visited.
@@ -138,14 +137,13 @@ impl Slow {
             }
             let lifted = block.lows[corner] < LIFTED_N && sensor.trouble().is_none();
             let evidence = plate::evidence(block.lows, ends, corner);
-            if lifted || evidence == Evidence::None {
+            if lifted || evidence == Told::Nothing {
                 // Neither evidence for it nor against it.
                 continue;
             }
             let expected = expected(means, corner).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
-            let is_right =
-                own >= expected - slack && (own <= expected + slack || evidence == Evidence::AtLeast);
+            let is_right = own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
             match sensor.trouble() {
                 None | Some(Trouble::Drifted | Trouble::Noisy) => {}
                 Some(_) if is_right && !sensor.shows(slack) => {}

@@ -5,13 +5,12 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::landing::Landing;
-use super::lines::{Axis, Habit};
+use super::lines::Habit;
 use super::past::Past;
 use super::patch::PatchOnTile;
 use super::rest::STRAY_MOST_M;
 use crate::sense::Quality;
 use crate::sense::contact::ContactId;
-use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 /// Numbers per foot: force and its rate, east and its rate, north and its rate, two half widths.
@@ -30,10 +29,7 @@ pub(super) const HALF_REST: f64 = 0.075;
 
 /// Longest distance between two points under one shoe that carry noticeable load.
 pub(super) const SHOE_M: f64 = 0.33;
-/// How far to the side of its line of roll a foot presses.
-const ASIDE_M: f64 = 0.11;
-/// How far from its centre of pressure a foot that has come down flat presses.
-const AROUND_M: f64 = 0.17;
+
 /// After which time a foot has come down flat, in seconds.
 pub(super) const FLAT_S: f64 = 0.3;
 
@@ -49,9 +45,7 @@ const ROLLS_S: (f64, f64) = (0.05, 0.45);
 /// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
 const PARTNER_S: f64 = 1.2;
 
-/// Speed towards a place from which on a foot slides there, in metres per second, and the force on one that slides, in
-/// newtons, at most.
-const AHEAD_M_S: f64 = 0.02;
+/// The force on a foot that slides, in newtons, at most.
 pub(super) const SLIDING_N: f64 = 200.0;
 
 /// One foot on the floor.
@@ -211,33 +205,6 @@ impl Foot {
         PatchOnTile::new(low, high, centre, self.half())
     }
 
-    /// How far `point` is beyond what can belong to this foot, in metres; negative within.
-    ///
-    /// All its centres of pressure since it landed, and everything else it
-    /// presses, lie under one shoe. Until it has come down flat, nothing is known
-    /// of where the shoe's other end lies; from then on what it presses is around
-    /// its centre of pressure, as its past foretells it: a newcomer draws along what is measured.
-    pub(super) fn beyond(&self, point: DVec2) -> f64 {
-        let whole = point.distance(self.landed).max(point.distance(self.farthest)) - SHOE_M;
-        let path = self.farthest - self.landed;
-        let length = path.length();
-        let mut beyond = whole;
-        if length > 0.06 {
-            let across = path.perp_dot(point - self.landed).abs() / length;
-            beyond = beyond.max(across - ASIDE_M);
-        }
-        if self.age > FLAT_S {
-            beyond = beyond.max(point.distance(self.past.centre) - AROUND_M);
-        }
-        beyond
-    }
-
-    /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
-    /// been seen; negative within, infinite for every other foot.
-    pub(super) fn lands_about(&self, point: DVec2) -> f64 {
-        if self.age < LANDS_S { point.distance(self.centre()) - SHOE_M } else { f64::INFINITY }
-    }
-
     /// Whether it was put down beside `host` while that one stood still.
     pub(super) fn has_landed_beside(&self, host: &Self) -> bool {
         self.landing.is_some_and(|landing| landing.host == host.id)
@@ -259,45 +226,6 @@ impl Foot {
         for &position in tiles {
             if self.tiles.len() < self.tiles.capacity() && !self.tiles.contains(&position) {
                 self.tiles.push(position);
-            }
-        }
-    }
-
-    /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.
-    pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
-        // A foot that shares its tiles is itself known only roughly.
-        let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
-        let (share, reach) = if self.shared {
-            (0.08, 0.25)
-        } else if ahead && self.force() < SLIDING_N {
-            // A foot that slides on comes onto the next tile with its rim.
-            (0.1, 0.24)
-        } else {
-            (0.02, 0.22)
-        };
-        if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
-    }
-
-    /// Lists the loaded tiles that its patch may press.
-    pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
-        self.tiles.clear();
-        let reach = self.half() * 1.1 + 0.02;
-        let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
-        let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
-        if self.habit_strength() > 0.3 {
-            // Where it was alone, it also presses what it pressed then.
-            for habit in self.habits.iter().filter(|habit| habit.share > 0.008) {
-                match habit.axis {
-                    Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
-                    Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),
-                }
-            }
-        }
-        for row in low.y..=high.y {
-            for column in low.x..=high.x {
-                if let Some(position) = tiles.find(column, row) {
-                    self.tiles.push(position as u32);
-                }
             }
         }
     }

@@ -27,6 +27,7 @@ mod near;
 mod partner;
 mod past;
 mod patch;
+mod reach;
 mod rest;
 mod shape;
 

@@ -1,0 +1,92 @@
+//! What can belong to a foot: where else one shoe may press.
+
+use glam::DVec2;
+
+use super::foot::{FLAT_S, Foot, LANDS_S, SHOE_M, SLIDING_N};
+use super::lines::Axis;
+use crate::sense::loaded::LoadedTiles;
+
+/// How far to the side of its line of roll a foot presses, in metres.
+const ASIDE_M: f64 = 0.11;
+
+/// How far from its centre of pressure a foot that has come down flat presses, in metres.
+const AROUND_M: f64 = 0.17;
+
+/// From which length on the way of its centre of pressure tells where a shoe points, in metres.
+const POINTS_M: f64 = 0.06;
+
+/// What share of a foot's force its rim presses with at most, and how far from its centre of pressure, in metres: of
+/// one that stands alone, of one that slides on and comes onto the next tile with its rim, and of one that shares its
+/// tiles and is itself known only roughly (our choice).
+const RIM: (f64, f64) = (0.02, 0.22);
+const RIM_AHEAD: (f64, f64) = (0.1, 0.24);
+const RIM_OF_SHARED: (f64, f64) = (0.08, 0.25);
+
+/// Speed towards a place from which on a foot slides there, in metres per second.
+const AHEAD_M_S: f64 = 0.02;
+
+impl Foot {
+    /// How far `point` is beyond what can belong to this foot, in metres; negative within.
+    ///
+    /// All its centres of pressure since it landed, and everything else it
+    /// presses, lie under one shoe. Until it has come down flat, nothing is known
+    /// of where the shoe's other end lies; from then on what it presses is around
+    /// its centre of pressure, as its past foretells it: a newcomer draws along what is measured.
+    pub(super) fn beyond(&self, point: DVec2) -> f64 {
+        let whole = point.distance(self.landed).max(point.distance(self.farthest)) - SHOE_M;
+        let path = self.farthest - self.landed;
+        let length = path.length();
+        let mut beyond = whole;
+        if length > POINTS_M {
+            let across = path.perp_dot(point - self.landed).abs() / length;
+            beyond = beyond.max(across - ASIDE_M);
+        }
+        if self.age > FLAT_S {
+            beyond = beyond.max(point.distance(self.past.centre) - AROUND_M);
+        }
+        beyond
+    }
+
+    /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
+    /// been seen; negative within, infinite for every other foot.
+    pub(super) fn lands_about(&self, point: DVec2) -> f64 {
+        if self.age < LANDS_S { point.distance(self.centre()) - SHOE_M } else { f64::INFINITY }
+    }
+
+    /// How far a light load at `point` is beyond the rim of this foot; negative within, infinite for a heavy load.
+    pub(super) fn rims(&self, point: DVec2, force: f64) -> f64 {
+        let ahead = (point - self.centre()).dot(self.velocity()) > AHEAD_M_S * point.distance(self.centre());
+        let (share, reach) = if self.shared {
+            RIM_OF_SHARED
+        } else if ahead && self.force() < SLIDING_N {
+            RIM_AHEAD
+        } else {
+            RIM
+        };
+        if force < share * self.force() { point.distance(self.centre()) - reach } else { f64::INFINITY }
+    }
+
+    /// Lists the loaded tiles that its patch may press.
+    pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
+        self.tiles.clear();
+        let reach = self.half() * 1.1 + 0.02;
+        let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
+        let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
+        if self.habit_strength() > 0.3 {
+            // Where it was alone, it also presses what it pressed then.
+            for habit in self.habits.iter().filter(|habit| habit.share > 0.008) {
+                match habit.axis {
+                    Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
+                    Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),
+                }
+            }
+        }
+        for row in low.y..=high.y {
+            for column in low.x..=high.x {
+                if let Some(position) = tiles.find(column, row) {
+                    self.tiles.push(position as u32);
+                }
+            }
+        }
+    }
+}
