@@ -1,5 +1,4 @@
 //! N3 a silent link, N7 a burst after a delay, F10 another layout under a foot, R5 a window that nobody
-
 //! looks at, R6 a floor that is lost while a slider is dragged.
 
 use underfoot::glam::Vec2;

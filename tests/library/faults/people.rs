@@ -1,5 +1,4 @@
 //! R7 a slip from one control to another, R8 walking over controls, R9 a control held too long,
-
 //! S10 an object left on the floor, S12 somebody who jumps or falls.
 
 use std::time::Duration;

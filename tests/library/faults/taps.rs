@@ -1,6 +1,5 @@
 //! S1 to S9 and S11 while a heavy foot stands beside a region and the other one taps and slides in it.
 //!
-
 //! The region is one button; each of a scene's six touches should press it once, nothing else should.
 
 use underfoot::experiment::{Stance, TapScene};

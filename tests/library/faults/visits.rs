@@ -1,7 +1,6 @@
 //! S1 to S9 and S11 under people who walk, turn and stand on the paper's floor.
 //!
 //! Each visit is compared with the same one on a whole floor. A button over the whole floor shows whether a
-
 //! broken sensor presses while nobody is there.
 
 use rand::SeedableRng;
