@@ -1,6 +1,6 @@
 use std::ops::Range;
 
-use super::loaded::LoadedTiles;
+use super::loaded::{AROUND, LoadedTiles};
 
 /// Groups of loaded tiles that touch along an edge or at a corner.
 #[derive(Clone, Debug, Default)]
@@ -63,8 +63,6 @@ impl Clusters {
         self.spans.iter().map(|span| &self.members[span.clone()])
     }
 }
-
-const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 #[cfg(test)]
 mod tests {

@@ -6,7 +6,7 @@
 use super::Quality;
 
 /// A corner that reads this little has lifted off, or is about to: what rests on it by weight is gone.
-pub(super) const LIFTED_N: f32 = -2.0;
+const LIFTED_N: f32 = -2.0;
 
 /// How far a lost sensor's force estimated from the other three is off, as a share of the tile's force (one
 /// standard deviation; measured on simulated floors of parts and supports as the paper's).
@@ -75,9 +75,9 @@ pub(super) fn told(lifted: [bool; 4], corner: usize) -> Told {
     }
 }
 
-/// Which corners have lifted off, by what they read alone.
-fn lifted(forces: [f32; 4]) -> [bool; 4] {
-    forces.map(|force| force < LIFTED_N)
+/// Whether a corner that reads `force` newtons has lifted off, or is about to.
+pub(super) fn has_lifted(force: f32) -> bool {
+    force < LIFTED_N
 }
 
 /// The forces of a tile's sensors, one unknown filled in, and how far they can be trusted.
@@ -115,7 +115,7 @@ pub fn known_corners(forces: [f32; 4], quality: [Quality; 4]) -> Option<([f32; 4
 /// Near its end a part may also read more than it carries: then it is lowered.
 pub(super) fn mended(forces: [f32; 4], quality: [Quality; 4]) -> [f32; 4] {
     let at_end = quality.map(|quality| quality == Quality::Degraded);
-    let lifted = lifted(forces);
+    let lifted = forces.map(has_lifted);
     std::array::from_fn(|corner| {
         let reads = forces[corner];
         match told(lifted, corner) {
@@ -151,7 +151,7 @@ fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
 pub(super) fn vague(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
-    let lifted = lifted(forces);
+    let lifted = forces.map(has_lifted);
     let one = |corner: usize| match quality[corner] {
         Quality::Live => 0.0,
         Quality::Degraded if may_start => UNSURE * forces[corner].abs(),

@@ -10,7 +10,8 @@ pub struct SensorDoubt {
     /// Standard deviation of a sensor's zero, in newtons.
     pub offset_n: f32,
     /// Standard deviation of a sensor's gain after calibration under light loads, as a share of the reading; half as
-    /// much again from 60 N on, where parts stray farther from their laws.
+    /// much again from 60 N on, where parts stray farther from their laws. Beyond 180 N it stays what it is there in
+    /// newtons.
     pub gain: f32,
 }
 
@@ -50,7 +51,7 @@ impl Default for SensorDoubt {
 }
 
 impl SensorDoubt {
-    /// Covariance of a centroid at `point` that carries `force` in all, as far as the
+    /// Covariance, in square metres, of a centroid at `point` that carries `force` newtons in all, as far as the
     /// sensors of `tile` are to blame; those of all its tiles add up.
     ///
     /// `share` of the tile's load is the contact's own: its gain errors count for that part.
@@ -58,8 +59,8 @@ impl SensorDoubt {
     /// # Source
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
     /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + vague², the
-    /// last for a sensor that is estimated, not calibrated or at the end of its range. On a tile with a
-    /// position map the gain follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
+    /// last for a sensor that is estimated, not calibrated or at the end of its range. The gain is that of
+    /// [`SensorDoubt::gain`] under the sensor's load; on a tile with a position map it follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
     #[inline]
     pub fn covariance(

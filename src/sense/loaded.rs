@@ -1,10 +1,11 @@
+mod rims;
+
 use std::time::Duration;
 
-use glam::Vec2;
 use multiversion::multiversion;
 
-use super::corners::{is_possible, known_corners};
-use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading, Wrench, counted};
+use super::corners::is_possible;
+use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap};
 use crate::units::{Instant, Newtons};
@@ -12,11 +13,18 @@ use crate::units::{Instant, Newtons};
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
 
+/// Marks a block with a loaded tile.
+const LOADED: u8 = 1;
+
 /// The bit that tells [`Quality::Stale`] and [`Quality::Faulty`], of which one is estimated, from the better two.
 const LOST: u8 = 2;
 
 /// Marks a block with a tile that carries something, but too little to be loaded.
 const LIGHT: u8 = 4;
+
+/// From a tile to each of the eight around it, in columns and rows.
+pub(super) const AROUND: [(i32, i32); 8] =
+    [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// Tiles looked at together.
 const BLOCK: usize = 16;
@@ -46,8 +54,6 @@ impl Default for LoadThreshold {
 pub(super) struct LoadedTiles {
     geometry: Geometry,
     threshold: LoadThreshold,
-    /// How far from a tile's centre its centroid may lie for load on the far side's neighbours to be its own.
-    astray_m: f32,
     /// Which tile each one is, and its centre.
     places: Vec<Place>,
     /// Per tile of the floor; none for the tiles past the end.
@@ -58,7 +64,7 @@ pub(super) struct LoadedTiles {
     list: Vec<LoadedTile>,
     /// The list of the last frame.
     last: Vec<LoadedTile>,
-    /// Per block of tiles, what there is: 1 where one is loaded, [`LOST`] where a sensor is, [`LIGHT`].
+    /// Per block of tiles, what there is: [`LOADED`], [`LOST`] where a sensor is, [`LIGHT`].
     blocks: Vec<u8>,
     /// Indices that pass the lower threshold, reused.
     candidates: Vec<u32>,
@@ -73,7 +79,6 @@ impl LoadedTiles {
         Self {
             geometry,
             threshold,
-            astray_m: REACH_M - 0.5 * geometry.pitch_m(),
             places: (0..tiles).map(|index| Place::of(&geometry, index)).collect(),
             maps: Vec::new(),
             sums: vec![0.0; tiles],
@@ -159,7 +164,8 @@ impl LoadedTiles {
             }
         }
         self.sift(frame);
-        // Without light tiles there is nothing to gather, as in nearly every frame of a small floor.
+        // Without tiles that carry something and are not listed, as in nearly every frame of a small floor, there is
+        // nothing to gather.
         if is_any_light || self.candidates.len() > self.list.len() {
             self.gather(frame);
         }
@@ -206,77 +212,10 @@ impl LoadedTiles {
             self.place[loaded.index as usize] = position as u32;
         }
     }
-
-    /// Counts what lies on tiles too light to be listed to the listed tile it most likely belongs to.
-    ///
-    /// The toes of a light foot over a seam press with less than what makes a tile count as loaded,
-    /// but far enough from the rest to move the centroid by centimetres.
-    fn gather(&mut self, frame: &ForceFrame) {
-        let (columns, rows) = (i32::from(self.geometry.columns()), i32::from(self.geometry.rows()));
-        for position in 0..self.list.len() {
-            let tile = &self.list[position];
-            let (column, row) = (i32::from(tile.tile.column), i32::from(tile.tile.row));
-            let arm = tile.centroid - tile.centre;
-            let sides = |arm: f32, at: i32, count: i32| {
-                let low = at - i32::from(arm < self.astray_m);
-                let high = at + i32::from(arm > -self.astray_m);
-                low.max(0)..(high + 1).min(count)
-            };
-            let (around, along) = (sides(arm.y, row, rows), sides(arm.x, column, columns));
-            for row in around {
-                for column in along.clone() {
-                    let index = (row * columns + column) as usize;
-                    if self.place[index] == NONE && self.sums[index] > NO_WEIGHT {
-                        self.give(index, position, frame);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Gives the load of the unlisted tile at `index` to the listed one at `position`, if no other has a better claim.
-    fn give(&mut self, index: usize, position: usize, frame: &ForceFrame) {
-        // One with a sensor out is too uncertain to say anything of so little.
-        if frame.quality[index].iter().any(|&quality| quality >= Quality::Stale) {
-            return;
-        }
-        let Some((corners, _)) = known_corners(frame.forces[index], frame.quality[index]) else { return };
-        let stray = self.geometry.tile_at_index(index);
-        let (column, row) = (i32::from(stray.column), i32::from(stray.row));
-        let centre = self.geometry.centre(stray);
-        let half = 0.5 * self.geometry.pitch_m();
-        let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
-        // A rim is the smaller part of a foot, and another rim's only if there is no foot that it can be of.
-        let claim = |position: usize| {
-            let listed = &self.list[position];
-            let (away, is_rim) = (away(listed), listed.wrench.force < FOOT_PER_RIM * self.sums[index]);
-            (away >= REACH_M, is_rim, away, position)
-        };
-        let mine = claim(position);
-        let beaten = AROUND.iter().any(|(east, north)| {
-            let other = self.find(column + east, row + north).filter(|&other| other != position);
-            other.is_some_and(|other| claim(other) < mine)
-        });
-        let share = ((REACH_M - mine.2) / REACH_FADE_M).clamp(0.0, 1.0);
-        if beaten || share <= 0.0 {
-            return;
-        }
-        let map = self.maps.get(index).and_then(Option::as_ref);
-        let corners = map.map_or(corners, |map| map.trimmed(corners));
-        let wrench = Wrench::of_corners(corners, self.geometry.sensor_reach_m());
-        let force = counted(wrench.force) * share;
-        if force > 0.0 {
-            // Where it acts is hardly felt, but it is the edge of a foot that stands over there.
-            let rim = self.list[position].centroid - centre;
-            let rim = rim.clamp(Vec2::splat(RIM_M - half), Vec2::splat(half - RIM_M));
-            let sure = wrench.force * wrench.force / (wrench.force * wrench.force + RIM_N * RIM_N);
-            self.list[position].add_strayed(force, centre + rim.lerp(wrench.arm(half), sure));
-        }
-    }
 }
 
-/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more (1), lacks a
-/// sensor ([`LOST`]) or carries less than `off` but more than nothing ([`LIGHT`]).
+/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more ([`LOADED`]),
+/// lacks a sensor ([`LOST`]) or carries less than `off` but more than nothing ([`LIGHT`]).
 ///
 /// Without branches, over plain arrays: compiled for what the processor offers.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
@@ -311,22 +250,8 @@ fn survey_block<const TILES: usize>(
     let loaded = sums.iter().fold(0, |loaded, sum| loaded | u8::from(*sum >= off));
     let light = sums.iter().fold(0, |light, sum| light | u8::from((*sum > NO_WEIGHT) & (*sum < off)));
     let doubt = quality.as_flattened().iter().fold(0, |worst, &quality| worst | quality as u8);
-    loaded | (doubt & LOST) | (light * LIGHT)
+    (loaded * LOADED) | (doubt & LOST) | (light * LIGHT)
 }
-
-/// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which
-/// distance this grows doubtful, in metres: half a shoe (our choice).
-const REACH_M: f32 = 0.16;
-const REACH_FADE_M: f32 = 0.05;
-
-/// How deep such a load lies on its tile, in metres, and the force from which on its own moment says more.
-const RIM_M: f32 = 0.03;
-const RIM_N: f32 = 4.0;
-
-/// How many times as much as its rim a foot carries at least on the tile it stands on (our choice).
-const FOOT_PER_RIM: f32 = 2.0;
-
-const AROUND: [(i32, i32); 8] = [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 #[cfg(test)]
 mod tests {

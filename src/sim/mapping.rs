@@ -43,8 +43,8 @@ pub struct MappingError {
 
 /// `floor`, calibrated and tared, with a position map of each tile measured on its simulation `sim`.
 ///
-/// 9 x 9 points of each tile, closer together towards its edges, are pressed with 45, 100, 200 and 380 N each, hit within
-/// half a millimetre by a tool with a load cell that is wrong by 0.5 %, and
+/// 9 x 9 points of each tile, closer together towards its edges, are pressed with 45, 100, 200 and 380 N each,
+/// hit within half a millimetre by a tool with a load cell that is wrong by 0.5 %, and
 /// [`MapFit::of_presses`] makes the map. Saturated presses are left out. The same `seed` gives the
 /// same maps. A floor whose boards send newtons keeps the maps it had, and so
 /// does a tile that no map improves.

@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn a_busy_tile_on_which_light_feet_rest_or_come_and_go_teaches_nothing() {
-        // Of a tile that is loaded for minutes the memory hardly fades within a second: what rests there fades as little.
+        // Of a tile that is loaded for minutes the memory hardly fades within a second; nor does what rests there.
         let rests = |at: f32| if at % 60.0 < 57.0 { 150.0 } else { 20.0 };
         assert_eq!(learnt_under(rests, 600), 0.0);
         // After a heavy foot a light one taps twice, the second time as much lighter as creep would have faded.

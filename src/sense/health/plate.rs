@@ -3,7 +3,7 @@
 //! Corners are numbered as in [`crate::sense::corners`].
 
 use super::End;
-use crate::sense::corners::{LIFTED_N, Told, expected, told};
+use crate::sense::corners::{self, Told, expected, told};
 
 /// A single sensor must read this much, in newtons, for an answer to be expected of the others (our choice).
 const ALONE_N: f32 = 8.0;
@@ -49,7 +49,7 @@ pub(super) fn evidence(forces: [f32; 4], ends: [End; 4], corner: usize) -> Told 
 }
 
 fn has_lifted(forces: [f32; 4], ends: [End; 4], corner: usize) -> bool {
-    forces[corner] < LIFTED_N || ends[corner].reads_nothing()
+    corners::has_lifted(forces[corner]) || ends[corner].reads_nothing()
 }
 
 /// Whether `corner`, which reads nothing at all, should read more; `fell` says that it came to do so

@@ -1,7 +1,7 @@
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
-use crate::sense::corners::{LIFTED_N, Told, expected};
+use crate::sense::corners::{Told, expected, has_lifted};
 use crate::units::Instant;
 
 /// Every how many frames a tile is visited.
@@ -135,7 +135,7 @@ impl Slow {
                 sensor.review(own, is_right, alone, block.seconds);
                 continue;
             }
-            let lifted = block.lows[corner] < LIFTED_N && sensor.trouble().is_none();
+            let lifted = has_lifted(block.lows[corner]) && sensor.trouble().is_none();
             let evidence = plate::evidence(block.lows, ends, corner);
             if lifted || evidence == Told::Nothing {
                 // Neither evidence for it nor against it.

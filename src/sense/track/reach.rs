@@ -22,6 +22,14 @@ const RIM: (f64, f64) = (0.02, 0.22);
 const RIM_AHEAD: (f64, f64) = (0.1, 0.24);
 const RIM_OF_SHARED: (f64, f64) = (0.08, 0.25);
 
+/// How far a patch is taken to reach, in half widths and, beyond that, in metres.
+const HALVES: f64 = 1.1;
+const BEYOND_M: f64 = 0.02;
+
+/// How well a foot's habits must be known, and which share of it a line must have borne, for its tiles to be listed.
+const KNOWN: f64 = 0.3;
+const BORNE: f64 = 0.008;
+
 /// Speed towards a place from which on a foot slides there, in metres per second.
 const AHEAD_M_S: f64 = 0.02;
 
@@ -69,12 +77,12 @@ impl Foot {
     /// Lists the loaded tiles that its patch may press.
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
         self.tiles.clear();
-        let reach = self.half() * 1.1 + 0.02;
+        let reach = self.half() * HALVES + BEYOND_M;
         let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
         let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
-        if self.habit_strength() > 0.3 {
+        if self.habit_strength() > KNOWN {
             // Where it was alone, it also presses what it pressed then.
-            for habit in self.habits.iter().filter(|habit| habit.share > 0.008) {
+            for habit in self.habits.iter().filter(|habit| habit.share > BORNE) {
                 match habit.axis {
                     Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
                     Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),

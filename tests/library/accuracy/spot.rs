@@ -12,8 +12,8 @@ fn one_contact_over_a_whole_tile() {
         let found = row.errors.summary().unwrap();
         let what = format!("{:?}, {:?}, {}: {found:?}", row.thing, row.force, row.way.name);
         assert_eq!(row.missed, 0, "{what}");
-        // 95 in 100 true places lie in the ellipse. All places of a tile lie over the same four parts: 20 floors are few
-        // for that (80 floors of 15 x 15 places: 94 to 98 %).
+        // 95 in 100 true places lie in the ellipse. All places of a tile lie over the same four parts: 20 floors are
+        // few for that (80 floors of 15 x 15 places: 94 to 98 %).
         let inside = 100.0 * row.share_inside();
         let expected = 90.0..=99.5;
         assert!(expected.contains(&inside), "{inside} % in the ellipse, {what}");
