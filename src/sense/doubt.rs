@@ -58,7 +58,7 @@ impl SensorDoubt {
     ///
     /// # Source
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
-    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + vague², the
+    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + noise² + vague², the
     /// last for a sensor that is estimated, not calibrated or at the end of its range. The gain is that of
     /// [`SensorDoubt::gain`] under the sensor's load; on a tile with a position map it follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
@@ -80,7 +80,8 @@ impl SensorDoubt {
         let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
         let vague = share * Vec4::from_array(tile.vague);
         let offset = Vec4::splat(self.offset_n);
-        let variance = (offset * offset + misread * misread + vague * vague) * scale;
+        let noise = Vec4::splat(tile.noise_n * tile.noise_n);
+        let variance = (offset * offset + misread * misread + vague * vague + noise) * scale;
         Covariance {
             xx: strayed + (x * x).dot(variance),
             xy: (x * y).dot(variance),

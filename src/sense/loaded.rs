@@ -1,9 +1,11 @@
 mod rims;
+mod threshold;
 
 use std::time::Duration;
 
 use multiversion::multiversion;
 
+use self::threshold::Thresholds;
 use super::corners::is_possible;
 use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading};
 use super::{ForceFrame, Quality};
@@ -53,7 +55,7 @@ impl Default for LoadThreshold {
 #[derive(Clone, Debug)]
 pub(super) struct LoadedTiles {
     geometry: Geometry,
-    threshold: LoadThreshold,
+    thresholds: Thresholds,
     /// Which tile each one is, and its centre.
     places: Vec<Place>,
     /// Per tile of the floor; none for the tiles past the end.
@@ -78,7 +80,7 @@ impl LoadedTiles {
         let tiles = geometry.tile_count();
         Self {
             geometry,
-            threshold,
+            thresholds: Thresholds::new(tiles, threshold),
             places: (0..tiles).map(|index| Place::of(&geometry, index)).collect(),
             maps: Vec::new(),
             sums: vec![0.0; tiles],
@@ -133,32 +135,38 @@ impl LoadedTiles {
 
     /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not looked at.
     pub(super) fn update(&mut self, frame: &ForceFrame) {
+        let is_first = self.at.is_none();
         self.dt = self.at.map_or(Duration::ZERO, |last| frame.at.since(last));
         self.at = Some(frame.at);
         self.candidates.clear();
-        let off = self.threshold.off.0;
+        let off = self.thresholds.least();
         let missing = frame.forces.len().min(frame.quality.len());
         if let Some(rest) = self.sums.get_mut(missing..) {
             rest.fill(0.0);
         }
         survey(&mut self.sums, &frame.forces, &frame.quality, off, &mut self.blocks);
+        if is_first {
+            self.thresholds.begin(&frame.forces);
+        }
+        self.thresholds.smooth(&self.sums);
         let mut is_any_light = false;
         for (block, &worth) in self.blocks.iter().enumerate() {
             is_any_light |= worth & LIGHT != 0;
-            if worth & !LIGHT == 0 {
+            let is_noisy = self.thresholds.is_noisy(block);
+            if worth & !LIGHT == 0 && !is_noisy {
                 continue;
             }
             let from = block * BLOCK;
             let upto = (from + BLOCK).min(missing);
             let sums = self.sums.get(from..upto).unwrap_or_default();
-            if worth & LOST == 0 {
+            if worth & LOST == 0 && !is_noisy {
                 let loaded = (from as u32..).zip(sums).filter(|(_, sum)| **sum >= off);
                 self.candidates.extend(loaded.map(|(index, _)| index));
                 continue;
             }
             for (index, sum) in (from..).zip(sums) {
                 let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
-                if *sum >= off || is_lost {
+                if self.thresholds.deciding(index, *sum) >= off || is_lost {
                     self.candidates.push(index as u32);
                 }
             }
@@ -169,6 +177,8 @@ impl LoadedTiles {
         if is_any_light || self.candidates.len() > self.list.len() {
             self.gather(frame);
         }
+        let list = self.list.iter().map(|tile| tile.index);
+        self.thresholds.visit(&self.sums, &self.place, list, self.dt.as_secs_f32());
     }
 
     /// From candidates to loaded tiles.
@@ -180,7 +190,8 @@ impl LoadedTiles {
             let index = index as usize;
             let (forces, quality) = (&frame.forces[index], &frame.quality[index]);
             let before = self.last.get(self.place[index] as usize);
-            let least = if before.is_some() { self.threshold.off } else { self.threshold.on };
+            let dt = self.dt.as_secs_f32();
+            let least = self.thresholds.least_of(index, self.sums[index], before.is_some(), dt);
             let map = self.maps.get(index).and_then(Option::as_ref);
             if *quality == [Quality::Live; 4] && before.is_none_or(LoadedTile::is_settled) {
                 if is_possible(forces) {
@@ -189,7 +200,6 @@ impl LoadedTiles {
                 continue;
             }
             let may_start = frame.may_start.get(index) == Some(&true);
-            let dt = self.dt.as_secs_f32();
             let (carried, tile) = LoadedTile::in_doubt(
                 self.places[index],
                 &self.geometry,
@@ -208,8 +218,9 @@ impl LoadedTiles {
         for old in &self.last {
             self.place[old.index as usize] = NONE;
         }
-        for (position, loaded) in self.list.iter().enumerate() {
+        for (position, loaded) in self.list.iter_mut().enumerate() {
             self.place[loaded.index as usize] = position as u32;
+            loaded.noise_n = self.thresholds.noise_n(loaded.index as usize);
         }
     }
 }

@@ -76,6 +76,9 @@ pub struct LoadedTile {
     /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
     /// zero but for one that is estimated from the others, or at the end of its range.
     pub vague: [f32; 4],
+    /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
+    /// zero on a floor on which it is too small to matter.
+    pub noise_n: f32,
     /// Where the load acts, in floor metres: on the tile's plate, or up to a few centimetres beside it
     /// if part of the load lies on tiles around it that are too light to count themselves.
     pub centroid: Vec2,
@@ -99,7 +102,7 @@ pub struct LoadedTile {
 /// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
 /// choice: two and eight deviations of what four sensors add up to on an empty floor whose zeros were followed).
 pub(super) const NO_WEIGHT: f32 = 0.5;
-const FULL_WEIGHT: f32 = 2.0;
+pub(super) const FULL_WEIGHT: f32 = 2.0;
 
 /// What `force` on one tile counts for in a centroid over several.
 ///
@@ -273,6 +276,7 @@ impl LoadedTile {
             corners,
             wrench,
             vague: [0.0; 4],
+            noise_n: 0.0,
             centroid: centre + arm,
             quality: Quality::Live,
             weight: counted(wrench.force),

@@ -41,7 +41,9 @@ impl LoadedTiles {
             for row in around {
                 for column in along.clone() {
                     let index = (row * columns + column) as usize;
-                    if self.place[index] == NONE && self.sums[index] > NO_WEIGHT {
+                    if self.place[index] == NONE
+                        && self.sums[index] > NO_WEIGHT + self.thresholds.unsure(index)
+                    {
                         self.give(index, position, frame);
                     }
                 }

@@ -1,0 +1,465 @@
+//! From which force on each tile counts as loaded: what its own noise and its recent load ask for.
+//!
+//! - **Noise floor.** While a tile is idle, the differences between readings [`VISIT_S`] apart give the standard
+//!   deviation of what its sensors add up to. An offset or a slow drift is not noise, and outliers are clipped.
+//!   Where the noise comes near the threshold, the force that decides (and only that one) is smoothed, as much as it
+//!   takes and for [`SMOOTH_S`] at most; what is left after that raises the threshold.
+//! - **Residual load.** Force-sensing resistors creep, and release it as slowly as it came: what a tile's recent
+//!   load may have left behind raises its thresholds, and wears off with it.
+//!
+//! A quiet tile that carried nothing lately keeps the thresholds of [`LoadThreshold`].
+
+use super::{BLOCK, LoadThreshold, NONE};
+use crate::sense::tile::FULL_WEIGHT;
+use crate::units::Newtons;
+
+/// How often a tile's noise and residual load are brought up to date, in seconds.
+///
+/// The mains' 50 and 60 Hz are well sampled by it: half a cycle lies between two visits, more or less.
+const VISIT_S: f32 = 0.012;
+
+/// From how many visits on end on a loaded tile carries a foot: hum that crosses the threshold does not stay above it.
+const SETTLED: u32 = 4;
+
+/// Longest time between two readings that says something of noise, in seconds.
+const GAP_S: f32 = 0.5;
+
+/// Standard deviations above which an idle tile is taken to be loaded: of 36 tiles of 200 independent
+/// readings a second, one in three minutes goes above (normal distribution).
+const DEVIATIONS: f32 = 4.9;
+
+/// Mean absolute difference of two independent readings, in standard deviations of one (normal distribution: 2 / sqrt pi).
+const DIFFERENCE: f32 = 1.128;
+
+/// Clipping of differences, in means, and the least it is done at, in newtons (M-estimate of scale; 3.5 means are 2.8
+/// standard deviations).
+const CLIP: f32 = 3.5;
+const CLIP_LEAST_N: f32 = 0.5;
+
+/// How many visits the noise is averaged over once it is known, about 1.5 s, and how many the first frame counts for.
+const VISITS: f32 = 128.0;
+const FIRST_VISITS: f32 = 8.0;
+
+/// How long the deciding force is smoothed at most, in seconds (e-fold): a foot is seen by so much later.
+const SMOOTH_S: f32 = 0.008;
+
+/// The threshold that noise may ask for at most, in newtons: a foot is seen however much a tile hisses (our choice).
+const MOST_N: f32 = 40.0;
+
+/// How long a tile stays loaded whose load may be residual, in seconds: a foot that leaves by its toes is followed to the end
+/// (recorded steps give up their last tenth of weight within 20 to 40 ms).
+const HOLD_S: f32 = 0.03;
+
+/// The times over which loads are remembered, in seconds, a decade apart as creep is stated.
+const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
+
+/// Creep of a force-sensing resistor, as a share of its load for each decade of time (maker's figure: 5 %).
+const CREEP: f32 = 0.055;
+
+/// Residual load that is not worth following, in newtons.
+const NOTHING_N: f32 = 0.2;
+
+/// The thresholds of each tile, in tile-index order.
+#[derive(Clone, Debug)]
+pub(super) struct Thresholds {
+    base: LoadThreshold,
+    /// Mean absolute difference of what each tile read at two visits on end, idle at both, in newtons.
+    differences: Vec<f32>,
+    /// What it read at the last visit; NaN if it was not idle.
+    read: Vec<f32>,
+    /// At how many visits on end it was loaded; an idle tile is not for long.
+    loaded: Vec<u32>,
+    /// Blocks with a noisy tile.
+    noisy: Vec<bool>,
+    is_any_noisy: bool,
+    /// The same for the smoothed force of noisy tiles, and that force.
+    smoothed_differences: Vec<f32>,
+    smoothed_read: Vec<f32>,
+    smoothed: Vec<f32>,
+    /// Share of a new reading in it.
+    gains: Vec<f32>,
+    /// The threshold that noise asks for.
+    on: Vec<f32>,
+    /// What may be left of each tile's recent load, in newtons.
+    residual: Vec<f32>,
+    /// For how long each loaded tile has carried no more than may be left of its recent load, in seconds.
+    left_s: Vec<f32>,
+    memories: Vec<[f32; TIMES_S.len()]>,
+    /// Tiles with a memory.
+    stirred: Vec<u32>,
+    /// Since the last visit, in seconds.
+    since_s: f32,
+    visits: f32,
+    /// The last time between two visits, and what each memory takes in over it.
+    parts: (f32, [f32; TIMES_S.len()]),
+}
+
+impl Thresholds {
+    pub(super) fn new(tiles: usize, base: LoadThreshold) -> Self {
+        Self {
+            base,
+            differences: vec![0.0; tiles],
+            read: vec![f32::NAN; tiles],
+            loaded: vec![0; tiles],
+            noisy: vec![false; tiles.div_ceil(BLOCK)],
+            is_any_noisy: false,
+            smoothed_differences: vec![0.0; tiles],
+            smoothed_read: vec![f32::NAN; tiles],
+            smoothed: vec![0.0; tiles],
+            gains: vec![1.0; tiles],
+            on: vec![base.on.0; tiles],
+            residual: vec![0.0; tiles],
+            left_s: vec![0.0; tiles],
+            memories: vec![Default::default(); tiles],
+            stirred: Vec::with_capacity(tiles),
+            since_s: 0.0,
+            visits: 0.0,
+            parts: (0.0, [0.0; TIMES_S.len()]),
+        }
+    }
+
+    /// The least of all tiles' thresholds.
+    pub(super) const fn least(&self) -> f32 {
+        self.base.off.0
+    }
+
+    /// What the tile at `index`, which reads `sum`, must carry in this frame to count as loaded, `dt` seconds after the
+    /// last one.
+    ///
+    /// Where the smoothed force decides, that is as little as can be placed, or more than anything carries.
+    pub(super) fn least_of(&mut self, index: usize, sum: f32, was_loaded: bool, dt: f32) -> Newtons {
+        let LoadThreshold { on, off } = self.base;
+        let decides = self.deciding(index, sum);
+        let residual = self.residual[index];
+        let least = if was_loaded { self.on[index] * (off.0 / on.0) } else { self.on[index] };
+        let is_left = decides < least + residual;
+        self.left_s[index] = if was_loaded && is_left { self.left_s[index] + dt } else { 0.0 };
+        let is_held = was_loaded && self.left_s[index] < HOLD_S;
+        let least = if is_held { least } else { least + residual };
+        Newtons(match self.is_noisy(index / BLOCK) {
+            false => least,
+            true if decides >= least => FULL_WEIGHT,
+            true => f32::INFINITY,
+        })
+    }
+
+    /// Whether some tile of a block is noisy, so that [`Self::deciding`] is to be asked.
+    pub(super) fn is_noisy(&self, block: usize) -> bool {
+        self.is_any_noisy && self.noisy[block]
+    }
+
+    /// The force by which it is decided whether the tile at `index`, which reads `sum`, is loaded.
+    pub(super) fn deciding(&self, index: usize, sum: f32) -> f32 {
+        if self.is_noisy(index / BLOCK) { self.smoothed[index] } else { sum }
+    }
+
+    /// What of the deciding force of the tile at `index` may be noise or left by its recent load, in newtons.
+    pub(super) fn unsure(&self, index: usize) -> f32 {
+        let noise = if self.is_noisy(index / BLOCK) { 0.5 * self.on[index] } else { 0.0 };
+        noise + self.residual[index]
+    }
+
+    /// Standard deviation of the noise of each sensor of the tile at `index`, in newtons.
+    pub(super) fn noise_n(&self, index: usize) -> f32 {
+        if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 }
+    }
+
+    /// Takes in what the first frame's tiles read: nothing is known but how well their plates' corners agree.
+    pub(super) fn begin(&mut self, forces: &[[f32; 4]]) {
+        // Loads of any kind hardly twist a rigid plate; half of the tiles at least are like the others.
+        self.read.clear();
+        self.read.extend(forces.iter().map(|[sw, se, nw, ne]| (sw - se - nw + ne).abs()));
+        self.read.retain(|twist| twist.is_finite());
+        let middle = self.read.len() / 2;
+        let median = if self.read.is_empty() {
+            0.0
+        } else {
+            *self.read.select_nth_unstable_by(middle, f32::total_cmp).1
+        };
+        // The median of a normal distribution's absolute values is 0.6745 standard deviations.
+        let difference = (DIFFERENCE * median / 0.6745).min(MOST_N / DEVIATIONS);
+        self.differences.fill(difference);
+        let tiles = self.differences.len();
+        self.read.clear();
+        self.read.resize(tiles, f32::NAN);
+        self.visits = FIRST_VISITS;
+        self.find_noisy(0.0, 0.0);
+    }
+
+    /// Smooths the deciding force of noisy tiles by a frame of what they read.
+    pub(super) fn smooth(&mut self, sums: &[f32]) {
+        if !self.is_any_noisy {
+            return;
+        }
+        let tiles = self.smoothed.chunks_mut(BLOCK).zip(self.gains.chunks(BLOCK)).zip(sums.chunks(BLOCK));
+        for (((smoothed, gains), sums), _) in tiles.zip(&self.noisy).filter(|(_, noisy)| **noisy) {
+            for ((smoothed, gain), sum) in smoothed.iter_mut().zip(gains).zip(sums) {
+                if sum.is_finite() {
+                    *smoothed += gain * (sum - *smoothed);
+                }
+            }
+        }
+    }
+
+    /// Brings noise and residual load up to date, `dt` seconds after the last frame, if it is time; `place` says which
+    /// tiles are loaded.
+    pub(super) fn visit(&mut self, sums: &[f32], place: &[u32], list: impl Iterator<Item = u32>, dt: f32) {
+        self.since_s += dt;
+        if self.since_s < VISIT_S - 0.5 * dt.min(VISIT_S) && self.visits > FIRST_VISITS {
+            return;
+        }
+        let elapsed = std::mem::take(&mut self.since_s);
+        if elapsed > GAP_S {
+            self.read.fill(f32::NAN);
+            self.smoothed_read.fill(f32::NAN);
+        }
+        self.visits = (self.visits + 1.0).min(VISITS);
+        self.remember(sums, list, elapsed);
+        let share = 1.0 / self.visits;
+        for (loaded, &place) in self.loaded.iter_mut().zip(place) {
+            *loaded = if place == NONE { 0 } else { (*loaded + 1).min(SETTLED) };
+        }
+        follow(&mut self.differences, &mut self.read, sums, &self.loaded, share);
+        self.find_noisy(dt, share);
+    }
+
+    fn find_noisy(&mut self, dt: f32, share: f32) {
+        let limit = DIFFERENCE * self.base.on.0 / DEVIATIONS;
+        self.is_any_noisy = false;
+        for block in 0..self.noisy.len() {
+            let from = block * BLOCK;
+            let upto = (from + BLOCK).min(self.differences.len());
+            let is_noisy = self.differences[from..upto].iter().any(|&difference| difference > limit);
+            let was_noisy = std::mem::replace(&mut self.noisy[block], is_noisy);
+            self.is_any_noisy |= is_noisy;
+            if !is_noisy {
+                if was_noisy {
+                    self.on[from..upto].fill(self.base.on.0);
+                }
+                continue;
+            }
+            if !was_noisy {
+                self.smoothed[from..upto].fill(0.0);
+                self.smoothed_read[from..upto].fill(f32::NAN);
+            }
+            for index in from..upto {
+                // White noise loses so much; what else there is, such as hum, is measured.
+                let q = (limit / self.differences[index].max(f32::MIN_POSITIVE)).powi(2);
+                let gain = (2.0 * q / (1.0 + q)).clamp(1.0 - (-dt / SMOOTH_S).exp(), 1.0);
+                self.gains[index] = gain;
+                let white = self.differences[index] * (gain / (2.0 - gain)).sqrt();
+                if !was_noisy {
+                    self.smoothed_differences[index] = white;
+                }
+            }
+            let range = from..upto;
+            follow(
+                &mut self.smoothed_differences[range.clone()],
+                &mut self.smoothed_read[range.clone()],
+                &self.smoothed[range.clone()],
+                &self.loaded[range.clone()],
+                share,
+            );
+            for index in range {
+                let noise = DEVIATIONS / DIFFERENCE * self.smoothed_differences[index];
+                self.on[index] = noise.clamp(self.base.on.0, MOST_N.max(self.base.on.0));
+            }
+        }
+    }
+
+    /// Remembers the loads of the last `elapsed` seconds.
+    fn remember(&mut self, sums: &[f32], list: impl Iterator<Item = u32>, elapsed: f32) {
+        if self.parts.0 != elapsed {
+            self.parts = (elapsed, TIMES_S.map(|time_s| 1.0 - (-elapsed / time_s).exp()));
+        }
+        let Self { memories, residual, stirred, parts, .. } = self;
+        for index in list {
+            if residual[index as usize] == 0.0 {
+                // A trace marks it as followed.
+                residual[index as usize] = f32::MIN_POSITIVE;
+                stirred.push(index);
+            }
+        }
+        stirred.retain(|&index| {
+            let index = index as usize;
+            let sum = if sums[index].is_finite() { sums[index].clamp(0.0, 1e6) } else { 0.0 };
+            for (memory, part) in memories[index].iter_mut().zip(parts.1) {
+                *memory += part * (sum - *memory);
+            }
+            let left = CREEP * memories[index].iter().sum::<f32>();
+            let stays = left > NOTHING_N || sum > NOTHING_N;
+            residual[index] = if stays { left.max(f32::MIN_POSITIVE) } else { 0.0 };
+            if !stays {
+                memories[index] = Default::default();
+            }
+            stays
+        });
+    }
+}
+
+/// Takes the difference of each idle tile's reading from its last one into its mean, by `share`.
+///
+/// Without branches, over plain arrays.
+fn follow(differences: &mut [f32], read: &mut [f32], now: &[f32], loaded: &[u32], share: f32) {
+    let tiles = differences.iter_mut().zip(read).zip(now.iter().zip(loaded));
+    for ((mean, read), (&now, &loaded)) in tiles {
+        let now = if loaded < SETTLED { now } else { f32::NAN };
+        let difference = (now - *read).abs();
+        let clipped = difference.min((CLIP * *mean).max(CLIP_LEAST_N));
+        *mean = if difference.is_nan() { *mean } else { *mean + share * (clipped - *mean) };
+        *read = now;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use rand::{RngExt, SeedableRng};
+    use rand_distr::StandardNormal;
+    use rand_pcg::Pcg64Mcg;
+
+    use crate::floor::Geometry;
+    use crate::sense::ForceFrame;
+    use crate::sense::loaded::{LoadThreshold, LoadedTiles};
+
+    /// A floor of 5 x 5 tiles whose sensors hiss, hum and creep.
+    struct Floor {
+        tiles: LoadedTiles,
+        frame: ForceFrame,
+        rng: Pcg64Mcg,
+        /// Of each sensor, in newtons.
+        noise_n: f32,
+        hum_n: f32,
+        creep: f32,
+        memories: [[f32; 4]; 25],
+        at_s: f32,
+    }
+
+    impl Floor {
+        fn new(noise_n: f32, hum_n: f32, creep: f32) -> Self {
+            let geometry = Geometry::of_paper_tiles(5, 5).unwrap();
+            Self {
+                tiles: LoadedTiles::new(geometry, LoadThreshold::default()),
+                frame: ForceFrame::empty(&geometry),
+                rng: Pcg64Mcg::seed_from_u64(7),
+                noise_n,
+                hum_n,
+                creep,
+                memories: [[0.0; 4]; 25],
+                at_s: 0.0,
+            }
+        }
+
+        /// `frames` of them, `dt_s` apart, under these loads; how many tiles without one counted as loaded, each frame
+        /// for itself, and how many with one did not.
+        fn run(&mut self, frames: u32, dt_s: f32, loads: &[(usize, f32)]) -> (u32, u32) {
+            let (mut ghosts, mut missed) = (0, 0);
+            for _ in 0..frames {
+                self.at_s += dt_s;
+                self.frame.at = self.frame.at + Duration::from_secs_f32(dt_s);
+                let hum = self.hum_n * (std::f32::consts::TAU * 50.0 * self.at_s).sin();
+                for (index, forces) in self.frame.forces.iter_mut().enumerate() {
+                    let load = loads.iter().find(|load| load.0 == index).map_or(0.0, |load| load.1);
+                    let memory = &mut self.memories[index];
+                    for (memory, time_s) in memory.iter_mut().zip(super::TIMES_S) {
+                        *memory += (load - *memory) * (1.0 - (-dt_s / time_s).exp());
+                    }
+                    let sum = load + self.creep * memory.iter().sum::<f32>();
+                    *forces = std::array::from_fn(|_| {
+                        0.25 * sum + hum + self.noise_n * self.rng.sample::<f32, _>(StandardNormal)
+                    });
+                }
+                self.tiles.update(&self.frame);
+                let is_loaded = |index| self.tiles.position(index as u32).is_some();
+                let is_light = |index| loads.iter().all(|load| load.0 != index);
+                ghosts += (0..25).filter(|&index| is_light(index) && is_loaded(index)).count() as u32;
+                missed += loads.iter().filter(|load| !is_loaded(load.0)).count() as u32;
+            }
+            (ghosts, missed)
+        }
+    }
+
+    #[test]
+    fn a_tile_that_hisses_is_empty_and_a_light_foot_on_it_is_seen() {
+        for noise_n in [0.3, 1.0, 2.0, 3.0] {
+            let mut floor = Floor::new(noise_n, 0.0, 0.0);
+            let (at_first, _) = floor.run(200, 0.001, &[]);
+            assert!(at_first <= 2, "{noise_n} N: {at_first} at first");
+            let (ghosts, _) = floor.run(5000, 0.001, &[]);
+            assert!(ghosts <= 10, "{noise_n} N: {ghosts} in 5 s");
+            // Within 20 ms, and then in nearly every frame.
+            floor.run(20, 0.001, &[(12, 30.0)]);
+            let (_, missed) = floor.run(500, 0.001, &[(12, 30.0)]);
+            assert!(missed <= 15, "{noise_n} N: {missed} ms of 500 without the foot");
+        }
+    }
+
+    #[test]
+    fn hum_that_all_sensors_share_is_noise_too() {
+        let mut floor = Floor::new(0.1, 5.0, 0.0);
+        floor.run(500, 0.001, &[]);
+        assert_eq!(floor.run(5000, 0.001, &[]).0, 0);
+        floor.run(20, 0.001, &[(12, 90.0)]);
+        assert_eq!(floor.run(500, 0.001, &[(12, 90.0)]).1, 0);
+    }
+
+    #[test]
+    fn noise_is_known_at_any_rate_and_after_gaps() {
+        for dt_s in [0.05, 0.018, 0.01, 0.002] {
+            let mut floor = Floor::new(2.0, 0.0, 0.0);
+            floor.run(100, dt_s, &[]);
+            floor.run(1, 0.4, &[]);
+            let (ghosts, _) = floor.run(1000, dt_s, &[]);
+            assert!(ghosts <= 10, "every {dt_s} s: {ghosts} of 25,000");
+            floor.run(5, dt_s, &[(12, 60.0)]);
+            assert_eq!(floor.run(100, dt_s, &[(12, 60.0)]).1, 0, "every {dt_s} s");
+        }
+    }
+
+    #[test]
+    fn noise_that_ends_leaves_no_threshold_behind() {
+        let mut floor = Floor::new(2.0, 0.0, 0.0);
+        floor.run(2000, 0.001, &[]);
+        floor.noise_n = 0.01;
+        floor.run(12_000, 0.001, &[]);
+        assert_eq!(floor.run(10, 0.001, &[(12, 6.5)]).1, 0);
+    }
+
+    #[test]
+    fn what_rests_or_rises_slowly_is_not_noise() {
+        let mut floor = Floor::new(0.05, 0.0, 0.0);
+        for tenths in 0..55_u8 {
+            floor.run(100, 0.001, &[(12, 0.1 * f32::from(tenths))]);
+        }
+        assert_eq!(floor.run(10, 0.001, &[(12, 6.5)]), (0, 0));
+    }
+
+    #[test]
+    fn a_floor_that_creeps_is_empty_once_it_is_left_and_its_other_tiles_feel_a_toe() {
+        let mut floor = Floor::new(0.0, 0.0, 0.05);
+        for _ in 0..5 {
+            assert_eq!(floor.run(700, 0.001, &[(12, 700.0)]), (0, 0));
+            // A clean tile is as sensitive as ever; the one that was left is empty 31 ms later.
+            let (ghosts, missed) = floor.run(1000, 0.001, &[(7, 6.5)]);
+            assert!(ghosts <= 31 && missed == 0, "{ghosts} ms, {missed}");
+        }
+        // A foot of 60 N is felt right after a step of ten times as much, one of 6.5 N after a minute.
+        floor.run(700, 0.001, &[(12, 700.0)]);
+        floor.run(200, 0.001, &[]);
+        assert_eq!(floor.run(100, 0.001, &[(12, 60.0)]).1, 0);
+        let mut sound = Floor::new(0.0, 0.0, 0.0);
+        sound.run(700, 0.001, &[(12, 700.0)]);
+        sound.run(6000, 0.01, &[]);
+        assert_eq!(sound.run(10, 0.001, &[(12, 6.5)]).1, 0);
+    }
+
+    #[test]
+    fn a_foot_that_gives_up_its_weight_within_a_tenth_of_a_second_is_followed_to_its_toes() {
+        let mut floor = Floor::new(0.0, 0.0, 0.0);
+        floor.run(700, 0.001, &[(12, 900.0)]);
+        let missed: u32 =
+            (0..22).map(|step| floor.run(4, 0.001, &[(12, 900.0 - 40.0 * step as f32)]).1).sum();
+        assert_eq!(missed, 0);
+    }
+}
