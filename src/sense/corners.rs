@@ -168,6 +168,45 @@ pub(super) fn vague(forces: [f32; 4], quality: [Quality; 4], may_start: bool) ->
     std::array::from_fn(one)
 }
 
+/// Least load at which corners contradict each other, in newtons.
+const CONTRADICTS_N: f32 = 30.0;
+
+/// How far the sums of a tile's diagonals may differ, as a share of its load, by unequal supports and gains (two to three
+/// standard deviations), and by a foot that lies across a plate that bends.
+const UNEQUAL: f32 = 0.15;
+const ACROSS: f32 = 0.15;
+
+/// Share of a tile's load below which a corner may be in the air.
+const IN_THE_AIR: f32 = 0.03;
+
+/// The standard deviation of each of `forces` by what no plate, rigid or bent, lets its corners read together, in newtons:
+/// of a sensor that is dead under its load, or at its end, on the very frame.
+///
+/// A diagonal that carries too little lacks what the other has too much, unless the other has a corner in the air.
+///
+/// # Source
+/// Plate on four springs: f_sw - f_se - f_nw + f_ne lies between zero (rigid) and that of the load's place (limp).
+#[inline]
+pub(super) fn contradicted([sw, se, nw, ne]: [f32; 4]) -> [f32; 4] {
+    let whole = (sw + se) + (nw + ne);
+    let diagonal = (sw - se) + (ne - nw);
+    let place = ((se - sw) + (ne - nw)) * ((nw - sw) + (ne - se)) / whole;
+    let low = (place - ACROSS * whole).min(0.0);
+    let high = (place + ACROSS * whole).max(0.0);
+    let slack = UNEQUAL * whole;
+    if !(whole > CONTRADICTS_N) || (diagonal >= low - slack && diagonal <= high + slack) {
+        return [0.0; 4];
+    }
+    let air = IN_THE_AIR * whole;
+    if diagonal > high {
+        let lacks = if sw.min(ne) < air { 0.0 } else { diagonal - high };
+        [0.0, lacks, lacks, 0.0]
+    } else {
+        let lacks = if se.min(nw) < air { 0.0 } else { low - diagonal };
+        [lacks, 0.0, 0.0, lacks]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -253,5 +292,23 @@ mod tests {
         // With all on their supports the plate tells it six times as well.
         let flat = vague(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
         assert_eq!(flat, [21.6, 0.0, 0.0, 0.0]);
+    }
+
+    #[test]
+    fn a_dead_sensor_under_load_contradicts_the_others_and_a_lifted_or_bent_corner_does_not() {
+        assert_eq!(contradicted(FOOT), [0.0; 4]);
+        for dead in 0..4 {
+            let mut forces = [190.0, 170.0, 180.0, 160.0];
+            let carries = std::mem::take(&mut forces[dead]);
+            let sigma = contradicted(forces);
+            assert!(sigma[dead] > 0.5 * carries, "{dead}: {sigma:?}");
+            assert_eq!(sigma[dead ^ 1] + sigma[dead ^ 2], 0.0);
+        }
+        // A foot over sw, ne in the air; the same on a plate that is limp; one in the middle of the south edge.
+        for forces in
+            [[350.0, 120.0, 130.0, -5.0], [450.0, 80.0, 70.0, 10.0], [300.0, 310.0, 15.0, 12.0], [0.0; 4]]
+        {
+            assert_eq!(contradicted(forces), [0.0; 4], "{forces:?}");
+        }
     }
 }

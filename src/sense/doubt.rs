@@ -35,6 +35,14 @@ const STRAYS: f32 = 0.55;
 /// The load from which on it is no longer the share that is as doubtful, but the newtons: a law is fitted to those.
 const FITTED_N: f32 = 180.0;
 
+/// The load from which on a part may be compressing towards its end, in newtons, and what it is then doubted by for each
+/// newton more.
+///
+/// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250 N and
+/// 55 N at 280 N: the share is the mean of what it hides there, and half of the simulated parts end later.
+const COMPRESSES_N: f32 = 200.0;
+const COMPRESSES: f32 = 0.4;
+
 /// Standard deviation of what each sensor of a tile that the load strays to carries without being counted, in newtons
 /// (by the same coverage, of feet of 50 N).
 const UNSEEN_N: f32 = 0.27;
@@ -93,7 +101,8 @@ impl SensorDoubt {
     /// whose map leaves `mapped_m` along each axis.
     fn misread_n(&self, loads: Vec4, mapped_m: Option<f32>) -> Vec4 {
         let strays = Vec4::ONE + STRAYS * (loads / STRAYS_N).clamp(Vec4::ZERO, Vec4::ONE);
-        let unmapped = self.gain * strays * loads.min(Vec4::splat(FITTED_N));
+        let hidden = COMPRESSES * (loads - COMPRESSES_N).max(Vec4::ZERO);
+        let unmapped = self.gain * strays * loads.min(Vec4::splat(FITTED_N)) + hidden;
         let Some(left) = mapped_m else { return unmapped };
         let heavy = loads / HEAVY_N;
         let mapped = left / ARM_M * (Vec4::splat(LIGHT) + heavy * heavy) * loads;

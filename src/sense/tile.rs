@@ -74,7 +74,7 @@ pub struct LoadedTile {
     /// Its force and moment; the force is positive.
     pub wrench: Wrench,
     /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
-    /// zero but for one that is estimated from the others, or at the end of its range.
+    /// zero but for one that is estimated from the others, at the end of its range, or contradicted by the others.
     pub vague: [f32; 4],
     /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
     /// zero on a floor on which it is too small to matter.
@@ -194,7 +194,8 @@ impl LoadedTile {
 
     /// Judges its vagueness by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
     pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
-        self.vague = corners::vague(self.corners, sensors, may_start);
+        let vague = corners::vague(self.corners, sensors, may_start);
+        self.vague = std::array::from_fn(|corner| vague[corner].max(self.vague[corner]));
     }
 
     /// Whether nothing of its past has to be remembered: every sensor was live, and none has just been found or lost.
@@ -275,7 +276,7 @@ impl LoadedTile {
             centre,
             corners,
             wrench,
-            vague: [0.0; 4],
+            vague: corners::contradicted(corners),
             noise_n: 0.0,
             centroid: centre + arm,
             quality: Quality::Live,
