@@ -16,15 +16,18 @@ mod plate;
 mod report;
 mod slow;
 mod trouble;
+#[cfg(test)]
+mod walks;
 
 use crate::floor::{Corner, Floor, Geometry, SensorId};
-use crate::sense::{ForceFrame, Quality};
+use crate::sense::{ForceFrame, Quality, corners};
 use crate::units::{Instant, Newtons};
 
 pub use report::SensorHealth;
 pub use trouble::Trouble;
 
 use self::creep::{Creep, Memory, Parts};
+use self::plate::Twist;
 use self::slow::{GAP_S, SHARES, Slow};
 use self::trouble::Sensor;
 
@@ -76,6 +79,8 @@ pub(super) struct Health {
     crept: Vec<[f32; 4]>,
     memories: Vec<Memory>,
     creep: Creep,
+    /// How far the floor's plates give way to twist.
+    twist: Twist,
     /// When each share of the floor was last visited.
     visited: [Option<Instant>; SHARES],
     /// How far each may be followed: 20 % of the sensor's range.
@@ -142,6 +147,7 @@ impl Health {
             crept: vec![[0.0; 4]; tiles],
             memories: vec![Memory::default(); tiles],
             creep: Creep::default(),
+            twist: Twist::default(),
             visited: [None; SHARES],
             limits: (0..tiles).map(limits).collect(),
             ends: vec![[End::Within; 4]; tiles],
@@ -212,11 +218,13 @@ impl Health {
         let foreign = self.is_foreign();
         let (forces, ends, sensors) = (frame.forces[tile], self.ends[tile], &mut self.sensors[tile]);
         let quality = &mut frame.quality[tile];
+        let mut may_start = true;
         if is_heard(quality, sensors) {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
             let measured = !self.guessed[tile] && !foreign;
             let before = self.read[tile];
+            let twist = self.twist.range();
             for (corner, sensor) in sensors.iter_mut().enumerate() {
                 let found = match ends[corner] {
                     End::High if alone == Some(corner) => Some(Trouble::Short),
@@ -228,11 +236,19 @@ impl Health {
                                 out,
                                 corner,
                                 before[corner] - forces[corner] > FELL_N,
+                                twist,
                             ) =>
                     {
                         Some(Trouble::Open)
                     }
-                    _ if measured && alone == Some(corner) => Some(Trouble::Offset),
+                    _ if measured && alone == Some(corner) => {
+                        // On a limp plate a foot that comes down over a sensor is not answered either; but it pushes,
+                        // and not from one millisecond to the next.
+                        let is_sudden = (forces[corner] - before[corner]).abs() > SUDDEN_N;
+                        let is_none = is_sudden || forces[corner] < 0.0 || !self.twist.may_be_limp();
+                        may_start &= is_none;
+                        is_none.then_some(Trouble::Offset)
+                    }
                     _ => None,
                 };
                 if let Some(found) = found {
@@ -245,7 +261,6 @@ impl Health {
                 }
             }
         }
-        let mut may_start = true;
         let mut in_trouble = false;
         for corner in 0..4 {
             let sensor = &sensors[corner];
@@ -279,7 +294,7 @@ impl Health {
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
         let foreign = self.is_foreign();
-        let Self { zeros, limits, guessed, sensors, slow, crept, memories, creep, .. } = self;
+        let Self { zeros, limits, guessed, sensors, slow, crept, memories, creep, twist, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
@@ -291,9 +306,14 @@ impl Health {
                 self.strange += usize::from(strange && !laden);
             }
             if !guessed[tile] && !foreign {
-                slow.judge(&block, alone, sensors);
+                slow.judge(&block, alone, twist.range(), sensors);
             }
             let is_sound = sensors.iter().all(|sensor| sensor.trouble().is_none());
+            let has_lifted = block.lows.into_iter().any(corners::has_lifted)
+                || block.ends.iter().any(|end| end.reads_nothing());
+            if is_sound && !guessed[tile] && !has_lifted && !block.ends.contains(&End::High) {
+                twist.learn(block.means);
+            }
             if is_sound && !block.ends.contains(&End::High) {
                 let reads: f32 = block.means.iter().chain(&crept[tile]).sum();
                 creep.learn(&mut memories[tile], reads, block.seconds);

@@ -43,6 +43,9 @@ const SCATTER_N: f32 = 4.0;
 /// For how long a tile must be empty and quiet before its zeros are followed slowly, in seconds.
 const PATIENCE_S: f32 = 2.0;
 
+/// For how long a sensor scatters on the empty tile before it is noisy, in seconds: less than two steps.
+const NOISY_S: f32 = 1.0;
+
 /// One tile's state as far as drift is concerned.
 #[derive(Clone, Copy, Debug, Default)]
 pub(in crate::sense) struct Drift {
@@ -115,7 +118,7 @@ impl Drift {
             let scatters = block.spreads[corner] > SCATTER_N;
             let for_s = &mut self.noisy_for[corner];
             *for_s = if scatters { *for_s + block.seconds } else { 0.0 };
-            if *for_s >= PATIENCE_S {
+            if *for_s >= NOISY_S {
                 sensor.find(Trouble::Noisy, block.means[corner]);
             }
             if sensor.trouble() == Some(Trouble::Noisy) {

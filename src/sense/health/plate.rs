@@ -1,4 +1,9 @@
-//! What a rigid plate on four supports allows its sensors to read.
+//! What a plate on four supports allows its sensors to read.
+//!
+//! A rigid plate leaves the sum of one diagonal equal to that of the other. One that bends, such as 12 mm of plywood
+//! on soft feet, twists: a load off both middle lines presses the corners of its own diagonal harder. How far the
+//! floor's plates give way is learnt from the feet on them; until it is known, whatever a plate between
+//! rigid and limp would allow is held against no sensor.
 //!
 //! Corners are numbered as in [`crate::sense::corners`].
 
@@ -23,6 +28,93 @@ pub(super) const SLACK: f32 = 0.15;
 
 /// The same for a verdict from a single frame, which no later one confirms.
 const AT_ONCE_SLACK: f32 = 0.3;
+
+/// How far a foot that lies across a tile's diagonal twists the plate beyond what its centre of pressure does, as a
+/// share of its force: what a print of 0.25 m at 45 degrees does is 0.14, and [`SLACK`] bears the rest (by geometry).
+const ACROSS: f32 = 0.06;
+
+/// Least load of a tile that shows how its plate bends, in newtons, and the weight of evidence that is kept: about
+/// two hundred steps.
+const BENDS_N: f32 = 80.0;
+const MOST_WEIGHT: f32 = 300.0;
+
+/// By how much of a tile's load its diagonals may differ beyond what plates allow for it to tell how they bend: a dead
+/// sensor under the middle of a foot makes a third.
+const FAULT: f32 = 0.2;
+
+/// Standard deviation of the twist that one block of evidence of weight 1 shows, blocks of one step being alike: twice
+/// that is allowed for (by simulated walks on plates from rigid to limp).
+const BLOCK_DEVIATION: f32 = 0.3;
+
+/// From which twist on a load over one sensor may hardly be felt by its neighbours: they carry `(1 - twist) / 4` of it.
+const LIMP: f32 = 0.6;
+
+/// How far a floor's plates give way to twist: 0 for rigid ones, 1 for such as have no stiffness of their own.
+///
+/// # Source
+/// Plate on four equal springs: `f_sw - f_se - f_nw + f_ne = twist * sum(F x y) / reach^2`, by least squares.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Twist {
+    seen: f32,
+    weight: f32,
+}
+
+impl Twist {
+    /// The least and the most that it may be.
+    pub(super) fn range(&self) -> (f32, f32) {
+        if self.weight <= 0.0 {
+            return (0.0, 1.0);
+        }
+        let (middle, unsure) = (self.seen / self.weight, 2.0 * BLOCK_DEVIATION / self.weight.sqrt());
+        ((middle - unsure).clamp(0.0, 1.0), (middle + unsure).clamp(0.0, 1.0))
+    }
+
+    /// Whether plates may be so limp that a load over one sensor is not answered by the others.
+    pub(super) fn may_be_limp(&self) -> bool {
+        self.range().1 > LIMP
+    }
+
+    /// Learns from what a loaded tile's sensors read on average, none of them lifted or at the end of its range.
+    pub(super) fn learn(&mut self, forces: [f32; 4]) {
+        let Some((diagonal, place, whole)) = diagonal(forces).filter(|&(_, _, whole)| whole > BENDS_N) else {
+            return;
+        };
+        // What no plate at all allows is a sensor's fault.
+        let wrong = diagonal - diagonal.clamp(place.min(0.0), place.max(0.0));
+        if wrong.abs() > FAULT * whole {
+            return;
+        }
+        let (diagonal, place) = (diagonal / whole, place / whole);
+        self.seen += diagonal * place;
+        self.weight += place * place;
+        if self.weight > MOST_WEIGHT {
+            self.seen *= MOST_WEIGHT / self.weight;
+            self.weight = MOST_WEIGHT;
+        }
+    }
+}
+
+/// By how much the one diagonal of a tile carries more, what it would by its centre of pressure if the plate were limp,
+/// and the whole load, in newtons; `None` without load.
+fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
+    let whole = sw + se + nw + ne;
+    let place = (se + ne - sw - nw) * (nw + ne - sw - se) / whole;
+    (whole > 1.0).then_some((sw - se - nw + ne, place, whole))
+}
+
+/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`.
+fn lawful(diagonal: f32, place: f32, whole: f32, (low, high): (f32, f32)) -> f32 {
+    let across = high * ACROSS * whole;
+    let (one, other) = (low * place, high * place);
+    diagonal.clamp(one.min(other) - across, one.max(other) + across)
+}
+
+/// What `corner` should read, of all that a plate with a twist in this range allows the nearest to what it reads.
+pub(super) fn demanded(forces: [f32; 4], corner: usize, twist: (f32, f32)) -> f32 {
+    let Some((difference, place, whole)) = diagonal(forces) else { return expected(forces, corner) };
+    let lacks = lawful(difference, place, whole, twist) - difference;
+    forces[corner] + if corner == 0 || corner == 3 { lacks } else { -lacks }
+}
 
 /// The sensor that alone reads a load (or the lack of one), if no foot could press like that.
 ///
@@ -65,6 +157,7 @@ pub(super) fn should_bear_more(
     out: [bool; 4],
     corner: usize,
     fell: bool,
+    twist: (f32, f32),
 ) -> bool {
     let others = [corner ^ 1, corner ^ 2, corner ^ 3];
     let tells = |other: usize| !out[other] && !has_lifted(forces, ends, other);
@@ -74,7 +167,7 @@ pub(super) fn should_bear_more(
     let load: f32 = others.iter().map(|&other| forces[other].abs()).sum();
     fell && !others.iter().any(|&other| out[other])
         && evidence(forces, ends, corner) == Told::Exactly
-        && expected(forces, corner) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
+        && demanded(forces, corner, twist) > 0.5 * forces[corner] + AT_ONCE_SLACK * load
 }
 
 #[cfg(test)]
@@ -82,6 +175,7 @@ mod tests {
     use super::*;
 
     const NONE_OUT: [bool; 4] = [false; 4];
+    const RIGID: (f32, f32) = (0.0, 0.0);
 
     #[test]
     fn a_foot_over_a_single_sensor_is_answered_by_the_others() {
@@ -115,11 +209,11 @@ mod tests {
     #[test]
     fn a_lifted_corner_is_no_broken_one() {
         // sw reads nothing, 11 N less than at rest.
-        let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0, true);
+        let sw_of = |forces, ends| should_bear_more(forces, ends, NONE_OUT, 0, true, RIGID);
         let alone = [End::Low, End::Within, End::Within, End::Within];
         assert!(sw_of([-11.0, 0.1, -0.2, 0.3], alone), "nobody there");
         assert!(sw_of([-11.0, 150.0, 160.0, 140.0], alone), "a foot in the middle");
-        assert!(!should_bear_more([-11.0, 150.0, 160.0, 140.0], alone, NONE_OUT, 0, false), "slowly");
+        assert!(!should_bear_more([-11.0, 150.0, 160.0, 140.0], alone, NONE_OUT, 0, false, RIGID), "slowly");
         assert!(!sw_of([-11.0, 10.0, 10.0, 280.0], alone), "a foot on ne");
         assert!(!sw_of([-11.0, 300.0, -11.0, -10.0], alone), "tipped over se");
         assert!(sw_of([-11.0, -11.0, -11.0, -11.0], [End::Low; 4]), "the whole tile unplugged");
@@ -140,5 +234,62 @@ mod tests {
         assert_eq!(evidence(forces, ends, 0), Told::Nothing);
         // It does not speak of itself.
         assert_eq!(evidence(forces, ends, 1), Told::Exactly);
+    }
+
+    /// Corner forces of points on a plate of this twist; places in units of the sensors' reach.
+    fn plate(points: &[(f32, f32, f32)], twist: f32) -> [f32; 4] {
+        let mut forces = [0.0; 4];
+        for &(force, x, y) in points {
+            for (corner, (east, north)) in
+                [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].into_iter().enumerate()
+            {
+                forces[corner] += 0.25 * force * (1.0 + east * x + north * y + twist * east * north * x * y);
+            }
+        }
+        forces
+    }
+
+    #[test]
+    fn how_far_plates_bend_is_learnt_from_the_feet_on_them() {
+        for truth in [0.0, 0.2, 0.4, 0.6, 0.9] {
+            let mut twist = Twist::default();
+            assert_eq!(twist.range(), (0.0, 1.0));
+            for step in 0..200_u16 {
+                let (x, y) = ((0.7 * f32::from(step)).sin(), (1.3 * f32::from(step)).cos());
+                // A foot is two loads: heel and ball.
+                twist.learn(plate(&[(300.0, x, y), (300.0, 0.7 * x + 0.2, 0.7 * y - 0.1)], truth));
+            }
+            let (low, high) = twist.range();
+            assert!(low <= truth && truth <= high && high - low < 0.4, "{truth}: {low} to {high}");
+        }
+    }
+
+    #[test]
+    fn a_sensor_that_is_dead_teaches_nothing_of_the_plate() {
+        let mut twist = Twist::default();
+        let mut forces = plate(&[(600.0, 0.1, 0.0)], 0.0);
+        forces[0] = 0.0;
+        for _ in 0..100 {
+            twist.learn(forces);
+        }
+        assert_eq!(twist.range(), (0.0, 1.0));
+    }
+
+    #[test]
+    fn what_a_bent_plate_reads_is_demanded_of_it_and_of_a_dead_sensor_what_it_lacks() {
+        for truth in [0.0_f32, 0.5, 1.0] {
+            let forces = plate(&[(400.0, 0.8, -0.6)], truth);
+            for corner in 0..4 {
+                let range = ((truth - 0.1).max(0.0), (truth + 0.1).min(1.0));
+                for range in [range, (0.0, 1.0)] {
+                    let demanded = demanded(forces, corner, range);
+                    assert!((demanded - forces[corner]).abs() < 0.01, "{truth}, {corner}: {demanded} N");
+                }
+                // In the middle of the plate all stiffnesses agree.
+                let mut dead = plate(&[(400.0, 0.1, 0.1)], truth);
+                dead[corner] = 0.0;
+                assert!(super::demanded(dead, corner, (0.0, 1.0)) > 30.0, "{truth}, {corner}");
+            }
+        }
     }
 }

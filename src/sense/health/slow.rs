@@ -1,7 +1,7 @@
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
-use crate::sense::corners::{Told, expected, has_lifted};
+use crate::sense::corners::{Told, has_lifted};
 use crate::units::Instant;
 
 /// Every how many frames a tile is visited.
@@ -13,8 +13,12 @@ const VISITS: u8 = 8;
 /// Longest time between blocks that says something of change, in seconds; after a gap everything starts afresh.
 pub(super) const GAP_S: f32 = 0.5;
 
-/// How long a sensor must stand still after the load around it has changed to be stuck.
-const STUCK_S: f32 = 2.0;
+/// For how long a sensor must stand still while its plate demands otherwise to be stuck, in seconds: half a step.
+const STUCK_S: f32 = 0.3;
+
+/// How long a load over one sensor goes unanswered, while nobody is near, until it is none on plates that may be
+/// limp, in seconds: whoever stands sways, and stands on more than a point.
+const LONE_S: f32 = 1.0;
 
 /// A sensor is still if its averages stay within this much and this share of its reading:
 /// its converter's noise (2 mV are 0.3 % of the force) with room to spare.
@@ -47,6 +51,8 @@ pub(super) struct Slow {
     ended: Option<Instant>,
     loaded: bool,
     tracks: [Track; 4],
+    /// For how long one sensor alone has read a load.
+    lone_s: f32,
     pub(super) drift: Drift,
 }
 
@@ -115,14 +121,23 @@ impl Slow {
         Some(Block { means, lows: self.lows, spreads, ends: self.ends, seconds })
     }
 
-    /// Finds stuck sensors, and gives those in trouble the chance to be found right again; `alone` says
+    /// Finds stuck sensors, on plates whose twist lies in this range, and gives those in trouble the chance to be found right again; `alone` says
     /// that no tile around carries anything.
     ///
     /// A plate that tipped or a sensor that was beyond its range at any time of a block leaves a mean that
     /// says nothing: after a stamp it is neither the load nor its absence.
-    pub(super) fn judge(&mut self, block: &Block, alone: bool, sensors: &mut [Sensor; 4]) {
+    pub(super) fn judge(&mut self, block: &Block, alone: bool, twist: (f32, f32), sensors: &mut [Sensor; 4]) {
         let out = sensors.map(|sensor| sensor.is_out());
         let (means, ends) = (block.means, block.ends);
+        match plate::unanswered(means, out).filter(|_| alone) {
+            None => self.lone_s = 0.0,
+            Some(corner) => {
+                self.lone_s += block.seconds;
+                if self.lone_s > LONE_S {
+                    sensors[corner].find(Trouble::Offset, means[corner]);
+                }
+            }
+        }
         for corner in 0..4 {
             let others = [corner ^ 1, corner ^ 2, corner ^ 3];
             let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
@@ -141,7 +156,7 @@ impl Slow {
                 // Neither evidence for it nor against it.
                 continue;
             }
-            let expected = expected(means, corner).max(0.0);
+            let expected = plate::demanded(means, corner, twist).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
             let is_right = own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
             match sensor.trouble() {
@@ -174,7 +189,9 @@ impl Track {
         self.own = reach;
         self.expected = widened(self.expected, expected);
         self.load = self.load.max(load);
-        if self.expected.1 - self.expected.0 > CHANGE_N + plate::SLACK * self.load {
+        let slack = CHANGE_N + plate::SLACK * self.load;
+        // It is not only that it should have moved some time: it reads wrongly now.
+        if self.expected.1 - self.expected.0 > slack && (expected - own).abs() > 0.5 * slack {
             self.overdue += seconds;
         }
         self.overdue >= STUCK_S

@@ -12,7 +12,7 @@ pub enum Trouble {
     /// Full scale while the rest of its tile carries nothing.
     #[error("short circuit")]
     Short,
-    /// Its reading has not moved for two seconds although the load on its tile has.
+    /// Its reading stands still, dead or at any value, where its plate demands another one.
     #[error("stuck")]
     Stuck,
     /// It reads a load to which the other corners of its plate do not answer.
