@@ -6,14 +6,32 @@ use super::foot::{EAST, FORCE, Foot, LANDS_S, NORTH};
 use super::landing::Landing;
 use super::{NOBODY, Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
+use crate::sense::tile::LoadedTile;
 
 /// Largest distance between the feet of somebody who stands, in metres.
 const ASTRIDE_M: f64 = 0.5;
 
+/// For how long a load beyond a foot is looked at before it is taken for another foot, in seconds.
+const PENDING_S: f64 = 0.006;
+
+/// By how much noise of one newton per sensor moves the centroid of one newton, in metres: twice the sensors' reach.
+pub(super) const NOISE_ARM_M: f64 = 0.264;
+
+/// A load beyond all feet near it that may be another foot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pending {
+    pub index: u32,
+    age: f64,
+    force: f64,
+    moment: DVec2,
+    noise: f64,
+    seen: bool,
+}
+
 impl Tracker {
     /// Finds who reaches which tile, gives tiles nobody reaches to the nearest foot that
     /// may have grown onto them, and lets new feet land on the rest.
-    pub(super) fn adopt(&mut self, tiles: &LoadedTiles) {
+    pub(super) fn adopt(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
         self.owner.clear();
         self.owner.resize(list.len(), NOBODY);
@@ -30,6 +48,9 @@ impl Tracker {
             force(b).total_cmp(&force(a)).then(a.cmp(&b))
         });
         self.find_keepers(tiles);
+        for pending in &mut self.pending {
+            pending.seen = false;
+        }
         for orphan in 0..self.orphans.len() {
             let position = self.orphans[orphan];
             let tile = &list[position as usize];
@@ -65,8 +86,17 @@ impl Tracker {
                     }
                     self.owner[position as usize] = which as u32;
                 }
+                None if self.is_pending(tile, dt) => {
+                    // Until that is sure, it counts to the nearest.
+                    let nearest = self.near.around(centroid).map(|which| (self.feet[which].centre().distance(centroid), which));
+                    let nearest = nearest.min_by(first_of_least);
+                    if let Some((_, which)) = nearest {
+                        self.feet[which].tiles.push(position);
+                        self.owner[position as usize] = which as u32;
+                    }
+                }
                 None => {
-                    let mut foot = Foot::new(self.name(), force, centroid, 0.02);
+                    let mut foot = Foot::new(self.identity(centroid), force, centroid, 0.02);
                     foot.landing = self.landing_at(centroid);
                     foot.tiles.push(position);
                     self.owner[position as usize] = self.feet.len() as u32;
@@ -75,6 +105,41 @@ impl Tracker {
                 }
             }
         }
+    }
+
+    /// Forgets loads that are gone or have been taken.
+    pub(super) fn forget_pending(&mut self) {
+        self.pending.retain(|pending| pending.seen);
+    }
+
+    /// Whether it is not yet sure enough that a load lies beyond all feet near it.
+    fn is_pending(&mut self, tile: &LoadedTile, dt: f64) -> bool {
+        let place = tile.centroid.as_dvec2();
+        let is_near = self.near.around(place).any(|which| self.feet[which].centre().distance(place) < ASTRIDE_M && self.feet[which].age > 0.0);
+        if !is_near {
+            return false;
+        }
+        let keep = (-dt / PENDING_S).exp();
+        let at = self.pending.iter().position(|pending| pending.index == tile.index).unwrap_or_else(|| {
+            self.pending.push(Pending { index: tile.index, age: 0.0, force: 0.0, moment: DVec2::ZERO, noise: 0.0, seen: false });
+            self.pending.len() - 1
+        });
+        let pending = &mut self.pending[at];
+        let force = f64::from(tile.wrench.force);
+        pending.age += dt;
+        pending.seen = true;
+        pending.force = keep * pending.force + force;
+        pending.moment = keep * pending.moment + place * force;
+        pending.noise = keep * keep * pending.noise + f64::from(tile.noise_n).powi(2);
+        let middle = pending.moment / pending.force;
+        let deviation = NOISE_ARM_M * pending.noise.sqrt() / pending.force;
+        let (age, margin) = (pending.age, 0.005 + 3.0 * deviation);
+        let sure = age >= PENDING_S.min(dt)
+            && self.near.around(place).all(|which| {
+                let foot = &self.feet[which];
+                foot.beyond(middle).min(foot.lands_about(middle)).min(foot.rims(middle, force)) > margin
+            });
+        !sure
     }
 
     /// Finds, for each tile nobody reaches now, those who had it in the last frame.

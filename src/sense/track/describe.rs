@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+use super::dormant::{PLACE_M, REPORTED};
 use super::foot::{EAST, Foot, NORTH};
 use super::{Cells, Tracker};
 use crate::sense::contact::{Covariance, TileLoad};
@@ -19,6 +20,9 @@ const OTHERS_MISREAD: f32 = 0.25;
 /// Standard deviation above which the place of a foot counts as a guess, in metres.
 const AMBIGUOUS_M: f64 = 0.04;
 
+/// How well two feet are known that have landed together, beyond what the filter says, in metres.
+const UNPARTED_M: f32 = 0.035;
+
 /// The largest standard deviation that mistrust may lead to: it is in this group of tiles, no more is known.
 const LOST_M: f64 = 0.3;
 
@@ -35,7 +39,7 @@ impl Tracker {
             let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
             let mistrust = (1.0 + MISTRUST * foot.surprise).min(LOST_M * LOST_M / variance).max(1.0);
             foot.ambiguous =
-                foot.shared && (foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M);
+                if foot.shared { foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M } else { foot.explanation.is_open() };
             let contact = pool.add(foot.id);
             contact.centroid = foot.centre().as_vec2();
             contact.force = Newtons(foot.force() as f32);
@@ -72,7 +76,28 @@ impl Tracker {
                     TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
                 }));
             }
+            if foot.unparted {
+                covariance += Covariance::isotropic(UNPARTED_M);
+            }
+            if !foot.shared {
+                covariance += Covariance::isotropic(foot.explanation.hidden_m() as f32);
+            }
             contact.covariance = covariance;
+            contact.finish();
+        }
+        for dormant in &self.dormant {
+            let Some(host) = self.feet.iter().find(|foot| foot.id == dormant.host) else { continue };
+            let contact = pool.add(dormant.foot.id);
+            contact.centroid = dormant.foot.centre().as_vec2();
+            contact.force = Newtons((REPORTED * host.force()) as f32);
+            contact.velocity = Vec2::ZERO;
+            contact.ambiguous = true;
+            contact.covariance = Covariance::isotropic(PLACE_M as f32);
+            contact.tiles.extend(host.tiles.iter().map(|&position| {
+                let tile = &list[position as usize];
+                let force = Newtons(tile.wrench.force * REPORTED as f32);
+                TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
+            }));
             contact.finish();
         }
         pool.sort_by_id();

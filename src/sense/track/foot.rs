@@ -4,8 +4,10 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::explanation::Explanation;
 use super::landing::Landing;
 use super::lines::Habit;
+use super::outline::Outline;
 use super::past::Past;
 use super::patch::PatchOnTile;
 use super::rest::STRAY_MOST_M;
@@ -39,14 +41,14 @@ pub(super) const LANDS_S: f64 = 0.25;
 /// How long its own sway is not taken for a newcomer after a companion has gone or a sensor was lost, in seconds.
 pub(super) const CALM_S: f64 = 0.25;
 
-/// From when until when after it has landed a foot rolls from its heel to its toes, in seconds.
-const ROLLS_S: (f64, f64) = (0.05, 0.45);
-
 /// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
 const PARTNER_S: f64 = 1.2;
 
 /// The force on a foot that slides, in newtons, at most.
 pub(super) const SLIDING_N: f64 = 200.0;
+
+/// The least that a foot bears that somebody stands on, in newtons: more than a leg of somebody who sits.
+pub(super) const BODY_N: f64 = 350.0;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
@@ -105,11 +107,22 @@ pub(super) struct Foot {
     pub startled: bool,
     /// Beside whom it has landed.
     pub landing: Option<Landing>,
-    /// Its centre of pressure when it landed, and the one farthest from there since, as its past foretold it.
+    /// Its centre of pressure when it landed.
     pub landed: DVec2,
-    pub farthest: DVec2,
-    /// The way of its centre of pressure while it came down alone: from its heel to its toes.
-    pub rolled: DVec2,
+    /// What it has pressed of late.
+    pub outline: Outline,
+    /// Where it stood still, for how long, and for how long it has been away from there.
+    pub anchor: DVec2,
+    pub anchored: f64,
+    pub astray: f64,
+    /// How far its centre of pressure has travelled from where it landed.
+    pub travel: f64,
+    /// Whether it has landed together with another and was never seen by itself since.
+    pub unparted: bool,
+    /// Whether another foot was near it since it landed, so that it is one foot.
+    pub accompanied: bool,
+    /// Whether it is one foot or two.
+    pub explanation: Explanation,
 }
 
 impl Foot {
@@ -146,8 +159,14 @@ impl Foot {
             landing: None,
             stray: STRAY_MOST_M,
             landed: centre,
-            farthest: centre,
-            rolled: DVec2::ZERO,
+            outline: Outline::new(centre),
+            anchor: centre,
+            anchored: 0.0,
+            astray: 0.0,
+            travel: 0.0,
+            unparted: false,
+            accompanied: false,
+            explanation: Explanation::new(),
         };
         foot.be_sure(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
@@ -177,6 +196,11 @@ impl Foot {
         ] {
             self.covariance[state][state] = variance;
         }
+    }
+
+    /// Whether somebody has stood on it.
+    pub(super) fn bears(&self) -> bool {
+        self.peak >= BODY_N
     }
 
     pub(super) fn force(&self) -> f64 {
@@ -242,9 +266,7 @@ impl Foot {
             sum += tile.centroid.as_dvec2() * weighed;
         }
         let centre = sum / weight;
-        if !until_now && !self.is_being_left() && (ROLLS_S.0..ROLLS_S.1).contains(&self.age) {
-            self.rolled += centre - self.centre();
-        }
+        let _ = until_now;
         if dt > 0.0 {
             let weight = 1.0 - (-dt / 0.015).exp();
             let rate = (force - self.state[FORCE]) / dt;
@@ -257,6 +279,7 @@ impl Foot {
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
         self.be_sure(0.003);
+        self.unparted = false;
         self.ambiguous = false;
     }
 

@@ -38,15 +38,8 @@ const NOT_ITS_OWN: f64 = 0.02;
 const SIDE_BY_SIDE_M: f64 = 0.13;
 const TIGHT_M: f64 = 0.01;
 
-/// How much likelier it is that a foot takes over all weight than any other share of it: most steps end so (twice a
-/// logarithm).
-const STEPPED: f64 = 5.0;
-
 /// Share of all weight from which on the new foot is where the common centre of pressure is.
 const TAKEN_OVER: f64 = 0.8;
-
-/// Share of all from which on that is all.
-const WHOLLY: f64 = 0.93;
 
 /// Half widths that the new foot's patch may have along an axis, in metres, and how much they vary.
 const HALVES: [f64; 4] = [0.045, 0.075, 0.105, 0.135];
@@ -132,8 +125,7 @@ pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: L
         let pair = Pair { host, from, host_force, place, guest_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
         let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(lines.doubt);
-        let stepped = if guest_force > WHOLLY * force { STEPPED } else { 0.0 };
-        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual + tight * tight - stepped;
+        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual + tight * tight;
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);

@@ -11,6 +11,7 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
+use super::adopt::NOISE_ARM_M;
 use super::foot::{EAST, HALF_EAST, HALF_NORTH, NORTH};
 use super::patch::Slice;
 use crate::sense::tile::LoadedTile;
@@ -71,12 +72,19 @@ pub(super) struct Line {
     pub moment: f64,
     /// First moment across the axis about the group's own middle.
     pub cross: f64,
+    /// Variance that sensors' noise gives each of the three: in square newtons and square newton metres.
+    pub noise: [f64; 3],
 }
 
 impl Line {
     /// A line without load.
     pub(super) fn empty(axis: Axis, number: i32) -> Self {
-        Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0 }
+        Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0, noise: [0.0; 3] }
+    }
+
+    /// Its middle along the axis, in metres.
+    fn middle(&self, pitch: f64) -> f64 {
+        (f64::from(self.number) + 0.5) * pitch
     }
 
     /// The part of a patch on the line, with its middle at `c` and half width `h` along the axis.
@@ -120,6 +128,14 @@ impl Whole {
     }
 }
 
+/// Variances that sensors' noise gives a group's force and its moments, in square newtons and square newton metres.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Noise {
+    pub force: f64,
+    pub east: f64,
+    pub north: f64,
+}
+
 /// The columns and rows of some tiles.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Lines {
@@ -130,16 +146,19 @@ pub(super) struct Lines {
     pub middle: DVec2,
     /// What is not known of it; see [`vagueness`].
     pub doubt: f64,
+    pitch: f64,
 }
 
 impl Lines {
     /// Sums up `tiles`; what is beyond [`MOST_LINES`] is in `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
         let Whole { force, middle, doubt } = Whole::of(tiles.clone(), pitch);
-        let mut sums = Self { force, middle, doubt, ..Self::default() };
+        let mut sums = Self { force, middle, doubt, pitch, ..Self::default() };
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
+            let noise = f64::from(tile.noise_n).powi(2);
+            let noise = [4.0 * noise, NOISE_ARM_M * NOISE_ARM_M * noise];
             for axis in Axis::BOTH {
                 let number = match axis {
                     Axis::East => i32::from(tile.tile.column),
@@ -149,12 +168,33 @@ impl Lines {
                 let cross = axis.across(sums.middle);
                 if let Some(line) = sums.line(axis, number) {
                     line.force += force;
+                    let offset = axis.across(tile.centre.as_dvec2()) - cross;
+                    let [own, arm] = noise;
+                    line.noise[0] += own;
+                    line.noise[1] += arm;
+                    line.noise[2] += own * offset * offset + arm;
                     line.moment += force * (axis.along(at) - middle);
                     line.cross += force * (axis.across(at) - cross);
                 }
             }
         }
         sums
+    }
+
+    /// Variance that sensors' noise gives the force of all and its moments about their middle.
+    pub(super) fn noise(&self) -> Noise {
+        let mut noise = Noise::default();
+        for line in &self.lines {
+            let [force, moment, _] = line.noise;
+            match line.axis {
+                Axis::East => {
+                    noise.force += force;
+                    noise.east += moment + force * (line.middle(self.pitch) - self.middle.x).powi(2);
+                }
+                Axis::North => noise.north += moment + force * (line.middle(self.pitch) - self.middle.y).powi(2),
+            }
+        }
+        noise
     }
 
     /// The line `number`, made if there is room; `None` if there is none.

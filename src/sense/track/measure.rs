@@ -112,13 +112,14 @@ pub(super) fn observe(
         slopes.iter().map(|&(state, slope)| slope * (joint.x[state] - start[state])).sum()
     };
     let whole: f64 = (0..n).map(|which| start[which * STATES + FORCE]).sum();
-    joint.observe(force - whole, &slopes[0][..n], 4.0);
+    let noise = lines.noise();
+    joint.observe(force - whole, &slopes[0][..n], 4.0 + noise.force);
     for (axis, slopes) in [(EAST, slopes[1]), (NORTH, slopes[2])] {
         let middle = if axis == EAST { middle.x } else { middle.y };
         let moment: f64 =
             (0..n).map(|which| start[which * STATES + FORCE] * (start[which * STATES + axis] - middle)).sum();
         let missing = -moment - now(joint, &slopes[..2 * n]);
-        joint.observe(missing, &slopes[..2 * n], 0.09);
+        joint.observe(missing, &slopes[..2 * n], 0.09 + if axis == EAST { noise.east } else { noise.north });
     }
     let mut surprise = 0.0;
     for line in &lines.lines {
@@ -128,7 +129,9 @@ pub(super) fn observe(
         let middle = (f64::from(line.number) + 0.5) * cells.pitch;
         let mut missing = [line.force, line.moment, line.cross];
         let mut rows: Rows = Default::default();
-        let mut doubt = [[4.0, 0.0, 0.0], [0.0, 0.09, 0.0], [0.0, 0.0, 0.09]];
+        let [force_noise, moment_noise, cross_noise] = line.noise;
+        let mut doubt =
+            [[4.0 + force_noise, 0.0, 0.0], [0.0, 0.09 + moment_noise, 0.0], [0.0, 0.0, 0.09 + cross_noise]];
         for (which, &member) in members.iter().enumerate() {
             let foot = &feet[member as usize];
             let habit = foot.habit(axis, line.number);

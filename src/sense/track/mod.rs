@@ -17,14 +17,16 @@
 mod adopt;
 mod birth;
 mod death;
+mod dormant;
 mod describe;
+mod explanation;
 mod foot;
 mod joint;
 mod landing;
 mod lines;
 mod measure;
 mod near;
-mod partner;
+mod outline;
 mod past;
 mod patch;
 mod reach;
@@ -52,12 +54,14 @@ pub(super) struct Tracker {
     cells: Cells,
     next: u32,
     feet: Vec<Foot>,
+    dormant: Vec<dormant::Dormant>,
     links: Vec<Link>,
     new_links: Vec<Link>,
     joint: Box<Joint>,
     /// Per loaded tile: the first foot that reaches it, or `NOBODY`.
     owner: Vec<u32>,
     orphans: Vec<u32>,
+    pending: Vec<adopt::Pending>,
     /// Orphans, each with a foot that had it in the last frame.
     keepers: Vec<(u32, u32)>,
     members: Vec<u32>,
@@ -138,11 +142,13 @@ impl Tracker {
             cells,
             next: 1,
             feet: Vec::with_capacity(room),
+            dormant: Vec::with_capacity(room),
             links: Vec::with_capacity(room),
             new_links: Vec::with_capacity(room),
             joint: Box::new(Joint::new()),
             owner: Vec::with_capacity(room),
             orphans: Vec::with_capacity(room),
+            pending: Vec::with_capacity(room),
             keepers: Vec::with_capacity(room),
             members: Vec::with_capacity(room),
         }
@@ -156,14 +162,17 @@ impl Tracker {
             foot.reach(tiles, self.cells.pitch);
         }
         self.near.renew(self.feet.iter().map(Foot::centre));
-        self.adopt(tiles);
-        self.find_newcomers(tiles);
+        self.adopt(tiles, dt);
+        self.forget_pending();
+        self.wake(tiles, dt);
+        self.find_newcomers(tiles, dt);
         self.note_partners();
         self.keep_in_touch(tiles);
         self.feet.retain(|foot| !foot.tiles.is_empty());
         self.group(tiles.list().len());
         self.estimate(tiles, dt);
         self.bury(tiles, dt);
+        self.let_rest(tiles, dt);
         self.learn(tiles, dt);
         self.describe(tiles, pool);
     }
@@ -180,6 +189,7 @@ impl Tracker {
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
                 self.feet[which].partner = Some((self.feet[other].centre(), 0.0));
+                self.feet[which].accompanied = true;
             }
         }
     }
@@ -239,6 +249,7 @@ impl Tracker {
                 let startled = std::mem::take(&mut foot.startled);
                 if until_now || startled {
                     foot.start_over();
+                    (foot.anchor, foot.anchored, foot.astray) = (foot.centre(), 0.0, 0.0);
                 }
                 if startled {
                     // Still it stands where it stood, only seen otherwise.
@@ -354,6 +365,7 @@ impl Tracker {
         for foot in &mut self.feet {
             foot.learn_past(dt);
             foot.roll(dt);
+            foot.note_outline(list, dt);
             if !foot.shared {
                 foot.learn_habits(list, self.cells.pitch, dt);
             }

@@ -2,18 +2,27 @@
 
 use glam::DVec2;
 
-use super::foot::{FLAT_S, Foot, LANDS_S, SHOE_M, SLIDING_N};
+use super::foot::{EAST, NORTH, FLAT_S, Foot, LANDS_S, SHOE_M, SLIDING_N};
 use super::lines::Axis;
+use super::outline::{Outline, Shoe};
 use crate::sense::loaded::LoadedTiles;
-
-/// How far to the side of its line of roll a foot presses, in metres.
-const ASIDE_M: f64 = 0.11;
+use crate::sense::tile::LoadedTile;
 
 /// How far from its centre of pressure a foot that has come down flat presses, in metres.
 const AROUND_M: f64 = 0.17;
 
-/// From which length on the way of its centre of pressure tells where a shoe points, in metres.
-const POINTS_M: f64 = 0.06;
+const AROUND_LIGHT_M: f64 = 0.26;
+
+const SHOE: Shoe = Shoe { length: SHOE_M, breadth: 0.13 };
+
+/// Least share of a foot that a tile carries that tells where it presses.
+const NOTED: f64 = 0.15;
+const NOTED_M: f64 = 0.02;
+const NOTED_PER_NOISE: f64 = 26.0;
+
+/// How long what it has pressed is remembered, in seconds.
+const MEMORY_S: f64 = 1.0;
+const MEMORY_LIGHT_S: f64 = 0.08;
 
 /// What share of a foot's force its rim presses with at most, and how far from its centre of pressure, in metres: of
 /// one that stands alone, of one that slides on and comes onto the next tile with its rim, and of one that shares its
@@ -41,18 +50,31 @@ impl Foot {
     /// of where the shoe's other end lies; from then on what it presses is around
     /// its centre of pressure, as its past foretells it: a newcomer draws along what is measured.
     pub(super) fn beyond(&self, point: DVec2) -> f64 {
-        let whole = point.distance(self.landed).max(point.distance(self.farthest)) - SHOE_M;
-        let path = self.farthest - self.landed;
-        let length = path.length();
-        let mut beyond = whole;
-        if length > POINTS_M {
-            let across = path.perp_dot(point - self.landed).abs() / length;
-            beyond = beyond.max(across - ASIDE_M);
+        let beyond = self.outline.beyond(point, SHOE);
+        if self.age <= FLAT_S {
+            return beyond;
         }
-        if self.age > FLAT_S {
-            beyond = beyond.max(point.distance(self.past.centre) - AROUND_M);
+        let around = if self.bears() { AROUND_M } else { AROUND_LIGHT_M };
+        beyond.max(point.distance(self.past.centre) - around)
+    }
+
+    /// Adds what it presses now to what it has pressed of late.
+    pub(super) fn note_outline(&mut self, list: &[LoadedTile], dt: f64) {
+        let mut now = Outline::new(self.centre());
+        if !self.shared {
+            for &position in &self.tiles {
+                let tile = &list[position as usize];
+                let force = f64::from(tile.wrench.force);
+                if force > NOTED * self.force() && force > NOTED_PER_NOISE * f64::from(tile.noise_n) {
+                    now.add(tile.centroid.as_dvec2());
+                }
+            }
+        } else if self.covariance[EAST][EAST] + self.covariance[NORTH][NORTH] > NOTED_M * NOTED_M {
+            return;
         }
-        beyond
+        let memory_s = if self.bears() { MEMORY_S } else { MEMORY_LIGHT_S };
+        self.outline.relax(&now, (-dt / memory_s).exp());
+        self.outline.unite(&now);
     }
 
     /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has

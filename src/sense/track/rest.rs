@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::foot::{FLAT_S, Foot, SLIDING_N};
+use super::foot::{FLAT_S, Foot};
 
 /// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
 /// while another one lands, in metres.
@@ -19,7 +19,7 @@ const HOME_S: f64 = 1.0;
 const STILL_HOME_S: f64 = 0.03;
 
 /// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
-const RESTLESS_M_S: f64 = 0.03;
+pub(super) const RESTLESS_M_S: f64 = 0.03;
 
 /// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
 const LINGERS_M_S: f64 = 0.15;
@@ -34,26 +34,17 @@ const STILL_M_S: f64 = 0.12;
 const STILL_S: f64 = 0.08;
 const AWAY_S: f64 = 0.15;
 
-/// Speed that the centre of pressure of one foot does not have while it bears its weight, in metres per second, and the
-/// share of the most it has pressed with from which on it does so (a recorded walk, played up to a third faster,
-/// stayed below 0.7 m/s).
-const RUSHED_M_S: f64 = 0.8;
-const BEARS: f64 = 0.7;
-
-/// How long at most weight is taken over by a partner that lands, in seconds.
-const DRAWN_S: f64 = 0.6;
+/// Radius within which a foot stands still, in metres, for how long it then stands, how soon it stands elsewhere, and how
+/// long it may be away, in seconds. No recorded step stays within a centimetre for more than 0.17 s.
+const ANCHOR_M: f64 = 0.012;
+pub(super) const STANDS_S: f64 = 0.3;
+const ANCHOR_S: f64 = 1.0;
+const ASTRAY_S: f64 = 1.5;
 
 impl Foot {
     /// Whether it stands still alone, or has only just begun to move.
     pub(super) fn stands(&self) -> bool {
         self.age > FLAT_S && self.still > STILL_S
-    }
-
-    /// Whether its centre of pressure moves as that of no foot does that bears its weight: weight goes over to another.
-    pub(super) fn is_rushed(&self) -> bool {
-        self.age > FLAT_S
-            && self.force() > SLIDING_N.max(BEARS * self.peak)
-            && self.velocity().length() > RUSHED_M_S
     }
 
     /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is somebody else's.
@@ -70,9 +61,9 @@ impl Foot {
 
     /// Remembers where the foot has been.
     pub(super) fn roll(&mut self, dt: f64) {
-        let (centre, foretold) = (self.centre(), self.past.centre);
+        let centre = self.centre();
         self.peak = self.peak.max(self.force());
-        let rolls = !self.shared || self.age < FLAT_S;
+        let rolls = !self.shared || self.age < FLAT_S && !self.unparted;
         let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
         // Weight that goes over to another foot draws it along for a moment: that is not its own.
         let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
@@ -83,9 +74,28 @@ impl Foot {
         self.rest(dt, rolls);
         if self.age < 0.01 {
             self.landed = centre;
-            self.farthest = centre;
-        } else if foretold.distance_squared(self.landed) > self.farthest.distance_squared(self.landed) {
-            self.farthest = foretold;
+        }
+        self.travel = self.travel.max(centre.distance(self.landed));
+        self.stand_still(dt);
+    }
+
+    /// Notes for how long its centre of pressure has stayed in one place.
+    fn stand_still(&mut self, dt: f64) {
+        if self.partner.is_some_and(|(_, ago)| ago <= dt) {
+            // On two feet one stands otherwise.
+            (self.anchor, self.anchored, self.astray) = (self.centre(), 0.0, 0.0);
+            return;
+        }
+        let offset = self.centre() - self.anchor;
+        if offset.length() < ANCHOR_M {
+            self.anchored += dt;
+            self.astray = 0.0;
+            self.anchor += offset * (dt / ANCHOR_S).min(1.0);
+        } else {
+            self.astray += dt;
+            if self.anchored < STANDS_S || self.astray > ASTRAY_S {
+                (self.anchor, self.anchored, self.astray) = (self.centre(), 0.0, 0.0);
+            }
         }
     }
 
@@ -103,36 +113,11 @@ impl Foot {
             self.home += (centre - self.home) * drift(STILL_HOME_S);
         } else {
             self.away += dt;
-            let rolls = self.away > AWAY_S && !self.is_drawn(centre - self.home, 0.0);
-            if rolls || self.away > DRAWN_S {
+            if self.away > AWAY_S {
                 self.still = 0.0;
-                if !self.is_rushed() {
-                    self.home = centre;
-                }
+                self.home = centre;
             }
         }
     }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::super::foot::{EAST, NORTH};
-    use super::*;
-    use crate::sense::contact::ContactId;
-
-    #[test]
-    fn a_newcomer_that_draws_a_rolling_foots_centre_along_stays_beyond_it() {
-        // It has rolled 8 cm north.
-        let mut foot = Foot::new(ContactId(1), 700.0, DVec2::ZERO, 0.01);
-        foot.age = 0.5;
-        foot.past.centre = DVec2::new(0.0, 0.08);
-        foot.farthest = foot.past.centre;
-        // A centimetre farther than a foot presses to the side of its roll, and around where it presses.
-        for newcomer in [DVec2::new(0.12, 0.08), DVec2::new(0.0, 0.26)] {
-            let drawn = foot.past.centre + 0.25 * (newcomer - foot.past.centre);
-            (foot.state[EAST], foot.state[NORTH]) = (drawn.x, drawn.y);
-            foot.roll(0.001);
-            assert!((foot.beyond(newcomer) - 0.01).abs() < 1e-9, "{newcomer}: {}", foot.beyond(newcomer));
-        }
-    }
-}

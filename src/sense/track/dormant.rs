@@ -1,0 +1,186 @@
+//! Feet that have given up their weight, but may still stand there.
+//!
+//! What two feet close together carry is explained by the heavier one alone as soon as the other carries little. The
+//! lighter one then keeps its identity and its place, marked as ambiguous, and no longer takes part in the
+//! estimation. It takes part again when the common centre of pressure moves towards it, and ends when that
+//! goes elsewhere, when another foot lands, or after [`MOST_S`].
+
+use glam::DVec2;
+
+use super::explanation::Spread;
+use super::foot::{FORCE, Foot};
+use super::landing::Landing;
+use super::lines::Lines;
+use super::{STRIDE_M, Tracker};
+use crate::sense::contact::ContactId;
+use crate::sense::loaded::LoadedTiles;
+
+/// Share of the load of two feet below which the lighter one is no longer needed, and from which on it is again.
+const SLEEPS: f64 = 0.15;
+const WAKES: f64 = 0.2;
+
+/// For how long one foot must have been enough, in seconds.
+const ENOUGH_S: f64 = 0.04;
+
+/// How far the centre of pressure of the foot that stands may be off the line between the two, in metres.
+const ASIDE_M: f64 = 0.04;
+
+/// How far it may move away from the other, in metres: it rolls on, as in walking.
+const AWAY_M: f64 = 0.05;
+
+/// For how long at most a foot may be thought to rest without weight, in seconds.
+const MOST_S: f64 = 5.0;
+
+/// Share of the load that such a foot is reported with: between nothing and [`SLEEPS`], by how often it is still there.
+pub(super) const REPORTED: f64 = 0.02;
+
+/// Standard deviation of its place, in metres.
+pub(super) const PLACE_M: f64 = 0.06;
+
+/// Largest distance between where a foot was and where it is again, in metres.
+const SAME_M: f64 = 0.12;
+
+/// Evidence of two feet in how their loads lie, as log odds, up to which one may be enough.
+const OPEN: f64 = 0.5;
+
+/// A foot that has given up its weight to another one.
+#[derive(Clone, Debug)]
+pub(super) struct Dormant {
+    pub foot: Foot,
+    /// Who has its weight, and where that one stood.
+    pub host: ContactId,
+    from: DVec2,
+    age: f64,
+}
+
+impl Tracker {
+    /// Lets feet that are no longer needed to explain what the tiles carry rest.
+    pub(super) fn let_rest(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for which in 0..self.feet.len() {
+            let foot = &self.feet[which];
+            let Some((host, lines)) = self.enough_without(foot, tiles) else {
+                self.feet[which].spare = 0.0;
+                continue;
+            };
+            let foot = &mut self.feet[which];
+            foot.spare += dt;
+            if foot.spare < ENOUGH_S {
+                continue;
+            }
+            let mut foot = self.feet[which].clone();
+            let host = &mut self.feet[host];
+            foot.spare = 0.0;
+            let from = host.centre();
+            host.inherit(&std::mem::take(&mut foot.tiles));
+            host.stand(lines.force, lines.middle);
+            host.be_calm();
+            host.shared = false;
+            host.start_over();
+            (host.anchor, host.anchored, host.astray) = (host.centre(), 0.0, 0.0);
+            self.dormant.push(Dormant { host: host.id, from, foot, age: 0.0 });
+            self.feet[which].faint = f64::INFINITY;
+            break;
+        }
+        let before = self.feet.len();
+        self.feet.retain(|foot| foot.faint.is_finite());
+        if self.feet.len() != before {
+            self.near.renew(self.feet.iter().map(Foot::centre));
+        }
+    }
+
+    /// The one foot that is enough for the tiles it shares with `foot`, if that carries little.
+    fn enough_without(&self, foot: &Foot, tiles: &LoadedTiles) -> Option<(usize, Lines)> {
+        if !foot.shared {
+            return None;
+        }
+        let mut mates = self.mates.of(foot.group).filter(|&mate| self.feet[mate].id != foot.id);
+        let (Some(host), None) = (mates.next(), mates.next()) else { return None };
+        let other = &self.feet[host];
+        if foot.force() > SLEEPS * (foot.force() + other.force()) || foot.age < other.age && foot.peak < 2.0 * foot.force() {
+            return None;
+        }
+        let both = foot.tiles_with(other);
+        let list = tiles.list();
+        let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        let spread = Spread::of(both.iter().map(|&position| &list[position as usize]), lines.middle);
+        (spread.evidence() < OPEN).then_some((host, lines))
+    }
+
+    /// Wakes feet whose weight comes back, and ends those that have left.
+    pub(super) fn wake(&mut self, tiles: &LoadedTiles, dt: f64) {
+        let mut at = 0;
+        while at < self.dormant.len() {
+            let dormant = &mut self.dormant[at];
+            dormant.age += dt;
+            let host = self.feet.iter().position(|foot| foot.id == dormant.host);
+            let Some(host) = host.filter(|&host| !self.feet[host].shared && dormant.age < MOST_S) else {
+                self.dormant.swap_remove(at);
+                continue;
+            };
+            let all = self.feet[host].force();
+            if self.stands_on_nothing(&self.dormant[at].foot, tiles.list(), all) {
+                self.dormant.swap_remove(at);
+                continue;
+            }
+            let dormant = &self.dormant[at];
+            let side = dormant.foot.centre() - dormant.from;
+            let moved = self.feet[host].centre() - dormant.from;
+            let share = moved.dot(side) / side.length_squared();
+            let aside = side.perp_dot(moved).abs() / side.length();
+            if aside > ASIDE_M || share * side.length() < -AWAY_M {
+                self.dormant.swap_remove(at);
+                continue;
+            }
+            if share < WAKES {
+                at += 1;
+                continue;
+            }
+            let Dormant { mut foot, from, .. } = self.dormant.swap_remove(at);
+            let all = self.feet[host].force();
+            foot.rest_again(share * all);
+            foot.landing = Some(Landing { host: self.feet[host].id, from });
+            foot.age = 0.0;
+            let other = &mut self.feet[host];
+            other.rest_at((1.0 - share) * all, from);
+            foot.reach(tiles, self.cells.pitch);
+            if foot.tiles.is_empty() {
+                foot.tiles.extend_from_slice(&self.feet[host].tiles);
+            }
+            self.near.moved(host, from);
+            self.near.add(foot.centre());
+            self.feet.push(foot);
+        }
+    }
+
+    /// The identity for a foot that lands at `place`: that of one that rests there, or a new one. Others near end: people
+    /// have two feet.
+    pub(super) fn identity(&mut self, place: DVec2) -> ContactId {
+        let mut found = None;
+        self.dormant.retain(|dormant| {
+            let distance = dormant.foot.centre().distance(place);
+            if found.is_none() && distance < SAME_M {
+                found = Some(dormant.foot.id);
+            }
+            distance > STRIDE_M
+        });
+        found.unwrap_or_else(|| self.name())
+    }
+}
+
+impl Foot {
+    /// Bears weight again where it stood.
+    fn rest_again(&mut self, force: f64) {
+        let place = self.centre();
+        self.rest_at(force, place);
+        self.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
+        self.start_over();
+        self.faint = 0.0;
+    }
+
+    /// Stands at `place` beside another foot.
+    fn rest_at(&mut self, force: f64, place: DVec2) {
+        self.stand(force, place);
+        self.be_sure(0.02);
+        self.covariance[FORCE][FORCE] = (0.2 * force + 5.0).powi(2);
+    }
+}

@@ -1,0 +1,128 @@
+//! What one shoe can cover.
+//!
+//! Everything that one foot presses lies under one shoe: within a rectangle of the shoe's length and breadth, at some
+//! heading. The points pressed so far are kept as their extents along a fan of directions; a further point can belong
+//! to the foot if some heading has room for all of them.
+
+use glam::DVec2;
+
+/// Directions of the fan, over half a turn: a shoe's breadth at 7.5 degrees off its heading is 4 mm too wide at most.
+const DIRECTIONS: usize = 12;
+const QUARTER: usize = DIRECTIONS / 2;
+
+/// Extents of the pressed points along each direction of the fan, in metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Outline {
+    low: [f64; DIRECTIONS],
+    high: [f64; DIRECTIONS],
+}
+
+/// Length and breadth of a shoe, in metres.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shoe {
+    pub length: f64,
+    pub breadth: f64,
+}
+
+fn projections(point: DVec2) -> [f64; DIRECTIONS] {
+    std::array::from_fn(|which| {
+        let (x, y) = FAN[which];
+        x * point.x + y * point.y
+    })
+}
+
+/// Unit vectors at 0, 15, ... 165 degrees.
+const FAN: [(f64, f64); DIRECTIONS] = [
+    (1.0, 0.0),
+    (0.965_925_826_289_068_3, 0.258_819_045_102_520_74),
+    (0.866_025_403_784_438_6, 0.5),
+    (0.707_106_781_186_547_6, 0.707_106_781_186_547_5),
+    (0.5, 0.866_025_403_784_438_6),
+    (0.258_819_045_102_520_74, 0.965_925_826_289_068_3),
+    (0.0, 1.0),
+    (-0.258_819_045_102_520_63, 0.965_925_826_289_068_3),
+    (-0.5, 0.866_025_403_784_438_7),
+    (-0.707_106_781_186_547_5, 0.707_106_781_186_547_6),
+    (-0.866_025_403_784_438_7, 0.5),
+    (-0.965_925_826_289_068_2, 0.258_819_045_102_521),
+];
+
+impl Outline {
+    /// A foot that has pressed `point` only.
+    pub(super) fn new(point: DVec2) -> Self {
+        let at = projections(point);
+        Self { low: at, high: at }
+    }
+
+    /// Adds a pressed point.
+    pub(super) fn add(&mut self, point: DVec2) {
+        let at = projections(point);
+        for which in 0..DIRECTIONS {
+            self.low[which] = self.low[which].min(at[which]);
+            self.high[which] = self.high[which].max(at[which]);
+        }
+    }
+
+    /// Adds all points of `other`.
+    pub(super) fn unite(&mut self, other: &Self) {
+        for which in 0..DIRECTIONS {
+            self.low[which] = self.low[which].min(other.low[which]);
+            self.high[which] = self.high[which].max(other.high[which]);
+        }
+    }
+
+    /// Draws the extents towards those of `now`, keeping `keep` of their distance.
+    pub(super) fn relax(&mut self, now: &Self, keep: f64) {
+        for which in 0..DIRECTIONS {
+            self.low[which] = now.low[which] + keep * (self.low[which] - now.low[which]);
+            self.high[which] = now.high[which] + keep * (self.high[which] - now.high[which]);
+        }
+    }
+
+    /// How far `point` is beyond what `shoe` covers besides all points so far, in metres; negative within.
+    pub(super) fn beyond(&self, point: DVec2, shoe: Shoe) -> f64 {
+        let at = projections(point);
+        let extent = |which: usize| self.high[which].max(at[which]) - self.low[which].min(at[which]);
+        (0..DIRECTIONS)
+            .map(|along| {
+                let across = (along + QUARTER) % DIRECTIONS;
+                (extent(along) - shoe.length).max(extent(across) - shoe.breadth)
+            })
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SHOE: Shoe = Shoe { length: 0.33, breadth: 0.13 };
+
+    #[test]
+    fn one_point_may_be_either_end_of_a_shoe() {
+        let heel = Outline::new(DVec2::ZERO);
+        for degrees in [0.0_f64, 20.0, 45.0, 100.0, 250.0] {
+            let way = DVec2::from_angle(degrees.to_radians());
+            assert!(heel.beyond(way * 0.31, SHOE) < 0.0, "toes at {degrees} degrees");
+            assert!(heel.beyond(way * 0.36, SHOE) > 0.02, "beyond every shoe at {degrees} degrees");
+        }
+    }
+
+    #[test]
+    fn a_foot_that_has_rolled_covers_nothing_far_beside_its_line() {
+        let mut foot = Outline::new(DVec2::ZERO);
+        foot.add(DVec2::new(0.0, 0.2));
+        assert!(foot.beyond(DVec2::new(0.05, 0.1), SHOE) < 0.0, "the ball beside the line");
+        assert!(foot.beyond(DVec2::new(0.18, 0.1), SHOE) > 0.02, "the other foot");
+        assert!(foot.beyond(DVec2::new(0.0, 0.31), SHOE) < 0.0, "the toes");
+        assert!(foot.beyond(DVec2::new(0.0, -0.16), SHOE) > 0.02, "behind the heel");
+    }
+
+    #[test]
+    fn what_was_pressed_long_ago_is_forgotten() {
+        let mut foot = Outline::new(DVec2::ZERO);
+        foot.add(DVec2::new(0.3, 0.0));
+        foot.relax(&Outline::new(DVec2::new(0.3, 0.0)), 0.1);
+        assert!(foot.beyond(DVec2::new(0.55, 0.0), SHOE) < 0.0);
+    }
+}
