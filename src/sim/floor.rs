@@ -4,9 +4,11 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 use rand::SeedableRng;
 use rand_pcg::Pcg64Mcg;
+use smallvec::SmallVec;
 
-use super::foot::{Foot, Load};
-use super::plate::{Plate, PlateConfig};
+use super::foot::{Foot, Load, Part as Carried};
+use super::plate::{Plate, PlateConfig, Press};
+use super::seam::{SeamConfig, Seams};
 use super::sensor::{Memory, Part, PartConfig, SensorFault, counts, normal};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::TileLoad;
@@ -18,6 +20,8 @@ use crate::wire::{MAX_CHANNELS, Readings};
 pub struct SimConfig {
     /// The plates and how they are mounted.
     pub plate: PlateConfig,
+    /// How they meet.
+    pub seam: SeamConfig,
     /// What the boards measure and send.
     pub sensing: Sensing,
 }
@@ -27,7 +31,7 @@ impl SimConfig {
     /// newtons, no noise, no saturation, no tare. A test's first floor.
     #[must_use]
     pub const fn ideal() -> Self {
-        Self { plate: PlateConfig::ideal(), sensing: Sensing::Exact }
+        Self { plate: PlateConfig::ideal(), seam: SeamConfig::even(), sensing: Sensing::Exact }
     }
 }
 
@@ -59,6 +63,7 @@ pub struct SimFloor {
     geometry: Geometry,
     sensing: Sensing,
     plates: Vec<Plate>,
+    seams: Seams,
     parts: Vec<[Part; 4]>,
     /// Support forces on the empty floor.
     rest: Vec<[f32; 4]>,
@@ -71,9 +76,15 @@ pub struct SimFloor {
     board_tare: Vec<[f32; 4]>,
     /// Per sensor; empty for parts without memory.
     memories: Vec<[Memory; 4]>,
+    /// Milliseconds since each tile's memories were brought up to date.
+    behind_ms: Vec<u32>,
+    /// Milliseconds since the start.
+    ticks: usize,
+    /// Tiles that were loaded a millisecond ago, where there are memories.
+    left: Vec<usize>,
     faults: Vec<Faulty>,
-    /// Load and first moment about the tile's centre, for the tiles in `loaded`.
-    loads: Vec<(f32, Vec2)>,
+    /// What presses each tile in `loaded`.
+    loads: Vec<Press>,
     loaded: Vec<usize>,
     /// Tile and corner behind each channel of each board.
     channels: Vec<Vec<Option<(usize, usize)>>>,
@@ -108,7 +119,7 @@ impl SimFloor {
         };
         let parts: Vec<[Part; 4]> =
             geometry.tiles().map(|_| std::array::from_fn(|_| Part::draw(&part_config, &mut rng))).collect();
-        let rest: Vec<[f32; 4]> = plates.iter().map(|plate| plate.supports(0.0, Vec2::ZERO)).collect();
+        let rest: Vec<[f32; 4]> = plates.iter().map(|plate| plate.supports(Press::default())).collect();
         let memories = if part_config.has_memory() {
             rest.iter().map(|supports| supports.map(Memory::settled)).collect()
         } else {
@@ -134,8 +145,12 @@ impl SimFloor {
             rest_outputs: vec![[0.0; 4]; rest.len()],
             outputs: vec![[0.0; 4]; rest.len()],
             board_tare: vec![[0.0; 4]; rest.len()],
-            loads: vec![(0.0, Vec2::ZERO); rest.len()],
+            loads: vec![Press::default(); rest.len()],
+            seams: Seams::new(&geometry, &config.seam, seed),
             loaded: Vec::with_capacity(rest.len()),
+            behind_ms: vec![0; rest.len()],
+            ticks: 0,
+            left: Vec::new(),
             plates,
             parts,
             rest,
@@ -179,23 +194,46 @@ impl SimFloor {
     pub fn step_under(&mut self, loads: impl IntoIterator<Item = Load>) -> &[Readings] {
         self.clear();
         for load in loads {
-            for part in load.on_tiles(&self.geometry) {
+            for part in self.parts(&load) {
                 self.put(&part);
             }
         }
         for &tile in &self.loaded {
-            let (force, moment) = self.loads[tile];
-            self.forces[tile] = self.plates[tile].supports(force, moment / force);
+            self.forces[tile] = self.plates[tile].supports(self.loads[tile]);
         }
+        self.seams.leak(&mut self.forces, &self.rest, &mut self.loaded);
         if self.memories.is_empty() {
             for slot in 0..self.loaded.len() {
                 self.convert(self.loaded[slot]);
             }
         } else {
-            (0..self.forces.len()).for_each(|tile| self.convert(tile));
+            // What an empty tile still remembers changes slowly: a look now and then will do.
+            self.ticks = self.ticks.wrapping_add(1);
+            for tile in 0..self.forces.len() {
+                self.behind_ms[tile] += 1;
+                let touched = self.loaded.contains(&tile) || self.left.contains(&tile);
+                if touched || (self.ticks + tile).is_multiple_of(IDLE_TICKS) {
+                    self.convert(tile);
+                    self.behind_ms[tile] = 0;
+                }
+            }
+            self.left.clear();
         }
         self.read_boards();
         &self.readings
+    }
+
+    /// What each tile truly carries of a load, in tile-index order: as [`Load::on_tiles`], except that a
+    /// tile which stands higher than the one beside it carries more of what stands on both.
+    #[must_use]
+    pub fn carried(&self, load: &Load) -> SmallVec<[TileLoad; 4]> {
+        self.parts(load).into_iter().map(|part| part.load).collect()
+    }
+
+    fn parts(&self, load: &Load) -> SmallVec<[Carried; 4]> {
+        let mut parts = load.parts(&self.geometry);
+        self.seams.share(&mut parts);
+        parts
     }
 
     /// The true support forces of the tile at `index`, weight and mounting included, in [`Corner::ALL`] order.
@@ -220,9 +258,14 @@ impl SimFloor {
         (&self.parts[tile][corner.index()], self.rest[tile][corner.index()])
     }
 
+    /// What one sensor puts out on the empty floor, in volts: also what its memory makes of a long rest.
+    pub(super) fn empty_volts(&self, tile: usize, corner: Corner) -> f32 {
+        self.rest_outputs[tile][corner.index()]
+    }
+
     /// The support forces of one tile under `force` at `at` from its centre, weight and mounting included.
     pub(super) fn pressed(&self, tile: usize, at: Vec2, force: f32) -> [f32; 4] {
-        self.plates[tile].supports(force, at)
+        self.plates[tile].supports(Press::at(force, at))
     }
 
     /// Standard deviation of the noise, in volts.
@@ -242,27 +285,33 @@ impl SimFloor {
     /// Takes every load off.
     fn clear(&mut self) {
         for tile in self.loaded.drain(..) {
-            self.loads[tile] = (0.0, Vec2::ZERO);
+            self.loads[tile] = Press::default();
             self.forces[tile] = self.rest[tile];
             self.outputs[tile] = self.rest_outputs[tile];
+            if !self.memories.is_empty() {
+                self.left.push(tile);
+            }
         }
     }
 
-    fn put(&mut self, part: &TileLoad) {
-        let (force, moment) = &mut self.loads[part.index];
-        if *force == 0.0 {
-            self.loaded.push(part.index);
+    fn put(&mut self, part: &Carried) {
+        let Carried { load, lean } = part;
+        let press = &mut self.loads[load.index];
+        if press.force == 0.0 {
+            self.loaded.push(load.index);
         }
-        *force += part.force.0;
-        *moment += (part.centroid - self.geometry.centre(part.tile)) * part.force.0;
+        let mut added = Press::at(load.force.0, load.centroid - self.geometry.centre(load.tile));
+        added.twist += load.force.0 * lean;
+        *press += added;
     }
 
     /// Turns the support forces of a tile into outputs.
     fn convert(&mut self, tile: usize) {
         let mut forces = self.forces[tile];
+        let elapsed_ms = self.behind_ms[tile];
         if let (Some(config), Some(memories)) = (self.sensing.parts(), self.memories.get_mut(tile)) {
             for (force, memory) in forces.iter_mut().zip(memories) {
-                *force = memory.felt(*force, config);
+                *force = memory.felt(*force, elapsed_ms, config);
             }
         }
         self.outputs[tile] = std::array::from_fn(|corner| self.output(tile, corner, forces[corner]));
@@ -331,6 +380,9 @@ impl Sensing {
         }
     }
 }
+
+/// Milliseconds from one look at the memories of an empty tile to the next.
+const IDLE_TICKS: usize = 8;
 
 /// The force that a board which knows the part's law makes of `volts`.
 fn newtons(part: &Part, volts: f32) -> f32 {

@@ -78,6 +78,11 @@ impl Load {
     /// because the foot then stands on what is beside the floor.
     #[must_use]
     pub fn on_tiles(&self, geometry: &Geometry) -> SmallVec<[TileLoad; 4]> {
+        self.parts(geometry).into_iter().map(|part| part.load).collect()
+    }
+
+    /// As [`Load::on_tiles`], with what twists each tile.
+    pub(super) fn parts(&self, geometry: &Geometry) -> SmallVec<[Part; 4]> {
         let finite = self.position.is_finite() && self.heading.is_finite() && self.force.is_finite();
         if !finite || self.force <= Newtons::ZERO {
             return SmallVec::new();
@@ -96,24 +101,39 @@ impl Load {
         if let (Some(tile), true) =
             (geometry.tile_under(low), geometry.tile_under(low) == geometry.tile_under(high))
         {
-            return smallvec![self.part(geometry, tile, 1.0, self.centre_of_pressure())];
+            let variance = self.print.variance();
+            // The print's own axes turned into the floor's.
+            let lean = turn.x * turn.y * (variance.x - variance.y);
+            return smallvec![self.part(geometry, tile, 1.0, self.centre_of_pressure(), lean)];
         }
         self.straddling(geometry, turn, low, high)
     }
 
-    fn straddling(&self, geometry: &Geometry, turn: Vec2, low: Vec2, high: Vec2) -> SmallVec<[TileLoad; 4]> {
+    fn straddling(&self, geometry: &Geometry, turn: Vec2, low: Vec2, high: Vec2) -> SmallVec<[Part; 4]> {
         let Some(mut window) = Window::around(geometry, low, high) else { return SmallVec::new() };
         self.print
             .for_each_cell(|cell| window.add(self.position + turn.rotate(cell.at), cell.size, cell.share));
         let carried = window.total();
         let scale = 1.0 / carried.max(0.5);
-        window.parts().map(|(tile, share, at)| self.part(geometry, tile, share * scale, at)).collect()
+        window
+            .parts()
+            .map(|(tile, share, at, lean)| self.part(geometry, tile, share * scale, at, lean))
+            .collect()
     }
 
-    fn part(&self, geometry: &Geometry, tile: TileId, share: f32, at: Vec2) -> TileLoad {
+    fn part(&self, geometry: &Geometry, tile: TileId, share: f32, at: Vec2, lean: f32) -> Part {
         let index = geometry.index(tile).unwrap_or_default();
-        TileLoad { tile, index, force: self.force * share, centroid: at }
+        Part { load: TileLoad { tile, index, force: self.force * share, centroid: at }, lean }
     }
+}
+
+/// What one tile carries of a load.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Part {
+    pub(super) load: TileLoad,
+    /// Mean product of the pressure's distances east and north of its centroid, in square metres:
+    /// a foot across a tile's diagonal twists it without being off its middle.
+    pub(super) lean: f32,
 }
 
 /// Who moves the feet.
@@ -133,8 +153,8 @@ struct Window {
     per_pitch: f32,
     columns: usize,
     rows: usize,
-    /// Share of the load, and share times place from `origin`, per tile.
-    sums: SmallVec<[(f32, Vec2); 16]>,
+    /// Share of the load, share times place from `origin`, and share times the place's x and y, per tile.
+    sums: SmallVec<[(f32, Vec2, f32); 16]>,
 }
 
 impl Window {
@@ -152,7 +172,7 @@ impl Window {
                 per_pitch: 1.0 / pitch_m,
                 columns: size.x,
                 rows: size.y,
-                sums: smallvec![(0.0, Vec2::ZERO); size.x * size.y],
+                sums: smallvec![(0.0, Vec2::ZERO, 0.0); size.x * size.y],
             }
         })
     }
@@ -205,21 +225,25 @@ impl Window {
     fn add_to(&mut self, column: i32, row: i32, share: f32, at: Vec2) {
         let (Ok(column), Ok(row)) = (usize::try_from(column), usize::try_from(row)) else { return };
         if column < self.columns && row < self.rows {
-            let (total, moment) = &mut self.sums[row * self.columns + column];
+            let (total, moment, product) = &mut self.sums[row * self.columns + column];
             *total += share;
             *moment += at * share;
+            *product += at.x * at.y * share;
         }
     }
 
     fn total(&self) -> f32 {
-        self.sums.iter().map(|(share, _)| share).sum()
+        self.sums.iter().map(|(share, ..)| share).sum()
     }
 
-    fn parts(&self) -> impl Iterator<Item = (TileId, f32, Vec2)> + '_ {
-        self.sums.iter().enumerate().filter(|(_, (share, _))| *share > 0.0).map(|(index, (share, moment))| {
+    /// Tile, share, centroid and mean product of the distances from it.
+    fn parts(&self) -> impl Iterator<Item = (TileId, f32, Vec2, f32)> + '_ {
+        let loaded = self.sums.iter().enumerate().filter(|(_, (share, ..))| *share > 0.0);
+        loaded.map(|(index, (share, moment, product))| {
             let (column, row) = (index % self.columns, index / self.columns);
             let tile = TileId::new(self.first.column + column as u16, self.first.row + row as u16);
-            (tile, *share, self.origin + *moment / *share)
+            let at = *moment / *share;
+            (tile, *share, self.origin + at, *product / *share - at.x * at.y)
         })
     }
 }
@@ -294,6 +318,26 @@ mod tests {
         assert!((50.0..650.0).contains(&force_at(-0.02)), "{}", force_at(-0.02));
         assert!(foot(Vec2::new(-0.2, 0.9), 0.0, 0.4).on_tiles(&geometry).is_empty());
         assert!(foot(Vec2::new(40.0, 0.9), 0.0, 0.4).on_tiles(&geometry).is_empty());
+    }
+
+    #[test]
+    fn a_foot_across_the_diagonal_leans_the_same_whether_or_not_its_cells_are_counted() {
+        // On one tile the print's own figures tell it; over a seam a hair's breadth away the cells do.
+        let geometry = Geometry::default();
+        let load = |x: f32| Load {
+            print: Print::Ellipse { half_m: Vec2::new(0.02, 0.1) },
+            position: Vec2::new(x, 0.456),
+            heading: 0.25 * std::f32::consts::PI,
+            force: Newtons(700.0),
+        };
+        let one = load(0.456).parts(&geometry);
+        let [whole] = one[..] else { panic!("on one tile: {one:?}") };
+        let expected = -0.5 * (0.1f32 * 0.1 - 0.02 * 0.02) / 4.0;
+        assert!((whole.lean / expected - 1.0).abs() < 0.01, "{} for {expected}", whole.lean);
+        // Its box reaches over the seam, and none of its cells does.
+        let over = load(0.608 - 0.075).parts(&geometry);
+        let [counted] = over[..] else { panic!("on one tile: {over:?}") };
+        assert!((counted.lean / expected - 1.0).abs() < 0.05, "{} for {expected}", counted.lean);
     }
 
     #[test]

@@ -28,6 +28,19 @@ pub enum Print {
         /// How far the load has rolled from the heel (0) to the toes (1).
         roll: f32,
     },
+    /// A foot whose pressure has this centre and spread: heel and forefoot, as much of each as that takes.
+    Sole {
+        /// Centre of pressure, in the print's frame.
+        centre: Vec2,
+        /// Root mean square radii of the pressure across (x) and along (y) the foot, in metres, positive.
+        radii: Vec2,
+        /// Length of the foot or shoe, in metres: the heel presses about 0.33 of it behind its middle, the
+        /// forefoot 0.22 before it.
+        length_m: f32,
+        /// Half of the greatest width and length of what the heel stands on, in metres; infinite for a
+        /// bare or flat heel. A small heel makes the spread a little less than `radii`.
+        heel_m: f32,
+    },
     /// A single point.
     Point,
     /// A disc pressing evenly.
@@ -62,6 +75,17 @@ impl Print {
                     }
                 }
             }
+            Self::Sole { centre, radii, length_m, heel_m } => {
+                for patch in patches(centre, radii, length_m, heel_m) {
+                    if patch.share > 0.0 {
+                        let share = patch.share / DISC.len() as f32;
+                        let size = patch.half_m * (2.0 / DISC_CELLS as f32);
+                        for at in DISC.iter() {
+                            visit(Cell { at: patch.at + *at * patch.half_m, size, share });
+                        }
+                    }
+                }
+            }
             Self::Point => visit(Cell { at: Vec2::ZERO, size: Vec2::ZERO, share: 1.0 }),
             Self::Disc { radius_m } => even_cells(Vec2::splat(radius_m), true, visit),
             Self::Ellipse { half_m } => even_cells(half_m, true, visit),
@@ -78,6 +102,7 @@ impl Print {
                     SOLE.centres.iter().zip(zone_shares(roll)).map(|(centre, share)| *centre * share).sum();
                 along * shoe_size(length_m)
             }
+            Self::Sole { centre, .. } => centre,
             Self::Point | Self::Disc { .. } | Self::Ellipse { .. } | Self::Bar { .. } => Vec2::ZERO,
         }
     }
@@ -87,11 +112,93 @@ impl Print {
     pub fn half_size(&self) -> Vec2 {
         match *self {
             Self::Shoe { length_m, .. } => shoe_size(length_m) * 0.5,
+            Self::Sole { centre, radii, length_m, heel_m } => patches(centre, radii, length_m, heel_m)
+                .iter()
+                .filter(|patch| patch.share > 0.0)
+                .fold(Vec2::ZERO, |half, patch| half.max(patch.at.abs() + patch.half_m)),
             Self::Point => Vec2::ZERO,
             Self::Disc { radius_m } => Vec2::splat(radius_m),
             Self::Ellipse { half_m } | Self::Bar { half_m } => half_m,
         }
     }
+
+    /// Mean square of the pressure's distance from its centre, across (x) and along (y), in square metres.
+    #[must_use]
+    pub fn variance(&self) -> Vec2 {
+        match *self {
+            Self::Shoe { length_m, roll } => {
+                let size = shoe_size(length_m);
+                let squares: Vec2 =
+                    SOLE.squares.iter().zip(zone_shares(roll)).map(|(square, share)| *square * share).sum();
+                let centre = self.centre_of_pressure();
+                (squares * size * size - centre * centre).max(Vec2::ZERO)
+            }
+            Self::Sole { radii, .. } => radii * radii,
+            Self::Point => Vec2::ZERO,
+            Self::Disc { radius_m } => Vec2::splat(0.25 * radius_m * radius_m),
+            Self::Ellipse { half_m } => 0.25 * half_m * half_m,
+            Self::Bar { half_m } => half_m * half_m / 3.0,
+        }
+    }
+}
+
+/// An ellipse that presses evenly with a share of a sole's force.
+#[derive(Clone, Copy, Debug)]
+struct Patch {
+    share: f32,
+    at: Vec2,
+    half_m: Vec2,
+}
+
+/// Cells across and along a patch: about a centimetre each.
+const DISC_CELLS: usize = 8;
+
+/// Middles of the cells that fill a circle of radius 1.
+static DISC: LazyLock<Vec<Vec2>> = LazyLock::new(|| {
+    let mut cells = Vec::new();
+    even_cells(Vec2::ONE / 25.0, true, |cell| cells.push(cell.at * 25.0));
+    cells
+});
+
+/// Where heel and forefoot press, in foot lengths from the middle.
+const HEEL_AT: f32 = -0.33;
+const FOREFOOT_AT: f32 = 0.22;
+
+/// Root mean square radius of heel or forefoot alone along the foot, in foot lengths.
+///
+/// # Source
+/// Recorded steps (see `rolling_fit`): 0.06 on the heel just after landing, 0.08 on the ball.
+const PATCH_RADIUS: f32 = 0.06;
+
+/// Heel and forefoot whose pressures together have this centre and these radii.
+///
+/// Apart as far as the radius along the foot allows: under a foot that stands on both, most of the
+/// spread is the distance between them.
+fn patches(centre: Vec2, radii: Vec2, length_m: f32, heel_m: f32) -> [Patch; 2] {
+    let (behind, before) = (centre.y - HEEL_AT * length_m, FOREFOOT_AT * length_m - centre.y);
+    let apart = behind * before;
+    let least = (PATCH_RADIUS * length_m).min(radii.y);
+    let stretch = if behind > 0.0 && before > 0.0 && apart > 1e-9 {
+        ((radii.y * radii.y - least * least) / apart).clamp(0.0, 1.0)
+    } else {
+        0.0
+    };
+    let own = (radii.y * radii.y - stretch * apart.max(0.0)).max(0.0).sqrt();
+    let half_m = 2.0 * Vec2::new(radii.x, own);
+    if stretch <= 0.0 {
+        // On one of the two.
+        let half_m = if behind < before { half_m.min(Vec2::splat(heel_m)) } else { half_m };
+        return [Patch { share: 1.0, at: centre, half_m }, Patch { share: 0.0, at: centre, half_m }];
+    }
+    let reach = stretch.sqrt();
+    [
+        Patch {
+            share: before / (behind + before),
+            at: centre - Vec2::new(0.0, reach * behind),
+            half_m: half_m.min(Vec2::splat(heel_m)),
+        },
+        Patch { share: behind / (behind + before), at: centre + Vec2::new(0.0, reach * before), half_m },
+    ]
 }
 
 /// Width and length of the shoe on a foot `length_m` long, in metres.
@@ -156,6 +263,8 @@ struct Sole {
     cells: Vec<(Vec2, [f32; 4])>,
     /// Centre of pressure of each zone alone.
     centres: [Vec2; 4],
+    /// Mean square of each zone's places.
+    squares: [Vec2; 4],
 }
 
 /// Cells across and along the sole: about a centimetre each.
@@ -185,7 +294,8 @@ static SOLE: LazyLock<Sole> = LazyLock::new(|| {
         }
     }
     let centres = std::array::from_fn(|zone| cells.iter().map(|(at, p)| *at * p[zone]).sum());
-    Sole { cell, cells, centres }
+    let squares = std::array::from_fn(|zone| cells.iter().map(|(at, p)| *at * *at * p[zone]).sum());
+    Sole { cell, cells, centres, squares }
 });
 
 fn outline(along: f32) -> f32 {
@@ -236,6 +346,14 @@ mod tests {
             Print::Ellipse { half_m },
             Print::Bar { half_m },
         ];
+        prints.extend([(-0.11, 0.012), (-0.05, 0.06), (0.0, 0.07), (0.06, 0.022), (0.12, 0.006)].map(
+            |(along, radius)| Print::Sole {
+                centre: Vec2::new(0.008, along),
+                radii: Vec2::new(0.018, radius),
+                length_m: 0.27,
+                heel_m: f32::INFINITY,
+            },
+        ));
         prints.extend((0..=20).map(|step| shoe(step as f32 / 20.0)));
         prints
     }
@@ -254,6 +372,44 @@ mod tests {
             let off = moment.distance(print.centre_of_pressure());
             assert!(off < 1e-5, "{print:?}: {off}");
         }
+    }
+
+    #[test]
+    fn the_variance_is_that_of_the_cells() {
+        for print in all_prints() {
+            let mut squares = Vec2::ZERO;
+            print.for_each_cell(|cell| {
+                let away = cell.at - print.centre_of_pressure();
+                squares += (away * away + cell.size * cell.size / 12.0) * cell.share;
+            });
+            // Ellipses are laid out in cells of up to an eighth of their width.
+            let (found, told) = (squares, print.variance());
+            assert!(
+                found.abs_diff_eq(told, 0.06 * told.max_element() + 2e-5),
+                "{print:?}: {found} for {told}"
+            );
+        }
+    }
+
+    #[test]
+    fn a_standing_sole_presses_with_heel_and_forefoot_and_hardly_between() {
+        let sole = |heel_m| Print::Sole {
+            centre: Vec2::ZERO,
+            radii: Vec2::new(0.018, 0.07),
+            length_m: 0.27,
+            heel_m,
+        };
+        let share = |print: &Print, from: f32, to: f32| {
+            let mut sum = 0.0;
+            print.for_each_cell(|cell| sum += if (from..to).contains(&cell.at.y) { cell.share } else { 0.0 });
+            sum
+        };
+        let flat = sole(f32::INFINITY);
+        assert!(share(&flat, -0.2, -0.05) > 0.3 && share(&flat, 0.02, 0.2) > 0.5);
+        assert!(share(&flat, -0.045, 0.01) < 0.1, "{}", share(&flat, -0.045, 0.01));
+        // A thin heel presses with the same force on a spot of its own size.
+        let thin = sole(0.01);
+        assert!((share(&thin, -0.1, -0.07) - share(&flat, -0.2, -0.01)).abs() < 0.05);
     }
 
     #[test]

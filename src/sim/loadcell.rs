@@ -60,10 +60,9 @@ pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, Cal
         for corner in Corner::ALL {
             let calibration = on_the_bench(sim, index, corner, &mut rng)
                 .map_err(|source| CalibrationError { sensor: SensorId { tile, corner }, source })?;
-            let (part, rest) = sim.bench(index, corner);
-            let empty: f32 = (0..TARE_READINGS)
-                .map(|_| calibration.force(read(part.volts(rest), sim.noise_v(), &mut rng)).0)
-                .sum();
+            let rest = sim.empty_volts(index, corner);
+            let empty: f32 =
+                (0..TARE_READINGS).map(|_| calibration.force(read(rest, sim.noise_v(), &mut rng)).0).sum();
             // A floor of other size than its simulation keeps what has no counterpart.
             if let (Some(laws), Some(tares)) = (floor.calibration.get_mut(index), floor.tare.get_mut(index)) {
                 laws[corner.index()] = calibration;

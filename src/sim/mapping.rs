@@ -10,7 +10,7 @@ use thiserror::Error;
 
 use super::floor::SimFloor;
 use super::loadcell::{CELL_ERROR, read};
-use super::sensor::normal;
+use super::sensor::{counts, normal};
 use crate::floor::{Calibration, Corner, Floor, TileId};
 use crate::sense::{MapError, MapFit, Press};
 use crate::wire::Readings;
@@ -116,13 +116,18 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
             let forces = Corner::ALL.map(|corner| {
                 let volts = sim.bench(tile, corner).0.volts(supports[corner.index()]);
                 let law: Calibration = laws[corner.index()];
+                // What a sensor with a memory has crept under the resting plate is in its tare and in
+                // every reading. Of one without, the two are the same.
+                let (part, rest) = sim.bench(tile, corner);
+                let crept = law.force(counts(sim.empty_volts(tile, corner))).0
+                    - law.force(counts(part.volts(rest))).0;
                 let mut sum = 0.0;
                 for _ in 0..READINGS {
-                    let counts = read(volts, sim.noise_v(), rng);
-                    saturated |= counts >= Calibration::SATURATED;
-                    sum += law.force(counts).0;
+                    let reading = read(volts, sim.noise_v(), rng);
+                    saturated |= reading >= Calibration::SATURATED;
+                    sum += law.force(reading).0;
                 }
-                sum / READINGS as f32 - tares[corner.index()].0
+                sum / READINGS as f32 + crept - tares[corner.index()].0
             });
             if !saturated {
                 presses.push(Press { at, forces, force: Some(force * (1.0 + CELL_ERROR * normal(rng))) });

@@ -6,6 +6,7 @@ use glam::Vec2;
 use thiserror::Error;
 
 use super::footprint::{Print, shoe_size};
+use super::footwear::Footwear;
 use super::gait::PREFERRED_M_S;
 use super::plate::GRAVITY;
 use super::track::{Pose, forward};
@@ -28,6 +29,9 @@ pub struct Person {
     pub toe_out: f32,
     /// How far from the standing foot the other one reaches, middle to middle, in metres.
     pub reach_m: f32,
+    /// What is worn; it shows in the print of somebody who rolls as people do
+    /// ([`super::Performance::rolling_as_people_do`]), and in no other.
+    pub footwear: Footwear,
 }
 
 impl Default for Person {
@@ -41,6 +45,7 @@ impl Default for Person {
             stand_width_m: 0.16,
             toe_out: 0.1,
             reach_m: 0.85,
+            footwear: Footwear::default(),
         }
     }
 }

@@ -1,4 +1,4 @@
-//! One rigid plate on four elastic supports that can push but not pull.
+//! One plate, rigid or twisting, on four elastic supports that can push but not pull.
 
 use glam::Vec2;
 use rand::RngExt;
@@ -17,6 +17,20 @@ pub struct PlateConfig {
     pub stiffness_spread: f32,
     /// Whether supports also pull, as if the plate were screwed to its sensors: no corner ever lifts off.
     pub pulls: bool,
+    /// How far the plate gives way to twist, from 0 (rigid) to 1 (no stiffness of its own): the share
+    /// `4 k / (4 k + K)` for supports of stiffness `k` and a plate that resists twist with `K`.
+    ///
+    /// A load off both middle lines then also presses the corners of its own diagonal harder and those
+    /// of the other one less, which no load on a rigid plate does; force and both moments stay the same.
+    ///
+    /// # Source
+    /// `K = G h^3 A / (3 r^4)` of a plate in pure twist (Timoshenko, Theory of Plates and Shells, section
+    /// 10), shear modulus `G` 0.7 GPa of birch plywood, thickness `h`, area `A`, supports `r` from the
+    /// middle lines: 12 mm of plywood, 0.30 m wide, give 120 kN/m. On soft feet of 20 to 50 kN/m that
+    /// makes 0.4 to 0.6, on feet of 200 kN/m nearly 0.9; 20 mm on soft feet 0.12 to 0.26.
+    pub twist: f32,
+    /// Largest deviation of each plate's `twist` from that, as a share (0 to 0.5).
+    pub twist_spread: f32,
 }
 
 impl Default for PlateConfig {
@@ -24,7 +38,14 @@ impl Default for PlateConfig {
     /// held down on rubber mounts whose stiffness differs by up to a tenth (mass
     /// from its measures, the rest our choice).
     fn default() -> Self {
-        Self { mass_kg: 2.6, mount_preload_n: 5.0, stiffness_spread: 0.1, pulls: false }
+        Self {
+            mass_kg: 2.6,
+            mount_preload_n: 5.0,
+            stiffness_spread: 0.1,
+            pulls: false,
+            twist: 0.0,
+            twist_spread: 0.0,
+        }
     }
 }
 
@@ -32,7 +53,14 @@ impl PlateConfig {
     /// A weightless plate screwed to equal supports.
     #[must_use]
     pub const fn ideal() -> Self {
-        Self { mass_kg: 0.0, mount_preload_n: 0.0, stiffness_spread: 0.0, pulls: true }
+        Self {
+            mass_kg: 0.0,
+            mount_preload_n: 0.0,
+            stiffness_spread: 0.0,
+            pulls: true,
+            twist: 0.0,
+            twist_spread: 0.0,
+        }
     }
 }
 
@@ -48,9 +76,35 @@ pub(super) struct Plate {
     edge: f32,
     /// Downward force of weight and mounting together, acting at the centre.
     preload: f32,
-    /// Support forces per unit of force and of moment / reach about either axis.
-    sharing: [[f32; 3]; 4],
+    /// Support forces per unit of force, of moment / reach about either axis and of twist / reach squared.
+    sharing: [[f32; 4]; 4],
     pulls: bool,
+}
+
+/// What the loads on one plate come to; places are relative to its centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(super) struct Press {
+    /// Their sum, in newtons.
+    pub(super) force: f32,
+    /// Force times place, in newton metres.
+    pub(super) moment: Vec2,
+    /// Force times x times y, in newton square metres: what twists a plate.
+    pub(super) twist: f32,
+}
+
+impl Press {
+    /// One load at a point.
+    pub(super) fn at(force: f32, at: Vec2) -> Self {
+        Self { force, moment: at * force, twist: force * at.x * at.y }
+    }
+}
+
+impl std::ops::AddAssign for Press {
+    fn add_assign(&mut self, other: Self) {
+        self.force += other.force;
+        self.moment += other.moment;
+        self.twist += other.twist;
+    }
 }
 
 impl Plate {
@@ -58,17 +112,23 @@ impl Plate {
     pub(super) fn new(geometry: &Geometry, config: &PlateConfig, rng: &mut Pcg64Mcg) -> Self {
         let spread = config.stiffness_spread.clamp(0.0, 0.5);
         let stiffness = Corner::ALL.map(|_| 1.0 + rng.random_range(-1.0f32..=1.0) * spread);
+        let twist = if config.twist > 0.0 {
+            let spread = config.twist_spread.clamp(0.0, 0.5);
+            (config.twist * (1.0 + rng.random_range(-1.0f32..=1.0) * spread)).clamp(0.0, 1.0)
+        } else {
+            0.0
+        };
         let reach = geometry.sensor_reach_m();
         Self {
             reach,
             edge: 0.5 * geometry.tile_m() / reach,
             preload: config.mass_kg * GRAVITY + 4.0 * config.mount_preload_n,
-            sharing: elastic_sharing(stiffness),
+            sharing: elastic_sharing(stiffness, twist),
             pulls: config.pulls,
         }
     }
 
-    /// The forces of the supports under a load of `force` newtons at `at`, in [`Corner::ALL`] order.
+    /// The forces of the supports under a load, in [`Corner::ALL`] order.
     ///
     /// They balance force and both moments exactly as long as the load's line,
     /// preload included, stays inside the square of the supports. A corner that
@@ -77,11 +137,14 @@ impl Plate {
     /// sees, so the load looks lighter and further inside than it is.
     ///
     /// # Source
-    /// Rigid plate on springs: corner forces `k_i (z + p x_i + q y_i)` with z, p, q from balance.
-    pub(super) fn supports(&self, force: f32, at: Vec2) -> [f32; 4] {
-        let total = force + self.preload;
-        let moment = at * (force / self.reach);
-        let elastic = self.sharing.map(|[z, x, y]| z * total + x * moment.x + y * moment.y);
+    /// Plate on springs: corner forces `k_i (z + p x_i + q y_i + t x_i y_i)` with z, p, q from balance and
+    /// t from the work of the load in twist against the stiffness of supports and plate. A plate with one
+    /// corner in the air rests on three, which balance alone determines.
+    pub(super) fn supports(&self, load: Press) -> [f32; 4] {
+        let total = load.force + self.preload;
+        let moment = load.moment / self.reach;
+        let twist = load.twist / (self.reach * self.reach);
+        let elastic = self.sharing.map(|[z, x, y, xy]| z * total + x * moment.x + y * moment.y + xy * twist);
         if self.pulls || elastic.iter().all(|&support| support >= 0.0) {
             return elastic;
         }
@@ -131,21 +194,38 @@ fn on_three(elastic: [f32; 4], total: f32, line: Vec2) -> [f32; 4] {
     })
 }
 
-/// Rows of `k_i (1, x_i, y_i) A^-1`, where A sums the springs' resistance to sinking and tilting.
-fn elastic_sharing(stiffness: [f32; 4]) -> [[f32; 3]; 4] {
+/// Rows of `k_i (1, x_i, y_i, x_i y_i) A^-1`, where A sums the springs' resistance to sinking, tilting
+/// and twisting, and the plate's own to twisting; the last column is zero for a rigid plate.
+fn elastic_sharing(stiffness: [f32; 4], twist: f32) -> [[f32; 4]; 4] {
     let columns = |weight: fn(Vec2) -> glam::Vec3| {
         Corner::ALL.map(|corner| stiffness[corner.index()] * weight(corner.direction())).into_iter().sum()
     };
-    let resistance = glam::Mat3::from_cols(
+    let rigid = glam::Mat3::from_cols(
         columns(|at| glam::Vec3::new(1.0, at.x, at.y)),
         columns(|at| glam::Vec3::new(at.x, 1.0, at.x * at.y)),
         columns(|at| glam::Vec3::new(at.y, at.x * at.y, 1.0)),
     );
+    if twist <= 0.0 {
+        let compliance = rigid.inverse();
+        return Corner::ALL.map(|corner| {
+            let at = corner.direction();
+            let shares = compliance * glam::Vec3::new(1.0, at.x, at.y) * stiffness[corner.index()];
+            shares.extend(0.0).to_array()
+        });
+    }
+    let supports: f32 = stiffness.iter().sum();
+    let modes = |at: Vec2| glam::Vec4::new(1.0, at.x, at.y, at.x * at.y);
+    let mut resistance = glam::Mat4::ZERO;
+    for corner in Corner::ALL {
+        let modes = modes(corner.direction());
+        for column in 0..4 {
+            *resistance.col_mut(column) += modes * (modes[column] * stiffness[corner.index()]);
+        }
+    }
+    // The plate's own stiffness against twist, from the share of it that is left to the supports.
+    resistance.col_mut(3).w += supports * (1.0 / twist - 1.0);
     let compliance = resistance.inverse();
-    Corner::ALL.map(|corner| {
-        let at = corner.direction();
-        (compliance * glam::Vec3::new(1.0, at.x, at.y) * stiffness[corner.index()]).to_array()
-    })
+    Corner::ALL.map(|corner| (compliance * modes(corner.direction()) * stiffness[corner.index()]).to_array())
 }
 
 #[cfg(test)]
@@ -163,7 +243,7 @@ mod tests {
 
     /// Force and place of the load that the sensors report, tare taken off.
     fn sensed(plate: &Plate, force: f32, at: Vec2) -> (f32, Vec2) {
-        let (loaded, empty) = (plate.supports(force, at), plate.supports(0.0, Vec2::ZERO));
+        let (loaded, empty) = (plate.supports(Press::at(force, at)), plate.supports(Press::default()));
         let net: Vec<f32> = loaded.iter().zip(empty).map(|(loaded, empty)| loaded - empty).collect();
         let sum: f32 = net.iter().sum();
         let moment: Vec2 =
@@ -182,7 +262,7 @@ mod tests {
             let (felt, place) = sensed(&plate, force, at);
             prop_assert!((felt - force).abs() < 1e-3 * force + 1e-3, "{felt} for {force}");
             prop_assert!(place.distance(at) * force < 1e-4 * force + 1e-4, "{place} for {at}");
-            prop_assert!(plate.supports(force, at).iter().all(|&support| support >= 0.0));
+            prop_assert!(plate.supports(Press::at(force, at)).iter().all(|&support| support >= 0.0));
         }
 
         #[test]
@@ -190,7 +270,7 @@ mod tests {
             force in 0.0f32..3000.0, x in -0.152f32..0.152, y in -0.152f32..0.152,
         ) {
             let plate = plate(PlateConfig::default());
-            let supports = plate.supports(force, Vec2::new(x, y));
+            let supports = plate.supports(Press::at(force, Vec2::new(x, y)));
             prop_assert!(supports.iter().all(|&support| support >= 0.0));
             let sum: f32 = supports.iter().sum();
             prop_assert!(sum <= (force + plate.preload) * 1.001);
@@ -200,9 +280,9 @@ mod tests {
     #[test]
     fn equal_supports_share_a_central_load_equally() {
         let plate = plate(PlateConfig::ideal());
-        assert_eq!(plate.supports(400.0, Vec2::ZERO), [100.0; 4]);
+        assert_eq!(plate.supports(Press::at(400.0, Vec2::ZERO)), [100.0; 4]);
         // Half way to a corner: three quarters of the way up to half the load there, none opposite.
-        let supports = plate.supports(400.0, Vec2::splat(REACH / 2.0));
+        let supports = plate.supports(Press::at(400.0, Vec2::splat(REACH / 2.0)));
         for (support, expected) in supports.iter().zip([0.0, 100.0, 100.0, 200.0]) {
             assert!((support - expected).abs() < 1e-3, "{supports:?}");
         }
@@ -211,9 +291,9 @@ mod tests {
     #[test]
     fn a_heavy_foot_near_one_corner_lifts_the_opposite_one() {
         let plate = plate(PlateConfig { stiffness_spread: 0.0, ..PlateConfig::default() });
-        let light = plate.supports(20.0, Vec2::splat(0.1));
+        let light = plate.supports(Press::at(20.0, Vec2::splat(0.1)));
         assert!(light[0] > 0.0, "preload holds it down: {light:?}");
-        let heavy = plate.supports(700.0, Vec2::splat(0.1));
+        let heavy = plate.supports(Press::at(700.0, Vec2::splat(0.1)));
         assert_eq!(heavy[0], 0.0, "{heavy:?}");
         assert!(heavy[3] > 400.0, "{heavy:?}");
     }
@@ -232,14 +312,48 @@ mod tests {
     #[test]
     fn tipping_sets_in_without_a_jump() {
         let plate = plate(PlateConfig::default());
-        let mut before = plate.supports(700.0, Vec2::new(0.0, 0.06));
+        let mut before = plate.supports(Press::at(700.0, Vec2::new(0.0, 0.06)));
         for step in 1..=1000 {
             let at = Vec2::new(0.152, 0.092) * (step as f32 / 1000.0) + Vec2::new(0.0, 0.06);
-            let now = plate.supports(700.0, at);
+            let now = plate.supports(Press::at(700.0, at));
             for (now, before) in now.iter().zip(before) {
                 assert!((now - before).abs() < 12.0, "at {at}: {before} to {now}");
             }
             before = now;
+        }
+    }
+
+    #[test]
+    fn a_twisting_plate_keeps_force_and_moments_and_presses_its_own_diagonal_harder() {
+        let at = Vec2::new(0.08, 0.06);
+        let [rigid, soft] = [0.0, 0.6].map(|twist| {
+            plate(PlateConfig { stiffness_spread: 0.0, twist, pulls: true, ..PlateConfig::default() })
+        });
+        for plate in [&rigid, &soft] {
+            let (force, place) = sensed(plate, 400.0, at);
+            assert!((force - 400.0).abs() < 0.1 && place.distance(at) < 1e-4, "{force} at {place}");
+        }
+        let twist = |plate: &Plate| {
+            let [sw, se, nw, ne] = plate.supports(Press::at(400.0, at));
+            sw + ne - se - nw
+        };
+        assert!(twist(&rigid).abs() < 0.01, "{}", twist(&rigid));
+        // On equal supports the twist is the share times force, x and y in units of the reach.
+        let expected = 0.6 * 400.0 * at.x * at.y / (REACH * REACH);
+        assert!((twist(&soft) - expected).abs() < 0.5, "{} for {expected}", twist(&soft));
+    }
+
+    #[test]
+    fn a_plate_without_stiffness_shares_a_load_as_a_loose_cloth_would() {
+        let plate = plate(PlateConfig { twist: 1.0, ..PlateConfig::ideal() });
+        // At a support, all of it; half way between two, half on each.
+        let supports = plate.supports(Press::at(100.0, Vec2::new(REACH, -REACH)));
+        for (support, expected) in supports.iter().zip([0.0, 100.0, 0.0, 0.0]) {
+            assert!((support - expected).abs() < 1e-3, "{supports:?}");
+        }
+        let supports = plate.supports(Press::at(100.0, Vec2::splat(0.5 * REACH)));
+        for (support, expected) in supports.iter().zip([6.25, 18.75, 18.75, 56.25]) {
+            assert!((support - expected).abs() < 1e-3, "{supports:?}");
         }
     }
 }

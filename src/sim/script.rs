@@ -2,7 +2,9 @@
 
 use std::time::Duration;
 
-use super::foot::{Foot, FootDriver};
+use glam::Vec2;
+
+use super::foot::{Foot, FootDriver, Load};
 use super::footprint::shoe_size;
 use super::performance::Performance;
 use crate::floor::Rect;
@@ -49,6 +51,22 @@ impl Script {
     }
 }
 
+impl Script {
+    /// As [`Script::feet_at`], as loads: with the prints of those who roll as people do
+    /// ([`Performance::rolling_as_people_do`]), and of others with those of their feet.
+    pub fn loads_at(&self, at: Instant, loads: &mut Vec<Load>) {
+        for performance in &self.cast {
+            let feet = performance.feet(at.secs());
+            for (side, foot) in feet.into_iter().enumerate() {
+                let near = |foot: &Foot| {
+                    self.bounds.grown(0.5 * shoe_size(foot.length_m).length()).contains(foot.position)
+                };
+                loads.extend(foot.filter(near).map(|foot| performance.load(side, &foot, at.secs())));
+            }
+        }
+    }
+}
+
 impl FootDriver for Script {
     fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool {
         feet.clear();
@@ -61,6 +79,21 @@ impl FootDriver for Script {
 }
 
 impl Performance {
+    /// The load of a foot of theirs.
+    fn load(&self, side: usize, foot: &Foot, at_s: f64) -> Load {
+        let load = foot.as_load();
+        let (Some(_), Some(track)) = (&self.habit, self.tracks.get(side)) else { return load };
+        let (mut centre, mut variance) = (load.print.centre_of_pressure(), load.print.variance());
+        if let Some(step) = track.step(at_s) {
+            let share = track.stepping.at(at_s);
+            let (stepping, radii) = step.pressure(foot.roll);
+            centre = centre.lerp(stepping, share);
+            variance = variance.lerp(radii * radii, share);
+        }
+        let radii = Vec2::new(variance.x.sqrt(), variance.y.sqrt());
+        Load { print: self.person.footwear.print(centre, radii, foot.length_m), ..load }
+    }
+
     /// The left and the right foot at a moment; `None` before the person has appeared.
     fn feet(&self, at_s: f64) -> [Option<Foot>; 2] {
         let (shifted, rolled) = self.sway.at(at_s);
@@ -86,8 +119,6 @@ impl Performance {
 mod tests {
     use std::f32::consts::PI;
 
-    use glam::Vec2;
-
     use super::*;
     use crate::floor::Geometry;
     use crate::sim::{MoveError, Person};
@@ -103,6 +134,50 @@ mod tests {
         let mut someone = someone();
         someone.appear(Vec2::new(x, y), facing).unwrap();
         someone
+    }
+
+    #[test]
+    fn who_rolls_as_people_do_walks_with_the_same_weight_and_other_prints() {
+        let bounds = Geometry::of_paper_tiles(10, 6).unwrap().bounds();
+        let walk = |mut walker: Performance| {
+            walker.appear(Vec2::new(0.4, 0.9), EAST).unwrap();
+            walker.walk(&[Vec2::new(2.6, 0.9)]).unwrap();
+            walker.wait(Duration::from_millis(500));
+            Script::new(vec![walker], bounds)
+        };
+        let script = walk(someone().rolling_as_people_do(3));
+        let (mut loads, mut feet, mut whole, mut jump) = (Vec::new(), Vec::new(), 0.0, 0.0f32);
+        let mut before: Vec<Load> = Vec::new();
+        let length = script.duration().as_millis() as u64;
+        for ms in 0..length {
+            let at = Instant::from_millis(ms);
+            (loads.clear(), feet.clear());
+            script.loads_at(at, &mut loads);
+            script.feet_at(at, &mut feet);
+            whole += loads.iter().map(|load| load.force.0).sum::<f32>();
+            for (load, foot) in loads.iter().zip(&feet) {
+                assert_eq!((load.position, load.force), (foot.position, foot.force));
+                let away = load.centre_of_pressure().distance(foot.position);
+                assert!(away < 0.16, "{away} from the middle of the foot at {ms} ms");
+            }
+            for (now, before) in loads.iter().zip(&before) {
+                if now.force.0 > 50.0 && before.force.0 > 50.0 {
+                    jump = jump.max(now.centre_of_pressure().distance(before.centre_of_pressure()));
+                }
+            }
+            before.clone_from(&loads);
+        }
+        // 70 kg on average, and no centre of pressure ever jumps.
+        let mean = whole / length as f32;
+        assert!((mean / 686.7 - 1.0).abs() < 0.06, "{mean} N");
+        assert!(jump < 0.006, "{jump} m in a millisecond");
+        // Steps are those of the seed.
+        let other = walk(someone().rolling_as_people_do(4));
+        (loads.clear(), feet.clear());
+        let mut others = Vec::new();
+        script.loads_at(Instant::from_millis(1500), &mut loads);
+        other.loads_at(Instant::from_millis(1500), &mut others);
+        assert_ne!(loads, others);
     }
 
     /// Feet at every millisecond of a performance on a floor of ten by six tiles.

@@ -26,6 +26,10 @@ pub struct PartConfig {
     pub hysteresis: f32,
     /// Growth of the reading under a steady force per decade of time from 0.1 to 1000 s, as a share.
     pub creep: f32,
+    /// The force that no part's reading ever quite reaches, in newtons: `f / (1 + (f / limit)^6)^(1/6)`
+    /// is read of a force `f`, 11 % too little at the limit and 3 % at eight tenths of it. Infinite where
+    /// only the converter ends the range.
+    pub saturation_n: f32,
 }
 
 impl Default for PartConfig {
@@ -40,6 +44,7 @@ impl Default for PartConfig {
             noise_v: 0.002,
             hysteresis: 0.0,
             creep: 0.0,
+            saturation_n: f32::INFINITY,
         }
     }
 }
@@ -56,6 +61,7 @@ impl PartConfig {
             noise_v: 0.0,
             hysteresis: 0.0,
             creep: 0.0,
+            saturation_n: f32::INFINITY,
         }
     }
 
@@ -90,6 +96,8 @@ pub enum SensorFault {
 pub(super) struct Part {
     pub(super) law: Calibration,
     deviation: Deviation,
+    /// As [`PartConfig::saturation_n`].
+    saturation_n: f32,
 }
 
 impl Part {
@@ -100,17 +108,28 @@ impl Part {
             a_n: config.nominal.a_n * spread(config.a_spread.clamp(0.0, 0.9)),
             b_per_volt: config.nominal.b_per_volt * spread(config.b_spread.clamp(0.0, 0.5)),
         };
-        Self { law, deviation: Deviation::draw(law, config.deviation.clamp(0.0, 0.08), rng) }
+        let saturation_n =
+            if config.saturation_n.is_nan() { f32::INFINITY } else { config.saturation_n.max(LEAST_FORCE) };
+        Self { law, deviation: Deviation::draw(law, config.deviation.clamp(0.0, 0.08), rng), saturation_n }
     }
 
     /// Output under a steady force, before noise and converter: 0 volts below the
     /// part's threshold, more than full scale where the converter saturates.
     pub(super) fn volts(&self, force: f32) -> f32 {
+        let force = self.bounded(force);
         let apparent = force * self.deviation.at(force);
         if apparent > self.law.a_n { (apparent / self.law.a_n).ln() / self.law.b_per_volt } else { 0.0 }
     }
 
-    /// The force from which on the converter reads full scale.
+    /// What of a force gets through as the part saturates.
+    fn bounded(&self, force: f32) -> f32 {
+        if self.saturation_n.is_infinite() || force <= 0.0 {
+            return force;
+        }
+        force / (1.0 + (force / self.saturation_n).powi(6)).powf(1.0 / 6.0)
+    }
+
+    /// The force from which on the converter reads full scale, or at which the part itself saturates.
     pub(super) fn capacity(&self) -> f32 {
         // The apparent force grows with the force, so halving an interval finds the crossing.
         let (mut low, mut high) = (0.0, 4.0 * self.law.force(u16::MAX).0);
@@ -118,7 +137,7 @@ impl Part {
             let middle = 0.5 * (low + high);
             if self.volts(middle) < Calibration::FULL_SCALE_VOLTS { low = middle } else { high = middle }
         }
-        high
+        high.min(self.saturation_n)
     }
 }
 
@@ -221,17 +240,17 @@ impl Memory {
         Self { lag: Some(force.max(LEAST_FORCE).ln()), crept: [f64::from(force.max(0.0)); 5] }
     }
 
-    /// The force the sensor feels, a millisecond later, when `force` presses it.
+    /// The force the sensor feels, so many milliseconds later (fewer than 100), when `force` presses it.
     ///
     /// # Source
     /// Hysteresis: half of the logarithm of the force follows with a play, which
     /// is the elementary operator of the Prandtl-Ishlinskii model. Creep: five
     /// first-order followers a decade apart sum to a straight line over log time.
-    pub(super) fn felt(&mut self, force: f32, config: &PartConfig) -> f32 {
+    pub(super) fn felt(&mut self, force: f32, elapsed_ms: u32, config: &PartConfig) -> f32 {
         let pressed = force.max(0.0);
         let mut crept = 0.0;
         for (follower, time_ms) in self.crept.iter_mut().zip(CREEP_MS) {
-            *follower += (f64::from(pressed) - *follower) / time_ms;
+            *follower += (f64::from(pressed) - *follower) * f64::from(elapsed_ms) / time_ms;
             crept += *follower;
         }
         let grown = pressed + config.creep * crept as f32;
@@ -325,6 +344,16 @@ mod tests {
     }
 
     #[test]
+    fn a_soft_part_reads_ever_less_of_a_force_near_its_limit() {
+        let part = &parts(&PartConfig { saturation_n: 300.0, ..PartConfig::exact() })[0];
+        let read = |force: f32| part.law.force(counts(part.volts(force))).0;
+        for (force, expected) in [(100.0, 99.98), (240.0, 230.5), (300.0, 267.3), (600.0, 299.2)] {
+            assert!((read(force) - expected).abs() < 0.5, "{} for {force}", read(force));
+        }
+        assert_eq!(part.capacity(), 300.0);
+    }
+
+    #[test]
     fn noise_is_centred_and_has_unit_spread() {
         let mut rng = Pcg64Mcg::seed_from_u64(5);
         let draws: Vec<f32> = (0..100_000).map(|_| normal(&mut rng)).collect();
@@ -340,7 +369,7 @@ mod tests {
         let mut run = |from: f32, to: f32| {
             let mut felt = 0.0;
             for step in 0..=1000 {
-                felt = memory.felt(from + (to - from) * step as f32 / 1000.0, &config);
+                felt = memory.felt(from + (to - from) * step as f32 / 1000.0, 1, &config);
             }
             felt
         };
@@ -355,7 +384,7 @@ mod tests {
         let config = PartConfig { creep: 0.05, ..PartConfig::exact() };
         let mut memory = Memory::settled(0.0);
         let mut after = |from_ms: usize, to_ms: usize, force: f32| {
-            (from_ms..to_ms).map(|_| memory.felt(force, &config)).last().unwrap()
+            (from_ms..to_ms).map(|_| memory.felt(force, 1, &config)).last().unwrap()
         };
         let (second, ten, hundred) =
             (after(0, 1000, 100.0), after(1000, 10_000, 100.0), after(10_000, 100_000, 100.0));

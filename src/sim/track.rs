@@ -5,6 +5,7 @@ use std::f32::consts::{PI, TAU};
 use glam::Vec2;
 
 use super::curve::Curve;
+use super::rolling::Rolling;
 
 /// Where a shoe is and where its toes point (radians counter-clockwise from north).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -58,6 +59,10 @@ pub(super) struct Track {
     pub(super) load: Curve,
     /// Heel (0) to toes (1).
     pub(super) roll: Curve,
+    /// How far it rolls as its present step does (1) or as a foot that stands (0).
+    pub(super) stepping: Curve,
+    /// Steps by the moments they begin; none for a foot that does not roll as people do.
+    pub(super) steps: Vec<(f64, Rolling)>,
     moves: Vec<Move>,
 }
 
@@ -71,6 +76,12 @@ impl Track {
     pub(super) fn go(&mut self, start_s: f64, end_s: f64, to: Pose, profile: Profile) {
         let from = self.moves.last().map_or(to, |last| last.to);
         self.moves.push(Move { start_s, end_s, from, to, profile });
+    }
+
+    /// The step that it is in, or was in last.
+    pub(super) fn step(&self, at_s: f64) -> Option<&Rolling> {
+        let begun = self.steps.partition_point(|(start_s, _)| *start_s <= at_s);
+        begun.checked_sub(1).and_then(|last| self.steps.get(last)).map(|(_, step)| step)
     }
 
     /// Where the foot is; `None` before it was put anywhere.
