@@ -7,10 +7,11 @@ use clap::Subcommand;
 use serde::Serialize;
 use underfoot::experiment::{
     ExperimentError, Figure, IntentEffort, IntentSweep, IntentTable, Orientation, PeopleTable, PlaceTable,
-    PondLaws, PondWalk, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
+    PondLaws, PondWalk, SceneTable, SeamObject, SeamTable, SpotTable, TapTable, TileScan, TwoFeet,
 };
 use underfoot::ground::IceSpec;
 use underfoot::picture;
+use underfoot::sim::FloorQuality;
 
 use super::failure::Failure;
 
@@ -37,6 +38,9 @@ enum What {
     Place(SpotArgs),
     /// How well both feet of people are found, and the cursor of a foot that works beside a heavy one.
     Feet(FeetArgs),
+    /// How well everything that presses is found in fourteen scenes that are hard to sense, on floors with
+    /// slight, moderate and severe faults: walking, shifting weight, jumping, kneeling, sticks, wheels.
+    Scenes(ScenesArgs),
     /// How often controls act that nobody meant, and miss what somebody meant: people who cross and use
     /// every shipped layout, and rows of buttons of many sizes and thresholds.
     Intent(IntentArgs),
@@ -75,9 +79,28 @@ struct FeetArgs {
     /// How many people, each on a floor of other parts.
     #[arg(long, value_name = "N", default_value_t = 20)]
     people: u64,
+    /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
+    #[arg(long, value_name = "FAULTS", default_value_t)]
+    faults: FloorQuality,
     /// The first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
+    /// One JSON object instead of tables.
+    #[arg(long)]
+    json: bool,
+}
+
+#[derive(clap::Args, Debug)]
+struct ScenesArgs {
+    /// How many people, each on floors of other parts.
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    people: u64,
+    /// The first person; the next ones follow.
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    seed: u64,
+    /// The floors' faults, separated by commas: ideal, paper, slight, moderate, severe.
+    #[arg(long, value_name = "FAULTS", value_delimiter = ',', default_values_t = FloorQuality::REAL)]
+    faults: Vec<FloorQuality>,
     /// One JSON object instead of tables.
     #[arg(long)]
     json: bool,
@@ -94,6 +117,9 @@ struct IntentArgs {
     /// How many presses they mean altogether on the shipped layouts.
     #[arg(long, value_name = "N", default_value_t = 20_000)]
     presses: u64,
+    /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
+    #[arg(long, value_name = "FAULTS", default_value_t)]
+    faults: FloorQuality,
     /// The first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
@@ -140,6 +166,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         What::Spot(args) => spot(args),
         What::Place(args) => place(args),
         What::Feet(args) => feet(args),
+        What::Scenes(args) => scenes(args),
         What::Intent(args) => intent(args),
         What::Pond(args) => pond(args),
     }
@@ -182,11 +209,12 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
         steps: (args.steps / 10).div_ceil(sweepers),
         presses: (args.presses / 4).div_ceil(sweepers),
     };
-    let (mut table, mut sweep) = (IntentTable::default(), IntentSweep::default());
+    let empty = || (IntentTable::on(args.faults), IntentSweep::on(args.faults));
+    let (mut table, mut sweep) = empty();
     // In the order of people, whoever was done first: the same seed gives the same table.
     for person in in_parallel("person", args.people, |number| {
         let seed = args.seed.wrapping_add(number);
-        let (mut table, mut sweep) = (IntentTable::default(), IntentSweep::default());
+        let (mut table, mut sweep) = empty();
         table.add_person(seed, number, each)?;
         if number < sweepers {
             sweep.add_person(seed.wrapping_add(args.people), number, tenth)?;
@@ -302,12 +330,35 @@ fn place(args: &SpotArgs) -> Result<(), Failure> {
     Ok(())
 }
 
+fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
+    let mut table = SceneTable::on(&args.faults);
+    // In the order of people, whoever was done first: the same seed gives the same table.
+    for person in in_parallel("person", args.people, |number| {
+        let mut table = SceneTable::on(&args.faults);
+        table.add_person(args.seed.wrapping_add(number))?;
+        Ok(table)
+    })? {
+        table.append(person);
+    }
+    if args.json {
+        return print_json(&table.lines().collect::<Vec<_>>());
+    }
+    anstream::print!("{table}");
+    Ok(())
+}
+
 fn feet(args: &FeetArgs) -> Result<(), Failure> {
-    let (mut people, mut taps) = (PeopleTable::default(), TapTable::default());
-    counted("person", args.people, |step| {
-        people.add_person(args.seed.wrapping_add(step))?;
-        taps.add_person(args.seed.wrapping_add(step))
-    })?;
+    let (mut people, mut taps) = (PeopleTable::on(args.faults), TapTable::on(args.faults));
+    for (person, tapping) in in_parallel("person", args.people, |number| {
+        let (mut people, mut taps) = (PeopleTable::on(args.faults), TapTable::on(args.faults));
+        let seed = args.seed.wrapping_add(number);
+        people.add_person(seed)?;
+        taps.add_person(seed)?;
+        Ok((people, taps))
+    })? {
+        people.append(person);
+        taps.append(tapping);
+    }
     if args.json {
         #[derive(Serialize)]
         struct Tables<P, T> {

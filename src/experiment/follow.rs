@@ -4,9 +4,9 @@ use glam::Vec2;
 use smallvec::SmallVec;
 
 use super::errors::Errors;
-use crate::floor::Geometry;
+use super::rig::Rig;
 use crate::sense::{Contact, ContactId};
-use crate::sim::Foot;
+use crate::sim::Load;
 
 /// From which force on a foot counts as down, in newtons.
 pub const DOWN_N: f32 = 10.0;
@@ -23,15 +23,15 @@ pub(super) struct Truth {
 }
 
 impl Truth {
-    /// What the floor carries of `foot`; `None` if nothing.
+    /// What the floor carries of `load`; `None` if nothing.
     ///
-    /// For a foot that is wholly on the floor this is its centre of pressure; of one that
+    /// For a foot that is wholly on a level floor this is its centre of pressure; of one that
     /// hangs over the floor's edge, only what is on the floor can be known.
-    pub(super) fn of(foot: &Foot, geometry: &Geometry) -> Option<Self> {
-        let loads = foot.on_tiles(geometry);
-        let force: f32 = loads.iter().map(|load| load.force.0).sum();
-        let moment: Vec2 = loads.iter().map(|load| load.centroid * load.force.0).sum();
-        (force > 0.0).then(|| Self { position: foot.position, centre: moment / force, force })
+    pub(super) fn of(load: &Load, rig: &Rig) -> Option<Self> {
+        let parts = rig.carried(load);
+        let force: f32 = parts.iter().map(|part| part.force.0).sum();
+        let moment: Vec2 = parts.iter().map(|part| part.centroid * part.force.0).sum();
+        (force > 0.0).then(|| Self { position: load.position, centre: moment / force, force })
     }
 
     fn is_down(&self) -> bool {
@@ -56,6 +56,12 @@ pub struct Followed {
     pub of_two: usize,
     /// Feet found within 5 cm while two were down.
     pub of_two_within_5cm: usize,
+    /// Samples with two feet down or more.
+    pub several: usize,
+    /// Samples with two feet down or more in which every one was found within 5 cm.
+    pub several_within_5cm: usize,
+    /// Feet of `one_foot` whose contact was marked ambiguous.
+    pub one_foot_ambiguous: usize,
     /// Contacts that no foot had made.
     pub extra: usize,
     /// Times that a foot was put down.
@@ -67,8 +73,21 @@ pub struct Followed {
 impl Followed {
     /// Adds all of another comparison.
     pub fn append(&mut self, other: Self) {
-        let Self { two_feet, one_foot, inside, feet, missed, of_two, of_two_within_5cm, extra, steps, swaps } =
-            other;
+        let Self {
+            two_feet,
+            one_foot,
+            inside,
+            feet,
+            missed,
+            of_two,
+            of_two_within_5cm,
+            several,
+            several_within_5cm,
+            one_foot_ambiguous,
+            extra,
+            steps,
+            swaps,
+        } = other;
         self.two_feet.append(two_feet);
         self.one_foot.append(one_foot);
         self.inside.iter_mut().zip(inside).for_each(|(sum, more)| *sum += more);
@@ -76,6 +95,9 @@ impl Followed {
         self.missed += missed;
         self.of_two += of_two;
         self.of_two_within_5cm += of_two_within_5cm;
+        self.several += several;
+        self.several_within_5cm += several_within_5cm;
+        self.one_foot_ambiguous += one_foot_ambiguous;
         self.extra += extra;
         self.steps += steps;
         self.swaps += swaps;
@@ -85,6 +107,18 @@ impl Followed {
     #[must_use]
     pub fn share_within_5cm(&self) -> f32 {
         share(self.of_two_within_5cm, self.of_two)
+    }
+
+    /// Share (0 to 1) of the samples with several feet down in which all were found within 5 cm.
+    #[must_use]
+    pub fn share_all_within_5cm(&self) -> f32 {
+        share(self.several_within_5cm, self.several)
+    }
+
+    /// Share (0 to 1) of the time of a foot alone in which its contact was marked ambiguous.
+    #[must_use]
+    pub fn share_ambiguous(&self) -> f32 {
+        share(self.one_foot_ambiguous, self.one_foot.count())
     }
 
     /// Share (0 to 1) of the feet for which there was no contact.
@@ -165,6 +199,7 @@ fn count(
     // A foot that is just landing or leaving is looked for no more, but its contact is no extra one.
     score.extra += heavy.saturating_sub(feet.len());
     score.feet += down.len();
+    let mut all_near = true;
     for (foot, found) in down.iter().zip(found) {
         let error = found.map(|found| contacts[found].centroid.distance(foot.centre));
         score.missed += usize::from(error.is_none());
@@ -175,12 +210,23 @@ fn count(
             covariance.mahalanobis_squared(foot.centre - *centroid) <= ELLIPSE_95
         };
         score.inside[usize::from(down.len() > 1)] += usize::from(found.as_ref().is_some_and(is_inside));
+        let near = error.is_some_and(|error| error <= NEAR_M);
+        all_near &= near;
         if down.len() > 1 {
             score.of_two += 1;
-            score.of_two_within_5cm += usize::from(error.is_some_and(|error| error <= 0.05));
+            score.of_two_within_5cm += usize::from(near);
+        } else {
+            score.one_foot_ambiguous += usize::from(found.is_some_and(|found| contacts[found].ambiguous));
         }
     }
+    if down.len() > 1 {
+        score.several += 1;
+        score.several_within_5cm += usize::from(all_near);
+    }
 }
+
+/// A place further off than this is wrong, in metres.
+const NEAR_M: f32 = 0.05;
 
 /// The 95 % quantile of chi-squared with two degrees of freedom.
 pub(super) const ELLIPSE_95: f32 = 5.991;
@@ -285,6 +331,19 @@ mod tests {
         let score = compared(&[(&[foot(0.0, 300.0), foot(0.2, 310.0)], &[contact(1, 0.1, 610.0)])]);
         assert_eq!((score.feet, score.missed, score.extra), (2, 1, 0));
         assert_eq!((score.of_two, score.of_two_within_5cm, score.two_feet.count()), (2, 0, 1));
+        assert_eq!((score.several, score.several_within_5cm), (1, 0));
+    }
+
+    #[test]
+    fn all_of_several_feet_count_and_one_alone_may_be_ambiguous() {
+        let ambiguous = Contact { ambiguous: true, ..contact(1, 0.0, 300.0) };
+        let score = compared(&[
+            (&[foot(0.0, 300.0), foot(0.4, 310.0)], &[contact(1, 0.01, 300.0), contact(2, 0.41, 310.0)]),
+            (&[foot(0.0, 300.0), foot(0.4, 310.0)], &[contact(1, 0.01, 300.0), contact(2, 0.48, 310.0)]),
+            (&[foot(0.0, 300.0)], &[ambiguous]),
+        ]);
+        assert_eq!((score.several, score.several_within_5cm, score.of_two_within_5cm), (2, 1, 3));
+        assert_eq!((score.share_ambiguous(), score.share_all_within_5cm()), (1.0, 0.5));
     }
 
     #[test]

@@ -9,6 +9,7 @@ use std::time::Duration;
 use serde::Serialize;
 
 use super::intent_act::{Act, Somebody};
+use super::people::quality_note;
 use super::rig::{ExperimentError, Rig};
 use super::wilson::Counted;
 use crate::engine::Engine;
@@ -16,7 +17,7 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use crate::sense::{Method, Sensing};
-use crate::sim::{Foot, Load};
+use crate::sim::{FloorQuality, Load};
 use crate::units::Instant;
 use crate::widget::{Behaviour, EventKind, Guard, WidgetEvent};
 
@@ -125,12 +126,20 @@ impl Guarded {
 /// thresholds they are shipped with. Crossings are the same for all three; uses
 /// are each guard's own. What counts as acting: a button's click, a switch that
 /// turns over, and the press of anything that follows the foot or acts while held.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct IntentTable {
+    floor: FloorQuality,
     scores: BTreeMap<(String, Guarded), IntentScore>,
     /// Steps on floors on which each guard was tried.
     steps: [u64; 3],
     people: u64,
+}
+
+/// People on the paper's floor.
+impl Default for IntentTable {
+    fn default() -> Self {
+        Self::on(FloorQuality::Paper)
+    }
 }
 
 /// How much one person does.
@@ -143,11 +152,18 @@ pub struct IntentEffort {
 }
 
 impl IntentTable {
+    /// An empty table of people on floors of this quality; on those that err as real floors do
+    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    #[must_use]
+    pub fn on(floor: FloorQuality) -> Self {
+        Self { floor, scores: BTreeMap::new(), steps: [0; 3], people: 0 }
+    }
+
     /// Lets the person that follows from `seed` cross and use one of the shipped layouts on a floor
     /// whose parts follow from it too; `number` says which layout, and at which speed the person walks.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`]; [`ExperimentError::Layout`] and [`ExperimentError::Move`],
+    /// Those of [`Rig::of_quality`]; [`ExperimentError::Layout`] and [`ExperimentError::Move`],
     /// which no seed should bring about.
     pub fn add_person(
         &mut self,
@@ -159,8 +175,9 @@ impl IntentTable {
         let number = number as usize;
         let layout = shipped(number, &geometry)?;
         let layouts = Guarded::ALL.map(|guard| guard.put_on(&layout));
-        let mut stage = Stage::new(seed)?;
-        let mut body = Somebody::of(seed, number / layouts_with_controls().count(), geometry.bounds());
+        let mut stage = Stage::new(self.floor, seed)?;
+        let mut body = Somebody::of(seed, number / layouts_with_controls().count(), geometry.bounds())
+            .rolling(self.floor.is_real());
         let area =
             layout.regions.iter().map(|region| region.area).reduce(joined).unwrap_or(geometry.bounds());
 
@@ -304,8 +321,9 @@ impl fmt::Display for IntentTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "shipped layouts on a floor of 6 x 6 tiles, {} people of 45 to 120 kg at three speeds;\n\
+            "shipped layouts on a floor of 6 x 6 tiles{}, {} people of 45 to 120 kg at three speeds;\n\
              per 1000, with the interval that holds the truth 95 times in 100 (Wilson)",
+            quality_note(self.floor),
             self.people
         )?;
         writeln!(
@@ -426,8 +444,8 @@ pub(super) struct Stage {
 }
 
 impl Stage {
-    pub(super) fn new(seed: u64) -> Result<Self, ExperimentError> {
-        let rig = Rig::of_mapped_parts(Geometry::default(), seed)?;
+    pub(super) fn new(floor: FloorQuality, seed: u64) -> Result<Self, ExperimentError> {
+        let rig = Rig::of_quality(Geometry::default(), floor, seed)?;
         Ok(Self { sensing: rig.sensing(Method::Tracker), rig })
     }
 
@@ -446,26 +464,25 @@ impl Stage {
             trial.done.clear();
             trial.done.resize(act.intended.len(), 0);
         }
-        let (mut feet, mut down, mut steps, mut empty_ms) = (Vec::<Foot>::new(), 0, 0, 0);
+        let (mut loads, mut down, mut steps, mut empty_ms) = (Vec::<Load>::new(), 0, 0, 0);
         let length = act.script.duration().as_millis() as u32;
         for milli in 1..=length + PAUSE_MS {
             let since = Duration::from_millis(milli.into());
-            feet.clear();
+            loads.clear();
             if milli <= length {
-                act.script.feet_at(Instant::START + since, &mut feet);
+                act.script.loads_at(Instant::START + since, &mut loads);
             }
             // Nothing becomes of a floor that stays empty.
-            empty_ms = if feet.is_empty() { empty_ms + 1 } else { 0 };
+            empty_ms = if loads.is_empty() { empty_ms + 1 } else { 0 };
             if empty_ms > PAUSE_MS {
                 continue;
             }
-            let on_floor = |foot: &&Foot| foot.force.0 > DOWN_N && bounds.contains(foot.centre_of_pressure());
-            let now_down = feet.iter().filter(on_floor).count();
+            let on_floor = |load: &&Load| load.force.0 > DOWN_N && bounds.contains(load.centre_of_pressure());
+            let now_down = loads.iter().filter(on_floor).count();
             let meant = act.intended.iter().any(|intended| (intended.from..intended.to).contains(&since));
             steps += if meant { 0 } else { now_down.saturating_sub(down) as u64 };
             down = now_down;
-            let loads: Vec<Load> = feet.iter().map(Foot::as_load).collect();
-            self.rig.step(loads, |frame| {
+            self.rig.step(loads.iter().copied(), |frame| {
                 let contacts = self.sensing.update(frame);
                 for trial in trials.iter_mut() {
                     let events = trial.engine.step_given(frame, contacts).events.to_vec();

@@ -71,6 +71,9 @@ pub(super) struct Somebody {
     person: Person,
     rng: Pcg64Mcg,
     bounds: Rect,
+    /// Whether their feet roll as those of recorded people do, and from which seed.
+    rolling: Option<u64>,
+    seed: u64,
 }
 
 impl Somebody {
@@ -87,7 +90,22 @@ impl Somebody {
             toe_out: rng.random_range(0.0..0.2),
             ..Person::default()
         };
-        Self { person, rng, bounds }
+        Self { person, rng, bounds, rolling: None, seed }
+    }
+
+    /// The same person, with feet that roll as those of recorded people do, or evenly.
+    pub(super) fn rolling(mut self, as_people_do: bool) -> Self {
+        self.rolling = as_people_do.then_some(self.seed);
+        self
+    }
+
+    /// Themselves, not there yet.
+    fn performance(&mut self) -> Performance {
+        let performance = Performance::new(self.person, self.rng.random());
+        match self.rolling {
+            Some(seed) => performance.rolling_as_people_do(seed),
+            None => performance,
+        }
     }
 
     /// Crosses the floor over a point of `area`: straight on, with a stop, turning there or stepping aside.
@@ -96,7 +114,7 @@ impl Somebody {
         let way = self.rng.random_range(0.0..TAU);
         let from = self.beyond(through, way + PI);
         let mut to = self.beyond(through, way);
-        let mut walker = Performance::new(self.person, self.rng.random());
+        let mut walker = self.performance();
         walker.appear(from, way - 0.5 * PI)?;
         let manner = self.rng.random_range(0.0..1.0);
         if manner > 0.6 {
@@ -128,7 +146,7 @@ impl Somebody {
     ) -> Result<Act, ExperimentError> {
         let choice: Vec<usize> =
             (0..layout.widgets.len()).filter(|&index| wanted(&layout.widgets[index])).collect();
-        let mut user = Performance::new(self.person, self.rng.random());
+        let mut user = self.performance();
         let stance = stance(layout, self.bounds) + self.pair(-0.04, 0.04);
         let way = self.rng.random_range(0.0..PI);
         user.appear(self.beyond(stance, way + PI), way - 0.5 * PI)?;

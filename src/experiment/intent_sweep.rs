@@ -15,6 +15,7 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, Layout};
 use crate::scene::{Ink, Scene, Stroke};
 use crate::schema::{Kinds, parse_layout};
+use crate::sim::FloorQuality;
 
 /// Sides of the buttons, in centimetres, and their press thresholds, in newtons.
 const SIZES_CM: [f32; 5] = [8.0, 12.0, 16.0, 20.0, 24.0];
@@ -43,11 +44,22 @@ pub struct SweepCell {
 /// Rows of four unguarded buttons in 25 sizes and thresholds, crossed by the same people and used by them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct IntentSweep {
+    floor: FloorQuality,
     cells: Vec<SweepCell>,
 }
 
+/// People on the paper's floor.
 impl Default for IntentSweep {
     fn default() -> Self {
+        Self::on(FloorQuality::Paper)
+    }
+}
+
+impl IntentSweep {
+    /// An empty sweep of people on floors of this quality; on those that err as real floors do
+    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    #[must_use]
+    pub fn on(floor: FloorQuality) -> Self {
         let each = |size_cm| {
             PRESS_N.map(|press_n| SweepCell {
                 size_cm,
@@ -56,7 +68,7 @@ impl Default for IntentSweep {
                 missed: Counted::default(),
             })
         };
-        Self { cells: SIZES_CM.into_iter().flat_map(each).collect() }
+        Self { floor, cells: SIZES_CM.into_iter().flat_map(each).collect() }
     }
 }
 
@@ -73,8 +85,8 @@ impl IntentSweep {
         effort: IntentEffort,
     ) -> Result<(), ExperimentError> {
         let geometry = Geometry::default();
-        let mut stage = Stage::new(seed)?;
-        let mut body = Somebody::of(seed, number as usize, geometry.bounds());
+        let mut stage = Stage::new(self.floor, seed)?;
+        let mut body = Somebody::of(seed, number as usize, geometry.bounds()).rolling(self.floor.is_real());
         let pitch = geometry.pitch_m();
         let row = Rect::new(Vec2::new(1.0, 2.1), Vec2::new(5.0, 3.1));
         let area = Rect::new(row.min * pitch, row.max * pitch);

@@ -13,6 +13,7 @@
 //! | [`SpotTable`], [`SeamTable`] | how well one contact is found, over a tile and at its seams | |
 //! | [`PlaceTable`] | how well one foot is found, by its force and its distance from a seam | |
 //! | [`PeopleTable`] | how well both feet of walking, turning and standing people are found | |
+//! | [`SceneTable`] | the same of everything that presses in fourteen scenes, on floors of several qualities | |
 //! | [`TapTable`] | whether a heavy foot beside a region disturbs the one that works in it | |
 //! | [`EffectSheet`] | what an effect feels like: waveform, spectrum, figures | |
 //! | [`IntentTable`], [`IntentSweep`] | how often controls act that nobody meant, and miss presses that somebody did | |
@@ -45,6 +46,7 @@ mod pond;
 mod pond_walk;
 mod rig;
 mod scan;
+mod scenes;
 mod seam_object;
 mod spot;
 mod taps;
@@ -66,6 +68,7 @@ pub use pond::{PondLaw, PondLaws};
 pub use pond_walk::{Manner, MannerLine, PondWalk};
 pub use rig::{ExperimentError, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
+pub use scenes::{SceneLine, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};
 pub use spot::{FORCES_N, SeamRow, SeamTable, SpotLine, SpotRow, SpotTable, Thing, Way};
 pub use taps::{Stance, TapLine, TapScene, TapScore, TapTable};

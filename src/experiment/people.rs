@@ -16,7 +16,7 @@ use super::follow::{Followed, Follower, Truth};
 use super::mishap::Mishap;
 use super::rig::{ExperimentError, Rig};
 use crate::floor::Geometry;
-use crate::sim::{Foot, MoveError, Performance, Person, Script};
+use crate::sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
 use crate::units::Instant;
 use crate::wire::Readings;
 
@@ -61,6 +61,18 @@ impl Visit {
     /// # Errors
     /// [`ExperimentError::Move`], which no seed should bring about.
     pub fn of(seed: u64, geometry: &Geometry) -> Result<Self, ExperimentError> {
+        Self::made_up(seed, geometry, false)
+    }
+
+    /// The same visit by somebody whose feet roll as those of recorded people do.
+    ///
+    /// # Errors
+    /// As [`Visit::of`].
+    pub fn rolling_as_people_do(seed: u64, geometry: &Geometry) -> Result<Self, ExperimentError> {
+        Self::made_up(seed, geometry, true)
+    }
+
+    fn made_up(seed: u64, geometry: &Geometry, rolling: bool) -> Result<Self, ExperimentError> {
         let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x7e09_1e55);
         let person = Person {
             mass_kg: rng.random_range(45.0..120.0),
@@ -71,7 +83,11 @@ impl Visit {
             toe_out: rng.random_range(0.0..0.2),
             ..Person::default()
         };
-        let mut parts = Parts { performance: Performance::new(person, seed), ends: Vec::new() };
+        let mut performance = Performance::new(person, seed);
+        if rolling {
+            performance = performance.rolling_as_people_do(seed);
+        }
+        let mut parts = Parts { performance, ends: Vec::new() };
         // Far enough inside for both feet of a wide stance to be on the floor.
         let bounds = geometry.bounds();
         let inner = bounds.grown(-0.45);
@@ -146,48 +162,61 @@ impl Parts {
 /// How well the feet of people are found on the paper's 6 x 6 floor, by each method and activity.
 ///
 /// Every person has the floor to themselves, and every floor has its own parts.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct PeopleTable {
     /// One entry per method ([`METHODS`]) and activity ([`Activity::ALL`]).
     pub scores: [[Followed; 3]; 2],
+    floor: FloorQuality,
     people: usize,
+}
+
+/// People on the paper's floor.
+impl Default for PeopleTable {
+    fn default() -> Self {
+        Self::on(FloorQuality::Paper)
+    }
 }
 
 /// Errors are taken once in so many milliseconds.
 const SAMPLE_MS: u64 = 10;
 
 impl PeopleTable {
+    /// An empty table of people on floors of this quality; on those that err as real floors do
+    /// ([`FloorQuality::REAL`]), feet roll as those of recorded people do.
+    #[must_use]
+    pub fn on(floor: FloorQuality) -> Self {
+        Self { scores: Default::default(), floor, people: 0 }
+    }
+
     /// Lets the person that follows from `seed` visit a floor whose parts follow from it too.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`] and [`Visit::of`].
+    /// Those of [`Rig::of_quality`] and [`Visit::of`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
-        let mut rig = Rig::of_mapped_parts(Geometry::default(), seed)?;
-        let visit = Visit::of(seed, rig.geometry())?;
+        let mut rig = Rig::of_quality(Geometry::default(), self.floor, seed)?;
+        let visit = Visit::made_up(seed, rig.geometry(), self.floor.is_real())?;
         self.add_visit(&mut rig, &visit, &mut ());
         Ok(())
     }
 
     /// Lets `visit` happen on the floor of `rig` while `mishap` does.
     pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, mishap: &mut impl Mishap) {
-        let geometry = *rig.geometry();
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
-        let mut feet: Vec<Foot> = Vec::new();
+        let mut loads: Vec<Load> = Vec::new();
         let mut truth: Vec<Truth> = Vec::new();
         let scores = &mut self.scores;
         for milli in 1..=visit.script.duration().as_millis() as u64 {
             let at = Duration::from_millis(milli);
-            feet.clear();
-            visit.script.feet_at(Instant::START + at, &mut feet);
+            loads.clear();
+            visit.script.loads_at(Instant::START + at, &mut loads);
             truth.clear();
-            truth.extend(feet.iter().filter_map(|foot| Truth::of(foot, &geometry)));
+            truth.extend(loads.iter().filter_map(|load| Truth::of(load, rig)));
             let activity = visit.activity(at) as usize;
             mishap.before(milli, rig);
-            let loads = feet.iter().map(Foot::as_load);
             let shared = RefCell::new(&mut *mishap);
             let disturb =
                 |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(milli, board, readings);
-            rig.step_disturbed(loads, disturb, |frame| {
+            rig.step_disturbed(loads.iter().copied(), disturb, |frame| {
                 shared.borrow_mut().sensed(milli, frame);
                 for ((sensing, follower), scores) in methods.iter_mut().zip(scores.iter_mut()) {
                     let contacts = sensing.update(frame);
@@ -264,8 +293,9 @@ impl fmt::Display for PeopleTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "error of each foot's centre of pressure, {} people on a floor of 6 x 6 tiles, cm",
-            self.people
+            "error of each foot's centre of pressure, {} people on a floor of 6 x 6 tiles{}, cm",
+            self.people,
+            quality_note(self.floor)
         )?;
         writeln!(
             f,
@@ -288,6 +318,11 @@ impl fmt::Display for PeopleTable {
         }
         Ok(())
     }
+}
+
+/// What a table says of its floor; nothing of the paper's.
+pub(super) fn quality_note(floor: FloorQuality) -> String {
+    if floor == FloorQuality::Paper { String::new() } else { format!(" (faults: {})", floor.name()) }
 }
 
 #[cfg(test)]

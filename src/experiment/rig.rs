@@ -3,13 +3,16 @@ use std::time::Duration;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
+use smallvec::SmallVec;
 use thiserror::Error;
 
 use crate::engine::Engine;
 use crate::floor::{Floor, Geometry, PositionMap, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, ForceFrame, Method, Sensing};
-use crate::sim::{self, CalibrationError, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor};
+use crate::sense::{Assembler, ForceFrame, Method, Sensing, TileLoad};
+use crate::sim::{
+    self, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor,
+};
 use crate::units::{Instant, Newtons};
 use crate::wire::{Readings, SensorPacket};
 
@@ -52,12 +55,29 @@ impl Rig {
     /// [`ExperimentError::Calibration`] if a part follows no law, [`ExperimentError::Mapping`] if a
     /// tile's presses make no sense.
     pub fn of_mapped_parts(geometry: Geometry, seed: u64) -> Result<Self, ExperimentError> {
+        Self::of_quality(geometry, FloorQuality::Paper, seed)
+    }
+
+    /// A floor of some quality with its calibration, position maps, drifted zeros and broken sensors.
+    ///
+    /// Of the paper's quality it is that of [`Rig::of_mapped_parts`], ideal that of [`Rig::ideal`].
+    ///
+    /// # Errors
+    /// As [`Rig::of_mapped_parts`].
+    pub fn of_quality(geometry: Geometry, quality: FloorQuality, seed: u64) -> Result<Self, ExperimentError> {
+        if quality == FloorQuality::Ideal {
+            return Ok(Self::ideal(geometry));
+        }
         let wired = Floor::of(geometry);
-        let sim = SimFloor::new(&wired, SimConfig::default(), seed);
+        let sim = SimFloor::new(&wired, quality.config(), seed);
         let floor = sim::calibrated(&wired, &sim, seed)?;
         let mut floor = sim::mapped(&floor, &sim, seed)?;
-        drift(&mut floor, seed);
-        Ok(Self::over(sim, &floor))
+        drift(&mut floor, quality.offset_n(), seed);
+        let mut rig = Self::over(sim, &floor);
+        for (sensor, fault) in quality.broken(&geometry, seed) {
+            rig.set_fault(sensor, Some(fault));
+        }
+        Ok(rig)
     }
 
     /// As [`Rig::of_mapped_parts`], of other plates or parts; without position maps.
@@ -68,7 +88,7 @@ impl Rig {
         let wired = Floor::of(geometry);
         let sim = SimFloor::new(&wired, config, seed);
         let mut floor = sim::calibrated(&wired, &sim, seed)?;
-        drift(&mut floor, seed);
+        drift(&mut floor, OFFSET_N, seed);
         Ok(Self::over(sim, &floor))
     }
 
@@ -156,6 +176,12 @@ impl Rig {
         }
     }
 
+    /// What each tile truly carries of a load; see [`SimFloor::carried`].
+    #[must_use]
+    pub fn carried(&self, load: &Load) -> SmallVec<[TileLoad; 4]> {
+        self.sim.carried(load)
+    }
+
     /// Breaks a sensor, or repairs it with `None`.
     pub fn set_fault(&mut self, sensor: SensorId, fault: Option<SensorFault>) {
         self.sim.set_fault(sensor, fault);
@@ -175,12 +201,12 @@ impl Rig {
     }
 }
 
-/// Moves each sensor's zero by some half a newton.
-fn drift(floor: &mut Floor, seed: u64) {
+/// Moves each sensor's zero by some `offset_n` newtons.
+fn drift(floor: &mut Floor, offset_n: f32, seed: u64) {
     let mut rng = Pcg64Mcg::seed_from_u64(seed ^ 0x00ff_5e75);
     for tare in floor.tare.iter_mut().flatten() {
         let normal: f32 = StandardNormal.sample(&mut rng);
-        *tare += Newtons(OFFSET_N * normal);
+        *tare += Newtons(offset_n * normal);
     }
 }
 

@@ -15,6 +15,7 @@ use super::METHODS;
 use super::errors::{Errors, Summary};
 use super::follow::DOWN_N;
 use super::mishap::Mishap;
+use super::people::quality_note;
 use super::rig::{ExperimentError, Rig};
 use crate::engine::{Engine, Snapshot};
 use crate::feel::Cue;
@@ -22,7 +23,7 @@ use crate::floor::{Geometry, Rect};
 use crate::layout::Layout;
 use crate::schema::{Kinds, parse_layout};
 use crate::sense::{ContactId, ForceFrame};
-use crate::sim::{Foot, shoe_size};
+use crate::sim::{FloorQuality, Foot, shoe_size};
 use crate::units::Newtons;
 use crate::widget::EventKind;
 use crate::wire::Readings;
@@ -233,27 +234,41 @@ impl TapScore {
 /// and the other one taps and slides in it with 30 to 150 N.
 ///
 /// The whole region is one button, so that whatever presses anywhere in it counts.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct TapTable {
     /// One entry per method ([`METHODS`]) and stance ([`Stance::ALL`]).
     pub scores: [[TapScore; 2]; 2],
+    floor: FloorQuality,
     people: usize,
+}
+
+/// People on the paper's floor.
+impl Default for TapTable {
+    fn default() -> Self {
+        Self::on(FloorQuality::Paper)
+    }
 }
 
 /// How long after a touch its press may still be told: the foot has only just left.
 const AFTER_MS: u32 = 60;
 
 impl TapTable {
+    /// An empty table of people on floors of this quality.
+    #[must_use]
+    pub fn on(floor: FloorQuality) -> Self {
+        Self { scores: Default::default(), floor, people: 0 }
+    }
+
     /// Lets the person that follows from `seed` use a region on a floor whose parts follow from it
     /// too, in both stances.
     ///
     /// # Errors
-    /// Those of [`Rig::of_mapped_parts`].
+    /// Those of [`Rig::of_quality`].
     pub fn add_person(&mut self, seed: u64) -> Result<(), ExperimentError> {
         for stance in Stance::ALL {
             let geometry = Geometry::default();
             let scene = TapScene::of(seed, stance, &geometry)?;
-            self.add_scene(&mut Rig::of_mapped_parts(geometry, seed)?, &scene, &mut ());
+            self.add_scene(&mut Rig::of_quality(geometry, self.floor, seed)?, &scene, &mut ());
         }
         self.people += 1;
         Ok(())
@@ -291,6 +306,14 @@ impl TapTable {
             score.pressed += watched.presses.iter().filter(|&&presses| presses > 0).count();
             score.repeated += watched.presses.iter().map(|presses| presses.saturating_sub(1)).sum::<usize>();
         }
+    }
+
+    /// Adds all people of another table.
+    pub fn append(&mut self, other: Self) {
+        for (score, others) in self.scores.iter_mut().flatten().zip(other.scores.into_iter().flatten()) {
+            score.append(others);
+        }
+        self.people += other.people;
     }
 
     fn named(&self) -> impl Iterator<Item = (&'static str, &'static str, &TapScore)> + '_ {
@@ -386,8 +409,9 @@ impl fmt::Display for TapTable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         writeln!(
             f,
-            "error of the cursor, {} people standing 0 to 15 cm from its region with 350 to 700 N,\n\
+            "error of the cursor{}, {} people standing 0 to 15 cm from its region with 350 to 700 N,\n\
              tapping and sliding in it with 30 to 150 N, cm",
+            quality_note(self.floor),
             self.people
         )?;
         writeln!(
