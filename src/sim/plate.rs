@@ -24,9 +24,9 @@ pub struct PlateConfig {
     /// of the other one less, which no load on a rigid plate does; force and both moments stay the same.
     ///
     /// # Source
-    /// `K = G h^3 A / (3 r^4)` of a plate in pure twist (Timoshenko, Theory of Plates and Shells, section
-    /// 10), shear modulus `G` 0.7 GPa of birch plywood, thickness `h`, area `A`, supports `r` from the
-    /// middle lines: 12 mm of plywood, 0.30 m wide, give 120 kN/m. On soft feet of 20 to 50 kN/m that
+    /// `K = G h^3 A / (3 r^4)` of a plate in pure twist (Timoshenko and Woinowsky-Krieger, Theory of Plates
+    /// and Shells), shear modulus `G` 0.7 GPa of birch plywood, thickness `h`, area `A`, supports `r` from
+    /// the middle lines: 12 mm of plywood, 0.30 m wide, give 120 kN/m. On soft feet of 20 to 50 kN/m that
     /// makes 0.4 to 0.6, on feet of 200 kN/m nearly 0.9; 20 mm on soft feet 0.12 to 0.26.
     pub twist: f32,
     /// Largest deviation of each plate's `twist` from that, as a share (0 to 0.5).

@@ -25,7 +25,8 @@ pub struct Body {
 /// Mass and usual length of the foot: children of 6, adults of usual weight, heavy adults.
 ///
 /// # Source
-/// 18 cm at 20 kg (six years), 26 cm at 70 kg; heavy people's feet grow little longer.
+/// Our assumption from shoe sizes: 18 cm at 20 kg (six years), 26 cm at 70 kg; heavy people's feet are
+/// hardly longer.
 const FEET_M: [(f32, f32); 4] = [(20.0, 0.18), (45.0, 0.235), (75.0, 0.262), (140.0, 0.285)];
 
 impl Body {

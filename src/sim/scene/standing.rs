@@ -9,7 +9,7 @@ use crate::floor::Rect;
 use crate::sim::sway::Sway;
 use crate::sim::track::forward;
 
-/// Two feet of somebody who stands about the middle of the floor, swaying from `from_s` to `to_s`.
+/// Two feet of somebody who stands about the middle of the floor and sways; left first, without force yet.
 fn two_feet(body: &mut Body, bounds: Rect, width_m: f32) -> [Thing; 2] {
     let middle = body.place(bounds, 0.5);
     let facing = body.angle();
@@ -66,9 +66,8 @@ pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
 /// Three jumps, each to another place some centimetres off.
 ///
 /// # Source
-/// Vertical jumps: 0.3 to 0.4 s of push with up to 2.3 body weights, 0.35 to 0.5 s in the air, landings
-/// with 2 to 4 body weights within 60 ms (McNitt-Gray 1993); forces here are at the low end of that, as
-/// of somebody who hops about.
+/// Our assumption of somebody who hops about: a push of a quarter of a second with 1.6 to 2.2 body
+/// weights, 0.30 to 0.45 s in the air (11 to 25 cm high), a landing with 1.8 to 3 body weights within 60 ms.
 pub(super) fn jumping(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.within(0.16, 0.35));
     let mut stand = two_feet(body, bounds, width);
