@@ -83,8 +83,8 @@ pub struct SimFloor {
     /// Tiles that were loaded a millisecond ago, where there are memories.
     left: Vec<usize>,
     faults: Vec<Faulty>,
-    /// What presses each tile in `loaded`.
-    loads: Vec<Press>,
+    /// Load, first moment about the tile's centre and twist ([`Press`]), for the tiles in `loaded`.
+    loads: Vec<(f32, Vec2, f32)>,
     loaded: Vec<usize>,
     /// Tile and corner behind each channel of each board.
     channels: Vec<Vec<Option<(usize, usize)>>>,
@@ -145,7 +145,7 @@ impl SimFloor {
             rest_outputs: vec![[0.0; 4]; rest.len()],
             outputs: vec![[0.0; 4]; rest.len()],
             board_tare: vec![[0.0; 4]; rest.len()],
-            loads: vec![Press::default(); rest.len()],
+            loads: vec![NO_LOAD; rest.len()],
             seams: Seams::new(&geometry, &config.seam, seed),
             loaded: Vec::with_capacity(rest.len()),
             behind_ms: vec![0; rest.len()],
@@ -199,7 +199,8 @@ impl SimFloor {
             }
         }
         for &tile in &self.loaded {
-            self.forces[tile] = self.plates[tile].supports(self.loads[tile]);
+            let (force, moment, twist) = self.loads[tile];
+            self.forces[tile] = self.plates[tile].supports(Press { force, at: moment / force, twist });
         }
         self.seams.leak(&mut self.forces, &self.rest, &mut self.loaded);
         if self.memories.is_empty() {
@@ -285,7 +286,7 @@ impl SimFloor {
     /// Takes every load off.
     fn clear(&mut self) {
         for tile in self.loaded.drain(..) {
-            self.loads[tile] = Press::default();
+            self.loads[tile] = NO_LOAD;
             self.forces[tile] = self.rest[tile];
             self.outputs[tile] = self.rest_outputs[tile];
             if !self.memories.is_empty() {
@@ -296,13 +297,14 @@ impl SimFloor {
 
     fn put(&mut self, part: &Carried) {
         let Carried { load, lean } = part;
-        let press = &mut self.loads[load.index];
-        if press.force == 0.0 {
+        let at = load.centroid - self.geometry.centre(load.tile);
+        let (force, moment, twist) = &mut self.loads[load.index];
+        if *force == 0.0 {
             self.loaded.push(load.index);
         }
-        let mut added = Press::at(load.force.0, load.centroid - self.geometry.centre(load.tile));
-        added.twist += load.force.0 * lean;
-        *press += added;
+        *force += load.force.0;
+        *moment += at * load.force.0;
+        *twist += load.force.0 * (at.x * at.y + lean);
     }
 
     /// Turns the support forces of a tile into outputs.
@@ -380,6 +382,9 @@ impl Sensing {
         }
     }
 }
+
+/// Force, moment and twist of a tile that carries nothing.
+const NO_LOAD: (f32, Vec2, f32) = (0.0, Vec2::ZERO, 0.0);
 
 /// Milliseconds from one look at the memories of an empty tile to the next.
 const IDLE_TICKS: usize = 8;

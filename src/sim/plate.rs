@@ -86,24 +86,16 @@ pub(super) struct Plate {
 pub(super) struct Press {
     /// Their sum, in newtons.
     pub(super) force: f32,
-    /// Force times place, in newton metres.
-    pub(super) moment: Vec2,
-    /// Force times x times y, in newton square metres: what twists a plate.
+    /// Where it acts, in metres.
+    pub(super) at: Vec2,
+    /// Sum of force times x times y, in newton square metres: what twists a plate.
     pub(super) twist: f32,
 }
 
 impl Press {
     /// One load at a point.
     pub(super) fn at(force: f32, at: Vec2) -> Self {
-        Self { force, moment: at * force, twist: force * at.x * at.y }
-    }
-}
-
-impl std::ops::AddAssign for Press {
-    fn add_assign(&mut self, other: Self) {
-        self.force += other.force;
-        self.moment += other.moment;
-        self.twist += other.twist;
+        Self { force, at, twist: force * at.x * at.y }
     }
 }
 
@@ -142,7 +134,7 @@ impl Plate {
     /// corner in the air rests on three, which balance alone determines.
     pub(super) fn supports(&self, load: Press) -> [f32; 4] {
         let total = load.force + self.preload;
-        let moment = load.moment / self.reach;
+        let moment = load.at * (load.force / self.reach);
         let twist = load.twist / (self.reach * self.reach);
         let elastic = self.sharing.map(|[z, x, y, xy]| z * total + x * moment.x + y * moment.y + xy * twist);
         if self.pulls || elastic.iter().all(|&support| support >= 0.0) {
