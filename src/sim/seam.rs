@@ -30,6 +30,9 @@ impl SeamConfig {
     }
 }
 
+/// Corners of other tiles, by tile index and corner index.
+type Across = SmallVec<[(usize, usize); 2]>;
+
 /// The seams of one floor.
 #[derive(Clone, Debug)]
 pub(super) struct Seams {
@@ -37,7 +40,7 @@ pub(super) struct Seams {
     lift: Vec<f32>,
     crosstalk: f32,
     /// The corners across the seams, by tile and corner; empty without crosstalk.
-    across: Vec<[SmallVec<[(usize, usize); 2]>; 4]>,
+    across: Vec<[Across; 4]>,
     /// Force on its way: from a tile's corner to another's, in newtons.
     leaks: Vec<(usize, usize, usize, usize, f32)>,
 }
@@ -105,7 +108,7 @@ impl Seams {
 }
 
 /// The corners of other tiles that lie right across the seams from one, by tile index and corner index.
-fn across(geometry: &Geometry, tile: TileId, corner: Corner) -> SmallVec<[(usize, usize); 2]> {
+fn across(geometry: &Geometry, tile: TileId, corner: Corner) -> Across {
     let direction = corner.direction();
     let mirrored = |x: f32, y: f32| {
         Corner::ALL.into_iter().find(|other| other.direction() == glam::Vec2::new(x, y)).map(Corner::index)
