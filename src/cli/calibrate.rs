@@ -26,7 +26,7 @@ pub(crate) struct Args {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// Fit each sensor's law f = a exp(b v) to load-cell measurements.
+    /// Find each sensor's law, exponential or another, from load-cell measurements.
     Curves(curves::Args),
     /// Measure what the sensors read on the empty floor.
     Tare(tare::Args),

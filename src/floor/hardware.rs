@@ -1,6 +1,6 @@
 use super::{
-    CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, PositionMap, Response, SensorId,
-    TileId,
+    Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, PositionMap,
+    Response, SensorId, TileId,
 };
 use crate::units::Newtons;
 
@@ -79,11 +79,10 @@ impl Floor {
             records[corner] = record;
         }
         if old != law {
-            let tare = tares[corner].0;
-            if tare > 0.0 {
-                let volts = (tare / old.a_n).ln() / old.b_per_volt;
-                let tare = law.a_n * (law.b_per_volt * volts).exp();
-                tares[corner] = Newtons(if tare.is_finite() { tare } else { 0.0 });
+            let volts = old.volts_at(tares[corner]);
+            if tares[corner] != Newtons::ZERO && !volts.is_nan() {
+                let tare = law.force_at(volts);
+                tares[corner] = if tare.is_finite() { tare } else { Newtons::ZERO };
             }
             if let Some(map) = self.position_maps.get_mut(tile) {
                 *map = None;
@@ -136,41 +135,6 @@ pub struct Board {
     pub address: String,
     /// The sensor on each channel, in argument order; `None` for an unused channel.
     pub channels: Vec<Option<SensorId>>,
-}
-
-/// The exponential law of one force sensor.
-///
-/// # Source
-/// `f = a exp(b v)` (paper, section 2.2), v in volts, f in newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Calibration {
-    /// Factor a, in newtons; positive.
-    pub a_n: f32,
-    /// Exponent b, per volt; positive.
-    pub b_per_volt: f32,
-}
-
-impl Calibration {
-    /// The part underfoot assumes where nothing was measured: 0.5 N at 0 V, 406 N at 5 V (our choice).
-    pub const NOMINAL: Self = Self { a_n: 0.5, b_per_volt: 1.34 };
-
-    /// Voltage at the converter's full scale.
-    pub const FULL_SCALE_VOLTS: f32 = 5.0;
-
-    /// Counts from which on a sensor is near the end of its range (98 %) and reads "at least".
-    pub const SATURATED: u16 = 64_225;
-
-    /// The voltage behind a raw 16-bit reading: 0 to 5 V.
-    #[must_use]
-    pub fn volts(counts: u16) -> f32 {
-        f32::from(counts) * (Self::FULL_SCALE_VOLTS / f32::from(u16::MAX))
-    }
-
-    /// The force that a raw 16-bit reading stands for, tare not yet taken off.
-    #[must_use]
-    pub fn force(&self, counts: u16) -> Newtons {
-        Newtons(self.a_n * (self.b_per_volt * Self::volts(counts)).exp())
-    }
 }
 
 /// The vibrotactile actuator under one tile.
@@ -232,7 +196,7 @@ mod tests {
         let counts = 30_000;
         floor.tare[1][2] = Calibration::NOMINAL.force(counts);
         floor.position_maps = vec![Some(PositionMap::NONE); 2];
-        let law = Calibration { a_n: 0.6, b_per_volt: 1.3 };
+        let law = Calibration::exponential(0.6, 1.3);
         let record = CalibrationRecord { day: Day::of_unix_seconds(0), residual: 0.05 };
         assert!(floor.recalibrate(sensor, law, Some(record)));
         assert_eq!((floor.law(sensor), floor.calibration_records[1][2]), (law, Some(record)));
@@ -246,12 +210,5 @@ mod tests {
         let floor = Floor::of(Geometry::of_paper_tiles(24, 2).unwrap());
         assert_eq!(floor.boards.len(), 6);
         assert!(floor.boards.iter().all(|board| board.channels.len() == 32));
-    }
-
-    #[test]
-    fn nominal_part_spans_half_a_newton_to_400() {
-        let part = Calibration::NOMINAL;
-        assert!((part.force(0).0 - 0.5).abs() < 1e-6);
-        assert!((400.0..410.0).contains(&part.force(u16::MAX).0));
     }
 }

@@ -4,16 +4,21 @@
 //! (right), y north (away from the user), in metres. [`Geometry`] knows where
 //! tiles and sensors are; [`Floor`] adds what is wired to them.
 
+mod calibration;
 mod drive;
 mod geometry;
 mod hardware;
+mod laws;
 mod position_map;
 mod record;
 mod rect;
+mod significant;
 
+pub use calibration::{Calibration, LawKind, Parameter};
 pub use drive::{Drive, Loudspeaker, Response};
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
-pub use hardware::{Actuator, Board, Calibration, Floor};
+pub use hardware::{Actuator, Board, Floor};
+pub use laws::{Divider, Exponential, Linear, Power};
 pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;

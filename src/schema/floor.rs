@@ -7,6 +7,7 @@ use super::day;
 use super::diagnostic::Diagnostics;
 use super::fields::Fields;
 use super::floor_maps::maps;
+use super::floor_sensors::sensors;
 use super::floor_sound::sound;
 use super::node::Node;
 use super::pairs::Limits;
@@ -14,10 +15,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
-use crate::floor::{
-    Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, GeometryError, SensorId, TileId,
-};
-use crate::units::Newtons;
+use crate::floor::{Board, Corner, Floor, Geometry, GeometryError, SensorId, TileId};
 use crate::wire::MAX_CHANNELS;
 
 /// Most boards of one floor.
@@ -229,7 +227,7 @@ fn channels_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
     }))
 }
 
-fn corner(node: Node<'_>) -> Option<Corner> {
+pub(super) fn corner(node: Node<'_>) -> Option<Corner> {
     let [sw, se, nw, ne] = Corner::ALL;
     node.choice(&[("Sw", sw), ("Se", se), ("Nw", nw), ("Ne", ne)])
 }
@@ -247,58 +245,12 @@ fn address(node: Node<'_>) -> Option<String> {
     None
 }
 
-/// Calibration and tare of the sensors that are listed.
-fn sensors(node: Node<'_>, grid: Grid, floor: &mut Floor) -> Option<()> {
-    let most = floor.geometry.tile_count().max(1) * Corner::ALL.len();
-    let mut seen = Seen::new();
-    for node in node.list("sensor", if grid.known.is_some() { most } else { usize::MAX })? {
-        let Some(mut fields) = node.fields("Sensor") else { continue };
-        let nominal = Calibration::NOMINAL;
-        let tile = fields.read("tile", None, |node| grid.tile(node));
-        let corner = fields.read("corner", None, corner);
-        let a_n = fields.read("a_n", Some(nominal.a_n), |node| single(node, 1e-6..=1000.0));
-        let b = fields.read("b_per_volt", Some(nominal.b_per_volt), |node| single(node, 1e-3..=20.0));
-        let tare = fields.read("tare_n", Some(0.0), |node| single(node, -5000.0..=5000.0));
-        let record = calibration_record(&mut fields);
-        let span = fields.span("tile");
-        fields.finish();
-        let (Some(tile), Some(corner)) = (tile, corner) else { continue };
-        let sensor = SensorId { tile, corner };
-        seen.check(node.reader, sensor, || format!("the sensor of {sensor}"), span);
-        let (Some(a_n), Some(b_per_volt), Some(tare), Some(record)) = (a_n, b, tare, record) else {
-            continue;
-        };
-        let index = floor.geometry.index(tile).unwrap_or(usize::MAX);
-        if let (Some(calibration), Some(tares)) =
-            (floor.calibration.get_mut(index), floor.tare.get_mut(index))
-        {
-            calibration[corner.index()] = Calibration { a_n, b_per_volt };
-            tares[corner.index()] = Newtons(tare);
-            floor.calibration_records[index][corner.index()] = record;
-        }
-    }
-    Some(())
-}
-
-/// When a sensor's law was measured: `calibrated` and `residual`, both or neither.
-fn calibration_record(fields: &mut Fields<'_>) -> Option<Option<CalibrationRecord>> {
-    let day: Option<Option<Day>> = fields.read("calibrated", Some(None), |node| day::read(node).map(Some));
-    let residual = fields.read("residual", Some(None), |node| single(node, 0.0..=1e6).map(Some));
-    match (day?, residual?) {
-        (Some(day), Some(residual)) => Some(Some(CalibrationRecord { day, residual })),
-        (None, None) => Some(None),
-        (day, _) => {
-            day::report_half(fields, ("calibrated", "residual"), day.is_some());
-            None
-        }
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::write_floor;
     use super::*;
-    use crate::floor::Actuator;
+    use crate::floor::{Actuator, Calibration};
+    use crate::units::Newtons;
 
     fn read(text: &str) -> Floor {
         parse_floor(text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))
@@ -337,7 +289,7 @@ mod tests {
             floor.boards[1].channels,
             [sensor(0, Corner::NorthEast), None, sensor(0, Corner::SouthWest)]
         );
-        let part = Calibration { a_n: 0.7, ..Calibration::NOMINAL };
+        let part = Calibration::exponential(0.7, 1.34);
         assert_eq!(floor.calibration[0][Corner::NorthEast.index()], part);
         assert_eq!(floor.calibration[0][0], Calibration::NOMINAL);
         assert_eq!(floor.tare[0][Corner::NorthEast.index()], Newtons(12.5));
@@ -348,7 +300,7 @@ mod tests {
     fn a_written_floor_can_be_edited_by_people() {
         let mut floor = Floor::of(Geometry::of_paper_tiles(2, 1).unwrap());
         floor.boards[0].channels.truncate(4);
-        floor.calibration[1][2].a_n = 0.52;
+        floor.calibration[1][2] = Calibration::exponential(0.52, 1.34);
         floor.actuators[0] = None;
         insta::assert_snapshot!(write_floor(&floor), @r#"
         // A floor: where its tiles are and what is wired to them.

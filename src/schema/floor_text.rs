@@ -1,9 +1,10 @@
 use std::fmt::Write;
 
 use super::floor::usual_address;
+use super::floor_sensors::LAWS;
 use super::version::FORMAT_VERSION;
 use crate::floor::{
-    Actuator, Board, Calibration, Corner, Drive, Floor, Loudspeaker, MapRecord, SensorId, TileId,
+    Actuator, Board, Calibration, Corner, Drive, Floor, LawKind, Loudspeaker, MapRecord, SensorId, TileId,
 };
 use crate::units::Newtons;
 
@@ -109,19 +110,47 @@ fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
         text,
         "    // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal."
     )?;
+    write_other_laws(measured.iter().map(|(_, _, law, ..)| law.kind()), text)?;
     writeln!(text, "    sensors: [")?;
-    for (tile, corner, Calibration { a_n, b_per_volt }, Newtons(tare), record) in measured {
+    for (tile, corner, law, Newtons(tare), record) in measured {
         let (tile, corner) = (place(tile), variant(corner));
-        write!(
-            text,
-            "        (tile: {tile}, corner: {corner}, a_n: {a_n:?}, b_per_volt: {b_per_volt:?}, tare_n: {tare:?}"
-        )?;
+        write!(text, "        (tile: {tile}, corner: {corner}, ")?;
+        write_law(law, text)?;
+        write!(text, ", tare_n: {tare:?}")?;
         if let Some(record) = record {
             write!(text, ", calibrated: \"{}\", residual: {:?}", record.day, record.residual)?;
         }
         writeln!(text, "),")?;
     }
     writeln!(text, "    ],")
+}
+
+/// What the laws other than the paper's mean, of those that the floor has.
+fn write_other_laws(kinds: impl Iterator<Item = LawKind> + Clone, text: &mut String) -> std::fmt::Result {
+    for kind in LawKind::ALL {
+        let meaning = match kind {
+            LawKind::Exponential => continue,
+            LawKind::Power => "Power: f = a_n v^exponent.",
+            LawKind::Divider => "Divider: f = a_n v / (supply_v - v).",
+            LawKind::Linear => "Linear: f = a_n_per_volt (v - zero_v).",
+        };
+        if kinds.clone().any(|other| other == kind) {
+            writeln!(text, "    // {meaning}")?;
+        }
+    }
+    Ok(())
+}
+
+/// The law's name, unless it is the paper's, and its two numbers.
+fn write_law(law: Calibration, text: &mut String) -> std::fmt::Result {
+    let kind = law.kind();
+    if let Some((name, _)) =
+        LAWS.into_iter().find(|(_, named)| *named == kind && kind != LawKind::Exponential)
+    {
+        write!(text, "law: {name}, ")?;
+    }
+    let ([a, b], [a_number, b_number]) = (kind.parameters(), law.numbers());
+    write!(text, "{}: {a_number:?}, {}: {b_number:?}", a.name, b.name)
 }
 
 fn write_maps(floor: &Floor, text: &mut String) -> std::fmt::Result {

@@ -26,6 +26,7 @@ mod feel;
 mod fields;
 mod floor;
 mod floor_maps;
+mod floor_sensors;
 mod floor_sound;
 mod floor_text;
 mod ground;

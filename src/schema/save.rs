@@ -198,7 +198,7 @@ mod tests {
         let path = folder.path().join("floor.ron");
         let mut floor = Floor::default();
         assert_eq!(save_floor(&floor, &path).unwrap(), Saved::New);
-        floor.calibration[3][0].a_n = -1.0;
+        floor.calibration[3][0] = crate::floor::Calibration::exponential(-1.0, 1.34);
         assert!(matches!(save_floor(&floor, &path), Err(SaveError::Unreadable(_))));
         assert_eq!(super::super::load_floor(&path).unwrap(), Floor::default());
         assert_eq!(names(folder.path()), ["floor.ron"]);

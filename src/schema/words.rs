@@ -2,7 +2,7 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(super) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 17] = [
+    const UNITS: [(&str, &str); 19] = [
         ("_n_s_m", " N s/m"),
         ("_n_m", " N/m"),
         ("_kg", " kg"),
@@ -11,6 +11,7 @@ pub(super) fn unit(field: &str) -> &'static str {
         ("_per_j", " per joule"),
         ("_j", " J"),
         ("_m_s", " m/s"),
+        ("_n_per_volt", " N per volt"),
         ("_per_volt", " per volt"),
         ("_ms", " ms"),
         ("_n", " N"),
@@ -20,6 +21,7 @@ pub(super) fn unit(field: &str) -> &'static str {
         ("_per_s", " per second"),
         ("_s", " s"),
         ("_db", " dB"),
+        ("_v", " V"),
     ];
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }
@@ -56,6 +58,10 @@ pub(super) fn example(field: &str) -> Option<&'static str> {
         "grip" => "grip: 0.9",
         "glide" => "glide: 0.5",
         "stretch_m" => "stretch_m: 0.002",
+        "exponent" => "exponent: 2.5",
+        "supply_v" => "supply_v: 5",
+        "a_n_per_volt" => "a_n_per_volt: 80",
+        "zero_v" => "zero_v: 0",
         "parts" => "parts: [(at_ms: 0, plays: \"crisp_click\"), (at_ms: 90, plays: \"soft_click\")]",
         "at_ms" => "at_ms: 0",
         "plays" => "plays: Click(level_n: 12, modes: [(hz: 180, decay_ms: 18)])",

@@ -1,10 +1,11 @@
 //! Fitting a sensor's law to load-cell measurements.
 
+use levenberg_marquardt::TerminationReason::NoImprovementPossible;
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DVector, Dyn, Matrix, OMatrix, Owned, U2, Vector2};
 use thiserror::Error;
 
-use crate::floor::Calibration;
+use crate::floor::{Calibration, Divider, LawKind};
 use crate::units::Newtons;
 
 /// One measurement: the sensor's output in volts and the load cell's force in newtons.
@@ -27,7 +28,7 @@ impl LoadPoint {
 /// A fitted law and how well it follows its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The law; both parameters positive and finite.
+    /// The law; a plausible one ([`Calibration::is_plausible`]).
     pub calibration: Calibration,
     /// Root mean square of the force error, as a share of the greatest force measured.
     ///
@@ -59,13 +60,14 @@ pub enum FitError {
     /// The least-squares search found no minimum.
     #[error("the fit does not converge: do the measurements belong to this sensor?")]
     NoConvergence,
+    /// The best curve leaves as much over as the same force at every voltage would.
+    #[error("the force does not follow the voltage: do the measurements belong to this sensor?")]
+    Unrelated,
     /// The best law is one that no force sensor has: falling, flat or out of range.
-    #[error("the best law, a = {a_n} N and b = {b_per_volt} per volt, is no force sensor's")]
+    #[error("no force sensor has the best {} law, f = {law}", law.kind().name())]
     Unphysical {
-        /// Factor found.
-        a_n: f32,
-        /// Exponent found.
-        b_per_volt: f32,
+        /// Law found.
+        law: Calibration,
     },
 }
 
@@ -76,45 +78,42 @@ impl Fit {
     /// Least difference of voltages that tells an exponent, in volts (our choice).
     const MIN_SPREAD_V: f32 = 0.05;
 
-    /// The law that follows `points` best, in any order, repeated loads welcome.
+    /// The paper's exponential law that follows `points` best; as [`Fit::of_law`].
+    ///
+    /// # Errors
+    /// As [`Fit::of_law`].
+    pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
+        Self::of_law(LawKind::Exponential, points)
+    }
+
+    /// The law of this kind that follows `points` best, in any order, repeated loads welcome.
     ///
     /// The squares are those of the force error in newtons, so heavy loads
     /// count most: that is where a foot works. Points with a force of zero or
     /// less take part in the fit but don't count as measurements on their own.
-    /// Leave out saturated readings, which follow no law.
+    /// Leave out saturated readings, which follow no law. Which of the laws a part follows,
+    /// [`Comparison`](super::Comparison) tells.
     ///
     /// # Errors
     /// [`FitError`] tells a lack of data ([`TooFewPoints`](FitError::TooFewPoints),
-    /// [`NoSpread`](FitError::NoSpread): measure more) from data that no law follows.
+    /// [`NoSpread`](FitError::NoSpread): measure more) from data that the law does not follow.
     ///
     /// # Source
     /// `f = a exp(b v)` by least squares (paper, section 2.2), here by
-    /// Levenberg-Marquardt from the straight line through `ln f`.
-    pub fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
-        let problem = Problem::start(points)?;
-        let (problem, report) = LevenbergMarquardt::new().with_patience(100).minimize(problem);
-        if !report.termination.was_successful() {
-            return Err(FitError::NoConvergence);
-        }
-        let calibration = problem.calibration();
-        let Calibration { a_n, b_per_volt } = calibration;
-        let at_full_scale = calibration.force(u16::MAX);
-        if !(a_n > 0.0 && b_per_volt > 0.0 && at_full_scale.is_finite()) {
-            return Err(FitError::Unphysical { a_n, b_per_volt });
-        }
-        Ok(Self { calibration, residual: problem.residual_share() })
+    /// Levenberg-Marquardt from the straight line through `ln f`; the others alike, the linear one directly.
+    pub fn of_law(kind: LawKind, points: &[LoadPoint]) -> Result<Self, FitError> {
+        Loads::of(points)?.fit(kind)
     }
 }
 
-/// The least-squares problem in `(ln a, b)`: a stays positive and both are of order one.
-struct Problem {
-    volts: DVector<f64>,
-    forces: DVector<f64>,
-    params: Vector2<f64>,
+/// The measurements of one sensor, checked.
+pub(super) struct Loads {
+    pub(super) volts: DVector<f64>,
+    pub(super) forces: DVector<f64>,
 }
 
-impl Problem {
-    fn start(points: &[LoadPoint]) -> Result<Self, FitError> {
+impl Loads {
+    pub(super) fn of(points: &[LoadPoint]) -> Result<Self, FitError> {
         if let Some(index) = points.iter().position(|p| !(p.volts.is_finite() && p.force.is_finite())) {
             return Err(FitError::NotFinite { index });
         }
@@ -133,27 +132,182 @@ impl Problem {
         Ok(Self {
             volts: DVector::from_iterator(points.len(), points.iter().map(|p| f64::from(p.volts))),
             forces: DVector::from_iterator(points.len(), points.iter().map(|p| f64::from(p.force.0))),
-            params: log_line(points),
         })
     }
 
-    fn modelled(&self) -> DVector<f64> {
-        let (ln_a, b) = (self.params.x, self.params.y);
-        self.volts.map(|v| (ln_a + b * v).exp())
-    }
-
-    fn calibration(&self) -> Calibration {
-        Calibration { a_n: self.params.x.exp() as f32, b_per_volt: self.params.y as f32 }
-    }
-
-    fn residual_share(&self) -> f32 {
-        let errors = self.modelled() - &self.forces;
-        let rms = (errors.norm_squared() / errors.len() as f64).sqrt();
-        (rms / self.forces.max()) as f32
+    /// The law of this kind by the squares of the force error.
+    pub(super) fn fit(&self, kind: LawKind) -> Result<Fit, FitError> {
+        let best = Curve::through(kind, self, None)?;
+        let errors = best.modelled() - &self.forces;
+        let mean = self.forces.mean();
+        let around_mean: f64 = self.forces.iter().map(|force| (force - mean).powi(2)).sum();
+        let law = best.calibration();
+        if !law.is_plausible() {
+            return Err(FitError::Unphysical { law });
+        }
+        let squares = errors.norm_squared();
+        if squares.is_nan() || squares >= around_mean {
+            return Err(FitError::Unrelated);
+        }
+        let rms = (squares / errors.len() as f64).sqrt();
+        Ok(Fit { calibration: law, residual: (rms / self.forces.max()) as f32 })
     }
 }
 
-impl LeastSquaresProblem<f64, Dyn, U2> for Problem {
+/// A law on its way to the least squares, in parameters that leave it rising and are of order one: `(ln a, b)` of
+/// the exponential and the power law, `(ln a, ln (s - end))` of the divider, `(a, a z)` of the straight line.
+pub(super) struct Curve<'a> {
+    kind: LawKind,
+    loads: &'a Loads,
+    /// What each error is multiplied by; `None` leaves newtons.
+    weights: Option<&'a DVector<f64>>,
+    /// Least supply of a divider: its end lies above all measurements.
+    end: f64,
+    params: Vector2<f64>,
+}
+
+impl<'a> Curve<'a> {
+    /// The curve of this kind with the least squares of weighted errors.
+    pub(super) fn through(
+        kind: LawKind,
+        loads: &'a Loads,
+        weights: Option<&'a DVector<f64>>,
+    ) -> Result<Self, FitError> {
+        let end = loads.volts.max() / f64::from(Divider::END);
+        let mut curve = Self { kind, loads, weights, end, params: Vector2::zeros() };
+        curve.params = curve.start()?;
+        if kind == LawKind::Linear {
+            return Ok(curve);
+        }
+        let (curve, report) = LevenbergMarquardt::new().with_patience(100).minimize(curve);
+        match report.termination {
+            // The steps became smaller than single bits: there is the minimum.
+            NoImprovementPossible(_) => Ok(curve),
+            reason if reason.was_successful() => Ok(curve),
+            _ => Err(FitError::NoConvergence),
+        }
+    }
+
+    /// Where the search starts; for a straight line, where it ends.
+    fn start(&self) -> Result<Vector2<f64>, FitError> {
+        let start = match self.kind {
+            LawKind::Exponential => self.log_line(|volts| volts),
+            LawKind::Power => self.log_line(f64::ln),
+            LawKind::Divider => self.nearest_divider(),
+            LawKind::Linear => self.line(),
+        };
+        if start.iter().all(|parameter| parameter.is_finite()) {
+            Ok(start)
+        } else {
+            Err(FitError::NoConvergence)
+        }
+    }
+
+    /// `(ln a, b)` of the straight line through `ln f` over `scale(v)`, by positive forces only.
+    fn log_line(&self, scale: impl Fn(f64) -> f64) -> Vector2<f64> {
+        let loaded = || {
+            let pairs = self.loads.volts.iter().zip(self.loads.forces.iter());
+            pairs.filter(|(_, f)| **f > 0.0).map(|(v, f)| (scale(*v), f.ln())).filter(|(v, _)| v.is_finite())
+        };
+        let count = loaded().count() as f64;
+        let (mean_v, mean_f) =
+            loaded().fold((0.0, 0.0), |(v, f), point| (v + point.0 / count, f + point.1 / count));
+        let (vv, vf) = loaded().fold((0.0, 0.0), |(vv, vf), (v, f)| {
+            (vv + (v - mean_v).powi(2), vf + (v - mean_v) * (f - mean_f))
+        });
+        let b = vf / vv;
+        Vector2::new(mean_f - b * mean_v, b)
+    }
+
+    /// The best of some dividers whose supplies reach from just above the measurements to far beyond.
+    fn nearest_divider(&self) -> Vector2<f64> {
+        let tried = (-7..=7).filter_map(|step| {
+            let above = f64::from(step) * 0.7 + self.end.max(1e-3).ln();
+            let unit = Self { params: Vector2::new(0.0, above), ..*self };
+            let shape = unit.weighted(unit.modelled());
+            let forces = self.weighted(self.loads.forces.clone());
+            let a = shape.dot(&forces) / shape.norm_squared();
+            let left = (shape * a - forces).norm_squared();
+            (a > 0.0 && left.is_finite()).then(|| (left, Vector2::new(a.ln(), above)))
+        });
+        let best = tried.min_by(|(one, _), (other, _)| one.total_cmp(other));
+        best.map_or(Vector2::new(f64::NAN, 0.0), |(_, params)| params)
+    }
+
+    /// `(a, a z)` of the straight line with the least squares.
+    fn line(&self) -> Vector2<f64> {
+        let share = |index: usize| self.weights.map_or(1.0, |weights| weights[index].powi(2));
+        let all: f64 = (0..self.loads.volts.len()).map(share).sum();
+        let mean = |values: &DVector<f64>| -> f64 {
+            values.iter().enumerate().map(|(index, value)| share(index) * value).sum::<f64>() / all
+        };
+        let (mean_v, mean_f) = (mean(&self.loads.volts), mean(&self.loads.forces));
+        let pairs = self.loads.volts.iter().zip(self.loads.forces.iter()).enumerate();
+        let (vv, vf) = pairs.fold((0.0, 0.0), |(vv, vf), (index, (v, f))| {
+            (vv + share(index) * (v - mean_v).powi(2), vf + share(index) * (v - mean_v) * (f - mean_f))
+        });
+        let a = vf / vv;
+        Vector2::new(a, a * mean_v - mean_f)
+    }
+
+    fn modelled(&self) -> DVector<f64> {
+        let (p, q) = (self.params.x, self.params.y);
+        let volts = &self.loads.volts;
+        match self.kind {
+            LawKind::Exponential => volts.map(|v| (p + q * v).exp()),
+            LawKind::Power => volts.map(|v| if v > 0.0 { (p + q * v.ln()).exp() } else { 0.0 }),
+            LawKind::Divider => {
+                let (a, supply) = (p.exp(), self.end + q.exp());
+                volts.map(|v| a * v / (supply - v))
+            }
+            LawKind::Linear => volts.map(|v| p * v - q),
+        }
+    }
+
+    /// Change of the modelled force with the second parameter, at measurement `index` where it is `modelled`.
+    fn slope(&self, index: usize, modelled: f64) -> f64 {
+        let v = self.loads.volts[index];
+        match self.kind {
+            LawKind::Exponential => modelled * v,
+            LawKind::Power => {
+                if v > 0.0 {
+                    modelled * v.ln()
+                } else {
+                    0.0
+                }
+            }
+            LawKind::Divider => {
+                let above = self.params.y.exp();
+                -modelled * above / (self.end + above - v)
+            }
+            LawKind::Linear => -1.0,
+        }
+    }
+
+    fn weighted(&self, values: DVector<f64>) -> DVector<f64> {
+        match self.weights {
+            Some(weights) => values.component_mul(weights),
+            None => values,
+        }
+    }
+
+    /// What it misses each measurement by, weighted.
+    pub(super) fn errors(&self) -> DVector<f64> {
+        self.weighted(self.modelled() - &self.loads.forces)
+    }
+
+    fn calibration(&self) -> Calibration {
+        let (p, q) = (self.params.x, self.params.y);
+        let numbers = match self.kind {
+            LawKind::Exponential | LawKind::Power => [p.exp(), q],
+            LawKind::Divider => [p.exp(), self.end + q.exp()],
+            LawKind::Linear => [p, q / p],
+        };
+        Calibration::of(self.kind, numbers.map(|number| number as f32))
+    }
+}
+
+impl LeastSquaresProblem<f64, Dyn, U2> for Curve<'_> {
     type ResidualStorage = Owned<f64, Dyn>;
     type JacobianStorage = Owned<f64, Dyn, U2>;
     type ParameterStorage = Owned<f64, U2>;
@@ -167,32 +321,20 @@ impl LeastSquaresProblem<f64, Dyn, U2> for Problem {
     }
 
     fn residuals(&self) -> Option<DVector<f64>> {
-        Some(self.modelled() - &self.forces)
+        Some(self.errors())
     }
 
     fn jacobian(&self) -> Option<Matrix<f64, Dyn, U2, Self::JacobianStorage>> {
         let modelled = self.modelled();
         Some(OMatrix::<f64, Dyn, U2>::from_fn_generic(Dyn(modelled.len()), U2, |row, column| {
-            if column == 0 { modelled[row] } else { modelled[row] * self.volts[row] }
+            let change = match (column, self.kind) {
+                (0, LawKind::Linear) => self.loads.volts[row],
+                (0, _) => modelled[row],
+                _ => self.slope(row, modelled[row]),
+            };
+            self.weights.map_or(change, |weights| weights[row] * change)
         }))
     }
-}
-
-/// `(ln a, b)` of the straight line through `ln f` over v, by positive forces only.
-fn log_line(points: &[LoadPoint]) -> Vector2<f64> {
-    let loaded = || {
-        points
-            .iter()
-            .filter(|p| p.force > Newtons::ZERO)
-            .map(|p| (f64::from(p.volts), f64::from(p.force.0).ln()))
-    };
-    let count = loaded().count() as f64;
-    let (mean_v, mean_f) =
-        loaded().fold((0.0, 0.0), |(v, f), point| (v + point.0 / count, f + point.1 / count));
-    let (vv, vf) = loaded()
-        .fold((0.0, 0.0), |(vv, vf), (v, f)| (vv + (v - mean_v).powi(2), vf + (v - mean_v) * (f - mean_f)));
-    let b = vf / vv;
-    Vector2::new(mean_f - b * mean_v, b)
 }
 
 #[cfg(test)]
@@ -203,11 +345,19 @@ mod tests {
 
     use super::*;
 
+    /// By `scipy.optimize.curve_fit` on the points of the test that uses it: both numbers and the residual.
+    const SCIPY: [(LawKind, [f32; 2], f32); 4] = [
+        (LawKind::Exponential, [10.881, 0.786_848], 0.020_650_4),
+        (LawKind::Power, [5.979_21, 2.743_09], 0.021_752_2),
+        (LawKind::Divider, [122.224, 5.983_33], 0.024_978_9),
+        (LawKind::Linear, [88.5816, 0.994_526], 0.117_444),
+    ];
+
     fn ramp(law: Calibration, points: usize) -> Vec<LoadPoint> {
         (0..points)
             .map(|step| {
                 let volts = 5.0 * (step as f32 + 0.5) / points as f32;
-                LoadPoint::new(volts, Newtons(law.a_n * (law.b_per_volt * volts).exp()))
+                LoadPoint::new(volts, law.force_at(volts))
             })
             .collect()
     }
@@ -219,8 +369,8 @@ mod tests {
         // Parts at both ends of the spread underfoot simulates.
         for law in [
             Calibration::NOMINAL,
-            Calibration { a_n: 0.625, b_per_volt: 1.41 },
-            Calibration { a_n: 0.375, b_per_volt: 1.27 },
+            Calibration::exponential(0.625, 1.41),
+            Calibration::exponential(0.375, 1.27),
         ] {
             // Eight seconds of a slow press at 1 kHz: the heavy end pins the curve, so a, far from it, needs many.
             let mut points = ramp(law, 8000);
@@ -228,9 +378,51 @@ mod tests {
                 point.force = point.force * noise.sample(&mut rng);
             }
             let fit = Fit::of(&points).unwrap();
-            let (a, b) = (fit.calibration.a_n / law.a_n, fit.calibration.b_per_volt / law.b_per_volt);
+            let ([a, b], [true_a, true_b]) = (fit.calibration.numbers(), law.numbers());
+            let (a, b) = (a / true_a, b / true_b);
             assert!((a - 1.0).abs() < 0.01 && (b - 1.0).abs() < 0.01, "a {a}, b {b}");
             assert!(fit.residual < 0.01, "{}", fit.residual);
+        }
+    }
+
+    #[test]
+    fn every_law_comes_back_from_its_own_curve() {
+        for law in [
+            Calibration::exponential(4.4e-6, 3.7),
+            Calibration::of(LawKind::Power, [2.2, 3.1]),
+            // Nearly nothing at one volt.
+            Calibration::of(LawKind::Power, [2e-11, 19.0]),
+            Calibration::of(LawKind::Divider, [35.0, 5.05]),
+            Calibration::of(LawKind::Divider, [35.0, 40.0]),
+            Calibration::of(LawKind::Linear, [82.0, 0.4]),
+            Calibration::of(LawKind::Linear, [82.0, -1.0]),
+        ] {
+            let fit =
+                Fit::of_law(law.kind(), &ramp(law, 40)).unwrap_or_else(|error| panic!("{law}: {error}"));
+            let near = |(found, truth): (f32, f32)| (found - truth).abs() <= 1e-3 * truth.abs();
+            let numbers = fit.calibration.numbers().into_iter().zip(law.numbers());
+            assert!(numbers.into_iter().all(near) && fit.residual < 1e-5, "{law}: {fit:?}");
+        }
+    }
+
+    #[test]
+    fn squares_are_those_that_an_independent_fit_finds() {
+        let points = [
+            (0.4, 3.0),
+            (0.9, 11.0),
+            (1.5, 30.0),
+            (2.1, 52.0),
+            (2.8, 109.0),
+            (3.5, 170.0),
+            (4.1, 283.0),
+            (4.6, 400.0),
+        ]
+        .map(|(volts, force)| LoadPoint::new(volts, Newtons(force)));
+        for (kind, numbers, residual) in SCIPY {
+            let fit = Fit::of_law(kind, &points).unwrap();
+            let near = |found: f32, truth: f32| (found / truth - 1.0).abs() < 2e-4;
+            let [a, b] = fit.calibration.numbers();
+            assert!(near(a, numbers[0]) && near(b, numbers[1]) && near(fit.residual, residual), "{fit:?}");
         }
     }
 
@@ -243,7 +435,7 @@ mod tests {
         }
         let law = Fit::of(&points).unwrap().calibration;
         let heavy = points.last().unwrap();
-        let modelled = law.a_n * (law.b_per_volt * heavy.volts).exp();
+        let modelled = law.force_at(heavy.volts).0;
         assert!((modelled / heavy.force.0 - 1.0).abs() < 0.01, "{modelled}");
     }
 

@@ -1,6 +1,7 @@
 //! Tables of load-cell measurements, and what they say of each sensor.
 
 use super::calibration::{Fit, FitError, LoadPoint};
+use super::law_choice::Comparison;
 use super::table::{Table, TableProblems, shown};
 use crate::floor::{Calibration, Corner, Geometry, SensorId, TileId};
 use crate::units::Newtons;
@@ -41,8 +42,10 @@ pub enum Verdict {
 pub struct Judgement {
     /// What to make of it.
     pub verdict: Verdict,
-    /// Its law and what that leaves over, or why it has none.
+    /// The law it follows and what that leaves over, or why it has none.
     pub fit: Result<Fit, FitError>,
+    /// How the other laws follow it.
+    pub laws: Comparison,
 }
 
 impl Verdict {
@@ -124,15 +127,11 @@ fn corner(name: &str) -> Option<Corner> {
 }
 
 impl SensorLoads {
-    /// Fits the sensor's law and says what to make of the sensor.
+    /// Finds the law that the sensor follows and says what to make of the sensor.
     #[must_use]
     pub fn judge(&self) -> Judgement {
-        let fit = Fit::of(&self.points).and_then(|fit| {
-            let Calibration { a_n, b_per_volt } = fit.calibration;
-            // What floor files hold: beyond it is no part's law.
-            let has_place = (1e-6..=1000.0).contains(&a_n) && (1e-3..=20.0).contains(&b_per_volt);
-            if has_place { Ok(fit) } else { Err(FitError::Unphysical { a_n, b_per_volt }) }
-        });
+        let laws = Comparison::of(&self.points);
+        let fit = laws.fit();
         let verdict = match fit {
             Ok(fit) if fit.residual <= Verdict::GOOD => Verdict::Good,
             Ok(fit) if fit.residual <= Verdict::POOR => Verdict::Poor,
@@ -140,12 +139,10 @@ impl SensorLoads {
             // A sensor at its end stops under every load; so does one that always reads full scale.
             Err(FitError::TooFewPoints { .. }) if self.saturated >= Fit::MIN_POINTS => Verdict::Replace,
             Err(FitError::TooFewPoints { .. } | FitError::NotFinite { .. }) => Verdict::Unmeasured,
-            Err(FitError::NoSpread { .. }) if !self.was_loaded() => Verdict::Unmeasured,
-            Err(FitError::NoSpread { .. } | FitError::NoConvergence | FitError::Unphysical { .. }) => {
-                Verdict::Replace
-            }
+            Err(_) if !self.was_loaded() => Verdict::Unmeasured,
+            Err(_) => Verdict::Replace,
         };
-        Judgement { verdict, fit }
+        Judgement { verdict, fit, laws }
     }
 
     /// Whether the loads differed enough for a sound sensor to show it.
@@ -160,6 +157,7 @@ impl SensorLoads {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floor::LawKind;
 
     const HEADER: &str = "col,row,corner,volts,newtons\n";
 
@@ -225,6 +223,30 @@ mod tests {
         {
             assert_eq!(ramp(error).judge().verdict, verdict, "{error}");
         }
+    }
+
+    #[test]
+    fn a_verdict_is_of_the_law_that_the_part_follows() {
+        let volts = || (1..=40).map(|step| 0.12 * step as f32);
+        let power = loads(volts().map(|v| (v, 0.7 * v.powf(4.0)))).judge();
+        assert_eq!((power.verdict, power.laws.chosen), (Verdict::Good, Some(LawKind::Power)));
+        assert!(power.fit.unwrap().residual < 0.002, "{:?}", power.fit);
+        let exponential = power.laws.candidate(LawKind::Exponential).fit.unwrap();
+        assert!((0.015..0.06).contains(&exponential.residual), "{exponential:?}");
+        // What is linear misses the paper's law so far that it would be replaced.
+        let linear = loads(volts().map(|v| (v, 80.0 * (v - 0.1)))).judge();
+        assert_eq!((linear.verdict, linear.laws.chosen), (Verdict::Good, Some(LawKind::Linear)));
+    }
+
+    #[test]
+    fn a_part_with_a_tiny_factor_is_as_good_as_its_residual() {
+        let part = Calibration::exponential(4.4e-7, 4.1);
+        let off = |step: u16| if step.is_multiple_of(2) { 1.05 } else { 0.95 };
+        let points = (1..=40_u16).map(|step| 4.0 + 0.02 * f32::from(step)).zip(1_u16..);
+        let judgement = loads(points.map(|(v, step)| (v, part.force_at(v).0 * off(step)))).judge();
+        assert_eq!(judgement.verdict, Verdict::Good, "{judgement:?}");
+        let candidate = judgement.laws.candidate(LawKind::Exponential).fit.unwrap();
+        assert!((candidate.calibration.numbers()[0] / 4.4e-7 - 1.0).abs() < 0.2, "{candidate:?}");
     }
 
     #[test]

@@ -11,7 +11,7 @@
 //! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
 //! among them, one picker per region.
 //!
-//! Calibration comes before all that: [`LoadTable`] and [`Fit`] give each sensor
+//! Calibration comes before all that: [`LoadTable`] and [`Comparison`] give each sensor
 //! its law, [`PressTable`] and [`MapFit`] each tile its position map.
 
 mod assembler;
@@ -25,6 +25,7 @@ mod eq4;
 mod force_table;
 mod frame;
 mod health;
+mod law_choice;
 mod load_table;
 mod loaded;
 mod pool;
@@ -45,6 +46,7 @@ pub use doubt::SensorDoubt;
 pub use force_table::{ForceTable, ForceTableError};
 pub use frame::ForceFrame;
 pub use health::{SensorHealth, Trouble};
+pub use law_choice::{Candidate, Comparison};
 pub use load_table::{Judgement, LoadTable, SensorLoads, Verdict};
 pub use loaded::LoadThreshold;
 pub use position_map::{Errors, MapError, MapFit, Press, Sighting};

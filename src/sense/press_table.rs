@@ -115,7 +115,7 @@ fn is_saturated(floor: &Floor, tile: TileId, forces: [f32; 4]) -> bool {
         let law = floor.law(SensorId { tile, corner });
         let tare = tares.map_or(0.0, |tares| tares[corner.index()].0);
         // Boards that calibrate themselves leave no law here to judge by.
-        law != Calibration::NOMINAL && force + tare >= law.force(Calibration::SATURATED).0
+        law != Calibration::NOMINAL && force + tare >= law.force(law.saturated()).0
     })
 }
 
@@ -178,7 +178,7 @@ mod tests {
     #[test]
     fn saturated_presses_are_left_out_and_counted() {
         let mut floor = floor();
-        floor.calibration[0][3] = Calibration { a_n: 0.4, b_per_volt: 1.3 };
+        floor.calibration[0][3] = Calibration::exponential(0.4, 1.3);
         let most = floor.calibration[0][3].force(Calibration::SATURATED).0;
         floor.tare[0][3].0 = 20.0;
         let text = format!(

@@ -329,7 +329,9 @@ impl SimFloor {
             None => sound(force),
             Some(Faulty { fault: SensorFault::Stuck, output, .. }) => *output,
             Some(Faulty { fault: SensorFault::Open, .. }) => 0.0,
-            Some(Faulty { fault: SensorFault::Short, .. }) if exact => sound(part.law.force(u16::MAX).0),
+            Some(Faulty { fault: SensorFault::Short, .. }) if exact => {
+                sound(part.law.newtons(Calibration::volts(u16::MAX)))
+            }
             Some(Faulty { fault: SensorFault::Short, .. }) => 2.0 * Calibration::FULL_SCALE_VOLTS,
             Some(Faulty { fault: SensorFault::Offset(offset), .. }) => sound(force + offset.0),
         }
@@ -391,7 +393,7 @@ const IDLE_TICKS: usize = 8;
 
 /// The force that a board which knows the part's law makes of `volts`.
 fn newtons(part: &Part, volts: f32) -> f32 {
-    part.law.a_n * (part.law.b_per_volt * volts).exp()
+    part.law.newtons(volts)
 }
 
 #[cfg(test)]

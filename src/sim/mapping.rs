@@ -124,7 +124,7 @@ fn press(floor: &Floor, sim: &SimFloor, tile: usize, rng: &mut Pcg64Mcg) -> Vec<
                 let mut sum = 0.0;
                 for _ in 0..READINGS {
                     let reading = read(volts, sim.noise_v(), rng);
-                    saturated |= reading >= Calibration::SATURATED;
+                    saturated |= reading >= law.saturated();
                     sum += law.force(reading).0;
                 }
                 sum / READINGS as f32 + crept - tares[corner.index()].0

@@ -5,14 +5,14 @@ use std::f32::consts::TAU;
 use rand::{Rng, RngExt};
 use rand_pcg::Pcg64Mcg;
 
-use crate::floor::Calibration;
+use crate::floor::{Calibration, Exponential};
 use crate::units::Newtons;
 
 /// How good the sensors of a simulated floor are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PartConfig {
     /// The law of an average part.
-    pub nominal: Calibration,
+    pub nominal: Exponential,
     /// Largest deviation of a part's factor a from nominal, as a share (0 to 0.9).
     pub a_spread: f32,
     /// Largest deviation of a part's exponent b from nominal, as a share (0 to 0.5).
@@ -37,7 +37,7 @@ impl Default for PartConfig {
     /// left after calibration, 2 mV of noise, no hysteresis, no creep.
     fn default() -> Self {
         Self {
-            nominal: Calibration::NOMINAL,
+            nominal: Exponential::NOMINAL,
             a_spread: 0.25,
             b_spread: 0.05,
             deviation: 0.05,
@@ -54,7 +54,7 @@ impl PartConfig {
     #[must_use]
     pub const fn exact() -> Self {
         Self {
-            nominal: Calibration::NOMINAL,
+            nominal: Exponential::NOMINAL,
             a_spread: 0.0,
             b_spread: 0.0,
             deviation: 0.0,
@@ -94,7 +94,7 @@ pub enum SensorFault {
 /// One part, as it came out of the box.
 #[derive(Clone, Debug)]
 pub(super) struct Part {
-    pub(super) law: Calibration,
+    pub(super) law: Exponential,
     deviation: Deviation,
     /// As [`PartConfig::saturation_n`].
     saturation_n: f32,
@@ -104,7 +104,7 @@ impl Part {
     /// The next part out of the box.
     pub(super) fn draw(config: &PartConfig, rng: &mut Pcg64Mcg) -> Self {
         let mut spread = |share: f32| 1.0 + rng.random_range(-1.0f32..=1.0) * share;
-        let law = Calibration {
+        let law = Exponential {
             a_n: config.nominal.a_n * spread(config.a_spread.clamp(0.0, 0.9)),
             b_per_volt: config.nominal.b_per_volt * spread(config.b_spread.clamp(0.0, 0.5)),
         };
@@ -132,7 +132,7 @@ impl Part {
     /// The force from which on the converter reads full scale, or at which the part itself saturates.
     pub(super) fn capacity(&self) -> f32 {
         // The apparent force grows with the force, so halving an interval finds the crossing.
-        let (mut low, mut high) = (0.0, 4.0 * self.law.force(u16::MAX).0);
+        let (mut low, mut high) = (0.0, 4.0 * self.law.newtons(Calibration::volts(u16::MAX)));
         for _ in 0..40 {
             let middle = 0.5 * (low + high);
             if self.volts(middle) < Calibration::FULL_SCALE_VOLTS { low = middle } else { high = middle }
@@ -164,8 +164,8 @@ struct Deviation {
 
 impl Deviation {
     /// A curve that leaves about `residual` after the best fit, a fifth more or less from part to part.
-    fn draw(law: Calibration, residual: f32, rng: &mut Pcg64Mcg) -> Self {
-        let full = law.force(u16::MAX).0;
+    fn draw(law: Exponential, residual: f32, rng: &mut Pcg64Mcg) -> Self {
+        let full = law.newtons(Calibration::volts(u16::MAX));
         let mut deviation = Self { per_full: 1.0 / full, amplitude: 0.0, wave: 0.0, phase: 0.0 };
         if residual <= 0.0 {
             return deviation;
@@ -206,7 +206,7 @@ impl Deviation {
 
     /// Root mean square, as a share of full scale and evenly over force, of what no
     /// change of the law's a and b can follow (to first order).
-    fn left_after_fit(&self, law: Calibration, full: f32) -> f32 {
+    fn left_after_fit(&self, law: Exponential, full: f32) -> f32 {
         const STEPS: usize = 64;
         // What a change of ln a and of b does to the force, and what the deviation does.
         let rows: [[f64; 3]; STEPS] = std::array::from_fn(|step| {
@@ -333,7 +333,7 @@ mod tests {
     fn an_exact_part_reads_back_what_pressed_it_until_it_saturates() {
         let part = &parts(&PartConfig::exact())[0];
         for force in [1.0, 20.0, 175.0, 400.0] {
-            let read = part.law.force(counts(part.volts(force))).0;
+            let read = part.law.newtons(Calibration::volts(counts(part.volts(force))));
             assert!((read - force).abs() < 1e-4 * force + 1e-3, "{read} for {force}");
         }
         assert_eq!(counts(part.volts(407.0)), u16::MAX);

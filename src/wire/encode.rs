@@ -192,7 +192,7 @@ mod tests {
     #[test]
     fn counts_become_newtons_by_the_floors_own_calibration() {
         let mut floor = floor();
-        floor.calibration[1][2] = Calibration { a_n: 2.0, b_per_volt: 1.0 };
+        floor.calibration[1][2] = Calibration::exponential(2.0, 1.0);
         let mut encoder = SensorEncoder::new(&floor, SensorFormat::Newtons);
         let mut batch = Batch::default();
         let sent = packet(0, 1, Readings::Counts([Some(13107); 24].into_iter().collect()));

@@ -18,6 +18,7 @@ mod faults;
 mod feel;
 mod ground;
 mod intent;
+mod laws;
 mod layout;
 mod regions;
 mod sense;

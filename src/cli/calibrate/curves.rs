@@ -1,15 +1,20 @@
 use std::path::PathBuf;
 
-use serde_json::json;
-use underfoot::floor::{Calibration, CalibrationRecord, Floor};
+use serde_json::{Value, json};
+use underfoot::floor::{Calibration, CalibrationRecord, Floor, LawKind};
 use underfoot::picture;
-use underfoot::sense::{Judgement, LoadTable, SensorLoads, Verdict};
+use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoads, Verdict};
 
 use super::{count, plot, read_table, rounded, today};
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
 
 /// What `underfoot calibrate curves` is asked to do.
+///
+/// Four laws are fitted to each sensor, v in volts and f in newtons: exponential f = a exp(b v), power f = a v^b,
+/// divider f = a v / (s - v), linear f = a (v - z). The sensor gets the one that an information criterion chooses; the
+/// exponential law stays where no other is clearly better. Three loads are needed, five to compare laws, and ten or
+/// more from light to heavy to tell them apart.
 ///
 /// A residual up to 8 % of full scale is `good`, up to 15 % `poor`; beyond, or where no law
 /// of a force sensor fits, the part is to be `replace`d, keeps the nominal law, and the exit status is 1.
@@ -26,6 +31,10 @@ pub(crate) struct Args {
     /// Also draw measurements and curves, tile by tile: PNG, or SVG if the name ends in .svg.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
+    /// Also print how every law follows each sensor: what it leaves over, by how much its information criterion
+    /// exceeds the least one, or why it doesn't fit.
+    #[arg(long)]
+    laws: bool,
     /// Print the result as JSON on standard output.
     #[arg(long)]
     json: bool,
@@ -62,7 +71,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
         anstream::println!("{}", json!({ "sensors": sensors, "maps_dropped": dropped, "saved": saved }));
     } else {
-        print(&judged);
+        print(&judged, args.laws);
         if saved.is_none() {
             anstream::eprintln!("Nothing is kept: say where with --out FLOOR.ron.");
         }
@@ -95,23 +104,30 @@ fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     }
 }
 
-fn print(judged: &[(&SensorLoads, Judgement)]) {
-    anstream::println!("tile      corner       a N   b 1/V  residual  points  verdict");
+fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
+    let formula = |fit: &Result<Fit, FitError>| fit.map_or("-".to_owned(), |fit| fit.calibration.to_string());
+    let shown = judged.iter().flat_map(|(_, judgement)| {
+        let others =
+            judgement.laws.candidates.iter().filter(|_| all_laws).map(|candidate| formula(&candidate.fit));
+        others.chain([formula(&judgement.fit)])
+    });
+    let wide = shown.map(|formula| formula.len()).max().unwrap_or(0).max("f in N, v in V".len());
+    anstream::println!(
+        "tile      corner  law          {:<wide$}  residual  points  verdict",
+        "f in N, v in V"
+    );
     for (loads, judgement) in judged {
         let tile = loads.sensor.tile.to_string();
-        let law = match judgement.fit {
-            Ok(fit) => {
-                let Calibration { a_n, b_per_volt } = fit.calibration;
-                format!("{a_n:>8.4}  {b_per_volt:>6.3}  {:>6.1} %", 100.0 * fit.residual)
-            }
-            Err(_) => format!("{:>8}  {:>6}  {:>8}", "-", "-", "-"),
-        };
+        let corner = loads.sensor.corner.name();
+        let law = judgement.fit.map_or("-", |fit| fit.calibration.kind().name());
+        let (formula, residual) = (formula(&judgement.fit), residual(&judgement.fit));
+        let (points, verdict) = (loads.points.len(), verdict(judgement));
         anstream::println!(
-            "{tile:<9} {:<6}  {law}  {:>6}  {}",
-            loads.sensor.corner.name(),
-            loads.points.len(),
-            judgement.verdict.name()
+            "{tile:<9} {corner:<6}  {law:<11}  {formula:<wide$}  {residual:>8}  {points:>6}  {verdict}"
         );
+        for candidate in judgement.laws.candidates.iter().filter(|_| all_laws) {
+            print_law(candidate, wide);
+        }
     }
     let saturated: usize = judged.iter().map(|(loads, _)| loads.saturated).sum();
     if saturated > 0 {
@@ -120,20 +136,82 @@ fn print(judged: &[(&SensorLoads, Judgement)]) {
     }
 }
 
-fn as_json(loads: &SensorLoads, judgement: &Judgement) -> serde_json::Value {
-    let fit = judgement.fit.ok();
-    json!({
+/// How one law follows a sensor, below the sensor's own line.
+fn print_law(candidate: &Candidate, wide: usize) {
+    let law = candidate.kind.name();
+    match candidate.fit {
+        Ok(fit) => {
+            let (formula, residual) = (fit.calibration.to_string(), residual(&candidate.fit));
+            let excess = if candidate.excess.is_finite() {
+                format!("criterion {:+.1}", candidate.excess)
+            } else {
+                "too few measurements to compare".to_owned()
+            };
+            anstream::println!("{:18}{law:<11}  {formula:<wide$}  {residual:>8}  {:6}  {excess}", "", "");
+        }
+        Err(error) => anstream::println!("{:18}{law:<11}  {error}", ""),
+    }
+}
+
+fn residual(fit: &Result<Fit, FitError>) -> String {
+    fit.map_or("-".to_owned(), |fit| percent(fit.residual))
+}
+
+/// As many digits as a share of the greatest force deserves.
+fn percent(share: f32) -> String {
+    let percent = 100.0 * share;
+    if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
+}
+
+/// The verdict; for a part that follows another law than the paper's, what that law would miss it by.
+fn verdict(judgement: &Judgement) -> String {
+    let verdict = judgement.verdict.name();
+    match judgement.laws.chosen {
+        None | Some(LawKind::Exponential) => verdict.to_owned(),
+        Some(_) => match judgement.laws.candidate(LawKind::Exponential).fit {
+            Ok(fit) => format!("{verdict}; exponential would be off by {}", percent(fit.residual)),
+            Err(_) => format!("{verdict}; no exponential law fits"),
+        },
+    }
+}
+
+fn as_json(loads: &SensorLoads, judgement: &Judgement) -> Value {
+    let mut sensor = json!({
         "col": loads.sensor.tile.column,
         "row": loads.sensor.tile.row,
         "corner": loads.sensor.corner.name(),
-        "a_n": fit.map(|fit| fit.calibration.a_n),
-        "b_per_volt": fit.map(|fit| fit.calibration.b_per_volt),
-        "residual": fit.map(|fit| fit.residual),
+        "law": judgement.laws.chosen.map(LawKind::name),
+        "a_n": null,
+        "b_per_volt": null,
+        "residual": judgement.fit.ok().map(|fit| fit.residual),
         "points": loads.points.len(),
         "saturated": loads.saturated,
         "verdict": judgement.verdict.name(),
         "problem": judgement.fit.err().map(|error| error.to_string()),
-    })
+        "laws": judgement.laws.candidates.iter().map(law_as_json).collect::<Vec<_>>(),
+    });
+    add_numbers(&mut sensor, judgement.fit.ok());
+    sensor
+}
+
+fn law_as_json(candidate: &Candidate) -> Value {
+    let mut law = json!({
+        "law": candidate.kind.name(),
+        "residual": candidate.fit.ok().map(|fit| fit.residual),
+        "excess": candidate.excess.is_finite().then_some(candidate.excess),
+        "problem": candidate.fit.err().map(|error| error.to_string()),
+    });
+    add_numbers(&mut law, candidate.fit.ok());
+    law
+}
+
+/// Adds a law's numbers under the names that they have in floor files.
+fn add_numbers(value: &mut Value, fit: Option<Fit>) {
+    let (Some(fit), Some(fields)) = (fit, value.as_object_mut()) else { return };
+    let law = fit.calibration;
+    for (parameter, number) in law.kind().parameters().into_iter().zip(law.numbers()) {
+        fields.insert(parameter.name.to_owned(), json!(number));
+    }
 }
 
 /// A failure that names the sensors with which the work is not done.
@@ -146,7 +224,10 @@ fn outcome(judged: &[(&SensorLoads, Judgement)]) -> Result<(), Failure> {
             Verdict::Replace => "replace it; until then it counts as a nominal part",
         };
         let reason = match judgement.fit {
-            Ok(fit) => format!("it misses its law by {:.0} % of full scale", 100.0 * fit.residual),
+            Ok(fit) => {
+                let law = fit.calibration.kind().name();
+                format!("it misses its best law, {law}, by {} of the greatest force", percent(fit.residual))
+            }
             Err(error) => error.to_string(),
         };
         lines.push(format!("the sensor of {}: {reason}: {advice}", loads.sensor));

@@ -1,6 +1,6 @@
 //! A picture of load-cell measurements and fitted curves, a panel per tile.
 
-use underfoot::floor::{Corner, Rect, TileId};
+use underfoot::floor::{Corner, LawKind, Rect, TileId};
 use underfoot::glam::Vec2;
 use underfoot::layout::Colour;
 use underfoot::scene::{Anchor, Ink, Lettering, Paint, Scene, Stroke, Theme};
@@ -50,7 +50,7 @@ pub(super) fn draw(judged: &[(&SensorLoads, Judgement)]) -> Scene {
     let size = Vec2::new(width, 1.2 * EDGE_M + HEADER_M + high as f32 * pitch.y);
     let mut scene = Scene::new();
     scene.clear(Rect::from_min_size(Vec2::ZERO, size), THEME.canvas);
-    header(&mut scene, size);
+    header(&mut scene, size, &formulas(judged));
     for (number, tile) in tiles.into_iter().enumerate() {
         let (column, row) = ((number % wide) as f32, (number / wide) as f32);
         let top = size.y - EDGE_M - HEADER_M - row * pitch.y;
@@ -70,9 +70,17 @@ fn text(scene: &mut Scene, at: Vec2, anchor: Anchor, size_m: f32, colour: Colour
     scene.add_text(lettering, format_args!("{text}"))
 }
 
-fn header(scene: &mut Scene, size: Vec2) {
+/// The formulas of the laws that the sensors follow; the paper's where none was found.
+fn formulas(judged: &[(&SensorLoads, Judgement)]) -> String {
+    let is_followed =
+        |kind: &LawKind| judged.iter().any(|(_, judgement)| judgement.laws.chosen == Some(*kind));
+    let followed: Vec<_> = LawKind::ALL.into_iter().filter(is_followed).map(LawKind::formula).collect();
+    if followed.is_empty() { LawKind::Exponential.formula().to_owned() } else { followed.join(",  ") }
+}
+
+fn header(scene: &mut Scene, size: Vec2, formulas: &str) {
     let mut at = Vec2::new(EDGE_M + 0.5 * GAP.x, size.y - EDGE_M - 0.008);
-    at.x += text(scene, at, Anchor::Start, 0.017, THEME.ink, "f = a exp(b v)") + 0.022;
+    at.x += text(scene, at, Anchor::Start, 0.017, THEME.ink, formulas) + 0.022;
     for (corner, colour) in Corner::ALL.into_iter().zip(COLOURS) {
         scene.add_circle(at + Vec2::new(0.004, 0.0045), 0.004, Paint::fill(Ink::solid(colour)));
         at.x += 0.012;
@@ -128,7 +136,7 @@ impl Axes {
             let law = fit.calibration;
             let curve = (0_u8..=100).map(|step| {
                 let volts = 0.05 * f32::from(step);
-                (volts, law.a_n * (law.b_per_volt * volts).exp())
+                (volts, law.force_at(volts).0)
             });
             let inside = curve.take_while(|(_, force)| *force <= self.most_n);
             let stroke = Stroke::new(0.0011, Ink::solid(colour));

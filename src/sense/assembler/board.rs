@@ -32,19 +32,41 @@ pub(super) struct BoardTrack {
 struct Channel {
     tile: u32,
     corner: Corner,
+    /// Whether its law is the nominal part's or its own.
+    law: Law,
+    /// Counts from which on it reads "at least".
+    saturated: u16,
     calibration: Calibration,
     tare: f32,
+    /// Whether so much rests on it while the floor is empty that it never reads nothing.
+    bears: bool,
 }
 
 impl Channel {
+    fn new(tile: u32, corner: Corner, calibration: Calibration, tare: f32) -> Self {
+        let law = if calibration == Calibration::NOMINAL { Law::Nominal } else { Law::Measured };
+        let saturated = calibration.saturated();
+        let mut channel = Self { tile, corner, law, saturated, calibration, tare, bears: false };
+        channel.set_tare(tare);
+        channel
+    }
+
+    fn set_tare(&mut self, tare: f32) {
+        self.tare = tare;
+        self.bears = tare > self.calibration.force(0).0 + RESTS_N;
+    }
+
     /// Where in the converter's range `count` lies. A sensor on which next to nothing
     /// rests while the floor is empty is never missed: it may well read nothing.
     fn end(&self, count: u16) -> End {
-        match count {
-            Calibration::SATURATED.. => End::High,
-            ..=NOTHING if self.tare > self.calibration.a_n + RESTS_N => End::Low,
-            ..=NOTHING => End::Bare,
-            _ => End::Within,
+        if count >= self.saturated {
+            End::High
+        } else if count > NOTHING {
+            End::Within
+        } else if self.bears {
+            End::Low
+        } else {
+            End::Bare
         }
     }
 }
@@ -62,15 +84,8 @@ impl BoardTrack {
         let wiring = floor.boards.get(number).map(|board| board.channels.as_slice()).unwrap_or_default();
         let channel = |sensor: SensorId| {
             let (tile, corner) = (floor.geometry.index(sensor.tile)?, sensor.corner);
-            Some(Channel {
-                tile: u32::try_from(tile).ok()?,
-                corner,
-                calibration: floor
-                    .calibration
-                    .get(tile)
-                    .map_or(Calibration::NOMINAL, |all| all[corner.index()]),
-                tare: floor.tare.get(tile).map_or(0.0, |all| all[corner.index()].0),
-            })
+            let tare = floor.tare.get(tile).map_or(0.0, |all| all[corner.index()].0);
+            Some(Channel::new(u32::try_from(tile).ok()?, corner, floor.law(sensor), tare))
         };
         let channels: Vec<_> = wiring.iter().map(|sensor| sensor.and_then(channel)).collect();
         let tare = match tare {
@@ -108,7 +123,7 @@ impl BoardTrack {
 
     /// Number of its sensors that send counts which nobody has calibrated.
     pub(super) fn uncalibrated(&self) -> usize {
-        let nominal = |channel: &&Channel| channel.calibration == Calibration::NOMINAL;
+        let nominal = |channel: &&Channel| channel.law == Law::Nominal;
         if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
@@ -208,8 +223,7 @@ impl BoardTrack {
                     let Some(channel) = channel else { continue };
                     let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
                     let end = count.map_or(End::Within, |count| channel.end(count));
-                    let is_nominal = channel.calibration == Calibration::NOMINAL;
-                    put(channel, force, end, if is_nominal { Law::Nominal } else { Law::Measured });
+                    put(channel, force, end, channel.law);
                 }
             }
             Readings::Newtons(forces) => {
@@ -244,7 +258,7 @@ impl BoardTrack {
             Some(Found::Quiet(means)) => {
                 for (channel, mean) in self.channels.iter_mut().zip(means) {
                     if let (Some(channel), Some(mean)) = (channel, mean) {
-                        channel.tare = mean;
+                        channel.set_tare(mean);
                     }
                 }
                 self.tare = TareState::Taken;

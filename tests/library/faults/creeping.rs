@@ -92,7 +92,7 @@ fn s4_drift_beyond_a_fifth_of_the_range_is_a_trouble() {
     use underfoot::floor::{Calibration, Floor, Geometry};
     use underfoot::sim::{SimConfig, SimFloor};
     let mut floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
-    let weak = Calibration { a_n: 0.5, b_per_volt: 0.738 };
+    let weak = Calibration::exponential(0.5, 0.738);
     floor.calibration.fill([weak; 4]);
     let sim = SimFloor::new(&floor, SimConfig::ideal(), 3);
     let mut bench = Bench::with_floor(&floor, sim);

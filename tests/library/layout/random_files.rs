@@ -10,8 +10,8 @@ use rand_pcg::Pcg64Mcg;
 use underfoot::ergonomics;
 use underfoot::feel::EffectKind;
 use underfoot::floor::{
-    Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, MapRecord, PositionMap,
-    SensorId,
+    Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, LawKind, MapRecord,
+    PositionMap, SensorId,
 };
 use underfoot::layout::Layout;
 use underfoot::schema::{
@@ -247,11 +247,7 @@ fn floors() -> impl Strategy<Value = Floor> {
                 Geometry::new(columns, rows, tile, (tile * gap).clamp(tile, 2.0 * tile), tile * inset)
                     .unwrap();
             let tiles = geometry.tile_count();
-            let part = prop_oneof![
-                Just((Calibration::NOMINAL, 0.0)),
-                (1e-3..100.0_f32, 0.1..5.0_f32, -50.0..500.0_f32)
-                    .prop_map(|(a_n, b_per_volt, tare)| (Calibration { a_n, b_per_volt }, tare)),
-            ];
+            let part = prop_oneof![Just((Calibration::NOMINAL, 0.0)), (law(), -50.0..500.0_f32),];
             let sensors = vec(part, tiles * 4);
             let actuators = prop_oneof![
                 Just(None),
@@ -260,6 +256,16 @@ fn floors() -> impl Strategy<Value = Floor> {
             (Just(geometry), sensors, actuators, any::<bool>(), any::<u64>()).prop_map(build)
         },
     )
+}
+
+/// Any law with numbers that a part can have.
+fn law() -> impl Strategy<Value = Calibration> {
+    prop_oneof![
+        (1e-20..100.0_f32, 0.1..5.0_f32).prop_map(|(a, b)| Calibration::of(LawKind::Exponential, [a, b])),
+        (1e-20..100.0_f32, 0.1..30.0_f32).prop_map(|(a, b)| Calibration::of(LawKind::Power, [a, b])),
+        (0.1..1000.0_f32, 1.0..20.0_f32).prop_map(|(a, b)| Calibration::of(LawKind::Divider, [a, b])),
+        (0.1..1000.0_f32, -5.0..5.0_f32).prop_map(|(a, b)| Calibration::of(LawKind::Linear, [a, b])),
+    ]
 }
 
 /// Calibrated and mapped on some days, in places that follow from `seed`.

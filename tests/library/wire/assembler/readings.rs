@@ -36,7 +36,7 @@ fn boards_that_boot_at_different_times_share_their_milliseconds() {
 #[test]
 fn counts_pass_through_each_sensors_own_calibration_and_tare() {
     let mut floor = floor();
-    floor.calibration[1][2] = Calibration { a_n: 2.0, b_per_volt: 1.0 };
+    floor.calibration[1][2] = Calibration::exponential(2.0, 1.0);
     floor.tare[1][2] = Newtons(1.5);
     let mut assembler = Assembler::new(&floor);
     // 26214 counts are 2 V.
@@ -89,7 +89,7 @@ fn strange_but_finite_newtons_stay_as_they_are() {
 fn sensors_at_the_end_of_their_range_are_degraded() {
     let mut floor = floor();
     // Calibrated: the nominal law would be a reason for doubt of its own.
-    floor.calibration.fill([Calibration { a_n: 0.6, b_per_volt: 1.3 }; 4]);
+    floor.calibration.fill([Calibration::exponential(0.6, 1.3); 4]);
     let mut assembler = Assembler::new(&floor);
     let counts = [Some(64_224), Some(64_225), Some(65_535), None, Some(0), Some(0), Some(0), Some(0)];
     for board in 0..BOARDS {

@@ -1,0 +1,303 @@
+//! How a sensor's counts become newtons.
+
+use std::fmt;
+use std::ops::RangeInclusive;
+
+use super::laws::{Divider, Exponential, Linear, Power};
+use super::significant::Significant;
+use crate::units::Newtons;
+
+/// The law of one force sensor, with the part's own two numbers.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Calibration {
+    /// `f = a exp(b v)`, the paper's.
+    Exponential(Exponential),
+    /// `f = a v^b`.
+    Power(Power),
+    /// `f = a v / (s - v)`.
+    Divider(Divider),
+    /// `f = a (v - z)`.
+    Linear(Linear),
+}
+
+/// Which law it is, without its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum LawKind {
+    /// `f = a exp(b v)`.
+    Exponential,
+    /// `f = a v^b`.
+    Power,
+    /// `f = a v / (s - v)`.
+    Divider,
+    /// `f = a (v - z)`.
+    Linear,
+}
+
+/// One of a law's two numbers, as floor files have it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Parameter {
+    /// Its name in floor files, with its unit.
+    pub name: &'static str,
+    /// What a part may have; beyond it no force sensor is known, or single precision ends.
+    pub range: RangeInclusive<f64>,
+}
+
+impl Calibration {
+    /// The part underfoot assumes where nothing was measured: exponential, 0.5 N at 0 V, 406 N at 5 V (our choice).
+    pub const NOMINAL: Self = Self::Exponential(Exponential::NOMINAL);
+
+    /// Voltage at the converter's full scale.
+    pub const FULL_SCALE_VOLTS: f32 = 5.0;
+
+    /// Counts from which on every sensor is near the end of its range (98 %) and reads "at least".
+    pub const SATURATED: u16 = 64_225;
+
+    /// The exponential law with these numbers.
+    #[must_use]
+    pub const fn exponential(a_n: f32, b_per_volt: f32) -> Self {
+        Self::Exponential(Exponential { a_n, b_per_volt })
+    }
+
+    /// The law of this kind with its two numbers, in the order of [`LawKind::parameters`].
+    #[must_use]
+    pub const fn of(kind: LawKind, [a, b]: [f32; 2]) -> Self {
+        match kind {
+            LawKind::Exponential => Self::exponential(a, b),
+            LawKind::Power => Self::Power(Power { a_n: a, exponent: b }),
+            LawKind::Divider => Self::Divider(Divider { a_n: a, supply_v: b }),
+            LawKind::Linear => Self::Linear(Linear { a_n_per_volt: a, zero_v: b }),
+        }
+    }
+
+    /// Which law it is.
+    #[must_use]
+    pub const fn kind(&self) -> LawKind {
+        match self {
+            Self::Exponential(_) => LawKind::Exponential,
+            Self::Power(_) => LawKind::Power,
+            Self::Divider(_) => LawKind::Divider,
+            Self::Linear(_) => LawKind::Linear,
+        }
+    }
+
+    /// Its two numbers, in the order of [`LawKind::parameters`].
+    #[must_use]
+    pub const fn numbers(&self) -> [f32; 2] {
+        match *self {
+            Self::Exponential(Exponential { a_n, b_per_volt }) => [a_n, b_per_volt],
+            Self::Power(Power { a_n, exponent }) => [a_n, exponent],
+            Self::Divider(Divider { a_n, supply_v }) => [a_n, supply_v],
+            Self::Linear(Linear { a_n_per_volt, zero_v }) => [a_n_per_volt, zero_v],
+        }
+    }
+
+    /// Whether a force sensor can have it: both numbers within the ranges of floor files, and a finite force at the converter's
+    /// full scale.
+    #[must_use]
+    pub fn is_plausible(&self) -> bool {
+        let within = |(parameter, number): (Parameter, f32)| parameter.range.contains(&f64::from(number));
+        self.kind().parameters().into_iter().zip(self.numbers()).all(within)
+            && self.force(u16::MAX).is_finite()
+    }
+
+    /// The voltage behind a raw 16-bit reading: 0 to 5 V.
+    #[must_use]
+    pub fn volts(counts: u16) -> f32 {
+        f32::from(counts) * (Self::FULL_SCALE_VOLTS / f32::from(u16::MAX))
+    }
+
+    /// The force that a raw 16-bit reading stands for, tare not yet taken off.
+    #[must_use]
+    #[inline]
+    pub fn force(&self, counts: u16) -> Newtons {
+        self.force_at(Self::volts(counts))
+    }
+
+    /// The force that a voltage stands for, tare not yet taken off.
+    ///
+    /// Negative only below a linear part's zero. A law that runs out of single precision gives an infinite force.
+    #[must_use]
+    #[inline]
+    pub fn force_at(&self, volts: f32) -> Newtons {
+        Newtons(match self {
+            Self::Exponential(law) => law.newtons(volts),
+            Self::Power(law) => law.newtons(volts),
+            Self::Divider(law) => law.newtons(volts),
+            Self::Linear(law) => law.newtons(volts),
+        })
+    }
+
+    /// The voltage at which it gives `force`, which may lie outside of the converter's range; NaN where none does.
+    #[must_use]
+    pub fn volts_at(&self, force: Newtons) -> f32 {
+        match self {
+            Self::Exponential(law) => law.volts(force.0),
+            Self::Power(law) => law.volts(force.0),
+            Self::Divider(law) => law.volts(force.0),
+            Self::Linear(law) => law.volts(force.0),
+        }
+    }
+
+    /// Counts from which on this sensor is near the end of its range and reads "at least":
+    /// [`Calibration::SATURATED`], or the end of a divider whose supply is less than the converter's full scale.
+    #[must_use]
+    pub fn saturated(&self) -> u16 {
+        match self {
+            Self::Divider(Divider { supply_v, .. }) => {
+                let end = Divider::END * supply_v / Self::FULL_SCALE_VOLTS * f32::from(u16::MAX);
+                // A cast of a number past the ends gives the end.
+                (end as u16).min(Self::SATURATED)
+            }
+            Self::Exponential(_) | Self::Power(_) | Self::Linear(_) => Self::SATURATED,
+        }
+    }
+}
+
+impl From<Exponential> for Calibration {
+    fn from(law: Exponential) -> Self {
+        Self::Exponential(law)
+    }
+}
+
+/// The law as people write it, with its numbers to four digits: `0.5 exp(1.34 v)`.
+impl fmt::Display for Calibration {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [a, b] = self.numbers().map(|number| Significant::new(number, 4));
+        match self {
+            Self::Exponential(_) => write!(f, "{a} exp({b} v)"),
+            Self::Power(_) => write!(f, "{a} v^{b}"),
+            Self::Divider(_) => write!(f, "{a} v / ({b} - v)"),
+            Self::Linear(Linear { zero_v, .. }) if *zero_v < 0.0 => {
+                write!(f, "{a} (v + {})", Significant::new(-zero_v, 4))
+            }
+            Self::Linear(_) => write!(f, "{a} (v - {b})"),
+        }
+    }
+}
+
+impl LawKind {
+    /// All of them, the paper's first.
+    pub const ALL: [Self; 4] = [Self::Exponential, Self::Power, Self::Divider, Self::Linear];
+
+    /// The word for it: `exponential`, `power`, `divider` or `linear`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Exponential => "exponential",
+            Self::Power => "power",
+            Self::Divider => "divider",
+            Self::Linear => "linear",
+        }
+    }
+
+    /// Its formula: newtons of volts.
+    #[must_use]
+    pub const fn formula(self) -> &'static str {
+        match self {
+            Self::Exponential => "f = a exp(b v)",
+            Self::Power => "f = a v^b",
+            Self::Divider => "f = a v / (s - v)",
+            Self::Linear => "f = a (v - z)",
+        }
+    }
+
+    /// Its two numbers, in the order of the formula.
+    #[must_use]
+    pub fn parameters(self) -> [Parameter; 2] {
+        let (a, b) = match self {
+            // Parts that are hardly moved at 0 V have a small a and a large b: 10 N at 5 V with b = 14 is 4e-30 N.
+            Self::Exponential => (("a_n", 1e-30..=1e3), ("b_per_volt", 1e-3..=20.0)),
+            Self::Power => (("a_n", 1e-30..=1e6), ("exponent", 1e-2..=50.0)),
+            // A supply far beyond the converter's range leaves a straight line.
+            Self::Divider => (("a_n", 1e-3..=1e6), ("supply_v", 0.1..=1e3)),
+            Self::Linear => (("a_n_per_volt", 1e-3..=1e6), ("zero_v", -100.0..=100.0)),
+        };
+        [a, b].map(|(name, range)| Parameter { name, range })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// One part of each law, with figures as parts have them.
+    const PARTS: [Calibration; 4] = [
+        Calibration::NOMINAL,
+        Calibration::Power(Power { a_n: 2.2, exponent: 3.1 }),
+        Calibration::Divider(Divider { a_n: 35.0, supply_v: 5.0 }),
+        Calibration::Linear(Linear { a_n_per_volt: 82.0, zero_v: 0.4 }),
+    ];
+
+    #[test]
+    fn forces_are_those_of_the_formulas_worked_out_by_hand() {
+        // At 2 V: 0.5 e^2.68, 2.2 * 2^3.1, 35 * 2 / 3, 82 * 1.6.
+        for (part, force) in PARTS.into_iter().zip([7.2925, 18.863, 23.333, 131.2]) {
+            let read = part.force_at(2.0).0;
+            assert!((read / force - 1.0).abs() < 1e-4, "{part}: {read}");
+        }
+    }
+
+    #[test]
+    fn a_force_leads_to_its_voltage_and_back() {
+        for part in PARTS {
+            for volts in [0.5, 1.0, 2.5, 4.5, 4.9] {
+                let back = part.volts_at(part.force_at(volts));
+                assert!((back - volts).abs() < 1e-4, "{part}: {back} for {volts}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_law_rises_and_is_finite_over_the_converter_s_whole_range() {
+        for part in PARTS {
+            let forces: Vec<f32> = (0..=u16::MAX).step_by(257).map(|counts| part.force(counts).0).collect();
+            assert!(forces.iter().all(|force| force.is_finite()), "{part}");
+            // A divider of 5 V stands still in the last half percent.
+            let (rising, end) = forces.split_at(253);
+            assert!(rising.windows(2).all(|pair| pair[1] > pair[0]), "{part}");
+            assert!(end.windows(2).all(|pair| pair[1] >= pair[0]), "{part}");
+        }
+    }
+
+    #[test]
+    fn a_divider_of_a_lower_supply_ends_where_its_supply_does() {
+        let part = Calibration::Divider(Divider { a_n: 30.0, supply_v: 3.3 });
+        assert_eq!(part.saturated(), (0.995 * 3.3 / 5.0 * 65_535.0) as u16);
+        assert!(part.force(part.saturated()).0 > 190.0 * 30.0);
+        assert_eq!(part.force(u16::MAX), part.force(50_000));
+        for part in PARTS {
+            assert_eq!(part.saturated(), Calibration::SATURATED, "{part}");
+        }
+    }
+
+    #[test]
+    fn laws_are_written_so_that_small_numbers_can_be_read() {
+        let shown: Vec<String> = PARTS.iter().map(ToString::to_string).collect();
+        assert_eq!(shown, ["0.5 exp(1.34 v)", "2.2 v^3.1", "35 v / (5 - v)", "82 (v - 0.4)"]);
+        assert_eq!(Calibration::exponential(4.4e-6, 3.711_26).to_string(), "4.4e-6 exp(3.711 v)");
+        let below = Calibration::Linear(Linear { a_n_per_volt: 82.123_45, zero_v: -0.000_12 });
+        assert_eq!(below.to_string(), "82.12 (v + 1.2e-4)");
+    }
+
+    #[test]
+    fn what_no_file_may_hold_is_told() {
+        assert!(PARTS.iter().all(Calibration::is_plausible));
+        assert!(Calibration::exponential(4.4e-6, 3.7).is_plausible());
+        for part in [
+            Calibration::exponential(-1.0, 1.3),
+            Calibration::exponential(0.5, f32::NAN),
+            Calibration::exponential(10.0, 19.0),
+            Calibration::Divider(Divider { a_n: 30.0, supply_v: 2e3 }),
+            Calibration::Linear(Linear { a_n_per_volt: -3.0, zero_v: 0.0 }),
+        ] {
+            assert!(!part.is_plausible(), "{part}");
+        }
+    }
+
+    #[test]
+    fn nominal_part_spans_half_a_newton_to_400() {
+        let part = Calibration::NOMINAL;
+        assert!((part.force(0).0 - 0.5).abs() < 1e-6);
+        assert!((400.0..410.0).contains(&part.force(u16::MAX).0));
+    }
+}

@@ -1,0 +1,117 @@
+//! The laws that force sensors follow: what a voltage stands for, in newtons.
+
+/// `f = a exp(b v)`: the law of the paper's conditioned force-sensing resistors.
+///
+/// # Source
+/// Paper, section 2.2; v in volts, f in newtons.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exponential {
+    /// Factor a, the force at no voltage, in newtons; positive.
+    pub a_n: f32,
+    /// Exponent b, per volt; positive.
+    pub b_per_volt: f32,
+}
+
+/// `f = a v^b`: a force-sensing resistor whose conductance grows with a power of the force, behind an amplifier
+/// that measures its current.
+///
+/// # Source
+/// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR Integration
+/// Guide, force against resistance); the current through it, and the amplifier's voltage, are then a power of the force.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Power {
+    /// Factor a, the force at one volt, in newtons; positive.
+    pub a_n: f32,
+    /// Exponent b; positive.
+    pub exponent: f32,
+}
+
+/// `f = a v / (s - v)`: a resistor whose conductance is in proportion to the force, in a voltage divider.
+///
+/// # Source
+/// `v = s R_m / (R_m + R)` (Interlink Electronics, FSR Integration Guide, voltage divider), with the supply s, the
+/// measuring resistor `R_m`, and `R = k / f`: solved for the force, `f = a v / (s - v)` with `a = k / R_m`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Divider {
+    /// Factor a, the force at half of the supply, in newtons; positive.
+    pub a_n: f32,
+    /// Supply s of the divider, in volts; positive.
+    pub supply_v: f32,
+}
+
+/// `f = a (v - z)`: a load cell behind its amplifier, or any part that is linear already.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Linear {
+    /// Slope a, in newtons per volt; positive.
+    pub a_n_per_volt: f32,
+    /// Zero z, the voltage at no force.
+    pub zero_v: f32,
+}
+
+impl Exponential {
+    /// The part underfoot assumes where nothing was measured: 0.5 N at 0 V, 406 N at 5 V (our choice).
+    pub const NOMINAL: Self = Self { a_n: 0.5, b_per_volt: 1.34 };
+
+    /// The force, in newtons, that `volts` stand for.
+    #[must_use]
+    #[inline]
+    pub fn newtons(&self, volts: f32) -> f32 {
+        self.a_n * (self.b_per_volt * volts).exp()
+    }
+
+    /// The voltage at which the law gives `force` newtons; NaN for a negative force.
+    #[must_use]
+    pub fn volts(&self, force: f32) -> f32 {
+        (force / self.a_n).ln() / self.b_per_volt
+    }
+}
+
+impl Power {
+    /// The force, in newtons, that `volts` stand for: none for a negative voltage.
+    #[must_use]
+    #[inline]
+    pub fn newtons(&self, volts: f32) -> f32 {
+        self.a_n * volts.max(0.0).powf(self.exponent)
+    }
+
+    /// The voltage at which the law gives `force` newtons; NaN for a negative force.
+    #[must_use]
+    pub fn volts(&self, force: f32) -> f32 {
+        (force / self.a_n).powf(1.0 / self.exponent)
+    }
+}
+
+impl Divider {
+    /// Share of the supply from which on a divider is at the end of its range: there half a percent of the supply is
+    /// a doubled force (our choice).
+    pub const END: f32 = 0.995;
+
+    /// The force, in newtons, that `volts` stand for; from [`Divider::END`] of the supply on, the force there.
+    #[must_use]
+    #[inline]
+    pub fn newtons(&self, volts: f32) -> f32 {
+        let volts = volts.min(Self::END * self.supply_v);
+        self.a_n * volts / (self.supply_v - volts)
+    }
+
+    /// The voltage at which the law gives `force` newtons; less than the supply for every force that is not negative.
+    #[must_use]
+    pub fn volts(&self, force: f32) -> f32 {
+        self.supply_v * force / (self.a_n + force)
+    }
+}
+
+impl Linear {
+    /// The force, in newtons, that `volts` stand for; negative below the zero.
+    #[must_use]
+    #[inline]
+    pub fn newtons(&self, volts: f32) -> f32 {
+        self.a_n_per_volt * (volts - self.zero_v)
+    }
+
+    /// The voltage at which the law gives `force` newtons.
+    #[must_use]
+    pub fn volts(&self, force: f32) -> f32 {
+        self.zero_v + force / self.a_n_per_volt
+    }
+}
