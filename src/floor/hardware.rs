@@ -177,6 +177,7 @@ fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::floor::LawKind;
 
     #[test]
     fn the_papers_floor_has_one_board_of_24_channels_per_row() {
@@ -202,6 +203,9 @@ mod tests {
         assert_eq!((floor.law(sensor), floor.calibration_records[1][2]), (law, Some(record)));
         assert!((floor.tare[1][2] - law.force(counts)).abs().0 < 1e-3, "{:?}", floor.tare[1][2]);
         assert_eq!(floor.position_maps, [Some(PositionMap::NONE), None]);
+        let linear = Calibration::of(LawKind::Linear, [80.0, 0.4]);
+        assert!(floor.recalibrate(sensor, linear, None));
+        assert!((floor.tare[1][2] - linear.force(counts)).abs().0 < 1e-2, "{:?}", floor.tare[1][2]);
         assert!(!floor.recalibrate(SensorId { tile: TileId::new(2, 0), ..sensor }, law, None));
     }
 

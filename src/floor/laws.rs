@@ -82,8 +82,8 @@ impl Power {
 }
 
 impl Divider {
-    /// Share of the supply from which on a divider is at the end of its range: there half a percent of the supply is
-    /// a doubled force (our choice).
+    /// Share of the supply from which on a divider is at the end of its range: another half percent of the supply, and
+    /// its force is without bounds (our choice).
     pub const END: f32 = 0.995;
 
     /// The force, in newtons, that `volts` stand for; from [`Divider::END`] of the supply on, the force there.

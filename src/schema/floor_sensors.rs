@@ -28,9 +28,9 @@ pub(super) fn sensors(node: Node<'_>, grid: Grid, floor: &mut Floor) -> Option<(
         let span = fields.span("tile");
         // Which numbers an unknown law has is not known.
         if law == SensorLaw::Unknown {
-            fields.finish_leniently()
+            fields.finish_leniently();
         } else {
-            fields.finish()
+            fields.finish();
         }
         let (Some(tile), Some(corner)) = (tile, corner) else { continue };
         let sensor = SensorId { tile, corner };

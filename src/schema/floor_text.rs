@@ -110,7 +110,8 @@ fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
         text,
         "    // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal."
     )?;
-    write_other_laws(measured.iter().map(|(_, _, law, ..)| law.kind()), text)?;
+    let kinds: Vec<LawKind> = measured.iter().map(|(_, _, law, ..)| law.kind()).collect();
+    write_other_laws(&kinds, text)?;
     writeln!(text, "    sensors: [")?;
     for (tile, corner, law, Newtons(tare), record) in measured {
         let (tile, corner) = (place(tile), variant(corner));
@@ -126,7 +127,7 @@ fn write_sensors(floor: &Floor, text: &mut String) -> std::fmt::Result {
 }
 
 /// What the laws other than the paper's mean, of those that the floor has.
-fn write_other_laws(kinds: impl Iterator<Item = LawKind> + Clone, text: &mut String) -> std::fmt::Result {
+fn write_other_laws(kinds: &[LawKind], text: &mut String) -> std::fmt::Result {
     for kind in LawKind::ALL {
         let meaning = match kind {
             LawKind::Exponential => continue,
@@ -134,7 +135,7 @@ fn write_other_laws(kinds: impl Iterator<Item = LawKind> + Clone, text: &mut Str
             LawKind::Divider => "Divider: f = a_n v / (supply_v - v).",
             LawKind::Linear => "Linear: f = a_n_per_volt (v - zero_v).",
         };
-        if kinds.clone().any(|other| other == kind) {
+        if kinds.contains(&kind) {
             writeln!(text, "    // {meaning}")?;
         }
     }

@@ -142,6 +142,10 @@ impl Loads {
         let mean = self.forces.mean();
         let around_mean: f64 = self.forces.iter().map(|force| (force - mean).powi(2)).sum();
         let law = best.calibration();
+        // A divider whose supply runs away: the force doesn't rise with the voltage as a divider's.
+        if !law.numbers().into_iter().all(f32::is_finite) {
+            return Err(FitError::NoConvergence);
+        }
         if !law.is_plausible() {
             return Err(FitError::Unphysical { law });
         }

@@ -37,8 +37,13 @@ const PAPER_KEPT: f64 = 2.0;
 
 /// The excess up to which a straight line is preferred to a curve: from 4 on a model has considerably less support
 /// (the same source). A power law whose exponent is near one and a divider whose supply is far are straight lines but
-/// for the noise they follow: four of five made-up linear parts were told as linear by the least excess, 98 of 100 so.
+/// for the noise they follow: by the least excess alone, one of six made-up linear parts gets another law's name through
+/// 2 % of noise.
 const STRAIGHT_KEPT: f64 = 4.0;
+
+/// The voltage up to which a reading says only that the load is light: 0.5 % of the converter's range, its offset and
+/// noise. A part whose law starts at a force, as the paper's, reads nothing below it.
+const NOTHING_V: f32 = 0.025;
 
 /// An error that every load has, as a share of the greatest: a light one is not known to a share of itself.
 const LIGHT: f64 = 0.005;
@@ -54,7 +59,8 @@ impl Comparison {
     /// at every load, or in proportion to the load. Every law has two parameters and a spread, so the criterion's terms
     /// for their number, and its correction for few measurements, are the same for all. Errors that
     /// resemble their neighbour's (hysteresis, a wave that no law follows) are no independent evidence: the
-    /// difference is scaled by the share of measurements that count as independent.
+    /// difference is scaled by the share of measurements that count as independent. Readings of next to nothing are left
+    /// out of the comparison, as saturated ones are.
     ///
     /// The paper's exponential law stays where its excess is at most 2, then a straight line where its excess is at
     /// most 4; otherwise the law with the least value is chosen. Fewer than five measurements compare nothing: the
@@ -74,17 +80,19 @@ impl Comparison {
         };
         let mut candidates =
             LawKind::ALL.map(|kind| Candidate { kind, fit: loads.fit(kind), excess: f32::INFINITY });
-        let spreads = [Spread::same(&loads), Spread::proportional(&loads)];
+        let telling: Vec<_> = points.iter().copied().filter(|point| point.volts > NOTHING_V).collect();
+        let telling = Loads::of(&telling).ok().filter(|telling| telling.volts.len() >= LEAST_COMPARED);
+        let Some(telling) = telling else {
+            return Self { candidates, chosen: first_that_fits(&candidates) };
+        };
+        let spreads = [Spread::same(&telling), Spread::proportional(&telling)];
         let criteria = candidates.map(|candidate| match candidate.fit {
-            Ok(_) if points.len() >= LEAST_COMPARED => Criterion::least(candidate.kind, &loads, &spreads),
-            _ => None,
+            Ok(_) => Criterion::least(candidate.kind, &telling, &spreads),
+            Err(_) => None,
         });
         let best = criteria.iter().flatten().min_by(|one, other| one.value.total_cmp(&other.value));
-        let Some(best) = best else {
-            let chosen = candidates.iter().find(|candidate| candidate.fit.is_ok());
-            return Self { candidates, chosen: chosen.map(|candidate| candidate.kind) };
-        };
-        let independent = independent_share(&loads, &best.errors);
+        let Some(best) = best else { return Self { candidates, chosen: first_that_fits(&candidates) } };
+        let independent = independent_share(&telling, &best.errors);
         for (candidate, criterion) in candidates.iter_mut().zip(&criteria) {
             if let Some(criterion) = criterion {
                 candidate.excess = ((criterion.value - best.value) * independent) as f32;
@@ -119,6 +127,11 @@ impl Comparison {
     pub fn fit(&self) -> Result<Fit, FitError> {
         self.candidate(self.chosen.unwrap_or(LawKind::Exponential)).fit
     }
+}
+
+/// The law that is taken where nothing can be compared.
+fn first_that_fits(candidates: &[Candidate; 4]) -> Option<LawKind> {
+    candidates.iter().find(|candidate| candidate.fit.is_ok()).map(|candidate| candidate.kind)
 }
 
 /// How the errors of the measurements are taken to spread.

@@ -6,7 +6,7 @@ use rand_pcg::Pcg64Mcg;
 use underfoot::floor::{Calibration, Floor, Geometry, LawKind};
 use underfoot::sense::{Assembler, Comparison, LoadPoint, LoadTable, Quality};
 use underfoot::sim::{self, SimConfig, SimFloor};
-use underfoot::units::Instant;
+use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorPacket};
 
 /// How the loads of a bench are spaced.
@@ -72,6 +72,8 @@ fn table(part: Calibration, loads: Loads, count: usize, rng: &mut Pcg64Mcg) -> V
             let volts = Calibration::volts(counts(part.volts_at(force)));
             LoadPoint::new(volts, force * noise.sample(rng))
         })
+        // What the empty bench reads: a linear part its zero, the others nothing.
+        .chain([LoadPoint::new(part.volts_at(Newtons::ZERO).max(0.0), Newtons::ZERO)])
         .collect()
 }
 
@@ -91,12 +93,12 @@ fn misnamed(kind: LawKind, loads: Loads, count: usize) -> usize {
 }
 
 #[test]
-fn at_least_95_of_100_parts_of_each_law_get_its_name_through_two_percent_of_noise() {
+fn at_least_98_of_100_parts_of_each_law_get_its_name_through_two_percent_of_noise() {
     for loads in [Loads::Even, Loads::Geometric, Loads::ByVoltage] {
         for count in [12, 20, 40] {
             let wrong = LawKind::ALL.map(|kind| misnamed(kind, loads, count));
             println!("{loads:?}, {count} loads: {wrong:?} of 400 misnamed");
-            assert!(wrong.iter().all(|wrong| *wrong <= 20), "{loads:?}, {count} loads: {wrong:?}");
+            assert!(wrong.iter().all(|wrong| *wrong <= 8), "{loads:?}, {count} loads: {wrong:?}");
         }
     }
 }

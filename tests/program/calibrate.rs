@@ -212,3 +212,39 @@ fn tare_and_measure_take_packets_from_a_floor() {
     assert!(answer["tiles"][1]["force"]["median_n"].as_f64().unwrap() > 150.0, "{answer}");
     assert!(answer["tiles"][3]["sensors"]["nw"]["greatest_n"].as_f64().unwrap() < 1.0, "{answer}");
 }
+
+#[test]
+fn parts_of_other_laws_are_named_kept_and_told_in_words() {
+    let (folder, _) = site();
+    let laws: [(&str, &dyn Fn(f32) -> f32); 4] = [
+        ("sw", &|v| 0.5 * (1.34 * v).exp()),
+        ("se", &|v| 0.3 * v.powf(4.2)),
+        ("nw", &|v| 35.0 * v / (5.0 - v)),
+        ("ne", &|v| 82.0 * (v - 0.3)),
+    ];
+    let mut table = String::from("col,row,corner,volts,newtons\n");
+    for (corner, law) in laws {
+        for step in 1..=20_u16 {
+            let volts = 0.4 + 0.22 * f32::from(step);
+            // Two percent up and down in an order that no curve follows.
+            let noise = 1.0 + 0.02 * if step * step % 7 > 2 { 1.0 } else { -1.0 };
+            table += &format!("0,0,{corner},{volts:.4},{:.3}\n", law(volts) * noise);
+        }
+    }
+    fs::write(folder.path().join("laws.csv"), table).unwrap();
+    let output =
+        underfoot(folder.path(), &["calibrate", "curves", "laws.csv", "--floor", "floor.ron", "--laws"]);
+    assert_eq!(output.status.code(), Some(0), "{}", said(&output));
+    let told = String::from_utf8(output.stdout).unwrap();
+    let rows: Vec<&str> = told.lines().filter(|line| line.starts_with("(0, 0)")).collect();
+    for (row, law) in rows.iter().zip(["exponential", "power", "divider", "linear"]) {
+        assert!(row.contains(law) && row.contains("good"), "{told}");
+        let words = format!("follows a {law} law; exponential would be off by");
+        assert_eq!(row.contains(&words), law != "exponential", "{told}");
+    }
+    assert_eq!(told.matches("criterion +0.0").count(), 4, "{told}");
+    let kept = load_floor(&folder.path().join("floor.ron")).unwrap();
+    let kinds = kept.calibration[0].map(|law| law.kind().name());
+    assert_eq!(kinds, ["exponential", "power", "divider", "linear"]);
+    assert!((kept.calibration[0][3].numbers()[1] - 0.3).abs() < 0.05, "{:?}", kept.calibration[0][3]);
+}

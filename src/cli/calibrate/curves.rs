@@ -163,15 +163,18 @@ fn percent(share: f32) -> String {
     if percent < 9.95 { format!("{percent:.1} %") } else { format!("{percent:.0} %") }
 }
 
-/// The verdict; for a part that follows another law than the paper's, what that law would miss it by.
+/// The verdict; for a part that follows another law than the paper's, which one, and what the paper's would miss it by.
 fn verdict(judgement: &Judgement) -> String {
     let verdict = judgement.verdict.name();
     match judgement.laws.chosen {
         None | Some(LawKind::Exponential) => verdict.to_owned(),
-        Some(_) => match judgement.laws.candidate(LawKind::Exponential).fit {
-            Ok(fit) => format!("{verdict}; exponential would be off by {}", percent(fit.residual)),
-            Err(_) => format!("{verdict}; no exponential law fits"),
-        },
+        Some(other) => {
+            let exponential = match judgement.laws.candidate(LawKind::Exponential).fit {
+                Ok(fit) => format!("exponential would be off by {}", percent(fit.residual)),
+                Err(_) => "no exponential law fits".to_owned(),
+            };
+            format!("{verdict}: follows a {} law; {exponential}", other.name())
+        }
     }
 }
 
@@ -226,7 +229,7 @@ fn outcome(judged: &[(&SensorLoads, Judgement)]) -> Result<(), Failure> {
         let reason = match judgement.fit {
             Ok(fit) => {
                 let law = fit.calibration.kind().name();
-                format!("it misses its best law, {law}, by {} of the greatest force", percent(fit.residual))
+                format!("it misses its law, {law}, by {} of the greatest force", percent(fit.residual))
             }
             Err(error) => error.to_string(),
         };

@@ -12,6 +12,8 @@ const GAP: Vec2 = Vec2::new(0.05, 0.055);
 const EDGE_M: f32 = 0.045;
 const HEADER_M: f32 = 0.05;
 const LEGEND_M: f32 = 0.36;
+/// Room for each formula after the first.
+const LAW_M: f32 = 0.08;
 
 /// Most points drawn of one sensor; more would only cover each other.
 const MOST_POINTS: usize = 160;
@@ -46,11 +48,13 @@ pub(super) fn draw(judged: &[(&SensorLoads, Judgement)]) -> Scene {
     let high = tiles.len().div_ceil(wide);
     let axes = Axes::of(judged);
     let pitch = PANEL + GAP;
-    let width = (1.5 * EDGE_M + wide as f32 * pitch.x).max(2.0 * EDGE_M + LEGEND_M);
+    let formulas = formulas(judged);
+    let legend = LEGEND_M + LAW_M * (formulas.len() - 1) as f32;
+    let width = (1.5 * EDGE_M + wide as f32 * pitch.x).max(2.0 * EDGE_M + legend);
     let size = Vec2::new(width, 1.2 * EDGE_M + HEADER_M + high as f32 * pitch.y);
     let mut scene = Scene::new();
     scene.clear(Rect::from_min_size(Vec2::ZERO, size), THEME.canvas);
-    header(&mut scene, size, &formulas(judged));
+    header(&mut scene, size, &formulas);
     for (number, tile) in tiles.into_iter().enumerate() {
         let (column, row) = ((number % wide) as f32, (number / wide) as f32);
         let top = size.y - EDGE_M - HEADER_M - row * pitch.y;
@@ -71,16 +75,17 @@ fn text(scene: &mut Scene, at: Vec2, anchor: Anchor, size_m: f32, colour: Colour
 }
 
 /// The formulas of the laws that the sensors follow; the paper's where none was found.
-fn formulas(judged: &[(&SensorLoads, Judgement)]) -> String {
+fn formulas(judged: &[(&SensorLoads, Judgement)]) -> Vec<&'static str> {
     let is_followed =
         |kind: &LawKind| judged.iter().any(|(_, judgement)| judgement.laws.chosen == Some(*kind));
     let followed: Vec<_> = LawKind::ALL.into_iter().filter(is_followed).map(LawKind::formula).collect();
-    if followed.is_empty() { LawKind::Exponential.formula().to_owned() } else { followed.join(",  ") }
+    if followed.is_empty() { vec![LawKind::Exponential.formula()] } else { followed }
 }
 
-fn header(scene: &mut Scene, size: Vec2, formulas: &str) {
+fn header(scene: &mut Scene, size: Vec2, formulas: &[&str]) {
     let mut at = Vec2::new(EDGE_M + 0.5 * GAP.x, size.y - EDGE_M - 0.008);
-    at.x += text(scene, at, Anchor::Start, 0.017, THEME.ink, formulas) + 0.022;
+    let size_m = if formulas.len() > 1 { 0.011 } else { 0.017 };
+    at.x += text(scene, at, Anchor::Start, size_m, THEME.ink, &formulas.join(",   ")) + 0.022;
     for (corner, colour) in Corner::ALL.into_iter().zip(COLOURS) {
         scene.add_circle(at + Vec2::new(0.004, 0.0045), 0.004, Paint::fill(Ink::solid(colour)));
         at.x += 0.012;
