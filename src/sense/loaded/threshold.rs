@@ -47,15 +47,14 @@ const SMOOTH_S: f32 = 0.008;
 const MOST_N: f32 = 40.0;
 
 /// How long a tile stays loaded whose load may be residual, in seconds: a foot that leaves by its toes is followed to the end
-/// (of single recorded steps 0.08 % of the time is missed with it, 0.37 % without).
-const HOLD_S: f32 = 0.015;
+/// (recorded steps give up their last tenth of weight within 20 to 40 ms).
+const HOLD_S: f32 = 0.03;
 
 /// The times over which loads are remembered, in seconds, a decade apart as creep is stated.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
 
-/// Creep of a force-sensing resistor, as a share of its load for each decade of time (maker's figure: 5 %, and three tenths for
-/// parts that creep more).
-const CREEP: f32 = 0.065;
+/// Creep of a force-sensing resistor, as a share of its load for each decade of time (maker's figure: 5 %).
+const CREEP: f32 = 0.055;
 
 /// Residual load that is not worth following, in newtons.
 const NOTHING_N: f32 = 0.2;
