@@ -88,7 +88,10 @@ impl Tracker {
                 }
                 None if self.is_pending(tile, dt) => {
                     // Until that is sure, it counts to the nearest.
-                    let nearest = self.near.around(centroid).map(|which| (self.feet[which].centre().distance(centroid), which));
+                    let nearest = self
+                        .near
+                        .around(centroid)
+                        .map(|which| (self.feet[which].centre().distance(centroid), which));
                     let nearest = nearest.min_by(first_of_least);
                     if let Some((_, which)) = nearest {
                         self.feet[which].tiles.push(position);
@@ -115,13 +118,23 @@ impl Tracker {
     /// Whether it is not yet sure enough that a load lies beyond all feet near it.
     fn is_pending(&mut self, tile: &LoadedTile, dt: f64) -> bool {
         let place = tile.centroid.as_dvec2();
-        let is_near = self.near.around(place).any(|which| self.feet[which].centre().distance(place) < ASTRIDE_M && self.feet[which].age > 0.0);
+        let is_near = self
+            .near
+            .around(place)
+            .any(|which| self.feet[which].centre().distance(place) < ASTRIDE_M && self.feet[which].age > 0.0);
         if !is_near {
             return false;
         }
         let keep = (-dt / PENDING_S).exp();
         let at = self.pending.iter().position(|pending| pending.index == tile.index).unwrap_or_else(|| {
-            self.pending.push(Pending { index: tile.index, age: 0.0, force: 0.0, moment: DVec2::ZERO, noise: 0.0, seen: false });
+            self.pending.push(Pending {
+                index: tile.index,
+                age: 0.0,
+                force: 0.0,
+                moment: DVec2::ZERO,
+                noise: 0.0,
+                seen: false,
+            });
             self.pending.len() - 1
         });
         let pending = &mut self.pending[at];

@@ -5,9 +5,9 @@ use smallvec::SmallVec;
 
 use super::explanation::Second;
 use super::foot::{FORCE, Foot, LANDS_S};
-use super::rest::{RESTLESS_M_S, STANDS_S};
 use super::landing::Landing;
 use super::lines::Whole;
+use super::rest::{RESTLESS_M_S, STANDS_S};
 use super::{STRIDE_M, Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -87,8 +87,10 @@ impl Tracker {
                 continue;
             }
             let stood = foot.anchored >= STANDS_S && foot.bears();
-            let landing = (stood || foot.lingers()).then_some(Landing { host: foot.id, from: if stood { foot.anchor } else { foot.home } });
-            let mut newborn = Foot::new(self.identity(newcomer.place), newcomer.force, newcomer.place, newcomer.deviation);
+            let landing = (stood || foot.lingers())
+                .then_some(Landing { host: foot.id, from: if stood { foot.anchor } else { foot.home } });
+            let mut newborn =
+                Foot::new(self.identity(newcomer.place), newcomer.force, newcomer.place, newcomer.deviation);
             newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
             newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
             newborn.landing = landing;
@@ -171,7 +173,9 @@ impl Tracker {
         let second = explanation.update(foot, &seen, list, alone, dt);
         self.feet[which].explanation = explanation;
         let foot = &self.feet[which];
-        if foot.unsettled > 0.0 { return None; }
+        if foot.unsettled > 0.0 {
+            return None;
+        }
         match second? {
             Second::Shift(shift) => Some(Newcomer {
                 force: seen.force * shift.length() / STANCE_M,
@@ -191,9 +195,11 @@ impl Tracker {
                     side.1 += at * force;
                 }
                 let centre = |side: usize| sides[side].1 / sides[side].0;
-                let new = if centre(0).distance(foot.landed) > centre(1).distance(foot.landed) { 0 } else { 1 };
+                let new =
+                    if centre(0).distance(foot.landed) > centre(1).distance(foot.landed) { 0 } else { 1 };
                 let (keep, place) = (centre(1 - new), centre(new));
-                let mut newcomer = Newcomer { force: sides[new].0, place, deviation: APART_GUESS_M, ..Newcomer::default() };
+                let mut newcomer =
+                    Newcomer { force: sides[new].0, place, deviation: APART_GUESS_M, ..Newcomer::default() };
                 newcomer.keeps = Some((sides[1 - new].0, keep));
                 Some(newcomer)
             }

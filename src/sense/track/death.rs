@@ -81,7 +81,9 @@ impl Tracker {
 
     /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.
     pub(super) fn stands_on_nothing(&self, foot: &Foot, list: &[LoadedTile], all: f64) -> bool {
-        let near = list.iter().filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
+        let near = list
+            .iter()
+            .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
         let on: f64 = near.map(|tile| foot.on(self.cells.of(tile)).share()).sum();
         // As far as it is known where it stands.
         let beside = 1.0 - on - MISPLACED;

@@ -38,8 +38,11 @@ impl Tracker {
             // Predictions that keep failing say that the feet are not what the filter takes them for.
             let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
             let mistrust = (1.0 + MISTRUST * foot.surprise).min(LOST_M * LOST_M / variance).max(1.0);
-            foot.ambiguous =
-                if foot.shared { foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M } else { foot.explanation.is_open() };
+            foot.ambiguous = if foot.shared {
+                foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M
+            } else {
+                foot.explanation.is_open()
+            };
             let contact = pool.add(foot.id);
             contact.centroid = foot.centre().as_vec2();
             contact.force = Newtons(foot.force() as f32);

@@ -96,7 +96,9 @@ impl Tracker {
         let mut mates = self.mates.of(foot.group).filter(|&mate| self.feet[mate].id != foot.id);
         let (Some(host), None) = (mates.next(), mates.next()) else { return None };
         let other = &self.feet[host];
-        if foot.force() > SLEEPS * (foot.force() + other.force()) || foot.age < other.age && foot.peak < 2.0 * foot.force() {
+        if foot.force() > SLEEPS * (foot.force() + other.force())
+            || foot.age < other.age && foot.peak < 2.0 * foot.force()
+        {
             return None;
         }
         let both = foot.tiles_with(other);

@@ -129,7 +129,14 @@ impl Explanation {
     /// Takes in what the track's tiles carry now; `alone`: no other foot is within a stride.
     ///
     /// Gives where the second foot is once it is worth a track.
-    pub(super) fn update(&mut self, foot: &Foot, seen: &Whole, list: &[LoadedTile], alone: bool, dt: f64) -> Option<Second> {
+    pub(super) fn update(
+        &mut self,
+        foot: &Foot,
+        seen: &Whole,
+        list: &[LoadedTile],
+        alone: bool,
+        dt: f64,
+    ) -> Option<Second> {
         let prior = if foot.accompanied { ACCOMPANIED } else { LONE };
         let mut spread = Spread::default();
         if seen.force > SPREAD_N && foot.tiles.len() > 1 {

@@ -191,7 +191,9 @@ impl Lines {
                     noise.force += force;
                     noise.east += moment + force * (line.middle(self.pitch) - self.middle.x).powi(2);
                 }
-                Axis::North => noise.north += moment + force * (line.middle(self.pitch) - self.middle.y).powi(2),
+                Axis::North => {
+                    noise.north += moment + force * (line.middle(self.pitch) - self.middle.y).powi(2)
+                }
             }
         }
         noise

@@ -17,8 +17,8 @@
 mod adopt;
 mod birth;
 mod death;
-mod dormant;
 mod describe;
+mod dormant;
 mod explanation;
 mod foot;
 mod joint;

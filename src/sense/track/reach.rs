@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::foot::{EAST, NORTH, FLAT_S, Foot, LANDS_S, SHOE_M, SLIDING_N};
+use super::foot::{EAST, FLAT_S, Foot, LANDS_S, NORTH, SHOE_M, SLIDING_N};
 use super::lines::Axis;
 use super::outline::{Outline, Shoe};
 use crate::sense::loaded::LoadedTiles;
