@@ -346,7 +346,7 @@ mod tests {
     #[test]
     fn a_soft_part_reads_ever_less_of_a_force_near_its_limit() {
         let part = &parts(&PartConfig { saturation_n: 300.0, ..PartConfig::exact() })[0];
-        let read = |force: f32| part.law.force(counts(part.volts(force))).0;
+        let read = |force: f32| Calibration::Exponential(part.law).force(counts(part.volts(force))).0;
         for (force, expected) in [(100.0, 99.98), (240.0, 230.5), (300.0, 267.3), (600.0, 299.2)] {
             assert!((read(force) - expected).abs() < 0.5, "{} for {force}", read(force));
         }

@@ -8,9 +8,9 @@
 use glam::DVec2;
 
 use super::explanation::Spread;
-use super::foot::{FORCE, Foot};
-use super::landing::Landing;
-use super::lines::Lines;
+use super::state::{FORCE, Track};
+use super::strips::Strips;
+use super::touchdown::Touchdown;
 use super::{STRIDE_M, Tracker};
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
@@ -46,56 +46,56 @@ const OPEN: f64 = 0.5;
 /// A foot that has given up its weight to another one.
 #[derive(Clone, Debug)]
 pub(super) struct Dormant {
-    pub foot: Foot,
+    pub foot: Track,
     /// Who has its weight, and where that one stood.
-    pub host: ContactId,
+    pub existing: ContactId,
     from: DVec2,
     age: f64,
 }
 
 impl Tracker {
     /// Lets feet that are no longer needed to explain what the tiles carry rest.
-    pub(super) fn let_rest(&mut self, tiles: &LoadedTiles, dt: f64) {
-        for which in 0..self.feet.len() {
-            let foot = &self.feet[which];
-            let Some((host, lines)) = self.enough_without(foot, tiles) else {
-                self.feet[which].spare = 0.0;
+    pub(super) fn let_sleep(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for which in 0..self.tracks.len() {
+            let foot = &self.tracks[which];
+            let Some((existing, strips)) = self.enough_without(foot, tiles) else {
+                self.tracks[which].enough_s = 0.0;
                 continue;
             };
-            let foot = &mut self.feet[which];
-            foot.spare += dt;
-            if foot.spare < ENOUGH_S {
+            let foot = &mut self.tracks[which];
+            foot.enough_s += dt;
+            if foot.enough_s < ENOUGH_S {
                 continue;
             }
-            let mut foot = self.feet[which].clone();
-            let host = &mut self.feet[host];
-            foot.spare = 0.0;
-            let from = host.centre();
-            host.inherit(&std::mem::take(&mut foot.tiles));
-            host.stand(lines.force, lines.middle);
-            host.be_calm();
-            host.shared = false;
-            host.start_over();
-            (host.anchor, host.anchored, host.astray) = (host.centre(), 0.0, 0.0);
-            self.dormant.push(Dormant { host: host.id, from, foot, age: 0.0 });
-            self.feet[which].faint = f64::INFINITY;
+            let mut foot = self.tracks[which].clone();
+            let existing = &mut self.tracks[existing];
+            foot.enough_s = 0.0;
+            let from = existing.centre();
+            existing.inherit(&std::mem::take(&mut foot.tiles));
+            existing.stand(strips.force, strips.middle);
+            existing.suppress_births();
+            existing.shared = false;
+            existing.restart_smoothing();
+            (existing.anchor, existing.anchored_s, existing.astray_s) = (existing.centre(), 0.0, 0.0);
+            self.dormant.push(Dormant { existing: existing.id, from, foot, age: 0.0 });
+            self.tracks[which].empty_s = f64::INFINITY;
             break;
         }
-        let before = self.feet.len();
-        self.feet.retain(|foot| foot.faint.is_finite());
-        if self.feet.len() != before {
-            self.near.renew(self.feet.iter().map(Foot::centre));
+        let before = self.tracks.len();
+        self.tracks.retain(|foot| foot.empty_s.is_finite());
+        if self.tracks.len() != before {
+            self.near.renew(self.tracks.iter().map(Track::centre));
         }
     }
 
     /// The one foot that is enough for the tiles it shares with `foot`, if that carries little.
-    fn enough_without(&self, foot: &Foot, tiles: &LoadedTiles) -> Option<(usize, Lines)> {
+    fn enough_without(&self, foot: &Track, tiles: &LoadedTiles) -> Option<(usize, Strips)> {
         if !foot.shared {
             return None;
         }
-        let mut mates = self.mates.of(foot.group).filter(|&mate| self.feet[mate].id != foot.id);
-        let (Some(host), None) = (mates.next(), mates.next()) else { return None };
-        let other = &self.feet[host];
+        let mut mates = self.mates.of(foot.group).filter(|&mate| self.tracks[mate].id != foot.id);
+        let (Some(existing), None) = (mates.next(), mates.next()) else { return None };
+        let other = &self.tracks[existing];
         if foot.force() > SLEEPS * (foot.force() + other.force())
             || foot.age < other.age && foot.peak < 2.0 * foot.force()
         {
@@ -103,9 +103,9 @@ impl Tracker {
         }
         let both = foot.tiles_with(other);
         let list = tiles.list();
-        let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
-        let spread = Spread::of(both.iter().map(|&position| &list[position as usize]), lines.middle);
-        (spread.evidence() < OPEN).then_some((host, lines))
+        let strips = Strips::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        let spread = Spread::of(both.iter().map(|&position| &list[position as usize]), strips.middle);
+        (spread.evidence() < OPEN).then_some((existing, strips))
     }
 
     /// Wakes feet whose weight comes back, and ends those that have left.
@@ -114,19 +114,21 @@ impl Tracker {
         while at < self.dormant.len() {
             let dormant = &mut self.dormant[at];
             dormant.age += dt;
-            let host = self.feet.iter().position(|foot| foot.id == dormant.host);
-            let Some(host) = host.filter(|&host| !self.feet[host].shared && dormant.age < MOST_S) else {
+            let existing = self.tracks.iter().position(|foot| foot.id == dormant.existing);
+            let Some(existing) =
+                existing.filter(|&existing| !self.tracks[existing].shared && dormant.age < MOST_S)
+            else {
                 self.dormant.swap_remove(at);
                 continue;
             };
-            let all = self.feet[host].force();
+            let all = self.tracks[existing].force();
             if self.stands_on_nothing(&self.dormant[at].foot, tiles.list(), all) {
                 self.dormant.swap_remove(at);
                 continue;
             }
             let dormant = &self.dormant[at];
             let side = dormant.foot.centre() - dormant.from;
-            let moved = self.feet[host].centre() - dormant.from;
+            let moved = self.tracks[existing].centre() - dormant.from;
             let share = moved.dot(side) / side.length_squared();
             let aside = side.perp_dot(moved).abs() / side.length();
             if aside > ASIDE_M || share * side.length() < -AWAY_M {
@@ -138,19 +140,19 @@ impl Tracker {
                 continue;
             }
             let Dormant { mut foot, from, .. } = self.dormant.swap_remove(at);
-            let all = self.feet[host].force();
+            let all = self.tracks[existing].force();
             foot.rest_again(share * all);
-            foot.landing = Some(Landing { host: self.feet[host].id, from });
+            foot.touchdown = Some(Touchdown { existing: self.tracks[existing].id, from });
             foot.age = 0.0;
-            let other = &mut self.feet[host];
+            let other = &mut self.tracks[existing];
             other.rest_at((1.0 - share) * all, from);
             foot.reach(tiles, self.cells.pitch);
             if foot.tiles.is_empty() {
-                foot.tiles.extend_from_slice(&self.feet[host].tiles);
+                foot.tiles.extend_from_slice(&self.tracks[existing].tiles);
             }
-            self.near.moved(host, from);
+            self.near.moved(existing, from);
             self.near.add(foot.centre());
-            self.feet.push(foot);
+            self.tracks.push(foot);
         }
     }
 
@@ -169,20 +171,20 @@ impl Tracker {
     }
 }
 
-impl Foot {
+impl Track {
     /// Bears weight again where it stood.
     fn rest_again(&mut self, force: f64) {
         let place = self.centre();
         self.rest_at(force, place);
         self.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
-        self.start_over();
-        self.faint = 0.0;
+        self.restart_smoothing();
+        self.empty_s = 0.0;
     }
 
     /// Stands at `place` beside another foot.
     fn rest_at(&mut self, force: f64, place: DVec2) {
         self.stand(force, place);
-        self.be_sure(0.02);
+        self.reset_covariance(0.02);
         self.covariance[FORCE][FORCE] = (0.2 * force + 5.0).powi(2);
     }
 }

@@ -16,9 +16,9 @@
 
 use glam::DVec2;
 
-use super::foot::{BODY_N, Foot};
-use super::lines::Whole;
-use super::rest::STANDS_S;
+use super::state::{BODY_N, Track};
+use super::stillness::STANDS_S;
+use super::strips::Whole;
 use crate::sense::tile::LoadedTile;
 
 /// Prior log odds of two feet: of a track that began far from all others, and of one that began near another foot.
@@ -131,7 +131,7 @@ impl Explanation {
     /// Gives where the second foot is once it is worth a track.
     pub(super) fn update(
         &mut self,
-        foot: &Foot,
+        foot: &Track,
         seen: &Whole,
         list: &[LoadedTile],
         alone: bool,
@@ -144,10 +144,10 @@ impl Explanation {
         }
         let mut evidence = prior + spread.evidence();
         let mut shift = DVec2::ZERO;
-        if alone && foot.anchored > 0.0 && seen.force > BODY_N {
-            if foot.anchored > STANDS_S {
+        if alone && foot.anchored_s > 0.0 && seen.force > BODY_N {
+            if foot.anchored_s > STANDS_S {
                 if !foot.accompanied {
-                    evidence += STANDING * ((foot.anchored - STANDS_S) / STANDING_S).min(1.0);
+                    evidence += STANDING * ((foot.anchored_s - STANDS_S) / STANDING_S).min(1.0);
                 }
                 shift = seen.middle - foot.anchor;
                 let deviation = SWAY_M.hypot(0.5 * seen.doubt);

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::foot::{EAST, FORCE, Foot, HALF_EAST, HALF_NORTH, NORTH, STATES};
+use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 
 /// Most feet that are estimated together.
 pub(super) const MOST_FEET: usize = 8;
@@ -23,7 +23,7 @@ pub(super) struct Joint {
 }
 
 /// One row of an observation's slopes: which state, how much.
-pub(super) type Slope = (usize, f64);
+pub(super) type Derivative = (usize, f64);
 
 impl Joint {
     pub(super) fn new() -> Self {
@@ -36,7 +36,7 @@ impl Joint {
     }
 
     /// Adds a foot with its own state and covariance, independent of those already in.
-    pub(super) fn add(&mut self, foot: &Foot) {
+    pub(super) fn add(&mut self, foot: &Track) {
         let at = self.states;
         if at + STATES > MOST {
             return;
@@ -70,7 +70,7 @@ impl Joint {
     }
 
     /// Writes one foot's state and covariance back.
-    pub(super) fn take(&self, which: usize, foot: &mut Foot) {
+    pub(super) fn take(&self, which: usize, foot: &mut Track) {
         let at = which * STATES;
         foot.state.copy_from_slice(&self.x[at..at + STATES]);
         for row in 0..STATES {
@@ -80,48 +80,48 @@ impl Joint {
 
     /// Lets `dt` pass for one pair (value, rate): the rate fades with `fade` and is
     /// stirred with variance `stir`.
-    pub(super) fn drift(&mut self, value: usize, reach: f64, fade: f64, stir: f64) {
+    pub(super) fn drift(&mut self, value: usize, reach: f64, decay: f64, process_noise: f64) {
         let rate = value + 1;
         let n = self.states;
         self.x[value] += reach * self.x[rate];
-        self.x[rate] *= fade;
+        self.x[rate] *= decay;
         for column in 0..n {
             self.p[value][column] += reach * self.p[rate][column];
-            self.p[rate][column] *= fade;
+            self.p[rate][column] *= decay;
         }
         for row in 0..n {
             self.p[row][value] += reach * self.p[row][rate];
-            self.p[row][rate] *= fade;
+            self.p[row][rate] *= decay;
         }
-        self.p[rate][rate] += stir;
+        self.p[rate][rate] += process_noise;
     }
 
     /// Lets one state relax towards `rest`, keeping `fade` of its distance, stirred with variance `stir`.
-    pub(super) fn relax(&mut self, state: usize, rest: f64, fade: f64, stir: f64) {
+    pub(super) fn relax(&mut self, state: usize, rest: f64, decay: f64, process_noise: f64) {
         let n = self.states;
-        self.x[state] = rest + fade * (self.x[state] - rest);
+        self.x[state] = rest + decay * (self.x[state] - rest);
         for column in 0..n {
-            self.p[state][column] *= fade;
+            self.p[state][column] *= decay;
         }
         for row in 0..n {
-            self.p[row][state] *= fade;
+            self.p[row][state] *= decay;
         }
-        self.p[state][state] += stir;
+        self.p[state][state] += process_noise;
     }
 
     /// Takes in one scalar observation: what is missing from its prediction, the slopes, its variance.
     ///
     /// Gives back how surprising it was: the square of what is missing over the variance expected of it.
-    pub(super) fn observe(&mut self, missing: f64, slopes: &[Slope], variance: f64) -> f64 {
+    pub(super) fn observe(&mut self, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
         let n = self.states;
         let mut gain = [0.0; MOST];
-        for &(state, slope) in slopes {
+        for &(state, derivative) in jacobian {
             let row = &self.p[state];
             for (gain, p) in gain[..n].iter_mut().zip(&row[..n]) {
-                *gain += slope * p;
+                *gain += derivative * p;
             }
         }
-        let explained: f64 = slopes.iter().map(|&(state, slope)| slope * gain[state]).sum();
+        let explained: f64 = jacobian.iter().map(|&(state, derivative)| derivative * gain[state]).sum();
         let total = explained + variance;
         if total.is_nan() || total <= 0.0 {
             return 0.0;
@@ -129,12 +129,12 @@ impl Joint {
         let scale = 1.0 / total;
         for row in 0..n {
             let step = gain[row] * scale;
-            self.x[row] += step * missing;
+            self.x[row] += step * innovation;
             for (p, gain) in self.p[row][..n].iter_mut().zip(&gain[..n]) {
                 *p -= step * gain;
             }
         }
-        missing * missing * scale
+        innovation * innovation * scale
     }
 
     /// The force of each foot that is in.
@@ -153,7 +153,7 @@ impl Joint {
             state[EAST + 1] = state[EAST + 1].clamp(-2.0, 2.0);
             state[NORTH + 1] = state[NORTH + 1].clamp(-2.0, 2.0);
             for half in [HALF_EAST, HALF_NORTH] {
-                state[half] = state[half].clamp(super::foot::HALF_LEAST, super::foot::HALF_MOST);
+                state[half] = state[half].clamp(super::state::HALF_LEAST, super::state::HALF_MOST);
             }
         }
         let n = self.states;

@@ -14,32 +14,32 @@
 //! and stand: the length of a shoe, how fast a centre of pressure rolls, how fast
 //! weight is taken over. None is fitted to a recording.
 
-mod adopt;
-mod birth;
-mod death;
-mod describe;
+mod associate;
+mod delete;
 mod dormant;
 mod explanation;
-mod foot;
+mod initiate;
 mod joint;
-mod landing;
-mod lines;
-mod measure;
-mod near;
+mod model;
+mod neighbours;
 mod outline;
-mod past;
+mod output;
 mod patch;
 mod reach;
-mod rest;
-mod shape;
+mod residual;
+mod smoothed;
+mod state;
+mod stillness;
+mod strips;
+mod touchdown;
 
 use glam::DVec2;
 
-use self::foot::{EAST, Foot, NORTH, STATES};
 use self::joint::{Joint, MOST_FEET};
-use self::lines::{Axis, Lines};
-use self::measure::{observe, predict};
-use self::near::{Mates, Near};
+use self::model::{observe, predict};
+use self::neighbours::{Groups, Near};
+use self::state::{EAST, NORTH, STATES, Track};
+use self::strips::{Axis, Strips};
 use super::contact::ContactId;
 use super::doubt::SensorDoubt;
 use super::loaded::LoadedTiles;
@@ -53,23 +53,23 @@ pub(super) struct Tracker {
     doubt: SensorDoubt,
     cells: Cells,
     next: u32,
-    feet: Vec<Foot>,
+    tracks: Vec<Track>,
     dormant: Vec<dormant::Dormant>,
     links: Vec<Link>,
     new_links: Vec<Link>,
     joint: Box<Joint>,
-    /// Per loaded tile: the first foot that reaches it, or `NOBODY`.
+    /// Per loaded tile: the first foot that reaches it, or `UNASSIGNED`.
     owner: Vec<u32>,
-    orphans: Vec<u32>,
-    pending: Vec<adopt::Pending>,
+    unassigned: Vec<u32>,
+    pending: Vec<associate::Pending>,
     /// Orphans, each with a foot that had it in the last frame.
-    keepers: Vec<(u32, u32)>,
+    previous_owners: Vec<(u32, u32)>,
     members: Vec<u32>,
     near: Near,
-    mates: Mates,
+    mates: Groups,
 }
 
-const NOBODY: u32 = u32::MAX;
+const UNASSIGNED: u32 = u32::MAX;
 
 /// Largest force a foot can have of what its group's tiles carry, as a share, and in newtons beyond it.
 const MOST_SHARE: f64 = 1.3;
@@ -96,7 +96,7 @@ struct Link {
 }
 
 /// Over which time surprise is averaged, in seconds.
-const SURPRISE_S: f64 = 0.05;
+const NIS_S: f64 = 0.05;
 
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
@@ -138,18 +138,18 @@ impl Tracker {
         Self {
             doubt,
             near: Near::new(&cells, room),
-            mates: Mates::new(room),
+            mates: Groups::new(room),
             cells,
             next: 1,
-            feet: Vec::with_capacity(room),
+            tracks: Vec::with_capacity(room),
             dormant: Vec::with_capacity(room),
             links: Vec::with_capacity(room),
             new_links: Vec::with_capacity(room),
             joint: Box::new(Joint::new()),
             owner: Vec::with_capacity(room),
-            orphans: Vec::with_capacity(room),
+            unassigned: Vec::with_capacity(room),
             pending: Vec::with_capacity(room),
-            keepers: Vec::with_capacity(room),
+            previous_owners: Vec::with_capacity(room),
             members: Vec::with_capacity(room),
         }
     }
@@ -157,39 +157,39 @@ impl Tracker {
     /// Fills `pool` with this frame's contacts; `dt` seconds have passed since the last frame.
     pub(super) fn update(&mut self, tiles: &LoadedTiles, dt: f32, pool: &mut ContactPool) {
         let dt = f64::from(dt);
-        for foot in &mut self.feet {
-            foot.foretell(dt);
+        for foot in &mut self.tracks {
+            foot.predict(dt);
             foot.reach(tiles, self.cells.pitch);
         }
-        self.near.renew(self.feet.iter().map(Foot::centre));
-        self.adopt(tiles, dt);
+        self.near.renew(self.tracks.iter().map(Track::centre));
+        self.associate(tiles, dt);
         self.forget_pending();
         self.wake(tiles, dt);
-        self.find_newcomers(tiles, dt);
+        self.initiate(tiles, dt);
         self.note_partners();
-        self.keep_in_touch(tiles);
-        self.feet.retain(|foot| !foot.tiles.is_empty());
+        self.keep_noticed_tiles(tiles);
+        self.tracks.retain(|foot| !foot.tiles.is_empty());
         self.group(tiles.list().len());
         self.estimate(tiles, dt);
-        self.bury(tiles, dt);
-        self.let_rest(tiles, dt);
+        self.delete_empty(tiles, dt);
+        self.let_sleep(tiles, dt);
         self.learn(tiles, dt);
         self.describe(tiles, pool);
     }
 
     /// Lets each foot remember where others near it are.
     fn note_partners(&mut self) {
-        for which in 0..self.feet.len() {
-            let here = self.feet[which].centre();
+        for which in 0..self.tracks.len() {
+            let here = self.tracks[which].centre();
             let others =
-                self.near.around(here).filter(|&other| other != which && self.feet[other].age > SEEN_S);
+                self.near.around(here).filter(|&other| other != which && self.tracks[other].age > SEEN_S);
             let nearest = others
-                .map(|other| (self.feet[other].centre().distance(here), other))
+                .map(|other| (self.tracks[other].centre().distance(here), other))
                 .filter(|&(distance, _)| distance < STRIDE_M)
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
-                self.feet[which].partner = Some((self.feet[other].centre(), 0.0));
-                self.feet[which].accompanied = true;
+                self.tracks[which].partner = Some((self.tracks[other].centre(), 0.0));
+                self.tracks[which].accompanied = true;
             }
         }
     }
@@ -203,64 +203,67 @@ impl Tracker {
     /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
     fn group(&mut self, tiles: usize) {
         self.owner.clear();
-        self.owner.resize(tiles, NOBODY);
-        self.mates.part(self.feet.len());
-        for which in 0..self.feet.len() {
-            self.feet[which].group = which as u32;
-            self.feet[which].crowded = false;
-            for at in 0..self.feet[which].tiles.len() {
-                let position = self.feet[which].tiles[at] as usize;
+        self.owner.resize(tiles, UNASSIGNED);
+        self.mates.part(self.tracks.len());
+        for which in 0..self.tracks.len() {
+            self.tracks[which].group = which as u32;
+            self.tracks[which].crowded = false;
+            for at in 0..self.tracks[which].tiles.len() {
+                let position = self.tracks[which].tiles[at] as usize;
                 let owner = self.owner[position];
-                if owner == NOBODY {
+                if owner == UNASSIGNED {
                     self.owner[position] = which as u32;
                     continue;
                 }
-                let (mine, theirs) = (self.feet[which].group, self.feet[owner as usize].group);
+                let (mine, theirs) = (self.tracks[which].group, self.tracks[owner as usize].group);
                 if mine != theirs {
                     let (keep, drop) = (mine.min(theirs), mine.max(theirs));
                     for mate in self.mates.of(drop) {
-                        self.feet[mate].group = keep;
+                        self.tracks[mate].group = keep;
                     }
                     self.mates.unite(keep, drop);
-                    self.feet[keep as usize].crowded = true;
+                    self.tracks[keep as usize].crowded = true;
                 }
             }
         }
-        self.find_mates(self.feet.len());
+        self.renew_groups(self.tracks.len());
     }
 
     /// Takes down who belongs to which group; groups are numbered below `groups`.
-    fn find_mates(&mut self, groups: usize) {
-        self.mates.renew(self.feet.iter().map(|foot| foot.group), groups);
+    fn renew_groups(&mut self, groups: usize) {
+        self.mates.renew(self.tracks.iter().map(|foot| foot.group), groups);
     }
 
     /// Measures feet that are alone on their tiles, estimates those that are not.
     fn estimate(&mut self, tiles: &LoadedTiles, dt: f64) {
         self.new_links.clear();
-        for which in 0..self.feet.len() {
-            if self.feet[which].group != which as u32 {
+        for which in 0..self.tracks.len() {
+            if self.tracks[which].group != which as u32 {
                 continue;
             }
-            if !self.feet[which].crowded {
-                let foot = &mut self.feet[which];
+            if !self.tracks[which].crowded {
+                let foot = &mut self.tracks[which];
                 let before = foot.centre();
                 let until_now = std::mem::replace(&mut foot.shared, false);
                 foot.alone(tiles.list(), until_now, dt);
-                let startled = std::mem::take(&mut foot.startled);
-                if until_now || startled {
-                    foot.start_over();
-                    (foot.anchor, foot.anchored, foot.astray) = (foot.centre(), 0.0, 0.0);
+                let quality_changed = std::mem::take(&mut foot.quality_changed);
+                if until_now || quality_changed {
+                    foot.restart_smoothing();
+                    (foot.anchor, foot.anchored_s, foot.astray_s) = (foot.centre(), 0.0, 0.0);
                 }
-                if startled {
+                if quality_changed {
                     // Still it stands where it stood, only seen otherwise.
-                    foot.home =
-                        if foot.unsettled > 0.0 { foot.centre() } else { foot.home + foot.centre() - before };
+                    foot.rest_point = if foot.suppressed_s > 0.0 {
+                        foot.centre()
+                    } else {
+                        foot.rest_point + foot.centre() - before
+                    };
                 }
                 continue;
             }
             self.members.clear();
             for other in self.mates.of(which as u32) {
-                let foot = &mut self.feet[other];
+                let foot = &mut self.tracks[other];
                 if !foot.shared {
                     foot.keep_shape();
                 }
@@ -271,7 +274,7 @@ impl Tracker {
                     self.members.push(other as u32);
                 }
             }
-            if !self.place_landing(tiles.list()) {
+            if !self.place_touchdown(tiles.list()) {
                 self.estimate_together(tiles, dt);
             }
         }
@@ -279,28 +282,30 @@ impl Tracker {
     }
 
     /// Places a foot that was put down beside a standing one; false if there is none, or nothing to be said.
-    fn place_landing(&mut self, list: &[LoadedTile]) -> bool {
+    fn place_touchdown(&mut self, list: &[LoadedTile]) -> bool {
         let &[a, b] = self.members.as_slice() else { return false };
-        let Some((before, after)) = self.feet.split_at_mut_checked(b as usize) else { return false };
+        let Some((before, after)) = self.tracks.split_at_mut_checked(b as usize) else { return false };
         let (Some(first), Some(second)) = (before.get_mut(a as usize), after.first_mut()) else {
             return false;
         };
-        let (host, guest) = if second.has_landed_beside(first) {
+        let (existing, stepping) = if second.has_landed_beside(first) {
             (first, second)
         } else if first.has_landed_beside(second) {
             (second, first)
         } else {
             return false;
         };
-        let Some(landing) = guest.landing else { return false };
-        let both = host.tiles_with(guest);
-        let lines = Lines::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        let Some(touchdown) = stepping.touchdown else { return false };
+        let both = existing.tiles_with(stepping);
+        let strips = Strips::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
         // Where what the filter says of both has not fitted for some time, they are looked for anew.
-        if !host.ambiguous && landing::is_seen_alone(host, guest, landing.from, &lines, list, &self.cells) {
-            host.stay(landing.from);
+        if !existing.ambiguous
+            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, list, &self.cells)
+        {
+            existing.hold_at(touchdown.from);
             return false;
         }
-        landing::place(host, guest, landing.from, lines, &self.cells)
+        touchdown::place(existing, stepping, touchdown.from, strips, &self.cells)
     }
 
     /// One step of the joint filter over the feet in `members`.
@@ -310,11 +315,11 @@ impl Tracker {
         let joint = &mut self.joint;
         joint.clear();
         for &member in members {
-            joint.add(&self.feet[member as usize]);
+            joint.add(&self.tracks[member as usize]);
         }
         for (first, &a) in members.iter().enumerate() {
             for (second, &b) in members.iter().enumerate().skip(first + 1) {
-                let (a, b) = (&self.feet[a as usize], &self.feet[b as usize]);
+                let (a, b) = (&self.tracks[a as usize], &self.tracks[b as usize]);
                 let links = self.links.get(a.links_from..).unwrap_or_default();
                 let mut links = links.iter().take_while(|link| link.first == a.id);
                 if let Some(link) = links.find(|link| link.second == b.id) {
@@ -322,37 +327,37 @@ impl Tracker {
                 }
             }
         }
-        predict(joint, members, &self.feet, dt);
+        predict(joint, members, &self.tracks, dt);
         joint.confine(self.cells.bounds());
         for (which, &member) in members.iter().enumerate() {
-            joint.take(which, &mut self.feet[member as usize]);
+            joint.take(which, &mut self.tracks[member as usize]);
         }
-        let (surprise, force) = observe(joint, members, &self.feet, list, &self.cells, dt);
+        let (nis, force) = observe(joint, members, &self.tracks, list, &self.cells, dt);
         joint.confine(self.cells.bounds());
         let centre = |at: usize| DVec2::new(joint.x[at * STATES + EAST], joint.x[at * STATES + NORTH]);
-        let mut newborn =
-            members.iter().enumerate().map(|(which, &member)| (which, &self.feet[member as usize]));
+        let mut new_track =
+            members.iter().enumerate().map(|(which, &member)| (which, &self.tracks[member as usize]));
         let leaps =
-            newborn.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
+            new_track.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
         if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
             // A leap so far that slopes mean nothing: all stay where they were foretold, and are sure of nothing.
             for &member in members {
-                self.feet[member as usize].be_sure(THROWN_M);
+                self.tracks[member as usize].reset_covariance(THROWN_M);
             }
             return;
         }
-        let weight = 1.0 - (-dt / SURPRISE_S).exp();
+        let weight = 1.0 - (-dt / NIS_S).exp();
         for (which, &member) in members.iter().enumerate() {
-            let foot = &mut self.feet[member as usize];
+            let foot = &mut self.tracks[member as usize];
             joint.take(which, foot);
-            foot.surprise += weight * (surprise - foot.surprise);
+            foot.nis += weight * (nis - foot.nis);
         }
         for (first, &a) in members.iter().enumerate() {
-            self.feet[a as usize].links_from = self.new_links.len();
+            self.tracks[a as usize].links_from = self.new_links.len();
             for (second, &b) in members.iter().enumerate().skip(first + 1) {
                 self.new_links.push(Link {
-                    first: self.feet[a as usize].id,
-                    second: self.feet[b as usize].id,
+                    first: self.tracks[a as usize].id,
+                    second: self.tracks[b as usize].id,
                     cross: joint.cross(first, second),
                 });
             }
@@ -362,15 +367,15 @@ impl Tracker {
     /// Lets each foot's slow past learn from this frame.
     fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
-        for foot in &mut self.feet {
-            foot.learn_past(dt);
+        for foot in &mut self.tracks {
+            foot.smooth(dt);
             foot.roll(dt);
             foot.note_outline(list, dt);
             if !foot.shared {
-                foot.learn_habits(list, self.cells.pitch, dt);
+                foot.learn_residuals(list, self.cells.pitch, dt);
             }
             // A foot that has just come to stand alone starts from what is measured.
-            let fresh = !foot.shared && foot.past.loads.is_empty();
+            let fresh = !foot.shared && foot.smoothed.loads.is_empty();
             for at in 0..foot.tiles.len() {
                 let tile = &list[foot.tiles[at] as usize];
                 let (force, moment) = if foot.shared {

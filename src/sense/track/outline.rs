@@ -112,7 +112,7 @@ mod tests {
     fn a_foot_that_has_rolled_covers_nothing_far_beside_its_line() {
         let mut foot = Outline::new(DVec2::ZERO);
         foot.add(DVec2::new(0.0, 0.2));
-        assert!(foot.beyond(DVec2::new(0.05, 0.1), SHOE) < 0.0, "the ball beside the line");
+        assert!(foot.beyond(DVec2::new(0.05, 0.1), SHOE) < 0.0, "the ball beside the strip");
         assert!(foot.beyond(DVec2::new(0.18, 0.1), SHOE) > 0.02, "the other foot");
         assert!(foot.beyond(DVec2::new(0.0, 0.31), SHOE) < 0.0, "the toes");
         assert!(foot.beyond(DVec2::new(0.0, -0.2), SHOE) > 0.02, "behind the heel");

@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::foot::{EAST, FLAT_S, Foot, LANDS_S, NORTH, SHOE_M, SLIDING_N};
-use super::lines::Axis;
 use super::outline::{Outline, Shoe};
+use super::state::{EAST, FLAT_S, LANDS_S, NORTH, SHOE_M, SLIDING_N, Track};
+use super::strips::Axis;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -42,7 +42,7 @@ const BORNE: f64 = 0.008;
 /// Speed towards a place from which on a foot slides there, in metres per second.
 const AHEAD_M_S: f64 = 0.02;
 
-impl Foot {
+impl Track {
     /// How far `point` is beyond what can belong to this foot, in metres; negative within.
     ///
     /// All its centres of pressure since it landed, and everything else it
@@ -55,7 +55,7 @@ impl Foot {
             return beyond;
         }
         let around = if self.bears() { AROUND_M } else { AROUND_LIGHT_M };
-        beyond.max(point.distance(self.past.centre) - around)
+        beyond.max(point.distance(self.smoothed.centre) - around)
     }
 
     /// Adds what it presses now to what it has pressed of late.
@@ -102,12 +102,14 @@ impl Foot {
         let reach = self.half() * HALVES + BEYOND_M;
         let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
         let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
-        if self.habit_strength() > KNOWN {
+        if self.residual_weight() > KNOWN {
             // Where it was alone, it also presses what it pressed then.
-            for habit in self.habits.iter().filter(|habit| habit.share > BORNE) {
-                match habit.axis {
-                    Axis::East => (low.x, high.x) = (low.x.min(habit.number), high.x.max(habit.number)),
-                    Axis::North => (low.y, high.y) = (low.y.min(habit.number), high.y.max(habit.number)),
+            for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
+                match residual.axis {
+                    Axis::East => (low.x, high.x) = (low.x.min(residual.number), high.x.max(residual.number)),
+                    Axis::North => {
+                        (low.y, high.y) = (low.y.min(residual.number), high.y.max(residual.number))
+                    }
                 }
             }
         }

@@ -2,7 +2,7 @@
 
 use glam::DVec2;
 
-use super::{Cells, NOBODY, STRIDE_M};
+use super::{Cells, STRIDE_M, UNASSIGNED};
 
 /// The feet by where they are, in squares of a stride.
 ///
@@ -15,7 +15,7 @@ pub(super) struct Near {
     /// Per square, the foot that was put there last.
     last: Vec<u32>,
     /// Per foot: its square, and the foot that was put there before it.
-    feet: Vec<(u32, u32)>,
+    tracks: Vec<(u32, u32)>,
 }
 
 impl Near {
@@ -23,28 +23,33 @@ impl Near {
         let (_, size) = cells.bounds();
         let count = |length: f64| (length / STRIDE_M).ceil().max(1.0) as i32;
         let (columns, rows) = (count(size.x), count(size.y));
-        Self { columns, rows, last: vec![NOBODY; (columns * rows) as usize], feet: Vec::with_capacity(room) }
+        Self {
+            columns,
+            rows,
+            last: vec![UNASSIGNED; (columns * rows) as usize],
+            tracks: Vec::with_capacity(room),
+        }
     }
 
     /// Takes down where everybody is now, foot by foot in their order.
     pub(super) fn renew(&mut self, places: impl Iterator<Item = DVec2>) {
-        for &(square, _) in &self.feet {
-            self.last[square as usize] = NOBODY;
+        for &(square, _) in &self.tracks {
+            self.last[square as usize] = UNASSIGNED;
         }
-        self.feet.clear();
+        self.tracks.clear();
         places.for_each(|place| self.add(place));
     }
 
     /// Adds the next foot.
     pub(super) fn add(&mut self, place: DVec2) {
         let square = self.square(place);
-        let before = std::mem::replace(&mut self.last[square], self.feet.len() as u32);
-        self.feet.push((square as u32, before));
+        let before = std::mem::replace(&mut self.last[square], self.tracks.len() as u32);
+        self.tracks.push((square as u32, before));
     }
 
     /// Foot `which` is elsewhere now.
     pub(super) fn moved(&mut self, which: usize, place: DVec2) {
-        let (new, (old, before)) = (self.square(place), self.feet[which]);
+        let (new, (old, before)) = (self.square(place), self.tracks[which]);
         if new == old as usize {
             return;
         }
@@ -52,13 +57,13 @@ impl Near {
         if after == which as u32 {
             self.last[old as usize] = before;
         } else {
-            while self.feet[after as usize].1 != which as u32 {
-                after = self.feet[after as usize].1;
+            while self.tracks[after as usize].1 != which as u32 {
+                after = self.tracks[after as usize].1;
             }
-            self.feet[after as usize].1 = before;
+            self.tracks[after as usize].1 = before;
         }
         let before = std::mem::replace(&mut self.last[new], which as u32);
-        self.feet[which] = (new as u32, before);
+        self.tracks[which] = (new as u32, before);
     }
 
     /// All feet within a stride of `place` and some that are farther away, in no order.
@@ -72,8 +77,8 @@ impl Near {
 
     /// The foot `which` and those put into its square before it.
     fn from(&self, which: u32) -> impl Iterator<Item = usize> {
-        let known = |which: u32| (which != NOBODY).then_some(which as usize);
-        std::iter::successors(known(which), move |&which| known(self.feet[which].1))
+        let known = |which: u32| (which != UNASSIGNED).then_some(which as usize);
+        std::iter::successors(known(which), move |&which| known(self.tracks[which].1))
     }
 
     /// The square of a place; places beyond the floor belong to its outermost squares.
@@ -90,27 +95,27 @@ impl Near {
 
 /// The members of each group of feet, in their order.
 #[derive(Clone, Debug)]
-pub(super) struct Mates {
+pub(super) struct Groups {
     /// Per group, its first and its last foot.
     ends: Vec<(u32, u32)>,
     /// Per foot, the next one of its group.
     next: Vec<u32>,
 }
 
-impl Mates {
+impl Groups {
     pub(super) fn new(room: usize) -> Self {
         Self { ends: Vec::with_capacity(room), next: Vec::with_capacity(room) }
     }
 
     /// Starts over with `feet` feet, each a group of its own.
-    pub(super) fn part(&mut self, feet: usize) {
-        self.renew(0..feet as u32, feet);
+    pub(super) fn part(&mut self, tracks: usize) {
+        self.renew(0..tracks as u32, tracks);
     }
 
     /// Takes down the group of each foot, in their order; groups are numbered below `groups`.
     pub(super) fn renew(&mut self, of_feet: impl Iterator<Item = u32>, groups: usize) {
         self.ends.clear();
-        self.ends.resize(groups, (NOBODY, NOBODY));
+        self.ends.resize(groups, (UNASSIGNED, UNASSIGNED));
         self.next.clear();
         for (which, group) in (0..).zip(of_feet) {
             let (first, last) = &mut self.ends[group as usize];
@@ -119,13 +124,13 @@ impl Mates {
                 None => *first = which,
             }
             *last = which;
-            self.next.push(NOBODY);
+            self.next.push(UNASSIGNED);
         }
     }
 
     /// Lets the members of the group `drop` follow those of the group `keep`: in no order until the next `renew`.
     pub(super) fn unite(&mut self, keep: u32, drop: u32) {
-        let (first, last) = std::mem::replace(&mut self.ends[drop as usize], (NOBODY, NOBODY));
+        let (first, last) = std::mem::replace(&mut self.ends[drop as usize], (UNASSIGNED, UNASSIGNED));
         let end = &mut self.ends[keep as usize].1;
         if let Some(next) = self.next.get_mut(*end as usize) {
             *next = first;
@@ -135,8 +140,8 @@ impl Mates {
 
     /// The feet of a group.
     pub(super) fn of(&self, group: u32) -> impl Iterator<Item = usize> {
-        let known = |which: u32| (which != NOBODY).then_some(which as usize);
-        let first = self.ends.get(group as usize).map_or(NOBODY, |ends| ends.0);
+        let known = |which: u32| (which != UNASSIGNED).then_some(which as usize);
+        let first = self.ends.get(group as usize).map_or(UNASSIGNED, |ends| ends.0);
         std::iter::successors(known(first), move |&which| known(self.next[which]))
     }
 }
@@ -156,18 +161,18 @@ mod tests {
         let mut place = || DVec2::new(rng.random_range(-0.5..6.5), rng.random_range(-0.5..3.2));
         let mut near = Near::new(&cells, 8);
         for _ in 0..20 {
-            let mut feet: Vec<DVec2> = (0..40).map(|_| place()).collect();
-            near.renew(feet[..30].iter().copied());
-            feet[30..].iter().for_each(|&foot| near.add(foot));
+            let mut tracks: Vec<DVec2> = (0..40).map(|_| place()).collect();
+            near.renew(tracks[..30].iter().copied());
+            tracks[30..].iter().for_each(|&foot| near.add(foot));
             for which in [0, 7, 7, 39, 22] {
-                feet[which] = place();
-                near.moved(which, feet[which]);
+                tracks[which] = place();
+                near.moved(which, tracks[which]);
             }
             for here in (0..50).map(|_| place()) {
                 let mut found: Vec<usize> = near.around(here).collect();
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once: {found:?}");
-                let within = (0..40).filter(|&which| feet[which].distance(here) <= STRIDE_M);
+                let within = (0..40).filter(|&which| tracks[which].distance(here) <= STRIDE_M);
                 within.for_each(|which| assert!(found.contains(&which), "{which} near {here}"));
             }
         }
@@ -175,7 +180,7 @@ mod tests {
 
     #[test]
     fn groups_that_become_one_have_all_members() {
-        let mut mates = Mates::new(4);
+        let mut mates = Groups::new(4);
         mates.part(6);
         mates.unite(0, 3);
         mates.unite(1, 2);

@@ -12,9 +12,9 @@
 use glam::DVec2;
 
 use super::Cells;
-use super::foot::{EAST, FORCE, Foot, HALF_REST, NORTH, SHOE_M};
-use super::lines::{Axis, Line, Lines};
-use super::rest::STRAY_LEAST_M;
+use super::state::{EAST, FORCE, HALF_REST, NORTH, SHOE_M, Track};
+use super::stillness::SWAY_LEAST_M;
+use super::strips::{Axis, Strip, Strips};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
@@ -65,89 +65,95 @@ const MISREAD_N: f64 = 2.0;
 
 /// Beside whom a foot has landed, and where that one stood before.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Landing {
-    pub host: ContactId,
+pub(super) struct Touchdown {
+    pub existing: ContactId,
     pub from: DVec2,
 }
 
 /// Two feet that are tried: where, and with what force.
 struct Pair<'a> {
-    host: &'a Foot,
+    existing: &'a Track,
     from: DVec2,
-    host_force: f64,
+    existing_force: f64,
     place: DVec2,
-    guest_force: f64,
+    stepping_force: f64,
 }
 
 /// Whether tiles that `host`, standing at `from`, does not press show nearly all that `lines` tell of `guest`.
 pub(super) fn is_seen_alone(
-    host: &Foot,
-    guest: &Foot,
+    existing: &Track,
+    stepping: &Track,
     from: DVec2,
-    lines: &Lines,
+    strips: &Strips,
     list: &[LoadedTile],
     cells: &Cells,
 ) -> bool {
-    let tiles = guest.tiles.iter().map(|&position| &list[position as usize]);
-    let own = tiles.filter(|tile| host.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
+    let tiles = stepping.tiles.iter().map(|&position| &list[position as usize]);
+    let own = tiles.filter(|tile| existing.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
     let own: DVec2 = own.map(|tile| (tile.centroid.as_dvec2() - from) * f64::from(tile.wrench.force)).sum();
-    let all = (lines.middle - from) * lines.force;
-    (all - own).length() < (1.0 - MOSTLY) * all.length() + (STRAY_LEAST_M + lines.doubt) * lines.force
+    let all = (strips.middle - from) * strips.force;
+    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + strips.doubt) * strips.force
 }
 
 /// Places `guest` beside `host`, which stands still at `from`; `lines` is what the tiles of both carry.
 ///
 /// False if nothing can be said yet: the common centre of pressure has hardly moved.
-pub(super) fn place(host: &mut Foot, guest: &mut Foot, from: DVec2, mut lines: Lines, cells: &Cells) -> bool {
-    let (force, way) = (lines.force, lines.middle - from);
+pub(super) fn place(
+    existing: &mut Track,
+    stepping: &mut Track,
+    from: DVec2,
+    mut strips: Strips,
+    cells: &Cells,
+) -> bool {
+    let (force, way) = (strips.force, strips.middle - from);
     let moment = force * way.length();
-    if moment < LEAST_MOMENT.max((LEAST_WAY_M + lines.doubt) * force) {
+    if moment < LEAST_MOMENT.max((LEAST_WAY_M + strips.doubt) * force) {
         return false;
     }
     let ahead = way / way.length();
-    // Lines that the feet would reach but that carry nothing speak too.
+    // Strips that the feet would reach but that carry nothing speak too.
     for axis in Axis::BOTH {
         for point in [from, from + ahead * 0.3] {
             let number = (axis.along(point) / cells.pitch).floor() as i32;
             if (0..cells.count(axis)).contains(&number) {
-                lines.line(axis, number);
+                strips.strip(axis, number);
             }
         }
     }
     let mut against = [f64::INFINITY; TRIED];
     for (misfit, distance) in against.iter_mut().zip(distances()) {
-        let guest_force = moment / distance;
+        let stepping_force = moment / distance;
         let place = from + ahead * distance;
-        if guest_force > 1.03 * force || place.distance(guest.landed) > SHOE_M {
+        if stepping_force > 1.03 * force || place.distance(stepping.landed) > SHOE_M {
             continue;
         }
-        let host_force = (force - guest_force).max(0.0);
-        let pair = Pair { host, from, host_force, place, guest_force };
+        let existing_force = (force - stepping_force).max(0.0);
+        let pair = Pair { existing, from, existing_force, place, stepping_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
-        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(lines.doubt);
-        *misfit = pair.misfit(&lines, cells.pitch) + unusual * unusual + tight * tight;
+        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(strips.doubt);
+        *misfit = pair.misfit(&strips, cells.pitch) + unusual * unusual + tight * tight;
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);
-    host.put(force - part, from);
-    guest.put(part, from + ahead * distance.mean);
+    existing.put(force - part, from);
+    stepping.put(part, from + ahead * distance.mean);
     if part > TAKEN_OVER * force {
         // What was once guessed of its place is no home to go back to.
-        guest.home = guest.centre();
+        stepping.rest_point = stepping.centre();
     }
     // The farther away it lies, the less it presses.
     let force_variance = distance.variance * (part / distance.mean).powi(2) + 9.0;
-    host.covariance[FORCE][FORCE] = force_variance;
-    guest.covariance[FORCE][FORCE] = force_variance;
+    existing.covariance[FORCE][FORCE] = force_variance;
+    stepping.covariance[FORCE][FORCE] = force_variance;
     let aside = (0.01 * force / part.max(1.0)).min(0.1).powi(2);
-    guest.covariance[EAST][EAST] += distance.variance * ahead.x * ahead.x + aside * ahead.y * ahead.y;
-    guest.covariance[NORTH][NORTH] += distance.variance * ahead.y * ahead.y + aside * ahead.x * ahead.x;
-    guest.covariance[EAST][NORTH] += (distance.variance - aside) * ahead.x * ahead.y;
-    guest.covariance[NORTH][EAST] = guest.covariance[EAST][NORTH];
+    stepping.covariance[EAST][EAST] += distance.variance * ahead.x * ahead.x + aside * ahead.y * ahead.y;
+    stepping.covariance[NORTH][NORTH] += distance.variance * ahead.y * ahead.y + aside * ahead.x * ahead.x;
+    stepping.covariance[EAST][NORTH] += (distance.variance - aside) * ahead.x * ahead.y;
+    stepping.covariance[NORTH][EAST] = stepping.covariance[EAST][NORTH];
     let lean = -distance.variance * part / distance.mean;
     for (state, way) in [(EAST, ahead.x), (NORTH, ahead.y)] {
-        guest.covariance[FORCE][state] = lean * way;
-        guest.covariance[state][FORCE] = lean * way;
+        stepping.covariance[FORCE][state] = lean * way;
+        stepping.covariance[state][FORCE] = lean * way;
     }
     true
 }
@@ -179,7 +185,7 @@ impl Distance {
     }
 }
 
-impl Foot {
+impl Track {
     /// Is there with this force, standing still.
     fn put(&mut self, force: f64, centre: DVec2) {
         self.state[FORCE] = force;
@@ -187,20 +193,20 @@ impl Foot {
         self.state[NORTH] = centre.y;
         self.state[EAST + 1] = 0.0;
         self.state[NORTH + 1] = 0.0;
-        self.be_sure(PLACE_M);
-        self.surprise = 0.0;
+        self.reset_covariance(PLACE_M);
+        self.nis = 0.0;
     }
 }
 
 impl Pair<'_> {
     /// How badly all lines fit, with the half widths of the new foot that fit best.
-    fn misfit(&self, lines: &Lines, pitch: f64) -> f64 {
+    fn misfit(&self, strips: &Strips, pitch: f64) -> f64 {
         let of_axis = |axis: Axis| {
             let with = |half: f64| -> f64 {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
-                let along = lines.lines.iter().filter(|line| line.axis == axis);
+                let along = strips.strips.iter().filter(|strip| strip.axis == axis);
                 unusual * unusual
-                    + along.map(|line| self.misfit_on(line, half, lines.middle, pitch)).sum::<f64>()
+                    + along.map(|strip| self.misfit_on(strip, half, strips.middle, pitch)).sum::<f64>()
             };
             HALVES.into_iter().map(with).fold(f64::INFINITY, f64::min)
         };
@@ -210,26 +216,28 @@ impl Pair<'_> {
     /// Twice the negative logarithm of the likelihood of one line's load, but for a constant.
     ///
     /// Who expects little must be right, who expects anything gains nothing.
-    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> f64 {
-        let axis = line.axis;
-        let old = line.slice(pitch, axis.along(self.from), axis.along(self.host.half()));
-        let habit = self.host.habit_at(axis, line.number, 1.0);
-        let new = line.slice(pitch, axis.along(self.place), half);
-        let share = (old.share + habit.share).clamp(0.0, 1.0);
-        let missing = [
-            line.force - self.host_force * share - self.guest_force * new.share,
-            line.moment - self.host_force * (old.moment + habit.moment) - self.guest_force * new.moment,
-            line.cross
-                - self.host_force * (share * axis.across(self.from - middle) + habit.cross)
-                - self.guest_force * new.share * axis.across(self.place - middle),
+    fn misfit_on(&self, strip: &Strip, half: f64, middle: DVec2, pitch: f64) -> f64 {
+        let axis = strip.axis;
+        let old = strip.slice(pitch, axis.along(self.from), axis.along(self.existing.half()));
+        let residual = self.existing.residual_at(axis, strip.number, 1.0);
+        let new = strip.slice(pitch, axis.along(self.place), half);
+        let share = (old.share + residual.share).clamp(0.0, 1.0);
+        let innovation = [
+            strip.force - self.existing_force * share - self.stepping_force * new.share,
+            strip.moment
+                - self.existing_force * (old.moment + residual.moment)
+                - self.stepping_force * new.moment,
+            strip.cross
+                - self.existing_force * (share * axis.across(self.from - middle) + residual.cross)
+                - self.stepping_force * new.share * axis.across(self.place - middle),
         ];
         let unlike = |force: f64, straddle: f64| (UNLIKE * force).powi(2) * (straddle + UNLIKE_LEAST);
         let unsure = MISREAD_N * MISREAD_N
-            + unlike(self.host_force, share * (1.0 - share))
-            + unlike(self.guest_force, 4.0 * new.share * (1.0 - new.share));
+            + unlike(self.existing_force, share * (1.0 - share))
+            + unlike(self.stepping_force, 4.0 * new.share * (1.0 - new.share));
         let lever = 0.5 * pitch;
-        let swaying = unsure + (SWAY_M * self.host_force * share / lever).powi(2);
-        let moments = (missing[1] * missing[1] + missing[2] * missing[2]) / (lever * lever);
-        missing[0] * missing[0] / unsure + moments / swaying + unsure.ln() + 2.0 * swaying.ln()
+        let swaying = unsure + (SWAY_M * self.existing_force * share / lever).powi(2);
+        let moments = (innovation[1] * innovation[1] + innovation[2] * innovation[2]) / (lever * lever);
+        innovation[0] * innovation[0] / unsure + moments / swaying + unsure.ln() + 2.0 * swaying.ln()
     }
 }

@@ -5,12 +5,12 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::explanation::Explanation;
-use super::landing::Landing;
-use super::lines::Habit;
 use super::outline::Outline;
-use super::past::Past;
 use super::patch::PatchOnTile;
-use super::rest::STRAY_MOST_M;
+use super::smoothed::Smoothed;
+use super::stillness::SWAY_MOST_M;
+use super::strips::Residual;
+use super::touchdown::Touchdown;
 use crate::sense::Quality;
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
@@ -52,26 +52,26 @@ pub(super) const BODY_N: f64 = 350.0;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
-pub(super) struct Foot {
+pub(super) struct Track {
     pub id: ContactId,
     /// Seconds since it landed.
     pub age: f64,
     pub state: [f64; STATES],
     pub covariance: [[f64; STATES]; STATES],
     /// Where it was expected before this frame, from its slow past.
-    pub past: Past,
+    pub smoothed: Smoothed,
     /// Positions of the tiles it may press, in the list of loaded tiles.
     pub tiles: SmallVec<[u32; 12]>,
     /// Seconds for which it has been too light to be there, less what has worn off of them.
-    pub faint: f64,
+    pub empty_s: f64,
     /// The most it has pressed with.
     pub peak: f64,
     /// Seconds for which another foot alone has been enough.
-    pub spare: f64,
+    pub enough_s: f64,
     /// Seconds for which its own sway is not to be taken for a newcomer.
-    pub calm: f64,
+    pub cooldown: f64,
     /// Seconds for which not even a slow shift of weight is.
-    pub unsettled: f64,
+    pub suppressed_s: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
     /// Where its links to others begin in the tracker's list, if it has any.
@@ -85,90 +85,90 @@ pub(super) struct Foot {
     /// Whether other feet share its tiles.
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
-    pub habits: SmallVec<[Habit; 8]>,
+    pub residuals: SmallVec<[Residual; 8]>,
     /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
-    pub surprise: f64,
+    pub nis: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
-    pub restless: f64,
+    pub mean_speed: f64,
     /// Seconds for which it has been alone on its tiles.
     pub alone_s: f64,
     /// Where it was when last seen alone; `None` if it never was.
     pub alone_at: Option<DVec2>,
     /// Where its centre of pressure rests while it shares tiles, and how far it strays from there.
-    pub home: DVec2,
-    pub stray: f64,
+    pub rest_point: DVec2,
+    pub sway_m: f64,
     /// Seconds for which it stood still there, and since when it has moved.
-    pub still: f64,
-    pub away: f64,
+    pub still_s: f64,
+    pub away_s: f64,
     /// Where the other foot of the same person was last seen near it, and how long ago.
     pub partner: Option<(DVec2, f64)>,
     /// The worst quality of its tiles, and whether that has just changed.
     pub quality: Quality,
-    pub startled: bool,
+    pub quality_changed: bool,
     /// Beside whom it has landed.
-    pub landing: Option<Landing>,
+    pub touchdown: Option<Touchdown>,
     /// Its centre of pressure when it landed.
     pub landed: DVec2,
     /// What it has pressed of late.
     pub outline: Outline,
     /// Where it stood still, for how long, and for how long it has been away from there.
     pub anchor: DVec2,
-    pub anchored: f64,
-    pub astray: f64,
+    pub anchored_s: f64,
+    pub astray_s: f64,
     /// How far its centre of pressure has travelled from where it landed.
     pub travel: f64,
     /// Whether it has landed together with another and was never seen by itself since.
-    pub unparted: bool,
+    pub landed_together: bool,
     /// Whether another foot was near it since it landed, so that it is one foot.
     pub accompanied: bool,
     /// Whether it is one foot or two.
     pub explanation: Explanation,
 }
 
-impl Foot {
+impl Track {
     pub(super) fn new(id: ContactId, force: f64, centre: DVec2, deviation: f64) -> Self {
         let mut foot = Self {
             id,
             age: 0.0,
             state: [force, 0.0, centre.x, 0.0, centre.y, 0.0, HALF_REST, HALF_REST],
             covariance: [[0.0; STATES]; STATES],
-            past: Past { force, centre, ..Past::default() },
+            smoothed: Smoothed { force, centre, ..Smoothed::default() },
             tiles: SmallVec::new(),
-            faint: 0.0,
+            empty_s: 0.0,
             peak: 0.0,
-            spare: 0.0,
-            calm: 0.0,
-            unsettled: 0.0,
+            enough_s: 0.0,
+            cooldown: 0.0,
+            suppressed_s: 0.0,
             group: 0,
             links_from: 0,
             crowded: false,
             beyond_filter: false,
             ambiguous: false,
             shared: false,
-            habits: SmallVec::new(),
-            surprise: 0.0,
-            restless: 0.4,
+            residuals: SmallVec::new(),
+            nis: 0.0,
+            mean_speed: 0.4,
             alone_s: 0.0,
             alone_at: None,
-            home: centre,
-            still: 0.0,
-            away: 0.0,
+            rest_point: centre,
+            still_s: 0.0,
+            away_s: 0.0,
             partner: None,
             quality: Quality::Live,
-            startled: false,
-            landing: None,
-            stray: STRAY_MOST_M,
+            quality_changed: false,
+            touchdown: None,
+            sway_m: SWAY_MOST_M,
             landed: centre,
             outline: Outline::new(centre),
             anchor: centre,
-            anchored: 0.0,
-            astray: 0.0,
+            anchored_s: 0.0,
+            astray_s: 0.0,
             travel: 0.0,
-            unparted: false,
+            landed_together: false,
             accompanied: false,
             explanation: Explanation::new(),
         };
-        foot.be_sure(deviation);
+        foot.reset_covariance(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
             foot.covariance[half][half] = 0.04_f64.powi(2);
         }
@@ -176,7 +176,7 @@ impl Foot {
     }
 
     /// Forgets what force and place had to do with each other and sets how sure both are.
-    pub(super) fn be_sure(&mut self, deviation: f64) {
+    pub(super) fn reset_covariance(&mut self, deviation: f64) {
         for row in 0..HALF_EAST {
             self.covariance[row] = [0.0; STATES];
         }
@@ -230,8 +230,8 @@ impl Foot {
     }
 
     /// Whether it was put down beside `host` while that one stood still.
-    pub(super) fn has_landed_beside(&self, host: &Self) -> bool {
-        self.landing.is_some_and(|landing| landing.host == host.id)
+    pub(super) fn has_landed_beside(&self, existing: &Self) -> bool {
+        self.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
     }
 
     /// Its tiles and those of `other`, each once, as far as there is room: far more than two feet cover.
@@ -278,34 +278,34 @@ impl Foot {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
-        self.be_sure(0.003);
-        self.unparted = false;
+        self.reset_covariance(0.003);
+        self.landed_together = false;
         self.ambiguous = false;
     }
 
     /// Moves the slow past on by `dt`.
-    pub(super) fn foretell(&mut self, dt: f64) {
+    pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
-        self.calm = (self.calm - dt).max(0.0);
-        self.unsettled = (self.unsettled - dt).max(0.0);
+        self.cooldown = (self.cooldown - dt).max(0.0);
+        self.suppressed_s = (self.suppressed_s - dt).max(0.0);
         self.partner = self.partner.map(|(place, ago)| (place, ago + dt)).filter(|&(_, ago)| ago < PARTNER_S);
-        self.past.centre += self.past.velocity * dt;
-        self.past.force = (self.past.force + self.past.force_rate * dt).max(0.0);
+        self.smoothed.centre += self.smoothed.velocity * dt;
+        self.smoothed.force = (self.smoothed.force + self.smoothed.force_rate * dt).max(0.0);
     }
 
     /// Notes that its sensors are believed more or less than before, and takes nothing of the change for a newcomer.
     ///
     /// `lasts`: what they say goes on changing for a while.
-    pub(super) fn startle(&mut self, quality: Quality, lasts: bool) {
+    pub(super) fn on_quality_change(&mut self, quality: Quality, lasts: bool) {
         self.quality = quality;
-        self.startled = true;
-        self.calm = CALM_S;
-        self.unsettled = if lasts { CALM_S } else { 0.0 };
+        self.quality_changed = true;
+        self.cooldown = CALM_S;
+        self.suppressed_s = if lasts { CALM_S } else { 0.0 };
     }
 
     /// Takes nothing of what happens in the next moment for a newcomer.
-    pub(super) fn be_calm(&mut self) {
-        (self.calm, self.unsettled) = (CALM_S, CALM_S);
+    pub(super) fn suppress_births(&mut self) {
+        (self.cooldown, self.suppressed_s) = (CALM_S, CALM_S);
     }
 
     /// Stands alone with this force and centre of pressure from now on.
@@ -313,7 +313,7 @@ impl Foot {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
-        self.home = centre;
-        self.be_sure(0.01);
+        self.rest_point = centre;
+        self.reset_covariance(0.01);
     }
 }

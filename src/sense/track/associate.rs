@@ -2,9 +2,9 @@
 
 use glam::DVec2;
 
-use super::foot::{EAST, FORCE, Foot, LANDS_S, NORTH};
-use super::landing::Landing;
-use super::{NOBODY, Tracker, first_of_least};
+use super::state::{EAST, FORCE, LANDS_S, NORTH, Track};
+use super::touchdown::Touchdown;
+use super::{Tracker, UNASSIGNED, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -31,49 +31,50 @@ pub(super) struct Pending {
 impl Tracker {
     /// Finds who reaches which tile, gives tiles nobody reaches to the nearest foot that
     /// may have grown onto them, and lets new feet land on the rest.
-    pub(super) fn adopt(&mut self, tiles: &LoadedTiles, dt: f64) {
+    pub(super) fn associate(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
         self.owner.clear();
-        self.owner.resize(list.len(), NOBODY);
-        for (which, foot) in self.feet.iter().enumerate() {
+        self.owner.resize(list.len(), UNASSIGNED);
+        for (which, foot) in self.tracks.iter().enumerate() {
             for &position in &foot.tiles {
                 self.owner[position as usize] = which as u32;
             }
         }
-        self.orphans.clear();
-        self.orphans
-            .extend((0..list.len() as u32).filter(|&position| self.owner[position as usize] == NOBODY));
-        self.orphans.sort_unstable_by(|&a, &b| {
+        self.unassigned.clear();
+        self.unassigned
+            .extend((0..list.len() as u32).filter(|&position| self.owner[position as usize] == UNASSIGNED));
+        self.unassigned.sort_unstable_by(|&a, &b| {
             let force = |position: u32| list[position as usize].wrench.force;
             force(b).total_cmp(&force(a)).then(a.cmp(&b))
         });
-        self.find_keepers(tiles);
+        self.find_previous_owners(tiles);
         for pending in &mut self.pending {
             pending.seen = false;
         }
-        for orphan in 0..self.orphans.len() {
-            let position = self.orphans[orphan];
+        for which_tile in 0..self.unassigned.len() {
+            let position = self.unassigned[which_tile];
             let tile = &list[position as usize];
             let centroid = tile.centroid.as_dvec2();
             let force = f64::from(tile.wrench.force);
-            let beyond = |foot: &Foot| {
+            let beyond = |foot: &Track| {
                 foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
             };
             // What was loaded already is no newcomer: it stays with the nearest of those who had it.
-            let from = self.keepers.partition_point(|&(kept, _)| kept < position);
-            let keepers = self.keepers[from..].iter().take_while(|&&(kept, _)| kept == position);
-            let away = keepers.map(|&(_, which)| {
+            let from = self.previous_owners.partition_point(|&(kept, _)| kept < position);
+            let previous_owners =
+                self.previous_owners[from..].iter().take_while(|&&(kept, _)| kept == position);
+            let away_s = previous_owners.map(|&(_, which)| {
                 let which = which as usize;
-                (self.feet[which].centre().distance(centroid), which)
+                (self.tracks[which].centre().distance(centroid), which)
             });
-            let nearest = away.min_by(first_of_least).or_else(|| {
+            let nearest = away_s.min_by(first_of_least).or_else(|| {
                 // Who may have grown onto it has its centre of pressure within a stride.
-                let feet = self.near.around(centroid).map(|which| (beyond(&self.feet[which]), which));
-                feet.filter(|&(beyond, _)| beyond < 0.0).min_by(first_of_least)
+                let tracks = self.near.around(centroid).map(|which| (beyond(&self.tracks[which]), which));
+                tracks.filter(|&(beyond, _)| beyond < 0.0).min_by(first_of_least)
             });
             match nearest {
                 Some((_, which)) => {
-                    let foot = &mut self.feet[which];
+                    let foot = &mut self.tracks[which];
                     foot.tiles.push(position);
                     if foot.age == 0.0 {
                         // A foot that lands on several tiles at once: its middle is theirs.
@@ -91,20 +92,20 @@ impl Tracker {
                     let nearest = self
                         .near
                         .around(centroid)
-                        .map(|which| (self.feet[which].centre().distance(centroid), which));
+                        .map(|which| (self.tracks[which].centre().distance(centroid), which));
                     let nearest = nearest.min_by(first_of_least);
                     if let Some((_, which)) = nearest {
-                        self.feet[which].tiles.push(position);
+                        self.tracks[which].tiles.push(position);
                         self.owner[position as usize] = which as u32;
                     }
                 }
                 None => {
-                    let mut foot = Foot::new(self.identity(centroid), force, centroid, 0.02);
-                    foot.landing = self.landing_at(centroid);
+                    let mut foot = Track::new(self.identity(centroid), force, centroid, 0.02);
+                    foot.touchdown = self.touchdown_at(centroid);
                     foot.tiles.push(position);
-                    self.owner[position as usize] = self.feet.len() as u32;
+                    self.owner[position as usize] = self.tracks.len() as u32;
                     self.near.add(foot.centre());
-                    self.feet.push(foot);
+                    self.tracks.push(foot);
                 }
             }
         }
@@ -118,10 +119,9 @@ impl Tracker {
     /// Whether it is not yet sure enough that a load lies beyond all feet near it.
     fn is_pending(&mut self, tile: &LoadedTile, dt: f64) -> bool {
         let place = tile.centroid.as_dvec2();
-        let is_near = self
-            .near
-            .around(place)
-            .any(|which| self.feet[which].centre().distance(place) < ASTRIDE_M && self.feet[which].age > 0.0);
+        let is_near = self.near.around(place).any(|which| {
+            self.tracks[which].centre().distance(place) < ASTRIDE_M && self.tracks[which].age > 0.0
+        });
         if !is_near {
             return false;
         }
@@ -149,39 +149,40 @@ impl Tracker {
         let (age, margin) = (pending.age, 0.005 + 3.0 * deviation);
         let sure = age >= PENDING_S.min(dt)
             && self.near.around(place).all(|which| {
-                let foot = &self.feet[which];
+                let foot = &self.tracks[which];
                 foot.beyond(middle).min(foot.lands_about(middle)).min(foot.rims(middle, force)) > margin
             });
         !sure
     }
 
     /// Finds, for each tile nobody reaches now, those who had it in the last frame.
-    fn find_keepers(&mut self, tiles: &LoadedTiles) {
-        self.keepers.clear();
-        if self.orphans.is_empty() {
+    fn find_previous_owners(&mut self, tiles: &LoadedTiles) {
+        self.previous_owners.clear();
+        if self.unassigned.is_empty() {
             return;
         }
-        for (which, foot) in (0..).zip(&self.feet) {
-            let had = foot.past.loads.iter().filter_map(|load| tiles.position(load.index));
-            let orphans = had.filter(|&position| self.owner[position as usize] == NOBODY);
-            self.keepers.extend(orphans.map(|position| (position, which)));
+        for (which, foot) in (0..).zip(&self.tracks) {
+            let had = foot.smoothed.loads.iter().filter_map(|load| tiles.position(load.index));
+            let unassigned = had.filter(|&position| self.owner[position as usize] == UNASSIGNED);
+            self.previous_owners.extend(unassigned.map(|position| (position, which)));
         }
-        self.keepers.sort_unstable();
+        self.previous_owners.sort_unstable();
     }
 
     /// Beside whom a foot that lands at `place` does so, if somebody stands still there.
-    fn landing_at(&self, place: DVec2) -> Option<Landing> {
-        let near = self.near.around(place).map(|which| (self.feet[which].centre().distance(place), which));
-        let (_, host) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
-        let host = &self.feet[host];
-        (host.lingers() && !host.shared).then_some(Landing { host: host.id, from: host.home })
+    fn touchdown_at(&self, place: DVec2) -> Option<Touchdown> {
+        let near = self.near.around(place).map(|which| (self.tracks[which].centre().distance(place), which));
+        let (_, existing) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
+        let existing = &self.tracks[existing];
+        (existing.is_slow() && !existing.shared)
+            .then_some(Touchdown { existing: existing.id, from: existing.rest_point })
     }
 
     /// Gives feet that have just landed, and are guessed to be beside all loaded tiles, the tiles they were noticed on.
-    pub(super) fn keep_in_touch(&mut self, tiles: &LoadedTiles) {
-        for foot in &mut self.feet {
+    pub(super) fn keep_noticed_tiles(&mut self, tiles: &LoadedTiles) {
+        for foot in &mut self.tracks {
             if foot.tiles.is_empty() && foot.age < LANDS_S {
-                foot.tiles.extend(foot.past.loads.iter().filter_map(|load| tiles.position(load.index)));
+                foot.tiles.extend(foot.smoothed.loads.iter().filter_map(|load| tiles.position(load.index)));
             }
         }
     }

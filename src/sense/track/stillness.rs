@@ -1,31 +1,31 @@
-//! Where a foot rests, and whether it stands still, lingers or rolls.
+//! Where a foot rests, and whether it stands still, is_slow or rolls.
 
 use glam::DVec2;
 
-use super::foot::{FLAT_S, Foot};
+use super::state::{FLAT_S, Track};
 
 /// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
 /// while another one lands, in metres.
-pub(super) const STRAY_LEAST_M: f64 = 0.01;
-pub(super) const STRAY_MOST_M: f64 = 0.06;
+pub(super) const SWAY_LEAST_M: f64 = 0.01;
+pub(super) const SWAY_MOST_M: f64 = 0.06;
 
 /// How far it strays per speed, in seconds: as long as two feet are down while one walks.
-const STRAY_S: f64 = 0.15;
+const SWAY_PER_SPEED_S: f64 = 0.15;
 
 /// How soon a foot that shares tiles has another home, in seconds.
-const HOME_S: f64 = 1.0;
+const REST_POINT_S: f64 = 1.0;
 
 /// How soon one that stands still alone has.
-const STILL_HOME_S: f64 = 0.03;
+const STILL_REST_POINT_S: f64 = 0.03;
 
 /// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
-pub(super) const RESTLESS_M_S: f64 = 0.03;
+pub(super) const SHARED_SPEED_M_S: f64 = 0.03;
 
 /// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
-const LINGERS_M_S: f64 = 0.15;
+const SLOW_M_S: f64 = 0.15;
 
 /// How soon a foot that stood still is taken to roll, in metres per second squared.
-const ROUSED_M_S2: f64 = 0.2;
+const SPEED_RISE_M_S2: f64 = 0.2;
 
 /// Speed of its centre of pressure below which a foot stands still, in metres per second.
 const STILL_M_S: f64 = 0.12;
@@ -41,35 +41,35 @@ pub(super) const STANDS_S: f64 = 0.3;
 const ANCHOR_S: f64 = 1.0;
 const ASTRAY_S: f64 = 1.5;
 
-impl Foot {
+impl Track {
     /// Whether it stands still alone, or has only just begun to move.
     pub(super) fn stands(&self) -> bool {
-        self.age > FLAT_S && self.still > STILL_S
+        self.age > FLAT_S && self.still_s > STILL_S
     }
 
     /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is somebody else's.
-    pub(super) fn lingers(&self) -> bool {
-        self.stands() || self.age > FLAT_S && self.restless < LINGERS_M_S
+    pub(super) fn is_slow(&self) -> bool {
+        self.stands() || self.age > FLAT_S && self.mean_speed < SLOW_M_S
     }
 
     /// Goes on standing still at `home`.
-    pub(super) fn stay(&mut self, home: DVec2) {
-        self.home = home;
-        self.stray = STRAY_LEAST_M;
-        self.restless = RESTLESS_M_S;
+    pub(super) fn hold_at(&mut self, rest_point: DVec2) {
+        self.rest_point = rest_point;
+        self.sway_m = SWAY_LEAST_M;
+        self.mean_speed = SHARED_SPEED_M_S;
     }
 
     /// Remembers where the foot has been.
     pub(super) fn roll(&mut self, dt: f64) {
         let centre = self.centre();
         self.peak = self.peak.max(self.force());
-        let rolls = !self.shared || self.age < FLAT_S && !self.unparted;
-        let speed = if rolls { self.velocity().length().min(1.0) } else { RESTLESS_M_S };
+        let rolls = !self.shared || self.age < FLAT_S && !self.landed_together;
+        let speed = if rolls { self.velocity().length().min(1.0) } else { SHARED_SPEED_M_S };
         // Weight that goes over to another foot draws it along for a moment: that is not its own.
-        let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.restless);
-        self.restless += change.min(ROUSED_M_S2 * dt);
+        let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.mean_speed);
+        self.mean_speed += change.min(SPEED_RISE_M_S2 * dt);
         if rolls {
-            self.stray = (STRAY_LEAST_M + STRAY_S * self.restless).min(STRAY_MOST_M);
+            self.sway_m = (SWAY_LEAST_M + SWAY_PER_SPEED_S * self.mean_speed).min(SWAY_MOST_M);
         }
         self.rest(dt, rolls);
         if self.age < 0.01 {
@@ -83,18 +83,18 @@ impl Foot {
     fn stand_still(&mut self, dt: f64) {
         if self.partner.is_some_and(|(_, ago)| ago <= dt) {
             // On two feet one stands otherwise.
-            (self.anchor, self.anchored, self.astray) = (self.centre(), 0.0, 0.0);
+            (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
             return;
         }
         let offset = self.centre() - self.anchor;
         if offset.length() < ANCHOR_M {
-            self.anchored += dt;
-            self.astray = 0.0;
+            self.anchored_s += dt;
+            self.astray_s = 0.0;
             self.anchor += offset * (dt / ANCHOR_S).min(1.0);
         } else {
-            self.astray += dt;
-            if self.anchored < STANDS_S || self.astray > ASTRAY_S {
-                (self.anchor, self.anchored, self.astray) = (self.centre(), 0.0, 0.0);
+            self.astray_s += dt;
+            if self.anchored_s < STANDS_S || self.astray_s > ASTRAY_S {
+                (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
             }
         }
     }
@@ -104,18 +104,18 @@ impl Foot {
         let centre = self.centre();
         let drift = |time_s: f64| 1.0 - (-dt / time_s).exp();
         if self.shared {
-            (self.still, self.away) = (0.0, 0.0);
-            let soon = if rolls { 1.0 } else { drift(HOME_S) };
-            self.home += (centre - self.home) * soon;
+            (self.still_s, self.away_s) = (0.0, 0.0);
+            let soon = if rolls { 1.0 } else { drift(REST_POINT_S) };
+            self.rest_point += (centre - self.rest_point) * soon;
         } else if self.velocity().length() < STILL_M_S {
-            self.still += dt;
-            self.away = 0.0;
-            self.home += (centre - self.home) * drift(STILL_HOME_S);
+            self.still_s += dt;
+            self.away_s = 0.0;
+            self.rest_point += (centre - self.rest_point) * drift(STILL_REST_POINT_S);
         } else {
-            self.away += dt;
-            if self.away > AWAY_S {
-                self.still = 0.0;
-                self.home = centre;
+            self.away_s += dt;
+            if self.away_s > AWAY_S {
+                self.still_s = 0.0;
+                self.rest_point = centre;
             }
         }
     }

@@ -4,10 +4,10 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::explanation::Second;
-use super::foot::{FORCE, Foot, LANDS_S};
-use super::landing::Landing;
-use super::lines::Whole;
-use super::rest::{RESTLESS_M_S, STANDS_S};
+use super::state::{FORCE, LANDS_S, Track};
+use super::stillness::{SHARED_SPEED_M_S, STANDS_S};
+use super::strips::Whole;
+use super::touchdown::Touchdown;
 use super::{STRIDE_M, Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -32,7 +32,7 @@ const STANCE_M: f64 = 0.2;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]
-struct Newcomer {
+struct Candidate {
     force: f64,
     place: DVec2,
     deviation: f64,
@@ -44,10 +44,10 @@ struct Newcomer {
 
 impl Tracker {
     /// Lets feet land on tiles that others already press.
-    pub(super) fn find_newcomers(&mut self, tiles: &LoadedTiles, dt: f64) {
+    pub(super) fn initiate(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
-        for which in 0..self.feet.len() {
-            let foot = &self.feet[which];
+        for which in 0..self.tracks.len() {
+            let foot = &self.tracks[which];
             if foot.shared {
                 continue;
             }
@@ -56,89 +56,95 @@ impl Tracker {
             if quality.is_some_and(|quality| quality != foot.quality) {
                 // A sensor that is lost or found goes over to what the others say little by little.
                 let lasts = foot.tiles.iter().any(|&position| !list[position as usize].is_settled());
-                self.feet[which].startle(quality.unwrap_or_default(), lasts);
+                self.tracks[which].on_quality_change(quality.unwrap_or_default(), lasts);
                 continue;
             }
             let second = self.second(which, list, dt);
-            let foot = &self.feet[which];
+            let foot = &self.tracks[which];
             let added = if foot.age > LANDS_S { self.added(foot, list) } else { None };
-            let Some(newcomer) = added.or(second) else { continue };
+            let Some(candidate) = added.or(second) else { continue };
             // Whose foot it may be more of has its centre of pressure within a stride.
-            let others = self.near.around(newcomer.place).filter(|&other| other != which);
+            let others = self.near.around(candidate.place).filter(|&other| other != which);
             let nearest = others
-                .map(|other| (self.feet[other].centre().distance(newcomer.place), other))
+                .map(|other| (self.tracks[other].centre().distance(candidate.place), other))
                 .filter(|&(distance, other)| {
-                    let foot = &self.feet[other];
-                    let beyond = foot.beyond(newcomer.place).min(foot.lands_about(newcomer.place));
+                    let foot = &self.tracks[other];
+                    let beyond = foot.beyond(candidate.place).min(foot.lands_about(candidate.place));
                     beyond < 0.0 || distance < APART_M
                 })
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
                 // Not a newcomer, but more of a foot that is already there.
-                let known = &mut self.feet[other];
-                for &position in &newcomer.tiles {
+                let known = &mut self.tracks[other];
+                for &position in &candidate.tiles {
                     if !known.tiles.contains(&position) {
                         known.tiles.push(position);
                     }
                 }
                 continue;
             }
-            if foot.centre().distance(newcomer.place) < APART_M {
+            if foot.centre().distance(candidate.place) < APART_M {
                 continue;
             }
-            let stood = foot.anchored >= STANDS_S && foot.bears();
-            let landing = (stood || foot.lingers())
-                .then_some(Landing { host: foot.id, from: if stood { foot.anchor } else { foot.home } });
-            let mut newborn =
-                Foot::new(self.identity(newcomer.place), newcomer.force, newcomer.place, newcomer.deviation);
-            newborn.covariance[FORCE][FORCE] = (0.3 * newcomer.force + 5.0).powi(2);
-            newborn.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
-            newborn.landing = landing;
-            newborn.reach(tiles, self.cells.pitch);
-            for &position in &newcomer.tiles {
-                if !newborn.tiles.contains(&position) {
-                    newborn.tiles.push(position);
+            let stood = foot.anchored_s >= STANDS_S && foot.bears();
+            let touchdown = (stood || foot.is_slow()).then_some(Touchdown {
+                existing: foot.id,
+                from: if stood { foot.anchor } else { foot.rest_point },
+            });
+            let mut new_track = Track::new(
+                self.identity(candidate.place),
+                candidate.force,
+                candidate.place,
+                candidate.deviation,
+            );
+            new_track.covariance[FORCE][FORCE] = (0.3 * candidate.force + 5.0).powi(2);
+            new_track.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
+            new_track.touchdown = touchdown;
+            new_track.reach(tiles, self.cells.pitch);
+            for &position in &candidate.tiles {
+                if !new_track.tiles.contains(&position) {
+                    new_track.tiles.push(position);
                 }
             }
-            if !newborn.tiles.is_empty() {
-                if let Some((force, place)) = newcomer.keeps {
-                    let foot = &mut self.feet[which];
+            if !new_track.tiles.is_empty() {
+                if let Some((force, place)) = candidate.keeps {
+                    let foot = &mut self.tracks[which];
                     foot.stand(force, place);
-                    foot.be_sure(APART_GUESS_M);
+                    foot.reset_covariance(APART_GUESS_M);
                     foot.covariance[FORCE][FORCE] = (0.3 * force + 5.0).powi(2);
-                    foot.start_over();
-                    for foot in [foot, &mut newborn] {
-                        foot.unparted = true;
-                        foot.restless = RESTLESS_M_S;
+                    foot.restart_smoothing();
+                    for foot in [foot, &mut new_track] {
+                        foot.landed_together = true;
+                        foot.mean_speed = SHARED_SPEED_M_S;
                     }
                 } else {
-                    self.feet[which].step_back();
+                    self.tracks[which].back_to_prediction();
                 }
-                self.near.moved(which, self.feet[which].centre());
-                self.near.add(newborn.centre());
-                self.feet.push(newborn);
+                self.near.moved(which, self.tracks[which].centre());
+                self.near.add(new_track.centre());
+                self.tracks.push(new_track);
             }
         }
     }
 
     /// Whether nobody else is within a stride: no partner that is down already, however lately.
-    fn is_far_from_all(&self, foot: &Foot) -> bool {
+    fn is_far_from_all(&self, foot: &Track) -> bool {
         let place = foot.centre();
         let mut others =
-            self.near.around(place).map(|other| &self.feet[other]).filter(|other| other.id != foot.id);
+            self.near.around(place).map(|other| &self.tracks[other]).filter(|other| other.id != foot.id);
         others.all(|other| other.centre().distance(place) > STRIDE_M)
     }
 
     /// A newcomer whose load has been added to tiles, where the foot itself cannot have put it.
-    fn added(&self, foot: &Foot, list: &[LoadedTile]) -> Option<Newcomer> {
-        let mut found = Newcomer::default();
+    fn added(&self, foot: &Track, list: &[LoadedTile]) -> Option<Candidate> {
+        let mut found = Candidate::default();
         if !foot.bears() && foot.velocity().length() > SLIDES_M_S {
             return None;
         }
         for &position in &foot.tiles {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
-            let slow = foot.slow_load(tile.index);
+            let slow = foot.smoothed_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
             let noise = f64::from(tile.noise_n);
@@ -147,12 +153,12 @@ impl Tracker {
             }
             let moment = (tile.centroid.as_dvec2() - centre) * force - slow.moment;
             // Moment of what was added about the foot's own centre of pressure.
-            let about = moment + (centre - foot.past.centre) * added;
+            let about = moment + (centre - foot.smoothed.centre) * added;
             let place = centre + moment / added;
             let (low, high) = self.cells.of(tile);
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
             // What the foot's own sway may look like, at its own centre of pressure.
-            let sway = slow.force * 0.012 + 3.5 * super::adopt::NOISE_ARM_M * noise;
+            let sway = slow.force * 0.012 + 3.5 * super::associate::NOISE_ARM_M * noise;
             if inside && about.length() > added * 0.08 + sway && foot.beyond(place) > sway / added {
                 found.place =
                     (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);
@@ -165,23 +171,23 @@ impl Tracker {
     }
 
     /// A second foot that one track's load tells of: where it would be.
-    fn second(&mut self, which: usize, list: &[LoadedTile], dt: f64) -> Option<Newcomer> {
-        let foot = &self.feet[which];
+    fn second(&mut self, which: usize, list: &[LoadedTile], dt: f64) -> Option<Candidate> {
+        let foot = &self.tracks[which];
         let seen = Whole::of(foot.tiles.iter().map(|&position| &list[position as usize]), self.cells.pitch);
         let alone = self.is_far_from_all(foot);
         let mut explanation = foot.explanation;
         let second = explanation.update(foot, &seen, list, alone, dt);
-        self.feet[which].explanation = explanation;
-        let foot = &self.feet[which];
-        if foot.unsettled > 0.0 {
+        self.tracks[which].explanation = explanation;
+        let foot = &self.tracks[which];
+        if foot.suppressed_s > 0.0 {
             return None;
         }
         match second? {
-            Second::Shift(shift) => Some(Newcomer {
+            Second::Shift(shift) => Some(Candidate {
                 force: seen.force * shift.length() / STANCE_M,
                 place: foot.anchor + shift.normalize() * STANCE_M,
                 deviation: GUESSED_M,
-                ..Newcomer::default()
+                ..Candidate::default()
             }),
             Second::Apart(spread) => {
                 // The lighter side is the new one.
@@ -198,10 +204,14 @@ impl Tracker {
                 let new =
                     if centre(0).distance(foot.landed) > centre(1).distance(foot.landed) { 0 } else { 1 };
                 let (keep, place) = (centre(1 - new), centre(new));
-                let mut newcomer =
-                    Newcomer { force: sides[new].0, place, deviation: APART_GUESS_M, ..Newcomer::default() };
-                newcomer.keeps = Some((sides[1 - new].0, keep));
-                Some(newcomer)
+                let mut candidate = Candidate {
+                    force: sides[new].0,
+                    place,
+                    deviation: APART_GUESS_M,
+                    ..Candidate::default()
+                };
+                candidate.keeps = Some((sides[1 - new].0, keep));
+                Some(candidate)
             }
         }
     }

@@ -4,9 +4,9 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::Cells;
-use super::foot::{EAST, FLAT_S, FORCE, Foot, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES};
-use super::joint::{Joint, MOST_FEET, Slope};
-use super::lines::{Axis, Lines};
+use super::joint::{Derivative, Joint, MOST_FEET};
+use super::state::{EAST, FLAT_S, FORCE, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES, Track};
+use super::strips::{Axis, Strips};
 use crate::sense::tile::LoadedTile;
 
 /// How far force that strays over a seam is spread along it, as a standard deviation.
@@ -18,11 +18,11 @@ const HELD: f64 = 1.5;
 
 /// What a patch may divide otherwise over two tiles than a foot does, as a share of its force: one seen
 /// standing there alone, and in addition one that was not.
-const STRANGE: f64 = 0.01;
-const STRANGER: f64 = 0.08;
+const KNOWN_SHAPE: f64 = 0.01;
+const UNKNOWN_SHAPE: f64 = 0.08;
 
 /// Lets `dt` seconds pass for the feet in `members`.
-pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64) {
+pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: f64) {
     const FORCE_FADE_S: f64 = 0.03;
     const FORCE_RATE: f64 = 5000.0;
     const PLACE_FADE_S: f64 = 0.08;
@@ -33,30 +33,30 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64
     for (which, &member) in members.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
-        let foot = &feet[member as usize];
-        let speed = (2.0 * foot.restless).clamp(SPEED_LEAST, SPEED);
+        let foot = &tracks[member as usize];
+        let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST, SPEED);
         for (value, fade_s, rate) in
             [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
         {
-            let fade = (-dt / fade_s).exp();
-            joint.drift(at + value, fade_s * (1.0 - fade), fade, rate * rate * (1.0 - fade * fade));
+            let decay = (-dt / fade_s).exp();
+            joint.drift(at + value, fade_s * (1.0 - decay), decay, rate * rate * (1.0 - decay * decay));
         }
         if foot.age > FLAT_S && dt > 0.0 {
             // A foot that has come down flat strays about its home: in the long run no further than `stray`.
             let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
-            let away = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.home);
-            let stood = members.iter().all(|&other| feet[other as usize].age <= foot.age);
-            let held = stood && away > HELD * foot.stray;
-            let variance = if held { foot.stray.powi(2) } else { foot.stray.powi(4) / spread };
-            for (place, home) in [(EAST, foot.home.x), (NORTH, foot.home.y)] {
-                joint.observe(home - joint.x[at + place], &[(at + place, 1.0)], variance);
+            let away_s = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.rest_point);
+            let stood = members.iter().all(|&other| tracks[other as usize].age <= foot.age);
+            let held = stood && away_s > HELD * foot.sway_m;
+            let variance = if held { foot.sway_m.powi(2) } else { foot.sway_m.powi(4) / spread };
+            for (place, rest_point) in [(EAST, foot.rest_point.x), (NORTH, foot.rest_point.y)] {
+                joint.observe(rest_point - joint.x[at + place], &[(at + place, 1.0)], variance);
             }
         }
         // What a foot is known to be shaped like, it keeps while it stays where it is.
-        let loose = 1.0 - feet[member as usize].habit_strength();
-        let fade = (-dt * loose / HALF_FADE_S).exp();
+        let loose = 1.0 - tracks[member as usize].residual_weight();
+        let decay = (-dt * loose / HALF_FADE_S).exp();
         for half in [HALF_EAST, HALF_NORTH] {
-            joint.relax(at + half, HALF_REST, fade, HALF_SPREAD * HALF_SPREAD * (1.0 - fade * fade));
+            joint.relax(at + half, HALF_REST, decay, HALF_SPREAD * HALF_SPREAD * (1.0 - decay * decay));
         }
     }
 }
@@ -66,98 +66,102 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], feet: &[Foot], dt: f64
 pub(super) fn observe(
     joint: &mut Joint,
     members: &[u32],
-    feet: &[Foot],
+    tracks: &[Track],
     list: &[LoadedTile],
     cells: &Cells,
     dt: f64,
 ) -> (f64, f64) {
     let mut seen: ArrayVec<u32, 64> = ArrayVec::new();
     for &member in members {
-        for &position in &feet[member as usize].tiles {
+        for &position in &tracks[member as usize].tiles {
             if !seen.contains(&position) && !seen.is_full() {
                 seen.push(position);
             }
         }
     }
-    let mut lines = Lines::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
-    let (force, middle) = (lines.force, lines.middle);
+    let mut strips = Strips::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
+    let (force, middle) = (strips.force, strips.middle);
     for &member in members {
-        // Lines that a patch would reach but that carry nothing speak too.
-        let foot = &feet[member as usize];
+        // Strips that a patch would reach but that carry nothing speak too.
+        let foot = &tracks[member as usize];
         for axis in Axis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
             for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
                 if (0..cells.count(axis)).contains(&number) {
-                    lines.line(axis, number);
+                    strips.strip(axis, number);
                 }
             }
         }
     }
     // The whole of it, free of any patch model.
-    let mut slopes = [[(0, 0.0); 2 * MOST_FEET]; 3];
+    let mut jacobian = [[(0, 0.0); 2 * MOST_FEET]; 3];
     for which in 0..members.len() {
         let at = which * STATES;
         let state = &joint.x[at..at + STATES];
-        slopes[0][which] = (at + FORCE, 1.0);
-        slopes[1][2 * which] = (at + FORCE, state[EAST] - middle.x);
-        slopes[1][2 * which + 1] = (at + EAST, state[FORCE]);
-        slopes[2][2 * which] = (at + FORCE, state[NORTH] - middle.y);
-        slopes[2][2 * which + 1] = (at + NORTH, state[FORCE]);
+        jacobian[0][which] = (at + FORCE, 1.0);
+        jacobian[1][2 * which] = (at + FORCE, state[EAST] - middle.x);
+        jacobian[1][2 * which + 1] = (at + EAST, state[FORCE]);
+        jacobian[2][2 * which] = (at + FORCE, state[NORTH] - middle.y);
+        jacobian[2][2 * which + 1] = (at + NORTH, state[FORCE]);
     }
     let n = members.len();
     let start = joint.x;
-    let now = |joint: &Joint, slopes: &[Slope]| -> f64 {
+    let now = |joint: &Joint, jacobian: &[Derivative]| -> f64 {
         // What the linearised prediction still misses after the observations so far.
-        slopes.iter().map(|&(state, slope)| slope * (joint.x[state] - start[state])).sum()
+        jacobian.iter().map(|&(state, derivative)| derivative * (joint.x[state] - start[state])).sum()
     };
     let whole: f64 = (0..n).map(|which| start[which * STATES + FORCE]).sum();
-    let noise = lines.noise();
-    joint.observe(force - whole, &slopes[0][..n], 4.0 + noise.force);
-    for (axis, slopes) in [(EAST, slopes[1]), (NORTH, slopes[2])] {
+    let noise = strips.noise();
+    joint.observe(force - whole, &jacobian[0][..n], 4.0 + noise.force);
+    for (axis, jacobian) in [(EAST, jacobian[1]), (NORTH, jacobian[2])] {
         let middle = if axis == EAST { middle.x } else { middle.y };
         let moment: f64 =
             (0..n).map(|which| start[which * STATES + FORCE] * (start[which * STATES + axis] - middle)).sum();
-        let missing = -moment - now(joint, &slopes[..2 * n]);
-        joint.observe(missing, &slopes[..2 * n], 0.09 + if axis == EAST { noise.east } else { noise.north });
+        let innovation = -moment - now(joint, &jacobian[..2 * n]);
+        joint.observe(
+            innovation,
+            &jacobian[..2 * n],
+            0.09 + if axis == EAST { noise.east } else { noise.north },
+        );
     }
-    let mut surprise = 0.0;
-    for line in &lines.lines {
-        let axis = line.axis;
+    let mut nis = 0.0;
+    for strip in &strips.strips {
+        let axis = strip.axis;
         let (place, half) = (axis.place(), axis.half());
         let aside = EAST + NORTH - place;
-        let middle = (f64::from(line.number) + 0.5) * cells.pitch;
-        let mut missing = [line.force, line.moment, line.cross];
+        let middle = (f64::from(strip.number) + 0.5) * cells.pitch;
+        let mut innovation = [strip.force, strip.moment, strip.cross];
         let mut rows: Rows = Default::default();
-        let [force_noise, moment_noise, cross_noise] = line.noise;
+        let [force_noise, moment_noise, cross_noise] = strip.noise;
         let mut doubt =
             [[4.0 + force_noise, 0.0, 0.0], [0.0, 0.09 + moment_noise, 0.0], [0.0, 0.0, 0.09 + cross_noise]];
         for (which, &member) in members.iter().enumerate() {
-            let foot = &feet[member as usize];
-            let habit = foot.habit(axis, line.number);
+            let foot = &tracks[member as usize];
+            let residual = foot.residual(axis, strip.number);
             let place_along = axis.along(foot.centre());
             let width = foot.covariance[half][half].sqrt();
-            let slice = line.slice_in_doubt(cells.pitch, place_along, axis.along(foot.half()), width);
-            let share = (slice.share + habit.share).clamp(0.0, 1.0);
+            let slice = strip.slice_in_doubt(cells.pitch, place_along, axis.along(foot.half()), width);
+            let share = (slice.share + residual.share).clamp(0.0, 1.0);
             if share <= 0.0 && slice.share <= 0.0 {
                 continue;
             }
             let (f, at) = (foot.force(), which * STATES);
-            let offset = axis.across(foot.centre() - lines.middle);
-            let moment = slice.moment + habit.moment;
-            let cross = share * offset + habit.cross;
-            missing[0] -= f * share;
-            missing[1] -= f * moment;
-            missing[2] -= f * cross;
+            let offset = axis.across(foot.centre() - strips.middle);
+            let moment = slice.moment + residual.moment;
+            let cross = share * offset + residual.cross;
+            innovation[0] -= f * share;
+            innovation[1] -= f * moment;
+            innovation[2] -= f * cross;
             // What the patch model leaves open: force that lies on the other side of the seam
             // through the foot, and how that force is spread along the seam.
-            let strength = foot.habit_strength();
+            let strength = foot.residual_weight();
             let straddle =
                 4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
-            let strange = STRANGE + STRANGER * (1.0 - strength);
+            let shape_error = KNOWN_SHAPE + UNKNOWN_SHAPE * (1.0 - strength);
             // Errors of the patch model last as long as the foot is there: many frames see the same one.
             let frames = foot.age.clamp(0.1, 1.0) / dt.max(1e-4);
-            let strayed = frames.max(1.0) * (f * strange).powi(2) * straddle;
+            let strayed = frames.max(1.0) * (f * shape_error).powi(2) * straddle;
             let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
             for (row, values) in doubt.iter_mut().enumerate() {
                 for (column, value) in values.iter_mut().enumerate() {
@@ -177,23 +181,23 @@ pub(super) fn observe(
                 rows[row].push((at + aside, f * across));
             }
         }
-        let variances = decorrelate(&mut missing, &mut rows, doubt);
+        let variances = decorrelate(&mut innovation, &mut rows, doubt);
         for row in 0..3 {
-            let missing = missing[row] - now(joint, &rows[row]);
-            surprise += joint.observe(missing, &rows[row], variances[row]);
+            let innovation = innovation[row] - now(joint, &rows[row]);
+            nis += joint.observe(innovation, &rows[row], variances[row]);
         }
     }
-    (surprise / (3.0 * lines.lines.len() as f64), force)
+    (nis / (3.0 * strips.strips.len() as f64), force)
 }
 
 /// The slopes of a line's force, moment and cross moment.
-type Rows = [ArrayVec<Slope, { 4 * MOST_FEET }>; 3];
+type Rows = [ArrayVec<Derivative, { 4 * MOST_FEET }>; 3];
 
 /// Turns three observations with correlated errors into three independent ones; gives their variances.
 ///
 /// # Source
 /// R = L D Lᵀ: multiplied by the inverse of L, errors of covariance R have the diagonal covariance D.
-fn decorrelate(missing: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]) -> [f64; 3] {
+fn decorrelate(innovation: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]) -> [f64; 3] {
     for pivot in 0..2 {
         for row in pivot + 1..3 {
             let factor = doubt[row][pivot] / doubt[pivot][pivot];
@@ -201,10 +205,10 @@ fn decorrelate(missing: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]
             for (below, above) in doubt[row].iter_mut().zip(above) {
                 *below -= factor * above;
             }
-            missing[row] -= factor * missing[pivot];
+            innovation[row] -= factor * innovation[pivot];
             let (above, below) = rows.split_at_mut(row);
-            for (slope, taken) in below[0].iter_mut().zip(&above[pivot]) {
-                slope.1 -= factor * taken.1;
+            for (derivative, taken) in below[0].iter_mut().zip(&above[pivot]) {
+                derivative.1 -= factor * taken.1;
             }
         }
     }

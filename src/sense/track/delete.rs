@@ -1,6 +1,6 @@
 //! Feet that have left: whose place is proven empty.
 
-use super::foot::{FORCE, Foot, SHOE_M};
+use super::state::{FORCE, SHOE_M, Track};
 use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
@@ -42,33 +42,33 @@ const FAR_M: f64 = 0.12;
 
 impl Tracker {
     /// Takes away feet that are not there.
-    pub(super) fn bury(&mut self, tiles: &LoadedTiles, dt: f64) {
-        self.near.renew(self.feet.iter().map(Foot::centre));
-        for which in 0..self.feet.len() {
-            let foot = &self.feet[which];
+    pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
+        self.near.renew(self.tracks.iter().map(Track::centre));
+        for which in 0..self.tracks.len() {
+            let foot = &self.tracks[which];
             let gone = if foot.shared { self.is_empty(foot, tiles.list()) } else { self.is_rim(foot) };
-            let foot = &mut self.feet[which];
+            let foot = &mut self.tracks[which];
             let change = if gone { 1.0 } else { -RECOVERS };
-            foot.faint = (foot.faint + change * dt).max(0.0);
-            if foot.faint >= FAINT_S {
+            foot.empty_s = (foot.empty_s + change * dt).max(0.0);
+            if foot.empty_s >= FAINT_S {
                 for mate in self.mates.of(foot.group) {
-                    self.feet[mate].be_calm();
+                    self.tracks[mate].suppress_births();
                 }
             }
         }
-        for which in 0..self.feet.len() {
-            if self.feet[which].faint >= FAINT_S {
-                self.bequeath(which);
+        for which in 0..self.tracks.len() {
+            if self.tracks[which].empty_s >= FAINT_S {
+                self.transfer_tiles(which);
             }
         }
-        let groups = self.feet.len();
-        self.feet.retain(|foot| foot.faint < FAINT_S);
-        self.find_mates(groups);
+        let groups = self.tracks.len();
+        self.tracks.retain(|foot| foot.empty_s < FAINT_S);
+        self.renew_groups(groups);
     }
 
     /// Whether the place of a foot that shares its tiles is proven empty.
-    fn is_empty(&self, foot: &Foot, list: &[LoadedTile]) -> bool {
-        let all: f64 = foot.force() + self.mates(foot).map(Foot::force).sum::<f64>();
+    fn is_empty(&self, foot: &Track, list: &[LoadedTile]) -> bool {
+        let all: f64 = foot.force() + self.mates(foot).map(Track::force).sum::<f64>();
         if foot.force() >= LIGHT_N.max(LIGHT_SHARE * all) || self.has_own(foot, list) {
             return false;
         }
@@ -80,7 +80,7 @@ impl Tracker {
     }
 
     /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.
-    pub(super) fn stands_on_nothing(&self, foot: &Foot, list: &[LoadedTile], all: f64) -> bool {
+    pub(super) fn stands_on_nothing(&self, foot: &Track, list: &[LoadedTile], all: f64) -> bool {
         let near = list
             .iter()
             .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
@@ -91,28 +91,28 @@ impl Tracker {
     }
 
     /// Leaves what foot `which`, which is gone, still pressed to the nearest of those it was with: that is no newcomer.
-    fn bequeath(&mut self, which: usize) {
-        let gone = &self.feet[which];
-        let mates = self.mates.of(gone.group).filter(|&mate| self.feet[mate].faint < FAINT_S);
-        let away = mates.map(|mate| (self.feet[mate].centre().distance(gone.centre()), mate));
+    fn transfer_tiles(&mut self, which: usize) {
+        let gone = &self.tracks[which];
+        let mates = self.mates.of(gone.group).filter(|&mate| self.tracks[mate].empty_s < FAINT_S);
+        let away_s = mates.map(|mate| (self.tracks[mate].centre().distance(gone.centre()), mate));
         // Farther away than a shoe is long, it is nothing of theirs.
-        let heir = away.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
-        let Some((_, heir)) = heir else { return };
-        let left = std::mem::take(&mut self.feet[which].tiles);
-        self.feet[heir].inherit(&left);
+        let successor = away_s.filter(|&(distance, _)| distance < SHOE_M).min_by(first_of_least);
+        let Some((_, successor)) = successor else { return };
+        let left = std::mem::take(&mut self.tracks[which].tiles);
+        self.tracks[successor].inherit(&left);
     }
 
     /// The other feet of its group.
-    fn mates(&self, foot: &Foot) -> impl Iterator<Item = &Foot> {
+    fn mates(&self, foot: &Track) -> impl Iterator<Item = &Track> {
         let id = foot.id;
-        self.mates.of(foot.group).map(|mate| &self.feet[mate]).filter(move |mate| mate.id != id)
+        self.mates.of(foot.group).map(|mate| &self.tracks[mate]).filter(move |mate| mate.id != id)
     }
 
     /// Whether it is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both pressed.
-    fn is_rim(&self, foot: &Foot) -> bool {
+    fn is_rim(&self, foot: &Track) -> bool {
         let (place, force) = (foot.centre(), foot.force());
-        foot.home.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self.near.around(place).map(|other| &self.feet[other]).any(|other| {
+        foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
+            && self.near.around(place).map(|other| &self.tracks[other]).any(|other| {
                 other.id != foot.id
                     && force < RIM_SHARE * other.force()
                     && other.centre().distance(place) < RIM_M
@@ -120,7 +120,7 @@ impl Tracker {
     }
 
     /// Whether it presses a tile that none of the others can reach: proof that it is still there.
-    fn has_own(&self, foot: &Foot, list: &[LoadedTile]) -> bool {
+    fn has_own(&self, foot: &Track, list: &[LoadedTile]) -> bool {
         foot.tiles.iter().any(|&position| {
             let place = list[position as usize].centroid.as_dvec2();
             self.mates(foot).all(|other| other.centre().distance(place) > OWN_M)

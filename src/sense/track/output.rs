@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::dormant::{PLACE_M, REPORTED};
-use super::foot::{EAST, Foot, NORTH};
+use super::state::{EAST, NORTH, Track};
 use super::{Cells, Tracker};
 use crate::sense::contact::{Covariance, TileLoad};
 use crate::sense::loaded::LoadedTiles;
@@ -12,7 +12,7 @@ use crate::sense::tile::LoadedTile;
 use crate::units::Newtons;
 
 /// How much more a joint position is doubted per unit of surprise.
-const MISTRUST: f64 = 4000.0;
+const INFLATION: f64 = 4000.0;
 
 /// Which part of the gain errors under other feet falls on a foot that shares their tiles.
 const OTHERS_MISREAD: f32 = 0.25;
@@ -21,9 +21,9 @@ const OTHERS_MISREAD: f32 = 0.25;
 const AMBIGUOUS_M: f64 = 0.04;
 
 /// How well two feet are known that have landed together, beyond what the filter says, in metres.
-const UNPARTED_M: f32 = 0.035;
+const TOGETHER_M: f32 = 0.035;
 
-/// The largest standard deviation that mistrust may lead to: it is in this group of tiles, no more is known.
+/// The largest standard deviation that inflation may lead to: it is in this group of tiles, no more is known.
 const LOST_M: f64 = 0.3;
 
 impl Tracker {
@@ -31,15 +31,15 @@ impl Tracker {
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
         let list = tiles.list();
         pool.clear();
-        for foot in &mut self.feet {
+        for foot in &mut self.tracks {
             if !foot.shared {
-                foot.surprise = 0.0;
+                foot.nis = 0.0;
             }
             // Predictions that keep failing say that the feet are not what the filter takes them for.
             let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
-            let mistrust = (1.0 + MISTRUST * foot.surprise).min(LOST_M * LOST_M / variance).max(1.0);
+            let inflation = (1.0 + INFLATION * foot.nis).min(LOST_M * LOST_M / variance).max(1.0);
             foot.ambiguous = if foot.shared {
-                foot.beyond_filter || mistrust * variance > AMBIGUOUS_M * AMBIGUOUS_M
+                foot.beyond_filter || inflation * variance > AMBIGUOUS_M * AMBIGUOUS_M
             } else {
                 foot.explanation.is_open()
             };
@@ -50,9 +50,9 @@ impl Tracker {
             contact.ambiguous = foot.ambiguous;
             let mut covariance = if foot.shared {
                 Covariance {
-                    xx: (mistrust * foot.covariance[EAST][EAST]) as f32,
-                    xy: (mistrust * foot.covariance[EAST][NORTH]) as f32,
-                    yy: (mistrust * foot.covariance[NORTH][NORTH]) as f32,
+                    xx: (inflation * foot.covariance[EAST][EAST]) as f32,
+                    xy: (inflation * foot.covariance[EAST][NORTH]) as f32,
+                    yy: (inflation * foot.covariance[NORTH][NORTH]) as f32,
                 }
             } else {
                 Covariance::default()
@@ -79,8 +79,8 @@ impl Tracker {
                     TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
                 }));
             }
-            if foot.unparted {
-                covariance += Covariance::isotropic(UNPARTED_M);
+            if foot.landed_together {
+                covariance += Covariance::isotropic(TOGETHER_M);
             }
             if !foot.shared {
                 covariance += Covariance::isotropic(foot.explanation.hidden_m() as f32);
@@ -89,14 +89,16 @@ impl Tracker {
             contact.finish();
         }
         for dormant in &self.dormant {
-            let Some(host) = self.feet.iter().find(|foot| foot.id == dormant.host) else { continue };
+            let Some(existing) = self.tracks.iter().find(|foot| foot.id == dormant.existing) else {
+                continue;
+            };
             let contact = pool.add(dormant.foot.id);
             contact.centroid = dormant.foot.centre().as_vec2();
-            contact.force = Newtons((REPORTED * host.force()) as f32);
+            contact.force = Newtons((REPORTED * existing.force()) as f32);
             contact.velocity = Vec2::ZERO;
             contact.ambiguous = true;
             contact.covariance = Covariance::isotropic(PLACE_M as f32);
-            contact.tiles.extend(host.tiles.iter().map(|&position| {
+            contact.tiles.extend(existing.tiles.iter().map(|&position| {
                 let tile = &list[position as usize];
                 let force = Newtons(tile.wrench.force * REPORTED as f32);
                 TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
@@ -108,7 +110,7 @@ impl Tracker {
 }
 
 /// What `foot` presses on `tile`: as a share of the tile's load, and in newtons.
-fn part_of(foot: &Foot, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
+fn part_of(foot: &Track, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
     let whole = TileLoad {
         tile: tile.tile,
         index: tile.index as usize,

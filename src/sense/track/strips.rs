@@ -11,13 +11,13 @@ use std::f64::consts::FRAC_1_SQRT_2;
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-use super::adopt::NOISE_ARM_M;
-use super::foot::{EAST, HALF_EAST, HALF_NORTH, NORTH};
+use super::associate::NOISE_ARM_M;
 use super::patch::Slice;
+use super::state::{EAST, HALF_EAST, HALF_NORTH, NORTH};
 use crate::sense::tile::LoadedTile;
 
 /// Most columns and rows of one group that are looked at.
-pub(super) const MOST_LINES: usize = 24;
+pub(super) const MOST_STRIPS: usize = 24;
 
 /// Which way a line's place is counted: columns eastwards, rows northwards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -64,7 +64,7 @@ impl Axis {
 
 /// The load of one column or row of tiles.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Line {
+pub(super) struct Strip {
     pub axis: Axis,
     pub number: i32,
     pub force: f64,
@@ -76,7 +76,7 @@ pub(super) struct Line {
     pub noise: [f64; 3],
 }
 
-impl Line {
+impl Strip {
     /// A line without load.
     pub(super) fn empty(axis: Axis, number: i32) -> Self {
         Self { axis, number, force: 0.0, moment: 0.0, cross: 0.0, noise: [0.0; 3] }
@@ -102,7 +102,7 @@ impl Line {
 
 /// Standard deviation of the centroid of `tiles`, of `force` newtons together, that sensors at the end of their range
 /// or estimated from others leave open, in metres; `pitch` from tile to tile.
-pub(super) fn vagueness<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
+pub(super) fn centroid_sigma<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
     let vague = tiles.flat_map(|tile| tile.vague).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
     // Sensors are about half a diagonal from where the load is.
     FRAC_1_SQRT_2 * pitch * vague / force
@@ -113,7 +113,7 @@ pub(super) struct Whole {
     pub force: f64,
     /// Their centroid; not a number without force.
     pub middle: DVec2,
-    /// What is not known of it; see [`vagueness`].
+    /// What is not known of it; see [`centroid_sigma`].
     pub doubt: f64,
 }
 
@@ -124,7 +124,7 @@ impl Whole {
             force += f64::from(tile.wrench.force);
             sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
         }
-        Self { force, middle: sum / force, doubt: vagueness(tiles, force, pitch) }
+        Self { force, middle: sum / force, doubt: centroid_sigma(tiles, force, pitch) }
     }
 }
 
@@ -138,19 +138,19 @@ pub(super) struct Noise {
 
 /// The columns and rows of some tiles.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Lines {
-    pub lines: ArrayVec<Line, MOST_LINES>,
+pub(super) struct Strips {
+    pub strips: ArrayVec<Strip, MOST_STRIPS>,
     /// Force of all the tiles.
     pub force: f64,
     /// Their centroid.
     pub middle: DVec2,
-    /// What is not known of it; see [`vagueness`].
+    /// What is not known of it; see [`centroid_sigma`].
     pub doubt: f64,
     pitch: f64,
 }
 
-impl Lines {
-    /// Sums up `tiles`; what is beyond [`MOST_LINES`] is in `force` and `middle` only.
+impl Strips {
+    /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
         let Whole { force, middle, doubt } = Whole::of(tiles.clone(), pitch);
         let mut sums = Self { force, middle, doubt, pitch, ..Self::default() };
@@ -166,15 +166,15 @@ impl Lines {
                 };
                 let middle = (f64::from(number) + 0.5) * pitch;
                 let cross = axis.across(sums.middle);
-                if let Some(line) = sums.line(axis, number) {
-                    line.force += force;
+                if let Some(strip) = sums.strip(axis, number) {
+                    strip.force += force;
                     let offset = axis.across(tile.centre.as_dvec2()) - cross;
                     let [own, arm] = noise;
-                    line.noise[0] += own;
-                    line.noise[1] += arm;
-                    line.noise[2] += own * offset * offset + arm;
-                    line.moment += force * (axis.along(at) - middle);
-                    line.cross += force * (axis.across(at) - cross);
+                    strip.noise[0] += own;
+                    strip.noise[1] += arm;
+                    strip.noise[2] += own * offset * offset + arm;
+                    strip.moment += force * (axis.along(at) - middle);
+                    strip.cross += force * (axis.across(at) - cross);
                 }
             }
         }
@@ -184,15 +184,15 @@ impl Lines {
     /// Variance that sensors' noise gives the force of all and its moments about their middle.
     pub(super) fn noise(&self) -> Noise {
         let mut noise = Noise::default();
-        for line in &self.lines {
-            let [force, moment, _] = line.noise;
-            match line.axis {
+        for strip in &self.strips {
+            let [force, moment, _] = strip.noise;
+            match strip.axis {
                 Axis::East => {
                     noise.force += force;
-                    noise.east += moment + force * (line.middle(self.pitch) - self.middle.x).powi(2);
+                    noise.east += moment + force * (strip.middle(self.pitch) - self.middle.x).powi(2);
                 }
                 Axis::North => {
-                    noise.north += moment + force * (line.middle(self.pitch) - self.middle.y).powi(2)
+                    noise.north += moment + force * (strip.middle(self.pitch) - self.middle.y).powi(2)
                 }
             }
         }
@@ -200,16 +200,16 @@ impl Lines {
     }
 
     /// The line `number`, made if there is room; `None` if there is none.
-    pub(super) fn line(&mut self, axis: Axis, number: i32) -> Option<&mut Line> {
-        let known = self.lines.iter().position(|line| line.axis == axis && line.number == number);
+    pub(super) fn strip(&mut self, axis: Axis, number: i32) -> Option<&mut Strip> {
+        let known = self.strips.iter().position(|strip| strip.axis == axis && strip.number == number);
         let position = match known {
             Some(position) => position,
             None => {
-                self.lines.try_push(Line::empty(axis, number)).ok()?;
-                self.lines.len() - 1
+                self.strips.try_push(Strip::empty(axis, number)).ok()?;
+                self.strips.len() - 1
             }
         };
-        self.lines.get_mut(position)
+        self.strips.get_mut(position)
     }
 }
 
@@ -217,7 +217,7 @@ impl Lines {
 ///
 /// Learnt while the foot stands alone, where the truth is measured; shares of the foot's force.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Habit {
+pub(super) struct Residual {
     pub axis: Axis,
     pub number: i32,
     pub share: f64,
@@ -226,7 +226,7 @@ pub(super) struct Habit {
     pub seen: bool,
 }
 
-impl Habit {
+impl Residual {
     /// No difference from the model.
     pub(super) fn none(axis: Axis, number: i32) -> Self {
         Self { axis, number, share: 0.0, moment: 0.0, cross: 0.0, seen: false }

@@ -1,0 +1,129 @@
+//! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
+
+use super::state::{HALF_EAST, HALF_LEAST, HALF_MOST, HALF_NORTH, HALF_REST, Track};
+use super::strips::{Axis, Residual, Strips};
+use crate::sense::tile::LoadedTile;
+
+/// Time constant of a foot's habits, in seconds.
+const RESIDUAL_S: f64 = 0.08;
+
+/// How long a foot must be alone for its shape to be known, in seconds.
+const KNOWN_S: f64 = 0.1;
+
+/// How long only its heel may be down, which tells nothing of the rest, in seconds.
+const TOUCHES_S: f64 = 0.1;
+
+impl Track {
+    /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
+    fn learn_halves(&mut self, strips: &Strips, pitch: f64, dt: f64) {
+        let decay = (-dt / 0.3).exp();
+        // The same error of the model is seen in many frames.
+        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        for axis in Axis::BOTH {
+            let half = axis.half();
+            self.state[half] = HALF_REST + decay * (self.state[half] - HALF_REST);
+            let mut variance = self.covariance[half][half];
+            variance = variance * decay * decay + 0.03_f64.powi(2) * (1.0 - decay * decay);
+            for strip in strips.strips.iter().filter(|strip| strip.axis == axis) {
+                let slice = strip.slice(pitch, axis.along(self.centre()), self.state[half]);
+                let seen =
+                    [strip.force / strips.force - slice.share, strip.moment / strips.force - slice.moment];
+                // A share that strays lies half a pitch from the line's middle.
+                let jacobian = [slice.share_by[1], slice.moment_by[1]];
+                for (innovation, derivative, lever) in
+                    [(seen[0], jacobian[0], 1.0), (seen[1], jacobian[1], 0.5 * pitch)]
+                {
+                    let gain =
+                        variance * derivative / (derivative * derivative * variance + doubt * lever * lever);
+                    self.state[half] = (self.state[half] + gain * innovation).clamp(HALF_LEAST, HALF_MOST);
+                    variance *= 1.0 - gain * derivative;
+                }
+            }
+            self.covariance[half][half] = variance;
+        }
+    }
+
+    /// Notes how the foot, alone on its tiles, differs from its model patch.
+    pub(super) fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
+        let (centre, half) = (self.centre(), self.half());
+        let mut strips = Strips::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
+        for axis in Axis::BOTH {
+            let (c, h) = (axis.along(centre), axis.along(half));
+            for number in ((c - h) / pitch).floor() as i32..=((c + h) / pitch).floor() as i32 {
+                strips.strip(axis, number);
+            }
+        }
+        self.learn_halves(&strips, pitch, dt);
+        let half = self.half();
+        // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
+        let weight = if self.alone_at.is_none() || self.age < RESIDUAL_S {
+            1.0
+        } else {
+            1.0 - (-dt / RESIDUAL_S).exp()
+        };
+        for residual in &mut self.residuals {
+            residual.seen = false;
+        }
+        for strip in &strips.strips {
+            let slice = strip.slice(pitch, strip.axis.along(centre), strip.axis.along(half));
+            let now = [
+                strip.force / strips.force - slice.share,
+                strip.moment / strips.force - slice.moment,
+                strip.cross / strips.force,
+            ];
+            let same = |residual: &Residual| residual.axis == strip.axis && residual.number == strip.number;
+            let position = self.residuals.iter().position(same).unwrap_or_else(|| {
+                self.residuals.push(Residual::none(strip.axis, strip.number));
+                self.residuals.len() - 1
+            });
+            self.residuals[position].learn(now, weight);
+        }
+        self.residuals.retain(|residual| residual.seen);
+        if self.age > TOUCHES_S {
+            self.alone_s += dt;
+        }
+        let before = self.alone_at.unwrap_or(centre);
+        self.alone_at = Some(before + (centre - before) * weight);
+    }
+
+    /// Makes a foot that was alone until now be sure of its shape: its habits say how it
+    /// differs from the model, whatever the half widths are.
+    pub(super) fn keep_shape(&mut self) {
+        if self.alone_at.is_some() {
+            let unknown = (-self.alone_s / KNOWN_S).exp();
+            let deviation = 0.0005 + 0.03 * unknown;
+            for half in [HALF_EAST, HALF_NORTH] {
+                self.state[half] += unknown * (HALF_REST - self.state[half]);
+                let variance = &mut self.covariance[half][half];
+                *variance = variance.min(deviation * deviation);
+            }
+        }
+    }
+
+    /// How much of its habits still hold: all of them where it was last alone, none a few centimetres on.
+    pub(super) fn residual_weight(&self) -> f64 {
+        self.alone_at.map_or(0.0, |place| {
+            let moved = place.distance(self.centre()) / 0.05;
+            (-moved * moved).exp() * (1.0 - (-self.alone_s / KNOWN_S).exp())
+        })
+    }
+
+    /// Its habit on one line, as far as it still holds; nothing where it has none.
+    pub(super) fn residual(&self, axis: Axis, number: i32) -> Residual {
+        self.residual_at(axis, number, self.residual_weight())
+    }
+
+    /// Its habit on one line, times `strength`.
+    pub(super) fn residual_at(&self, axis: Axis, number: i32, strength: f64) -> Residual {
+        self.residuals
+            .iter()
+            .find(|residual| residual.axis == axis && residual.number == number)
+            .map(|residual| Residual {
+                share: residual.share * strength,
+                moment: residual.moment * strength,
+                cross: residual.cross * strength,
+                ..*residual
+            })
+            .unwrap_or(Residual::none(axis, number))
+    }
+}

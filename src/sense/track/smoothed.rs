@@ -1,0 +1,88 @@
+//! What the last few hundredths of a second predict of a foot: what a newcomer is measured against.
+
+use glam::DVec2;
+use smallvec::SmallVec;
+
+use super::state::{EAST, FORCE, NORTH, Track};
+
+/// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
+const SMOOTHED_S: f64 = 0.05;
+
+/// Force, place and rates of a foot as its last few hundredths of a second predict them.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Smoothed {
+    pub force: f64,
+    pub force_rate: f64,
+    pub centre: DVec2,
+    pub velocity: DVec2,
+    /// Slow force and moment (about the tile's centre) per tile.
+    pub loads: SmallVec<[SmoothedLoad; 12]>,
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct SmoothedLoad {
+    pub index: u32,
+    pub force: f64,
+    pub moment: DVec2,
+    pub seen: bool,
+}
+
+impl Track {
+    /// Lets the slow past learn from where the foot is now.
+    pub(super) fn smooth(&mut self, dt: f64) {
+        if dt <= 0.0 {
+            return;
+        }
+        // A critically damped alpha-beta filter: no overshoot, steady motion followed without lag.
+        let keep = (-dt / SMOOTHED_S).exp();
+        let (alpha, beta) = (1.0 - keep * keep, (1.0 - keep) * (1.0 - keep) / dt);
+        let offset = self.centre() - self.smoothed.centre;
+        let gain = self.force() - self.smoothed.force;
+        self.smoothed.centre += alpha * offset;
+        self.smoothed.velocity += beta * offset;
+        self.smoothed.force += alpha * gain;
+        self.smoothed.force_rate += beta * gain;
+    }
+
+    /// Takes what it presses now for its slow past: nothing of what came before is to be held against it.
+    pub(super) fn restart_smoothing(&mut self) {
+        self.smoothed = Smoothed { force: self.force(), centre: self.centre(), ..Smoothed::default() };
+    }
+
+    /// Lets the slow load of one tile learn; `force` and `moment` are the foot's own part of it.
+    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64, fresh: bool) {
+        let weight = 1.0 - (-dt / SMOOTHED_S).exp();
+        let loads = &mut self.smoothed.loads;
+        let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
+            loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
+            loads.len() - 1
+        });
+        let load = &mut loads[position];
+        let weight = if fresh { 1.0 } else { weight };
+        load.force += weight * (force - load.force);
+        load.moment += weight * (moment - load.moment);
+        load.seen = true;
+    }
+
+    /// Drops the slow loads that were not learnt from since the last call.
+    pub(super) fn forget_loads(&mut self) {
+        self.smoothed.loads.retain(|load| std::mem::take(&mut load.seen));
+    }
+
+    /// The slow load of one tile, nothing if it had none.
+    pub(super) fn smoothed_load(&self, index: u32) -> SmoothedLoad {
+        self.smoothed.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
+    }
+
+    /// Goes back to where its past foretold it: somebody else is to blame for the difference.
+    pub(super) fn back_to_prediction(&mut self) {
+        self.state[FORCE] = self.smoothed.force.min(self.state[FORCE]);
+        self.state[FORCE + 1] = self.smoothed.force_rate.clamp(-2e4, 2e4);
+        self.state[EAST] = self.smoothed.centre.x;
+        self.state[NORTH] = self.smoothed.centre.y;
+        self.state[EAST + 1] = self.smoothed.velocity.x.clamp(-2.0, 2.0);
+        self.state[NORTH + 1] = self.smoothed.velocity.y.clamp(-2.0, 2.0);
+        self.reset_covariance(0.005);
+        self.covariance[FORCE][FORCE] = 400.0;
+    }
+}
