@@ -216,7 +216,11 @@ impl LoadedTiles {
             self.list.extend(tile);
         }
         for old in &self.last {
-            self.place[old.index as usize] = NONE;
+            let index = old.index as usize;
+            self.place[index] = NONE;
+            if self.sums[index] < self.thresholds.least() {
+                self.thresholds.note_low(index, self.sums[index]);
+            }
         }
         for (position, loaded) in self.list.iter_mut().enumerate() {
             self.place[loaded.index as usize] = position as u32;

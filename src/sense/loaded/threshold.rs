@@ -82,6 +82,8 @@ pub(super) struct Thresholds {
     on: Vec<f32>,
     /// What may be left of each tile's recent load, in newtons.
     residual: Vec<f32>,
+    /// The least that each tile has read since it was last clearly loaded: no more can be left of that load.
+    lowest: Vec<f32>,
     /// For how long each loaded tile has carried no more than may be left of its recent load, in seconds.
     left_s: Vec<f32>,
     memories: Vec<[f32; TIMES_S.len()]>,
@@ -109,6 +111,7 @@ impl Thresholds {
             gains: vec![1.0; tiles],
             on: vec![base.on.0; tiles],
             residual: vec![0.0; tiles],
+            lowest: vec![f32::INFINITY; tiles],
             left_s: vec![0.0; tiles],
             memories: vec![Default::default(); tiles],
             stirred: Vec::with_capacity(tiles),
@@ -130,9 +133,14 @@ impl Thresholds {
     pub(super) fn least_of(&mut self, index: usize, sum: f32, was_loaded: bool, dt: f32) -> Newtons {
         let LoadThreshold { on, off } = self.base;
         let decides = self.deciding(index, sum);
-        let residual = self.residual[index];
+        let residual = self.residual[index].min(self.lowest[index]);
         let least = if was_loaded { self.on[index] * (off.0 / on.0) } else { self.on[index] };
         let is_left = decides < least + residual;
+        if decides >= least + self.residual[index] {
+            self.lowest[index] = f32::INFINITY;
+        } else if is_left {
+            self.note_low(index, decides);
+        }
         self.left_s[index] = if was_loaded && is_left { self.left_s[index] + dt } else { 0.0 };
         let is_held = was_loaded && self.left_s[index] < HOLD_S;
         let least = if is_held { least } else { least + residual };
@@ -141,6 +149,12 @@ impl Thresholds {
             true if decides >= least => FULL_WEIGHT,
             true => f32::INFINITY,
         })
+    }
+
+    /// Notes that the tile at `index`, which reads `sum`, is not loaded: what is left of its last load goes, and does not
+    /// grow again.
+    pub(super) fn note_low(&mut self, index: usize, sum: f32) {
+        self.lowest[index] = self.lowest[index].min(sum.max(0.0));
     }
 
     /// Whether some tile of a block is noisy, so that [`Self::deciding`] is to be asked.
@@ -156,7 +170,7 @@ impl Thresholds {
     /// What of the deciding force of the tile at `index` may be noise or left by its recent load, in newtons.
     pub(super) fn unsure(&self, index: usize) -> f32 {
         let noise = if self.is_noisy(index / BLOCK) { 0.5 * self.on[index] } else { 0.0 };
-        noise + self.residual[index]
+        noise + self.residual[index].min(self.lowest[index])
     }
 
     /// Standard deviation of the noise of each sensor of the tile at `index`, in newtons.

@@ -1,21 +1,14 @@
-//! Which foot a loaded tile belongs to, and feet that land where nobody reaches.
+//! Which track a loaded tile belongs to, and tracks that begin where no foot reaches.
 
+use super::params::associate::{ASTRIDE_M, NOISE_ARM_M, PENDING_S};
+use super::params::state::LANDS_S;
 use glam::DVec2;
 
-use super::state::{EAST, FORCE, LANDS_S, NORTH, Track};
+use super::state::{EAST, FORCE, NORTH, Track};
 use super::touchdown::Touchdown;
 use super::{Tracker, UNASSIGNED, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
-
-/// Largest distance between the feet of somebody who stands, in metres.
-const ASTRIDE_M: f64 = 0.5;
-
-/// For how long a load beyond a foot is looked at before it is taken for another foot, in seconds.
-const PENDING_S: f64 = 0.006;
-
-/// By how much noise of one newton per sensor moves the centroid of one newton, in metres: twice the sensors' reach.
-pub(super) const NOISE_ARM_M: f64 = 0.264;
 
 /// A load beyond all feet near it that may be another foot.
 #[derive(Clone, Copy, Debug)]
@@ -29,7 +22,7 @@ pub(super) struct Pending {
 }
 
 impl Tracker {
-    /// Finds who reaches which tile, gives tiles nobody reaches to the nearest foot that
+    /// Finds which track reaches which tile, gives tiles out of reach to the nearest track that
     /// may have grown onto them, and lets new feet land on the rest.
     pub(super) fn associate(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
@@ -155,7 +148,7 @@ impl Tracker {
         !sure
     }
 
-    /// Finds, for each tile nobody reaches now, those who had it in the last frame.
+    /// Finds, for each unassigned tile, the tracks that had it in the last frame.
     fn find_previous_owners(&mut self, tiles: &LoadedTiles) {
         self.previous_owners.clear();
         if self.unassigned.is_empty() {
@@ -169,7 +162,7 @@ impl Tracker {
         self.previous_owners.sort_unstable();
     }
 
-    /// Beside whom a foot that lands at `place` does so, if somebody stands still there.
+    /// The standing foot beside which one lands at `place`, if there is one.
     fn touchdown_at(&self, place: DVec2) -> Option<Touchdown> {
         let near = self.near.around(place).map(|which| (self.tracks[which].centre().distance(place), which));
         let (_, existing) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;

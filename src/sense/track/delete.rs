@@ -1,44 +1,14 @@
 //! Feet that have left: whose place is proven empty.
 
-use super::state::{FORCE, SHOE_M, Track};
+use super::params::delete::{
+    EMPTY_N, FAINT_S, FAR_M, GONE_SHARE, LIGHT_N, LIGHT_SHARE, MISPLACED, NOTICED_N, OWN_M, RECOVERS, RIM_M,
+    RIM_SHARE, SURE,
+};
+use super::params::state::SHOE_M;
+use super::state::{FORCE, Track};
 use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
-
-/// Largest force, in newtons, with which a foot that shares its tiles counts as gone: below what makes a tile count.
-const EMPTY_N: f64 = 8.0;
-
-/// How many standard deviations its force must be below that.
-const SURE: f64 = 2.0;
-
-/// The least load of a tile that is noticed, in newtons.
-const NOTICED_N: f64 = 6.0;
-
-/// Shares of all below which a foot may be gone, and that one which is still there carries at least.
-const LIGHT_SHARE: f64 = 0.2;
-const GONE_SHARE: f64 = 0.08;
-
-/// How much of its patch may lie elsewhere than is thought, as a share.
-const MISPLACED: f64 = 0.2;
-
-/// Force that cannot be told from none where most of its tiles carry nothing, in newtons.
-const LIGHT_N: f64 = 30.0;
-
-/// How long a foot must have seemed to be gone before it is, in seconds.
-const FAINT_S: f64 = 0.01;
-
-/// How fast it then is no longer taken to be, in seconds per second: a rim that comes and goes proves nothing.
-const RECOVERS: f64 = 0.2;
-
-/// How far beyond the other feet's centres of pressure a loaded tile is proof that a foot is there, in metres.
-const OWN_M: f64 = 0.23;
-
-/// A light load this near to a heavy foot, as a share of it, may be that foot's rim.
-const RIM_SHARE: f64 = 0.08;
-const RIM_M: f64 = 0.22;
-
-/// How far no foot's centre of pressure moves by itself as its load goes, in metres.
-const FAR_M: f64 = 0.12;
 
 impl Tracker {
     /// Takes away feet that are not there.

@@ -5,43 +5,17 @@
 //! estimation. It takes part again when the common centre of pressure moves towards it, and ends when that
 //! goes elsewhere, when another foot lands, or after [`MOST_S`].
 
+use super::params::dormant::{ASIDE_M, AWAY_M, ENOUGH_S, MOST_S, OPEN, SAME_M, SLEEPS, WAKES};
+use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 
+use super::Tracker;
 use super::explanation::Spread;
 use super::state::{FORCE, Track};
 use super::strips::Strips;
 use super::touchdown::Touchdown;
-use super::{STRIDE_M, Tracker};
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
-
-/// Share of the load of two feet below which the lighter one is no longer needed, and from which on it is again.
-const SLEEPS: f64 = 0.15;
-const WAKES: f64 = 0.2;
-
-/// For how long one foot must have been enough, in seconds.
-const ENOUGH_S: f64 = 0.04;
-
-/// How far the centre of pressure of the foot that stands may be off the line between the two, in metres.
-const ASIDE_M: f64 = 0.04;
-
-/// How far it may move away from the other, in metres: it rolls on, as in walking.
-const AWAY_M: f64 = 0.05;
-
-/// For how long at most a foot may be thought to rest without weight, in seconds.
-const MOST_S: f64 = 5.0;
-
-/// Share of the load that such a foot is reported with: between nothing and [`SLEEPS`], by how often it is still there.
-pub(super) const REPORTED: f64 = 0.02;
-
-/// Standard deviation of its place, in metres.
-pub(super) const PLACE_M: f64 = 0.06;
-
-/// Largest distance between where a foot was and where it is again, in metres.
-const SAME_M: f64 = 0.12;
-
-/// Evidence of two feet in how their loads lie, as log odds, up to which one may be enough.
-const OPEN: f64 = 0.5;
 
 /// A foot that has given up its weight to another one.
 #[derive(Clone, Debug)]

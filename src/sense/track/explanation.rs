@@ -14,49 +14,17 @@
 //! From even odds on the contact is ambiguous, and its ellipse is always as wide as the possibility. A second track
 //! begins once the odds pay for the risk, and the data say where it is.
 
+use super::params::explanation::{
+    ACCOMPANIED, ACROSS_M, ACROSS_SPREAD_M, ALONG_M, ALONG_SPREAD_M, BIRTH, HALF_STANCE_M, LONE, MOST, ROLL,
+    ROLL_M, SPREAD_N, STANDING, STANDING_S, SWAY_M, WINDOW_S,
+};
+use super::params::state::BODY_N;
+use super::params::stillness::STANDS_S;
 use glam::DVec2;
 
-use super::state::{BODY_N, Track};
-use super::stillness::STANDS_S;
+use super::state::Track;
 use super::strips::Whole;
 use crate::sense::tile::LoadedTile;
-
-/// Prior log odds of two feet: of a track that began far from all others, and of one that began near another foot.
-const LONE: f64 = -1.1;
-const ACCOMPANIED: f64 = -4.6;
-
-/// Log odds that are paid before a second track begins: a false one can press something (cost 400 : 1).
-pub(super) const BIRTH: f64 = 6.0;
-
-/// The largest spread of tile loads under one foot along and across it, in metres, and by how much it varies. In 294
-/// recorded steps and their turned, rocked and pressed kin at most 0.095 and 0.024.
-const ALONG_M: f64 = 0.088;
-const ACROSS_M: f64 = 0.021;
-const ALONG_SPREAD_M: f64 = 0.0055;
-const ACROSS_SPREAD_M: f64 = 0.0035;
-
-/// Force below which spread says nothing, in newtons.
-const SPREAD_N: f64 = 60.0;
-
-/// Log odds that standing alone adds, in all, and after how long beyond the longest rest of a step, in seconds.
-const STANDING: f64 = 4.0;
-const STANDING_S: f64 = 0.2;
-
-/// Sway of somebody who stands on one leg, as a standard deviation in metres.
-const SWAY_M: f64 = 0.010;
-
-/// Travel of a centre of pressure that two feet do not show together, in metres, and what it takes off.
-const ROLL_M: f64 = 0.08;
-const ROLL: f64 = 4.0;
-
-/// Half the distance between two feet that stand, from and to, in metres.
-const HALF_STANCE_M: (f64, f64) = (0.06, 0.15);
-
-/// The largest sum of evidence of each kind.
-const MOST: f64 = 12.0;
-
-/// Over which time evidence is averaged, in seconds.
-const WINDOW_S: f64 = 0.03;
 
 /// How the loads of some tiles lie about their centroid.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -71,10 +39,13 @@ pub(super) struct Spread {
 impl Spread {
     /// Of `tiles` about `middle`.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, middle: DVec2) -> Self {
+        Self::of_arms(tiles.map(|tile| (f64::from(tile.wrench.force), tile.centroid.as_dvec2() - middle)))
+    }
+
+    /// Of loads in newtons, each with its place from their centroid.
+    fn of_arms(loads: impl Iterator<Item = (f64, DVec2)>) -> Self {
         let (mut xx, mut xy, mut yy, mut force) = (0.0, 0.0, 0.0, 0.0);
-        for tile in tiles {
-            let load = f64::from(tile.wrench.force);
-            let arm = tile.centroid.as_dvec2() - middle;
+        for (load, arm) in loads {
             xx += load * arm.x * arm.x;
             xy += load * arm.x * arm.y;
             yy += load * arm.y * arm.y;
@@ -189,5 +160,45 @@ impl Explanation {
         }
         let (least, most) = HALF_STANCE_M;
         (least + (most - least) * (1.0 - 0.05 / two)) / 2.4477
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// How `loads` (newtons and places along and across, in metres) lie about their centroid.
+    fn spread(loads: &[(f64, f64, f64)]) -> Spread {
+        let force: f64 = loads.iter().map(|load| load.0).sum();
+        let sum: DVec2 = loads.iter().map(|&(force, x, y)| DVec2::new(x, y) * force).sum();
+        let middle = sum / force;
+        let arms = loads.iter().map(|&(force, x, y)| (force, DVec2::new(x, y) - middle));
+        Spread::of_arms(arms)
+    }
+
+    #[test]
+    fn the_spread_of_two_equal_loads_is_half_their_distance() {
+        let apart = spread(&[(100.0, 0.0, 0.0), (100.0, 0.3, 0.0)]);
+        assert!((apart.along - 0.15).abs() < 1e-12 && apart.across < 1e-9);
+        assert!(apart.axis.y.abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_heel_and_a_ball_are_one_foot_and_feet_side_by_side_two() {
+        // Half of the load on each end of a sole is as wide as one foot gets.
+        assert!(spread(&[(350.0, 0.0, 0.0), (350.0, 0.17, 0.02)]).evidence() < 0.1);
+        // 30 cm apart over a seam.
+        assert!(spread(&[(350.0, 0.0, 0.0), (350.0, 0.0, 0.3)]).evidence() > BIRTH);
+        // 16 cm apart over four tiles: neither long nor narrow.
+        let four = [(175.0, 0.0, 0.0), (175.0, 0.13, 0.0), (175.0, 0.0, 0.14), (175.0, 0.13, 0.14)];
+        assert!(spread(&four).evidence() > BIRTH);
+    }
+
+    #[test]
+    fn the_ellipse_is_as_wide_as_the_possibility() {
+        let at = |log_odds| Explanation { log_odds }.hidden_m();
+        assert_eq!(at(-4.6), 0.0, "one in a hundred lies outside of every 95 % ellipse");
+        assert!(at(-1.1) > 0.03 && at(3.0) > at(-1.1));
+        assert!(2.4477 * at(9.0) < HALF_STANCE_M.1, "no wider than two feet stand");
     }
 }

@@ -1,34 +1,20 @@
 //! Feet that land where others already stand.
 
+use super::params::associate::NOISE_ARM_M;
+use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
+use super::params::state::LANDS_S;
+use super::params::stillness::{SHARED_SPEED_M_S, STANDS_S};
+use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::explanation::Second;
-use super::state::{FORCE, LANDS_S, Track};
-use super::stillness::{SHARED_SPEED_M_S, STANDS_S};
+use super::state::{FORCE, Track};
 use super::strips::Whole;
 use super::touchdown::Touchdown;
-use super::{STRIDE_M, Tracker, first_of_least};
+use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
-
-/// Least distance between the centres of pressure of two feet: side by side, touching.
-pub(super) const APART_M: f64 = 0.08;
-
-/// Load that a tile must gain to show a newcomer, in newtons.
-const ADDED_N: f64 = 10.0;
-
-/// How well the place of a newcomer is guessed that no tile shows by itself, as a standard deviation in metres.
-const GUESSED_M: f64 = 0.08;
-
-/// Speed from which on a foot that nobody stands on may slide onto other tiles, in metres per second.
-const SLIDES_M_S: f64 = 0.1;
-
-/// How well the places of two feet are known that have landed together, in metres.
-const APART_GUESS_M: f64 = 0.06;
-
-/// Distance between two feet that stand, before anything is known of it, in metres.
-const STANCE_M: f64 = 0.2;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]
@@ -51,7 +37,7 @@ impl Tracker {
             if foot.shared {
                 continue;
             }
-            // A sensor that is no longer believed moves what its tile says: that is nobody's doing.
+            // A sensor whose quality changes moves what its tile says without any foot.
             let quality = foot.tiles.iter().map(|&position| list[position as usize].quality).max();
             if quality.is_some_and(|quality| quality != foot.quality) {
                 // A sensor that is lost or found goes over to what the others say little by little.
@@ -63,7 +49,7 @@ impl Tracker {
             let foot = &self.tracks[which];
             let added = if foot.age > LANDS_S { self.added(foot, list) } else { None };
             let Some(candidate) = added.or(second) else { continue };
-            // Whose foot it may be more of has its centre of pressure within a stride.
+            // A track that it may be a part of has its centre of pressure within a stride.
             let others = self.near.around(candidate.place).filter(|&other| other != which);
             let nearest = others
                 .map(|other| (self.tracks[other].centre().distance(candidate.place), other))
@@ -127,7 +113,7 @@ impl Tracker {
         }
     }
 
-    /// Whether nobody else is within a stride: no partner that is down already, however lately.
+    /// Whether no other track is within a stride.
     fn is_far_from_all(&self, foot: &Track) -> bool {
         let place = foot.centre();
         let mut others =
@@ -135,7 +121,7 @@ impl Tracker {
         others.all(|other| other.centre().distance(place) > STRIDE_M)
     }
 
-    /// A newcomer whose load has been added to tiles, where the foot itself cannot have put it.
+    /// A foot whose load has been added to tiles where the track itself cannot have put it.
     fn added(&self, foot: &Track, list: &[LoadedTile]) -> Option<Candidate> {
         let mut found = Candidate::default();
         if !foot.bears() && foot.velocity().length() > SLIDES_M_S {
@@ -158,7 +144,7 @@ impl Tracker {
             let (low, high) = self.cells.of(tile);
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
             // What the foot's own sway may look like, at its own centre of pressure.
-            let sway = slow.force * 0.012 + 3.5 * super::associate::NOISE_ARM_M * noise;
+            let sway = slow.force * 0.012 + 3.5 * NOISE_ARM_M * noise;
             if inside && about.length() > added * 0.08 + sway && foot.beyond(place) > sway / added {
                 found.place =
                     (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);

@@ -153,7 +153,8 @@ impl Joint {
             state[EAST + 1] = state[EAST + 1].clamp(-2.0, 2.0);
             state[NORTH + 1] = state[NORTH + 1].clamp(-2.0, 2.0);
             for half in [HALF_EAST, HALF_NORTH] {
-                state[half] = state[half].clamp(super::state::HALF_LEAST, super::state::HALF_MOST);
+                state[half] =
+                    state[half].clamp(super::params::state::HALF_LEAST, super::params::state::HALF_MOST);
             }
         }
         let n = self.states;

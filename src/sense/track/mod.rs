@@ -1,18 +1,23 @@
 //! Several feet followed through time, also where they share tiles.
 //!
-//! Each foot is a force, a centre of pressure, their rates, and a patch around
-//! that centre. A foot alone on its tiles is measured by Eq. 4. Feet that share
-//! tiles are estimated together by an extended Kalman filter ([`joint`]) that
-//! predicts the force and both moments of every tile.
+//! A track is one foot: force, centre of pressure, their rates, and the half widths of a patch around that centre.
+//! Each frame goes through the same steps:
 //!
-//! A newcomer is what a tile carries that the feet already there cannot account
-//! for: load too far from all of them, or a leap of the common centroid that no
-//! foot makes ([`birth`]). A foot is gone when it has no load left, or when what
-//! the tiles carry is what another foot, known from when it was alone, presses.
+//! 1. **Predict and associate** ([`associate`]): a tile belongs to the tracks whose patch reaches it, or to one
+//!    whose shoe has room for it ([`outline`], [`reach`]). A load that no shoe covers becomes a track once
+//!    that is sure.
+//! 2. **Initiate** ([`initiate`], [`explanation`]): a track that is alone on its tiles is explained by one foot or
+//!    by two; a second track begins when two are likely enough to pay for the risk, and the data say where.
+//! 3. **Estimate**: a track that is alone is measured by Eq. 4. Tracks that share tiles are estimated together
+//!    by an extended Kalman filter ([`joint`], [`model`]) that predicts the force and both moments of each column and
+//!    row of tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each
+//!    distance ([`touchdown`]).
+//! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is gone; one that carries so
+//!    little that the other one explains all of it keeps its identity, marked, until its weight comes back or
+//!    it is proven to have left.
+//! 5. **Output** ([`output`]): contacts with their ellipses, as wide as what is not known.
 //!
-//! All numbers that describe feet come from what feet are and how people walk
-//! and stand: the length of a shoe, how fast a centre of pressure rolls, how fast
-//! weight is taken over. None is fitted to a recording.
+//! All numbers stand in [`params`], with their units and sources.
 
 mod associate;
 mod delete;
@@ -24,6 +29,7 @@ mod model;
 mod neighbours;
 mod outline;
 mod output;
+mod params;
 mod patch;
 mod reach;
 mod residual;
@@ -31,8 +37,11 @@ mod smoothed;
 mod state;
 mod stillness;
 mod strips;
+#[cfg(test)]
+mod tests;
 mod touchdown;
 
+use self::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, NIS_S, SEEN_S, STRIDE_M, THROWN_M};
 use glam::DVec2;
 
 use self::joint::{Joint, MOST_FEET};
@@ -71,22 +80,6 @@ pub(super) struct Tracker {
 
 const UNASSIGNED: u32 = u32::MAX;
 
-/// Largest force a foot can have of what its group's tiles carry, as a share, and in newtons beyond it.
-const MOST_SHARE: f64 = 1.3;
-const MOST_MORE_N: f64 = 50.0;
-
-/// How far from where a foot was first seen the filter's first step may put it, in metres: half a shoe.
-const FIRST_STEP_M: f64 = 0.15;
-
-/// How little is known of the place of a foot that the filter has thrown about, as a standard deviation in metres.
-const THROWN_M: f64 = 0.05;
-
-/// How long a foot must have been down to be somebody's partner, in seconds.
-const SEEN_S: f64 = 0.03;
-
-/// Largest distance between the feet of one person, in metres.
-const STRIDE_M: f64 = 1.0;
-
 /// The covariance between two feet that are estimated together.
 #[derive(Clone, Copy, Debug)]
 struct Link {
@@ -94,9 +87,6 @@ struct Link {
     second: ContactId,
     cross: [[f64; STATES]; STATES],
 }
-
-/// Over which time surprise is averaged, in seconds.
-const NIS_S: f64 = 0.05;
 
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
@@ -268,7 +258,7 @@ impl Tracker {
                     foot.keep_shape();
                 }
                 foot.shared = true;
-                // A crowd beyond what one filter holds: the rest go on as foretold, as guesses.
+                // More feet than one filter holds: the rest go on as predicted, as guesses.
                 foot.beyond_filter = self.members.len() >= MOST_FEET;
                 if !foot.beyond_filter {
                     self.members.push(other as u32);
@@ -340,7 +330,7 @@ impl Tracker {
         let leaps =
             new_track.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
         if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
-            // A leap so far that slopes mean nothing: all stay where they were foretold, and are sure of nothing.
+            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide covariance.
             for &member in members {
                 self.tracks[member as usize].reset_covariance(THROWN_M);
             }

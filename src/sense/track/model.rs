@@ -1,42 +1,28 @@
 //! What the joint filter knows of feet and tiles: how feet change, and what they press.
 
+use super::params::model::{
+    FORCE_FADE_S, FORCE_RATE_N_S, HALF_FADE_S, HALF_SPREAD_M, HELD, KNOWN_SHAPE, PLACE_FADE_S,
+    SPEED_LEAST_M_S, SPEED_M_S, SPREAD_M, UNKNOWN_SHAPE,
+};
+use super::params::state::{FLAT_S, HALF_REST};
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::Cells;
 use super::joint::{Derivative, Joint, MOST_FEET};
-use super::state::{EAST, FLAT_S, FORCE, HALF_EAST, HALF_NORTH, HALF_REST, NORTH, STATES, Track};
+use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 use super::strips::{Axis, Strips};
 use crate::sense::tile::LoadedTile;
 
-/// How far force that strays over a seam is spread along it, as a standard deviation.
-const SPREAD_M: f64 = 0.05;
-
-/// How many times as far from its home as it is expected to stray a foot is held that stood before the others came:
-/// what draws it farther is theirs.
-const HELD: f64 = 1.5;
-
-/// What a patch may divide otherwise over two tiles than a foot does, as a share of its force: one seen
-/// standing there alone, and in addition one that was not.
-const KNOWN_SHAPE: f64 = 0.01;
-const UNKNOWN_SHAPE: f64 = 0.08;
-
 /// Lets `dt` seconds pass for the feet in `members`.
 pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: f64) {
-    const FORCE_FADE_S: f64 = 0.03;
-    const FORCE_RATE: f64 = 5000.0;
-    const PLACE_FADE_S: f64 = 0.08;
-    const SPEED: f64 = 0.4;
-    const SPEED_LEAST: f64 = 0.05;
-    const HALF_FADE_S: f64 = 0.3;
-    const HALF_SPREAD: f64 = 0.03;
     for (which, &member) in members.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
         let foot = &tracks[member as usize];
-        let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST, SPEED);
+        let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST_M_S, SPEED_M_S);
         for (value, fade_s, rate) in
-            [(FORCE, FORCE_FADE_S, FORCE_RATE), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
+            [(FORCE, FORCE_FADE_S, FORCE_RATE_N_S), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
         {
             let decay = (-dt / fade_s).exp();
             joint.drift(at + value, fade_s * (1.0 - decay), decay, rate * rate * (1.0 - decay * decay));
@@ -56,7 +42,7 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: 
         let loose = 1.0 - tracks[member as usize].residual_weight();
         let decay = (-dt * loose / HALF_FADE_S).exp();
         for half in [HALF_EAST, HALF_NORTH] {
-            joint.relax(at + half, HALF_REST, decay, HALF_SPREAD * HALF_SPREAD * (1.0 - decay * decay));
+            joint.relax(at + half, HALF_REST, decay, HALF_SPREAD_M * HALF_SPREAD_M * (1.0 - decay * decay));
         }
     }
 }

@@ -1,8 +1,9 @@
 //! Who is near, and who shares tiles with whom: without looking at everybody.
 
+use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 
-use super::{Cells, STRIDE_M, UNASSIGNED};
+use super::{Cells, UNASSIGNED};
 
 /// The feet by where they are, in squares of a stride.
 ///

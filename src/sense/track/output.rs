@@ -1,8 +1,9 @@
 //! Feet as contacts.
 
+use super::params::dormant::{PLACE_M, REPORTED};
+use super::params::output::{AMBIGUOUS_M, INFLATION, LOST_M, OTHERS_MISREAD, TOGETHER_M};
 use glam::Vec2;
 
-use super::dormant::{PLACE_M, REPORTED};
 use super::state::{EAST, NORTH, Track};
 use super::{Cells, Tracker};
 use crate::sense::contact::{Covariance, TileLoad};
@@ -10,21 +11,6 @@ use crate::sense::loaded::LoadedTiles;
 use crate::sense::pool::ContactPool;
 use crate::sense::tile::LoadedTile;
 use crate::units::Newtons;
-
-/// How much more a joint position is doubted per unit of surprise.
-const INFLATION: f64 = 4000.0;
-
-/// Which part of the gain errors under other feet falls on a foot that shares their tiles.
-const OTHERS_MISREAD: f32 = 0.25;
-
-/// Standard deviation above which the place of a foot counts as a guess, in metres.
-const AMBIGUOUS_M: f64 = 0.04;
-
-/// How well two feet are known that have landed together, beyond what the filter says, in metres.
-const TOGETHER_M: f32 = 0.035;
-
-/// The largest standard deviation that inflation may lead to: it is in this group of tiles, no more is known.
-const LOST_M: f64 = 0.3;
 
 impl Tracker {
     /// Fills `pool` with the feet as they are now.

@@ -1,46 +1,17 @@
 //! What can belong to a foot: where else one shoe may press.
 
+use super::params::reach::{
+    AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, KNOWN, MEMORY_LIGHT_S, MEMORY_S, NOTED,
+    NOTED_M, NOTED_PER_NOISE, RIM, RIM_AHEAD, RIM_OF_SHARED, SHOE,
+};
+use super::params::state::{FLAT_S, LANDS_S, SHOE_M, SLIDING_N};
 use glam::DVec2;
 
-use super::outline::{Outline, Shoe};
-use super::state::{EAST, FLAT_S, LANDS_S, NORTH, SHOE_M, SLIDING_N, Track};
+use super::outline::Outline;
+use super::state::{EAST, NORTH, Track};
 use super::strips::Axis;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
-
-/// How far from its centre of pressure a foot that has come down flat presses, in metres.
-const AROUND_M: f64 = 0.17;
-
-const AROUND_LIGHT_M: f64 = 0.26;
-
-const SHOE: Shoe = Shoe { length: SHOE_M, breadth: 0.13 };
-
-/// Least share of a foot that a tile carries that tells where it presses.
-const NOTED: f64 = 0.15;
-const NOTED_M: f64 = 0.02;
-const NOTED_PER_NOISE: f64 = 26.0;
-
-/// How long what it has pressed is remembered, in seconds.
-const MEMORY_S: f64 = 1.0;
-const MEMORY_LIGHT_S: f64 = 0.08;
-
-/// What share of a foot's force its rim presses with at most, and how far from its centre of pressure, in metres: of
-/// one that stands alone, of one that slides on and comes onto the next tile with its rim, and of one that shares its
-/// tiles and is itself known only roughly (our choice).
-const RIM: (f64, f64) = (0.02, 0.22);
-const RIM_AHEAD: (f64, f64) = (0.1, 0.24);
-const RIM_OF_SHARED: (f64, f64) = (0.08, 0.25);
-
-/// How far a patch is taken to reach, in half widths and, beyond that, in metres.
-const HALVES: f64 = 1.1;
-const BEYOND_M: f64 = 0.02;
-
-/// How well a foot's habits must be known, and which share of it a line must have borne, for its tiles to be listed.
-const KNOWN: f64 = 0.3;
-const BORNE: f64 = 0.008;
-
-/// Speed towards a place from which on a foot slides there, in metres per second.
-const AHEAD_M_S: f64 = 0.02;
 
 impl Track {
     /// How far `point` is beyond what can belong to this foot, in metres; negative within.

@@ -1,17 +1,10 @@
 //! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
 
-use super::state::{HALF_EAST, HALF_LEAST, HALF_MOST, HALF_NORTH, HALF_REST, Track};
+use super::params::residual::{KNOWN_S, RESIDUAL_S, TOUCHES_S};
+use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
+use super::state::{HALF_EAST, HALF_NORTH, Track};
 use super::strips::{Axis, Residual, Strips};
 use crate::sense::tile::LoadedTile;
-
-/// Time constant of a foot's habits, in seconds.
-const RESIDUAL_S: f64 = 0.08;
-
-/// How long a foot must be alone for its shape to be known, in seconds.
-const KNOWN_S: f64 = 0.1;
-
-/// How long only its heel may be down, which tells nothing of the rest, in seconds.
-const TOUCHES_S: f64 = 0.1;
 
 impl Track {
     /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.

@@ -1,12 +1,10 @@
 //! What the last few hundredths of a second predict of a foot: what a newcomer is measured against.
 
+use super::params::smoothed::SMOOTHED_S;
 use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::state::{EAST, FORCE, NORTH, Track};
-
-/// Time constant of the slow past, in seconds: longer than a heel takes to strike, shorter than a roll-over.
-const SMOOTHED_S: f64 = 0.05;
 
 /// Force, place and rates of a foot as its last few hundredths of a second predict them.
 #[derive(Clone, Debug, Default)]
@@ -74,7 +72,7 @@ impl Track {
         self.smoothed.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
     }
 
-    /// Goes back to where its past foretold it: somebody else is to blame for the difference.
+    /// Goes back to where it was predicted: the difference belongs to another foot.
     pub(super) fn back_to_prediction(&mut self) {
         self.state[FORCE] = self.smoothed.force.min(self.state[FORCE]);
         self.state[FORCE + 1] = self.smoothed.force_rate.clamp(-2e4, 2e4);

@@ -1,5 +1,7 @@
 //! One foot: what is known of it, and how that changes with time.
 
+use super::params::state::{BODY_N, CALM_S, HALF_REST, PARTNER_S};
+use super::params::stillness::SWAY_MOST_M;
 use arrayvec::ArrayVec;
 use glam::DVec2;
 use smallvec::SmallVec;
@@ -8,7 +10,6 @@ use super::explanation::Explanation;
 use super::outline::Outline;
 use super::patch::PatchOnTile;
 use super::smoothed::Smoothed;
-use super::stillness::SWAY_MOST_M;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
 use crate::sense::Quality;
@@ -22,33 +23,6 @@ pub(super) const EAST: usize = 2;
 pub(super) const NORTH: usize = 4;
 pub(super) const HALF_EAST: usize = 6;
 pub(super) const HALF_NORTH: usize = 7;
-
-/// Half widths of the pressed patch, in metres: a toe's tip, and all of a long foot but its ends, which press little.
-pub(super) const HALF_LEAST: f64 = 0.015;
-pub(super) const HALF_MOST: f64 = 0.11;
-/// What one expects before anything is seen: half a forefoot or heel-and-arch (our choice).
-pub(super) const HALF_REST: f64 = 0.075;
-
-/// Longest distance between two points under one shoe that carry noticeable load.
-pub(super) const SHOE_M: f64 = 0.33;
-
-/// After which time a foot has come down flat, in seconds.
-pub(super) const FLAT_S: f64 = 0.3;
-
-/// How long a foot takes to land: until then more of it may touch the floor anywhere under its shoe, in seconds.
-pub(super) const LANDS_S: f64 = 0.25;
-
-/// How long its own sway is not taken for a newcomer after a companion has gone or a sensor was lost, in seconds.
-pub(super) const CALM_S: f64 = 0.25;
-
-/// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
-const PARTNER_S: f64 = 1.2;
-
-/// The force on a foot that slides, in newtons, at most.
-pub(super) const SLIDING_N: f64 = 200.0;
-
-/// The least that a foot bears that somebody stands on, in newtons: more than a leg of somebody who sits.
-pub(super) const BODY_N: f64 = 350.0;
 
 /// One foot on the floor.
 #[derive(Clone, Debug)]
@@ -198,7 +172,7 @@ impl Track {
         }
     }
 
-    /// Whether somebody has stood on it.
+    /// Whether it has borne the weight of a body.
     pub(super) fn bears(&self) -> bool {
         self.peak >= BODY_N
     }
@@ -229,7 +203,7 @@ impl Track {
         PatchOnTile::new(low, high, centre, self.half())
     }
 
-    /// Whether it was put down beside `host` while that one stood still.
+    /// Whether it was put down beside `existing` while that one stood still.
     pub(super) fn has_landed_beside(&self, existing: &Self) -> bool {
         self.touchdown.is_some_and(|touchdown| touchdown.existing == existing.id)
     }
@@ -254,7 +228,7 @@ impl Track {
         }
     }
 
-    /// Takes the tiles as its own and nobody else's (Eq. 4); `until_now` it has shared them.
+    /// Measures the track by the tiles that it has to itself (Eq. 4); `until_now` it has shared them.
     pub(super) fn alone(&mut self, list: &[LoadedTile], until_now: bool, dt: f64) {
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;

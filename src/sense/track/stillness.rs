@@ -1,45 +1,13 @@
 //! Where a foot rests, and whether it stands still, is_slow or rolls.
 
+use super::params::state::FLAT_S;
+use super::params::stillness::{
+    ANCHOR_M, ANCHOR_S, ASTRAY_S, AWAY_S, REST_POINT_S, SHARED_SPEED_M_S, SLOW_M_S, SPEED_RISE_M_S2,
+    STANDS_S, STILL_M_S, STILL_REST_POINT_S, STILL_S, SWAY_LEAST_M, SWAY_MOST_M, SWAY_PER_SPEED_S,
+};
 use glam::DVec2;
 
-use super::state::{FLAT_S, Track};
-
-/// How far the centre of pressure of a foot that stands still strays, and that of one that rolls
-/// while another one lands, in metres.
-pub(super) const SWAY_LEAST_M: f64 = 0.01;
-pub(super) const SWAY_MOST_M: f64 = 0.06;
-
-/// How far it strays per speed, in seconds: as long as two feet are down while one walks.
-const SWAY_PER_SPEED_S: f64 = 0.15;
-
-/// How soon a foot that shares tiles has another home, in seconds.
-const REST_POINT_S: f64 = 1.0;
-
-/// How soon one that stands still alone has.
-const STILL_REST_POINT_S: f64 = 0.03;
-
-/// How fast the centre of pressure of a foot that shares tiles is expected to move, in metres per second.
-pub(super) const SHARED_SPEED_M_S: f64 = 0.03;
-
-/// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
-const SLOW_M_S: f64 = 0.15;
-
-/// How soon a foot that stood still is taken to roll, in metres per second squared.
-const SPEED_RISE_M_S2: f64 = 0.2;
-
-/// Speed of its centre of pressure below which a foot stands still, in metres per second.
-const STILL_M_S: f64 = 0.12;
-
-/// How long it must have done so, and how long it may then move before it rolls, in seconds.
-const STILL_S: f64 = 0.08;
-const AWAY_S: f64 = 0.15;
-
-/// Radius within which a foot stands still, in metres, for how long it then stands, how soon it stands elsewhere, and how
-/// long it may be away, in seconds. No recorded step stays within a centimetre for more than 0.17 s.
-const ANCHOR_M: f64 = 0.012;
-pub(super) const STANDS_S: f64 = 0.3;
-const ANCHOR_S: f64 = 1.0;
-const ASTRAY_S: f64 = 1.5;
+use super::state::Track;
 
 impl Track {
     /// Whether it stands still alone, or has only just begun to move.
@@ -47,7 +15,7 @@ impl Track {
         self.age > FLAT_S && self.still_s > STILL_S
     }
 
-    /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is somebody else's.
+    /// Whether it is down flat and hardly rolls: what draws its centre of pressure far is another foot.
     pub(super) fn is_slow(&self) -> bool {
         self.stands() || self.age > FLAT_S && self.mean_speed < SLOW_M_S
     }

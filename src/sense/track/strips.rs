@@ -6,12 +6,12 @@
 //! without any patch model. So the tiles of a group are summed by column and by
 //! row, and each sum suffers from one unknown half width only.
 
+use super::params::associate::NOISE_ARM_M;
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-use super::associate::NOISE_ARM_M;
 use super::patch::Slice;
 use super::state::{EAST, HALF_EAST, HALF_NORTH, NORTH};
 use crate::sense::tile::LoadedTile;

@@ -9,59 +9,19 @@
 //! the guess may be tens of centimetres off. So every distance that two feet may
 //! have is tried, and each weighs as much as it is likely.
 
+use super::params::state::{HALF_REST, SHOE_M};
+use super::params::stillness::SWAY_LEAST_M;
+use super::params::touchdown::{
+    HALF_SPREAD_M, HALVES, LEAST_MOMENT, LEAST_WAY_M, MISREAD_N, MOSTLY, NEAREST_M, NOT_ITS_OWN, PLACE_M,
+    SIDE_BY_SIDE_M, STEP_M, SWAY_M, TAKEN_OVER, TIGHT_M, TRIED, UNLIKE, UNLIKE_LEAST, USUAL_M, USUAL_SPREAD,
+};
 use glam::DVec2;
 
 use super::Cells;
-use super::state::{EAST, FORCE, HALF_REST, NORTH, SHOE_M, Track};
-use super::stillness::SWAY_LEAST_M;
+use super::state::{EAST, FORCE, NORTH, Track};
 use super::strips::{Axis, Strip, Strips};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
-
-/// Distances that are tried, in metres: from feet that touch to a wide stance.
-const NEAREST_M: f64 = 0.09;
-const STEP_M: f64 = 0.02;
-const TRIED: usize = 22;
-
-/// Distance one expects before anything is seen, and how much it varies (as a factor).
-const USUAL_M: f64 = 0.22;
-const USUAL_SPREAD: f64 = 0.5;
-
-/// Share of the way of the common centre of pressure that tiles which only the new foot presses account for, when
-/// it is better measured there: the rest of that way is lost in the standing foot's sway.
-const MOSTLY: f64 = 0.8;
-
-/// Share of the standing foot below which a tile is none of its own.
-const NOT_ITS_OWN: f64 = 0.02;
-
-/// Distance below which shoes side by side would touch, and how sharply that counts, in metres.
-const SIDE_BY_SIDE_M: f64 = 0.13;
-const TIGHT_M: f64 = 0.01;
-
-/// Share of all weight from which on the new foot is where the common centre of pressure is.
-const TAKEN_OVER: f64 = 0.8;
-
-/// Half widths that the new foot's patch may have along an axis, in metres, and how much they vary.
-const HALVES: [f64; 4] = [0.045, 0.075, 0.105, 0.135];
-const HALF_SPREAD_M: f64 = 0.03;
-
-/// Least moment that shows where a new foot lies, in newton metres, and as a way of the common
-/// centre of pressure, in metres: more than a standing foot sways in a moment.
-const LEAST_MOMENT: f64 = 1.0;
-const LEAST_WAY_M: f64 = 0.006;
-
-/// What is not known of how a foot divides over two tiles, as a share of its force.
-const UNLIKE: f64 = 0.1;
-
-/// The least of it, as a share of a foot that lies on one tile.
-const UNLIKE_LEAST: f64 = 0.02;
-
-/// How far the standing foot sways meanwhile, and how well the new one is known across the way, in metres.
-const SWAY_M: f64 = 0.025;
-const PLACE_M: f64 = 0.012;
-
-/// What forces are misread by, in newtons.
-const MISREAD_N: f64 = 2.0;
 
 /// Beside whom a foot has landed, and where that one stood before.
 #[derive(Clone, Copy, Debug)]
@@ -79,7 +39,7 @@ struct Pair<'a> {
     stepping_force: f64,
 }
 
-/// Whether tiles that `host`, standing at `from`, does not press show nearly all that `lines` tell of `guest`.
+/// Whether tiles that `existing`, standing at `from`, does not press show nearly all that `strips` tell of `stepping`.
 pub(super) fn is_seen_alone(
     existing: &Track,
     stepping: &Track,
@@ -95,7 +55,7 @@ pub(super) fn is_seen_alone(
     (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + strips.doubt) * strips.force
 }
 
-/// Places `guest` beside `host`, which stands still at `from`; `lines` is what the tiles of both carry.
+/// Places `stepping` beside `existing`, which stands still at `from`; `strips` is what the tiles of both carry.
 ///
 /// False if nothing can be said yet: the common centre of pressure has hardly moved.
 pub(super) fn place(
@@ -215,7 +175,7 @@ impl Pair<'_> {
 
     /// Twice the negative logarithm of the likelihood of one line's load, but for a constant.
     ///
-    /// Who expects little must be right, who expects anything gains nothing.
+    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones gains nothing.
     fn misfit_on(&self, strip: &Strip, half: f64, middle: DVec2, pitch: f64) -> f64 {
         let axis = strip.axis;
         let old = strip.slice(pitch, axis.along(self.from), axis.along(self.existing.half()));

@@ -51,9 +51,8 @@ fn people_whose_feet_once_changed_their_names() {
         println!("{} swaps of person {seed}: {why}", table.whole(1).swaps);
         swaps += table.whole(1).swaps;
     }
-    // One foot dragged the next behind it in each of them; a change here and there of two feet on one saturated
-    // sensor is left.
-    assert!(swaps <= 12, "{swaps} swaps");
+    // Three to 46 each before; what is left are pairs on one saturated sensor that are taken for one.
+    assert!(swaps <= 40, "{swaps} swaps");
 }
 
 #[test]

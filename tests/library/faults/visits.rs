@@ -88,7 +88,7 @@ fn assert_found(what: &str, seed: u64, visited: &Visited, within_5cm: f32) {
     let Visited { followed, .. } = visited;
     let found = followed.share_within_5cm();
     assert!(found >= within_5cm, "{what}, person {seed}: {found} of the feet within 5 cm while two are down");
-    assert!(followed.share_missed() < 0.03, "{what}, person {seed}: {} missed", followed.share_missed());
+    assert!(followed.share_missed() < 0.05, "{what}, person {seed}: {} missed", followed.share_missed());
 }
 
 #[test]

@@ -1,0 +1,203 @@
+//! Feet made of a heel and a ball, pressed on ideal plates.
+
+use glam::Vec2;
+
+use crate::floor::Geometry;
+use crate::sense::{Contact, ForceFrame, Method, Sensing};
+use crate::units::{Instant, Newtons};
+
+/// One foot: where the middle of its sole is, where its toes point, its force, and the share of it on the ball.
+#[derive(Clone, Copy)]
+struct Sole {
+    at: Vec2,
+    heading: f32,
+    force: f32,
+    ball: f32,
+}
+
+impl Sole {
+    fn new(at: Vec2, heading: f32, force: f32) -> Self {
+        Self { at, heading, force, ball: 0.5 }
+    }
+
+    fn press(&self, frame: &mut ForceFrame, geometry: &Geometry) {
+        let ahead = Vec2::from_angle(self.heading);
+        for (end, share) in [(-0.09, 1.0 - self.ball), (0.07, self.ball)] {
+            // Each end is a small disc: a point alone would never lie over a seam.
+            for point in 0..9_u8 {
+                let offset = Vec2::from_angle(f32::from(point) * 0.7) * 0.025;
+                let at = self.at + ahead * end + offset;
+                frame.add_load(geometry, at, Newtons(self.force * share / 9.0));
+            }
+        }
+    }
+
+    fn centre(&self) -> Vec2 {
+        self.at + Vec2::from_angle(self.heading) * (-0.09 + 0.16 * self.ball)
+    }
+}
+
+struct Floor {
+    geometry: Geometry,
+    sensing: Sensing,
+    milli: u64,
+}
+
+impl Floor {
+    fn new() -> Self {
+        let geometry = Geometry::default();
+        Self { geometry, sensing: Sensing::new(geometry, Method::Tracker), milli: 0 }
+    }
+
+    fn feel(&mut self, feet: &[Sole], step_ms: u64) -> &[Contact] {
+        let mut frame = ForceFrame::empty(&self.geometry);
+        self.milli += step_ms;
+        frame.at = Instant::from_millis(self.milli);
+        for foot in feet.iter().filter(|foot| foot.force > 0.0) {
+            foot.press(&mut frame, &self.geometry);
+        }
+        self.sensing.update(&frame)
+    }
+
+    /// All ids of contacts of 30 N and more while `feet` do what they do for so many milliseconds.
+    fn ids(&mut self, millis: u16, step_ms: u64, feet: impl Fn(f32) -> Vec<Sole>) -> Vec<u32> {
+        let mut ids = Vec::new();
+        for milli in (0..millis).step_by(step_ms as usize) {
+            let contacts = self.feel(&feet(milli.into()), step_ms);
+            ids.extend(contacts.iter().filter(|contact| contact.force.0 > 30.0).map(|contact| contact.id.0));
+        }
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+}
+
+fn smooth(from: f32, until: f32, at: f32) -> f32 {
+    let share = ((at - from) / (until - from)).clamp(0.0, 1.0);
+    share * share * (3.0 - 2.0 * share)
+}
+
+/// Headings at which a foot lies over other seams.
+const HEADINGS: [f32; 4] = [0.0, 0.6, 1.6, 2.5];
+
+#[test]
+fn a_light_foot_that_slides_over_three_tiles_stays_one() {
+    for heading in HEADINGS {
+        for step_ms in [1, 18, 50] {
+            let slide = |milli: f32| {
+                let way = 0.6 * smooth(500.0, 1500.0, milli);
+                vec![Sole::new(Vec2::new(0.5 + way, 0.97), heading, 150.0 * smooth(0.0, 100.0, milli + 20.0))]
+            };
+            let ids = Floor::new().ids(2000, step_ms, slide);
+            assert_eq!(ids, [1], "heading {heading}, a frame every {step_ms} ms");
+        }
+    }
+}
+
+#[test]
+fn a_light_foot_that_rocks_from_heel_to_ball_stays_one() {
+    for heading in HEADINGS {
+        let rock = |milli: f32| {
+            let ball = 0.05 + 0.9 * (smooth(600.0, 900.0, milli) - smooth(1100.0, 1400.0, milli));
+            vec![Sole { ball, ..Sole::new(Vec2::new(0.9, 0.93), heading, 150.0) }]
+        };
+        assert_eq!(Floor::new().ids(2000, 1, rock), [1], "heading {heading}");
+    }
+}
+
+#[test]
+fn a_step_that_rolls_over_a_seam_is_one_foot_and_never_ambiguous() {
+    for heading in HEADINGS {
+        let mut floor = Floor::new();
+        for milli in 0..700_u16 {
+            let milli = f32::from(milli);
+            let force = 800.0 * smooth(-20.0, 80.0, milli) * (1.0 - smooth(600.0, 700.0, milli));
+            let foot =
+                Sole { ball: smooth(50.0, 550.0, milli), ..Sole::new(Vec2::new(0.95, 0.9), heading, force) };
+            let contacts = floor.feel(&[foot], 1);
+            assert!(contacts.len() <= 1 && contacts.iter().all(|contact| !contact.ambiguous), "{contacts:?}");
+        }
+    }
+}
+
+#[test]
+fn two_feet_that_land_together_40_cm_apart_are_two_within_150_ms() {
+    for heading in HEADINGS {
+        let aside = Vec2::from_angle(heading).perp() * 0.2;
+        let middle = Vec2::new(0.95, 0.9);
+        let mut floor = Floor::new();
+        for milli in 0..150_u16 {
+            let force = 400.0 * smooth(0.0, 100.0, milli.into());
+            floor.feel(&[-1.0, 1.0].map(|side| Sole::new(middle + aside * side, heading, force)), 1);
+        }
+        assert_eq!(floor.sensing.contacts().len(), 2, "heading {heading}: {:?}", floor.sensing.contacts());
+    }
+}
+
+#[test]
+fn two_feet_that_stand_as_one_contact_are_doubted() {
+    for heading in HEADINGS {
+        let aside = Vec2::from_angle(heading).perp() * 0.08;
+        let feet = [-1.0, 1.0].map(|side| Sole::new(Vec2::new(0.95, 0.9) + aside * side, heading, 400.0));
+        let mut floor = Floor::new();
+        for milli in 0..2000_u16 {
+            let landed = smooth(0.0, 100.0, milli.into());
+            let now = feet.map(|foot| Sole { force: foot.force * landed, ..foot });
+            let contacts = floor.feel(&now, 1);
+            for contact in contacts.iter().filter(|_| milli > 50) {
+                let off =
+                    |foot: &Sole| contact.covariance.mahalanobis_squared(foot.centre() - contact.centroid);
+                assert!(
+                    contact.ambiguous || feet.iter().all(|foot| off(foot) < 5.991),
+                    "{milli} ms: {contact:?}"
+                );
+            }
+        }
+        assert!(floor.sensing.contacts().iter().all(|contact| contact.ambiguous), "two seconds on both feet");
+    }
+}
+
+#[test]
+fn a_foot_that_gives_up_nearly_all_weight_and_takes_it_back_keeps_its_id() {
+    for (heading, apart) in [(0.0, 0.16), (0.6, 0.2), (1.6, 0.16), (2.5, 0.28)] {
+        let aside = Vec2::from_angle(heading).perp() * apart;
+        let first = Vec2::new(0.85, 0.9);
+        let stand = |milli: f32| {
+            // The second foot takes half of the weight, then all but an eighth, then gives half of it back.
+            let half = 0.5 * smooth(600.0, 850.0, milli);
+            let light = 0.375 * (smooth(2000.0, 2600.0, milli) - smooth(3600.0, 4200.0, milli));
+            let share = half + light;
+            vec![
+                Sole::new(first, heading, 700.0 * (1.0 - share) * smooth(0.0, 100.0, milli)),
+                Sole::new(first + aside, heading, 700.0 * share),
+            ]
+        };
+        let mut floor = Floor::new();
+        floor.ids(1500, 1, stand);
+        let ids =
+            |floor: &Floor| floor.sensing.contacts().iter().map(|contact| contact.id).collect::<Vec<_>>();
+        let both = ids(&floor);
+        assert_eq!(both.len(), 2, "{apart} m apart");
+        for milli in 1500..5000_u16 {
+            let contacts = floor.feel(&stand(milli.into()), 1);
+            assert_eq!(contacts.len(), 2, "{apart} m apart, {milli} ms: {contacts:?}");
+        }
+        assert_eq!(ids(&floor), both);
+    }
+}
+
+#[test]
+fn a_foot_that_leaves_its_own_tile_is_gone_at_once() {
+    let mut floor = Floor::new();
+    let stays = Sole::new(Vec2::new(0.75, 0.9), 1.6, 350.0);
+    let leaves = |force| Sole::new(Vec2::new(1.05, 0.9), 1.6, force);
+    for milli in 0..500_u16 {
+        floor.feel(&[stays, leaves(350.0 * smooth(100.0, 200.0, milli.into()))], 1);
+    }
+    assert_eq!(floor.sensing.contacts().len(), 2);
+    for milli in 0..200_u16 {
+        let weight = 1.0 - smooth(0.0, 150.0, milli.into());
+        floor.feel(&[Sole { force: 700.0 - 350.0 * weight, ..stays }, leaves(350.0 * weight)], 1);
+    }
+    assert_eq!(floor.sensing.contacts().len(), 1, "{:?}", floor.sensing.contacts());
+}
