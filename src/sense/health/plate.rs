@@ -2,8 +2,8 @@
 //!
 //! A rigid plate leaves the sum of one diagonal equal to that of the other. One that bends, such as 12 mm of plywood
 //! on soft feet, twists: a load off both middle lines presses the corners of its own diagonal harder. How far the
-//! floor's plates give way is learnt from the feet on them; until it is known, whatever a plate between
-//! rigid and limp would allow is held against no sensor.
+//! floor's plates give way is learnt from the feet on them, starting from plates that are taken to be rigid rather than
+//! limp: on a limp one a single corner may carry it all, so nothing that one sensor reads alone could be held against it.
 //!
 //! Corners are numbered as in [`crate::sense::corners`].
 
@@ -46,6 +46,10 @@ const FAULT: f32 = 0.2;
 /// that is allowed for (by simulated walks on plates from rigid to limp).
 const BLOCK_DEVIATION: f32 = 0.3;
 
+/// Weight of evidence that plates are rigid before any foot has shown how they bend: so much that a load on one sensor
+/// alone is none a plate allows (twist of 0.6 at most), so little that the first step or two outweigh it (our choice).
+const RIGID_WEIGHT: f32 = 1.0;
+
 /// From which twist on a load over one sensor may hardly be felt by its neighbours: they carry `(1 - twist) / 4` of it, and
 /// of one on the plate's very corner `(1 - 1.3 twist) / 4` (on simulated floors of 0.45 one sensor was accused in an hour,
 /// of 0.2 none).
@@ -55,18 +59,21 @@ const LIMP: f32 = 0.3;
 ///
 /// # Source
 /// Plate on four equal springs: `f_sw - f_se - f_nw + f_ne = twist * sum(F x y) / reach^2`, by least squares.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Twist {
     seen: f32,
     weight: f32,
 }
 
+impl Default for Twist {
+    fn default() -> Self {
+        Self { seen: 0.0, weight: RIGID_WEIGHT }
+    }
+}
+
 impl Twist {
     /// The least and the most that it may be.
     pub(super) fn range(&self) -> (f32, f32) {
-        if self.weight <= 0.0 {
-            return (0.0, 1.0);
-        }
         let (middle, unsure) = (self.seen / self.weight, 2.0 * BLOCK_DEVIATION / self.weight.sqrt());
         ((middle - unsure).clamp(0.0, 1.0), (middle + unsure).clamp(0.0, 1.0))
     }
@@ -77,7 +84,12 @@ impl Twist {
     }
 
     /// Learns from what a loaded tile's sensors read on average, none of them lifted or at the end of its range.
+    ///
+    /// What one sensor reads alone is a limp plate or a sensor's fault: it teaches nothing.
     pub(super) fn learn(&mut self, forces: [f32; 4]) {
+        if unanswered(forces, [false; 4]).is_some() {
+            return;
+        }
         let Some((diagonal, place, whole)) = diagonal(forces).filter(|&(_, _, whole)| whole > BENDS_N) else {
             return;
         };
@@ -104,9 +116,10 @@ fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
     (whole > 1.0).then_some((sw - se - nw + ne, place, whole))
 }
 
-/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`.
+/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`; only plates that are known to
+/// bend are bent by how a foot lies.
 fn lawful(diagonal: f32, place: f32, whole: f32, (low, high): (f32, f32)) -> f32 {
-    let across = high * ACROSS * whole;
+    let across = low * ACROSS * whole;
     let (one, other) = (low * place, high * place);
     diagonal.clamp(one.min(other) - across, one.max(other) + across)
 }
@@ -255,7 +268,6 @@ mod tests {
     fn how_far_plates_bend_is_learnt_from_the_feet_on_them() {
         for truth in [0.0, 0.2, 0.4, 0.6, 0.9] {
             let mut twist = Twist::default();
-            assert_eq!(twist.range(), (0.0, 1.0));
             for step in 0..200_u16 {
                 let (x, y) = ((0.7 * f32::from(step)).sin(), (1.3 * f32::from(step)).cos());
                 // A foot is two loads: heel and ball.
@@ -267,14 +279,15 @@ mod tests {
     }
 
     #[test]
-    fn a_sensor_that_is_dead_teaches_nothing_of_the_plate() {
+    fn a_sensor_that_is_dead_or_reads_a_load_alone_teaches_nothing_of_the_plate() {
         let mut twist = Twist::default();
         let mut forces = plate(&[(600.0, 0.1, 0.0)], 0.0);
         forces[0] = 0.0;
-        for _ in 0..100 {
-            twist.learn(forces);
+        let before = twist.range();
+        for lone in [forces, [150.0, 0.3, -0.2, 0.1]] {
+            (0..100).for_each(|_| twist.learn(lone));
+            assert_eq!(twist.range(), before);
         }
-        assert_eq!(twist.range(), (0.0, 1.0));
     }
 
     #[test]

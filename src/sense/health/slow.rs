@@ -121,8 +121,8 @@ impl Slow {
         Some(Block { means, lows: self.lows, spreads, ends: self.ends, seconds })
     }
 
-    /// Finds stuck sensors, on plates whose twist lies in this range, and gives those in trouble the chance to be found right again; `alone` says
-    /// that no tile around carries anything.
+    /// Finds stuck sensors, on plates whose twist lies in this range, and gives those in trouble the chance to be found
+    /// right again; `alone` says that no tile around carries anything.
     ///
     /// A plate that tipped or a sensor that was beyond its range at any time of a block leaves a mean that
     /// says nothing: after a stamp it is neither the load nor its absence.
@@ -158,7 +158,10 @@ impl Slow {
             }
             let expected = plate::demanded(means, corner, twist).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
-            let is_right = own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
+            // A limp plate would leave it alone with its load, too: that is no proof that the load is there.
+            let is_lone = plate::unanswered(means, [false; 4]) == Some(corner);
+            let is_right =
+                !is_lone && own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
             match sensor.trouble() {
                 None | Some(Trouble::Drifted | Trouble::Noisy) => {}
                 Some(_) if is_right && !sensor.shows(slack) => {}
