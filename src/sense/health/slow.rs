@@ -138,6 +138,7 @@ impl Slow {
                 }
             }
         }
+        let doubted = sensors.map(|sensor| sensor.trouble() == Some(Trouble::Offset));
         for corner in 0..4 {
             let others = [corner ^ 1, corner ^ 2, corner ^ 3];
             let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
@@ -167,8 +168,9 @@ impl Slow {
                 Some(_) if is_right && !sensor.shows(slack) => {}
                 Some(_) => sensor.review(own, is_right && !ends[corner].is_odd(), alone, block.seconds),
             }
-            // A reading at the end of the range stands still rightly under a heavy foot.
-            if ends[corner] == End::High || sensor.is_out() {
+            // A reading at the end of the range stands still rightly under a heavy foot, and what a load that is doubted
+            // demands of the others is no evidence.
+            if ends[corner] == End::High || sensor.is_out() || others.iter().any(|&other| doubted[other]) {
                 self.tracks[corner] = Track::default();
             } else if self.tracks[corner].follow(own, block.spreads[corner], expected, load, block.seconds) {
                 sensor.find(Trouble::Stuck, own);
