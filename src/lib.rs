@@ -17,6 +17,7 @@ pub mod ergonomics;
 pub mod experiment;
 pub mod feel;
 pub mod floor;
+mod format;
 pub mod ground;
 pub mod layout;
 #[cfg(feature = "program")]

@@ -19,6 +19,7 @@ mod play;
 #[cfg(feature = "preview")]
 mod preview;
 mod rack;
+mod reference;
 mod render;
 mod run;
 mod sense;
@@ -63,6 +64,8 @@ enum Command {
     Check(check::Args),
     /// Every OSC address of a layout, in and out, with its arguments.
     Addresses(addresses::Args),
+    /// What layouts, kinds and effects may say: each field with its unit, range and default.
+    Reference(reference::Args),
     /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
     Feel(feel::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
@@ -109,6 +112,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Session(args)) => session::run(&args),
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
+        Some(Command::Reference(args)) => reference::run(&args),
         Some(Command::Feel(args)) => feel::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),

@@ -5,7 +5,7 @@ mod values;
 use std::sync::Arc;
 
 use super::interact::Sliding;
-use crate::feel::{Click, Cue, Effect, EffectKind, Manner, Player, Rub, Rubs, Spot, Spots, key};
+use crate::feel::{Click, Clicks, Cue, Effect, EffectKind, Manner, Player, Rub, Rubs, Spot, Spots, key};
 use crate::ground::GroundEvent;
 use crate::layout::{Layout, Widget};
 use crate::sense::{Contact, ContactId, ForceFrame};
@@ -122,7 +122,7 @@ impl Responses {
                 event.contact.and_then(|id| now.contact(id)).map(|contact| contact.velocity.length());
             let click = match &effect.kind {
                 EffectKind::EndStop(end) => end.click_at(high, velocity.unwrap_or(0.0)),
-                EffectKind::Click { press, .. } => press.clone(),
+                EffectKind::Click(Clicks { press, .. }) => press.clone(),
                 _ => return None,
             };
             return Some((click, effect.manner));
@@ -137,7 +137,7 @@ impl Responses {
                 detents.click_at(self.shares.detent(number, detents, way)?, way.to > way.from)
             }
             EffectKind::Detents(detents) if is_stop => detents.click_at(way.to, way.to >= way.from),
-            EffectKind::Click { press, .. } if is_stop => press.clone(),
+            EffectKind::Click(Clicks { press, .. }) if is_stop => press.clone(),
             _ => return None,
         };
         Some((click, effect.manner))

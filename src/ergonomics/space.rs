@@ -171,7 +171,8 @@ fn steps(subject: &mut Subject<'_>) {
             (slider.scale.step > 0.0).then(|| from.distance(to))
         }
         Behaviour::Pad(pad) => {
-            let axes = [(pad.x, size.x), (pad.y, size.y)].into_iter().filter(|(scale, _)| scale.step > 0.0);
+            let axes =
+                [(pad.x(), size.x), (pad.y(), size.y)].into_iter().filter(|(scale, _)| scale.step > 0.0);
             axes.map(|(scale, length)| length * scale.step / scale.range()).min_by(f32::total_cmp)
         }
         _ => None,

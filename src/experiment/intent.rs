@@ -19,7 +19,7 @@ use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use crate::sense::{Method, Sensing};
 use crate::sim::{FloorQuality, Load};
 use crate::units::Instant;
-use crate::widget::{Behaviour, EventKind, Guard, WidgetEvent};
+use crate::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun, WidgetEvent};
 
 /// From which force on a foot counts as put down, in newtons.
 const DOWN_N: f32 = 20.0;
@@ -94,10 +94,8 @@ impl Guarded {
         let mut layout = layout.clone();
         let guard = match self {
             Self::Free => return layout,
-            Self::Confirm => Guard::Confirm { within: Duration::from_secs(3) },
-            Self::HoldToRun => {
-                Guard::HoldToRun { max: Duration::from_secs(60), warn: Duration::from_secs(30) }
-            }
+            Self::Confirm => Guard::Confirm(Confirm { within: Duration::from_secs(3) }),
+            Self::HoldToRun => Guard::HoldToRun(HoldToRun { max: Duration::from_secs(60), warn: None }),
         };
         for widget in &mut layout.widgets {
             if widget.behaviour.thresholds().guard != Guard::Free {

@@ -1,7 +1,9 @@
 use std::sync::Arc;
 use std::time::Duration;
 
-use super::{Cue, Effect, EffectKind, Lasting, Player, RendererConfig, Rub, Rubs, Spots, key, renderer};
+use super::{
+    Clicks, Cue, Effect, EffectKind, Lasting, Player, RendererConfig, Rub, Rubs, Spots, key, renderer,
+};
 use crate::floor::{Actuator, Floor, Geometry};
 use crate::units::{Instant, Newtons};
 
@@ -46,7 +48,7 @@ impl Gesture {
         let still =
             Self { moments: Vec::new(), press_s: Some(0.02), release_s: None, holds: false, length_s: 0.3 };
         match &effect.kind {
-            EffectKind::Click { press, release } => {
+            EffectKind::Click(Clicks { press, release }) => {
                 let first = 0.02 + press.length_s().clamp(0.08, 0.6);
                 let second = release.as_ref().map_or(0.0, |release| release.length_s().clamp(0.08, 0.6));
                 let release_s = release.as_ref().map(|_| first);
@@ -86,10 +88,7 @@ impl Gesture {
                 ];
                 Self { moments, press_s: None, length_s: 1.6, ..still }
             }
-            EffectKind::Friction(_)
-            | EffectKind::StickSlip(_)
-            | EffectKind::Texture(_)
-            | EffectKind::Grains(_) => {
+            kind if kind.lasting().is_some() => {
                 let (speed, force) = full(effect);
                 let mut moments = Vec::new();
                 for (start, share) in [(0.05_f32, 0.5), (1.35, 1.0)] {
@@ -102,6 +101,7 @@ impl Gesture {
                 }
                 Self { moments, press_s: None, length_s: 2.65, ..still }
             }
+            _ => Self { length_s: 1.0, ..still },
         }
     }
 
@@ -186,9 +186,6 @@ impl Audition {
         let cue = |at: Instant| Cue { at, received: now, spots: spots.clone(), ..Cue::default() };
         let effect = Arc::clone(&self.effect);
         match &effect.kind {
-            EffectKind::Click { .. } | EffectKind::Continuous(_) | EffectKind::Sequence(_) => {
-                self.press(t, &cue, cues);
-            }
             EffectKind::Detents(detents) => {
                 // A control without steps of its own has ten here.
                 let own = detents.every > 0.0;
@@ -210,11 +207,10 @@ impl Audition {
                     self.rub(Lasting::Hum(push.hum_at(moment.beyond_m)), moment, spots, rubs);
                 }
             }
-            kind => {
-                if let Some(lasting) = kind.lasting() {
-                    self.rub(lasting, moment, spots, rubs);
-                }
-            }
+            kind => match kind.lasting() {
+                Some(lasting) => self.rub(lasting, moment, spots, rubs),
+                None => self.press(t, &cue, cues),
+            },
         }
         self.player.due(now, |_| Some(spots.clone()), cues, rubs);
         t < self.gesture.length_s
@@ -228,7 +224,7 @@ impl Audition {
         {
             self.pressed = true;
             let cue = cue(moment(press_s));
-            if self.gesture.holds && !matches!(effect.kind, EffectKind::Click { .. }) {
+            if self.gesture.holds && !matches!(effect.kind, EffectKind::Click(_)) {
                 self.player.hold(&effect, FOOT, &cue);
             } else {
                 self.player.play(&effect, FOOT, false, cue, cues);
@@ -239,7 +235,7 @@ impl Audition {
         {
             self.released = true;
             self.player.let_go(|_| false);
-            if matches!(effect.kind, EffectKind::Click { .. }) {
+            if matches!(effect.kind, EffectKind::Click(_)) {
                 self.player.play(&effect, FOOT, true, cue(moment(release_s)), cues);
             }
         }

@@ -1,6 +1,7 @@
 use arrayvec::ArrayVec;
 
 use super::{Lasting, Manner, Tone};
+use crate::format::{List, Num, Rec, list, num, record};
 use crate::units::{Instant, Newtons};
 
 /// Frequencies that a mode may have, in hertz.
@@ -15,30 +16,43 @@ pub const MAX_SPOTS: usize = 4;
 /// Most things that last (frictions, textures, held tones) and are felt at once.
 pub const MAX_RUBS: usize = 40;
 
-/// One decaying resonance: `amplitude * exp(-t / decay_s) * sin(2 pi frequency_hz t)`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Mode {
+/// Force at the plate; actuators give 40 N and more.
+pub(crate) const LEVEL: Num = num(0.0..=200.0).hand(0.0..=40.0);
+
+/// What the floor's actuators move and a foot can feel, within the effect's band.
+pub(crate) const HZ: Num = num(20.0..=1000.0).bounded();
+
+/// A share.
+pub(crate) const SHARE: Num = num(0.0..=1.0);
+
+record! {
+    /// One decaying resonance: `amplitude * exp(-t / decay_s) * sin(2 pi frequency_hz t)`.
+    pub struct Mode = "Mode", Copy;
     /// Frequency, in hertz; 20 to 1000.
-    pub frequency_hz: f32,
+    pub frequency_hz: f32 = "hz", HZ;
     /// Time after which a factor 1/e is left, in seconds; 0.001 to 2.
-    pub decay_s: f32,
+    pub decay_s: f32 = "decay_ms", num(1.0..=2000.0).milli();
     /// Share of the click's level, -1 to 1.
-    pub amplitude: f32,
+    pub amplitude: f32 = "amplitude", num(-1.0..=1.0) => 1.0;
 }
 
-/// A short transient: a bank of decaying modes struck once.
-///
-/// # Source
-/// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)` (paper, section 4.1.1).
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Click {
-    /// The modes struck together.
-    pub modes: ArrayVec<Mode, MAX_MODES>,
+record! {
+    /// A short transient: a bank of decaying modes struck once.
+    ///
+    /// # Source
+    /// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)` (paper, section 4.1.1).
+    pub struct Click = "Click", Default;
     /// Force at the plate for a mode of amplitude 1, before the spots' weights.
-    pub level: Newtons,
+    pub level: Newtons = "level_n", LEVEL;
     /// What they are struck with.
-    pub impulse: Impulse,
+    pub impulse: Impulse = "impulse", Rec => Impulse::default();
+    /// The modes struck together.
+    pub modes: ArrayVec<Mode, MAX_MODES> = "modes", MODES;
 }
+
+const MODES: List<Rec> = list("mode", MAX_MODES, Rec)
+    .at_least(1, "a click needs a mode")
+    .help("for no click at all write None instead of Click(...)");
 
 impl Click {
     /// The same, `share` times as strong and with every frequency times `pitch` (within what a mode may have).
@@ -59,17 +73,17 @@ impl Click {
     }
 }
 
-/// The push that strikes a click's modes.
-///
-/// An ideal one lasts no time. One with a width is a soft hammer: what swings
-/// faster than it lasts is hardly struck, so that the click gets rounder. The
-/// strongest mode keeps its level.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Impulse {
+record! {
+    /// The push that strikes a click's modes.
+    ///
+    /// An ideal one lasts no time. One with a width is a soft hammer: what swings
+    /// faster than it lasts is hardly struck, so that the click gets rounder. The
+    /// strongest mode keeps its level.
+    pub struct Impulse = "Impulse", Copy, Default;
     /// How long the push lasts, in seconds; 0 (ideal) to [`Impulse::WIDEST_S`].
-    pub width_s: f32,
+    pub width_s: f32 = "width_ms", num(0.0..=10.0).milli() => 0.0;
     /// Its shape, from an even push (0) to a bell (1).
-    pub round: f32,
+    pub round: f32 = "round", SHARE => 0.0;
 }
 
 impl Impulse {

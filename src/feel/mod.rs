@@ -38,10 +38,11 @@ mod voice;
 pub use audition::{Audition, Gesture, Moment, audition};
 pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
+pub(crate) use effect::written;
 pub use effect::{
-    Band, Beat, CurvePoint, Detents, Effect, EffectKind, EndStop, Feel, Friction, Grains, Hum, Knob, Lasting,
-    MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, Part, Push, Resonance, Sequence, StickSlip, Texture,
-    Tone, TonePoint, Use,
+    Band, Beat, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains,
+    Hum, Knob, Lasting, MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, NamedEffect, Part, Push,
+    Resonance, Sequence, StickSlip, Texture, Tone, TonePoint, Use,
 };
 pub use heard::{Heard, heard};
 pub use modal::ModalBank;

@@ -3,7 +3,7 @@ use std::time::Duration;
 
 use arrayvec::ArrayVec;
 
-use super::{Beat, Cue, Effect, EffectKind, Hum, Lasting, MAX_RUBS, Rub, Rubs, Spots};
+use super::{Beat, Clicks, Cue, Effect, EffectKind, Hum, Lasting, MAX_RUBS, Rub, Rubs, Spots};
 use crate::units::{Instant, Newtons};
 
 /// Most effects that are played or held at once; of more, the oldest ends.
@@ -47,7 +47,7 @@ impl Player {
     /// [`super::Use::Once`]) is not played.
     pub fn play(&mut self, effect: &Arc<Effect>, owner: u32, release: bool, cue: Cue, cues: &mut Vec<Cue>) {
         match &effect.kind {
-            EffectKind::Click { press, release: other } => {
+            EffectKind::Click(Clicks { press, release: other }) => {
                 let click = other.as_ref().filter(|_| release).unwrap_or(press).clone();
                 cues.push(Cue { click, manner: effect.manner, ..cue });
             }

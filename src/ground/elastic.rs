@@ -1,12 +1,14 @@
-/// What the elastic sheet under one tile is like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Body {
+use crate::format::{num, record};
+
+record! {
+    /// What the elastic sheet under one tile is like.
+    pub struct Body = "Body", Copy;
     /// Mass that moves, in kilograms; positive.
-    pub mass_kg: f32,
+    pub mass_kg: f32 = "mass_kg", num(0.01..=10_000.0);
     /// Viscous damping, in newton seconds per metre; not negative.
-    pub damping_n_s_m: f32,
+    pub damping_n_s_m: f32 = "damping_n_s_m", num(0.0..=10_000_000.0);
     /// Stiffness, in newtons per metre; positive.
-    pub stiffness_n_m: f32,
+    pub stiffness_n_m: f32 = "stiffness_n_m", num(100.0..=1_000_000_000.0);
 }
 
 /// The virtual displacement of the sheet under one tile.

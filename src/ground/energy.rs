@@ -1,17 +1,24 @@
-/// How much energy single events take: a power law on a bounded range.
-///
-/// # Source
-/// `p(E) ~ E^gamma` (paper, section 4.1.1), here between a least and a most
-/// energy, for a footstep has only so much to give and what is too weak to be
-/// felt need not happen. Drawn by the inverse of the distribution function.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct EnergyLaw {
+use crate::format::{Num, num, record};
+
+/// Energies of single events.
+const JOULES: Num = num(0.0001..=1000.0);
+
+record! {
+    /// How much energy single events take: a power law on a bounded range.
+    ///
+    /// # Source
+    /// `p(E) ~ E^gamma` (paper, section 4.1.1), here between a least and a most
+    /// energy, for a footstep has only so much to give and what is too weak to be
+    /// felt need not happen. Drawn by the inverse of the distribution function.
+    pub struct EnergyLaw = "Energy", Copy => |it, faults| {
+        faults.not_below(&["most_j", "least_j"], [it.most_j, it.least_j]);
+    };
     /// The exponent; below zero, small events are more frequent than large ones.
-    pub gamma: f32,
+    pub gamma: f32 = "gamma", num(-5.0..=5.0);
     /// The least energy, in joules; positive.
-    pub least_j: f32,
+    pub least_j: f32 = "least_j", JOULES;
     /// The most energy, in joules; at least the least.
-    pub most_j: f32,
+    pub most_j: f32 = "most_j", JOULES;
 }
 
 impl EnergyLaw {

@@ -10,26 +10,27 @@ use rand_pcg::Pcg64Mcg;
 
 use super::Crack;
 use crate::floor::Rect;
+use crate::format::{Own, num, record};
 use crate::units::Instant;
 
-/// How cracks spread.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct CrackRules {
+record! {
+    /// How cracks spread.
+    pub struct CrackRules = "Cracks", Copy;
     /// No new seed comes within this distance of another, in metres: the paper's Δp.
-    pub apart_m: f32,
+    pub apart_m: f32 = "apart_m", num(0.01..=10.0);
     /// Length of crack that a joule opens, in metres: the paper's α.
-    pub per_j_m: f32,
+    pub per_j_m: f32 = "growth_m_per_j", num(0.0001..=10.0);
     /// Standard deviation of the sideways step β that turns a crack at each event: the paper's σ.
     /// A crack turns by the arc tangent of β.
-    pub turn: f32,
+    pub turn: f32 = "turn", num(0.0..=3.0);
     /// Chance that a piece of crack ends in two, 0 to 1; none in the paper.
-    pub branch: f32,
-    /// The angle at which branches part, in radians.
-    pub branch_rad: f32,
+    pub branch: f32 = "branch", num(0.0..=1.0);
+    /// The angle at which branches part, in radians; files count in degrees.
+    pub branch_rad: f32 = "branch_deg", num(1.0..=120.0).degrees();
     /// Most pieces that are kept, 16 and more; the oldest heal for new ones.
-    pub most: usize,
-    /// How long a crack takes to freeze shut, in seconds; `None`: for ever.
-    pub refreeze_s: Option<f32>,
+    pub most: usize = "pieces", num(16.0..=20_000.0);
+    /// How long a crack takes to freeze shut, in seconds; `None`: for ever. As long as the sheet around it.
+    pub refreeze_s: Option<f32> = "", Own(None);
 }
 
 /// Where cracks come from.

@@ -3,23 +3,34 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 
 use crate::feel::{Click, MAX_MODES, Mode};
+use crate::format::{Num, num, record};
 use crate::units::Newtons;
 
-/// How single events ring.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ring {
+/// Frequencies of what rings.
+const HZ: Num = num(20.0..=1000.0);
+
+/// Times in which it dies away.
+const DECAY: Num = num(1.0..=2000.0).milli();
+
+record! {
+    /// How single events ring.
+    pub struct Ring = "Ring", Copy => |it, faults| {
+        faults.not_below(&["high_hz", "low_hz"], [it.high_hz, it.low_hz]);
+        let millis = [it.longest_s, it.shortest_s].map(|seconds| seconds * 1000.0);
+        faults.not_below(&["longest_ms", "shortest_ms"], millis);
+    };
     /// Force at the plate of the strongest event.
-    pub level: Newtons,
+    pub level: Newtons = "level_n", num(0.0..=200.0);
     /// Modes that ring together, 1 to [`MAX_MODES`].
-    pub modes: u8,
+    pub modes: u8 = "modes", num(1.0..=MAX_MODES as f64);
     /// Lowest frequency, in hertz; 20 to 1000.
-    pub low_hz: f32,
+    pub low_hz: f32 = "low_hz", HZ;
     /// Highest frequency, in hertz; `low_hz` to 1000.
-    pub high_hz: f32,
+    pub high_hz: f32 = "high_hz", HZ;
     /// Shortest time to 1/e, in seconds; 0.001 to 2.
-    pub shortest_s: f32,
+    pub shortest_s: f32 = "shortest_ms", DECAY;
     /// Longest time to 1/e, in seconds; `shortest_s` to 2.
-    pub longest_s: f32,
+    pub longest_s: f32 = "longest_ms", DECAY;
 }
 
 /// The modes of one place: what every event there makes ring.

@@ -1,6 +1,7 @@
 //! What grounds are made of, as layouts describe them.
 
 use super::{Body, CrackRules, EnergyLaw, Ring};
+use crate::format::{Name, Opt, Own, Rec, num, record};
 use crate::units::Newtons;
 use crate::widget::Axis;
 
@@ -37,23 +38,23 @@ impl Material {
     }
 }
 
-/// A frozen pond.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct IceSpec {
+record! {
+    /// A frozen pond.
+    pub struct IceSpec = "Ice", Copy => |it, _| it.cracks.refreeze_s = it.sheet.refreeze_s;
     /// The elastic sheet.
-    pub body: Body,
+    pub body: Body = "body", Rec;
     /// Crack events per second and joule of one-sided kinetic energy above `calm_j`.
-    pub onsets_per_j_s: f32,
+    pub onsets_per_j_s: f32 = "onsets_per_j_s", num(0.0..=10_000_000.0);
     /// Kinetic energy that the ice bears without cracking, in joules; none in the paper.
-    pub calm_j: f32,
+    pub calm_j: f32 = "calm_j", num(0.0..=1000.0);
     /// How much energy single events take.
-    pub energy: EnergyLaw,
+    pub energy: EnergyLaw = "energy", Rec;
     /// How they ring.
-    pub ring: Ring,
+    pub ring: Ring = "ring", Rec;
     /// How cracks spread.
-    pub cracks: CrackRules,
+    pub cracks: CrackRules = "cracks", Rec;
     /// How the sheet is broken through.
-    pub sheet: Sheet,
+    pub sheet: Sheet = "sheet", Rec;
 }
 
 impl IceSpec {
@@ -70,17 +71,17 @@ impl IceSpec {
     }
 }
 
-/// How a sheet of ice loses and regains its thickness.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Sheet {
+record! {
+    /// How a sheet of ice loses and regains its thickness.
+    pub struct Sheet = "Sheet", Copy;
     /// Share of its thickness that a joule breaks where it acts.
-    pub depth_per_j: f32,
+    pub depth_per_j: f32 = "depth_per_j", num(0.0..=100.0);
     /// Distance at which it breaks 1/e of that, in metres.
-    pub reach_m: f32,
+    pub reach_m: f32 = "reach_m", num(0.01..=2.0);
     /// How many times as often again ice cracks that is broken through.
-    pub weakening: f32,
+    pub weakening: f32 = "weakening", num(0.0..=100.0);
     /// How long broken ice takes to be whole again, in seconds; `None`: for ever.
-    pub refreeze_s: Option<f32>,
+    pub refreeze_s: Option<f32> = "refreeze_s", Opt(num(1.0..=1_000_000.0));
 }
 
 /// Which grains.
@@ -106,51 +107,51 @@ impl Grain {
     }
 }
 
-/// Many small grains.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct GrainSpec {
+record! {
+    /// Many small grains.
+    pub struct GrainSpec = "Grain", Copy;
     /// Which grains they are: how they look.
-    pub grain: Grain,
+    pub grain: Grain = "", Own(Grain::Snow);
     /// The elastic bed that stirs them.
-    pub body: Body,
+    pub body: Body = "body", Rec;
     /// Collisions per second at `full_j`; fewer with the root of the energy.
-    pub collisions_per_s: f32,
+    pub collisions_per_s: f32 = "collisions_per_s", num(1.0..=10_000.0);
     /// Energy of the moving grains under one tile at which they collide as often and as hard as they
     /// do, in joules.
-    pub full_j: f32,
+    pub full_j: f32 = "full_j", num(0.0001..=1000.0);
     /// Time in which moving grains lose all but 1/e of their energy, in seconds.
-    pub settle_s: f32,
+    pub settle_s: f32 = "settle_ms", num(1.0..=5000.0).milli();
     /// How much energy single collisions take: only its shape counts, for the most is what `ring` says.
-    pub energy: EnergyLaw,
+    pub energy: EnergyLaw = "energy", Rec;
     /// How they ring.
-    pub ring: Ring,
+    pub ring: Ring = "ring", Rec;
     /// Share of the looseness that a joule of work packs where it acts.
-    pub packing_per_j: f32,
+    pub packing_per_j: f32 = "packing_per_j", num(0.0..=100.0);
     /// Distance at which it packs 1/e of that, in metres.
-    pub reach_m: f32,
+    pub reach_m: f32 = "reach_m", num(0.01..=2.0);
     /// What packed grains still move, as a share of loose ones, 0 to 1.
-    pub packed: f32,
+    pub packed: f32 = "packed", num(0.0..=1.0);
     /// How long the ground takes to lie loose again, in seconds; `None`: for ever.
-    pub renew_s: Option<f32>,
+    pub renew_s: Option<f32> = "renew_s", Opt(num(1.0..=1_000_000.0));
 }
 
-/// Planks.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct WoodSpec {
+record! {
+    /// Planks.
+    pub struct WoodSpec = "Wood", Copy;
     /// The elastic plank.
-    pub body: Body,
+    pub body: Body = "body", Rec;
     /// Width of a plank, in metres.
-    pub plank_m: f32,
+    pub plank_m: f32 = "plank_m", num(0.02..=5.0);
     /// Which way planks lie.
-    pub along: Axis,
+    pub along: Axis = "along", Name;
     /// Force at which a joint slips, on average.
-    pub stick: Newtons,
+    pub stick: Newtons = "stick_n", num(1.0..=2000.0);
     /// How much that varies from slip to slip, as a share of it, 0 to 0.9.
-    pub scatter: f32,
+    pub scatter: f32 = "scatter", num(0.0..=0.9);
     /// Share of its strain that a joint loses when it slips, 0 to 1.
-    pub slip: f32,
+    pub slip: f32 = "slip", num(0.05..=1.0);
     /// How slips ring.
-    pub ring: Ring,
+    pub ring: Ring = "ring", Rec;
 }
 
 const WHITE_SPRUCE: Ring =

@@ -1,3 +1,4 @@
+use crate::format::Named;
 use crate::widget::Behaviour;
 
 /// A picture on a control's face, told apart from standing height.
@@ -47,6 +48,10 @@ pub enum Icon {
     Sound,
     /// A question mark.
     Help,
+}
+
+impl Named for Icon {
+    const ALL: &'static [(&'static str, Self)] = &Icon::ALL;
 }
 
 impl Icon {

@@ -2,6 +2,12 @@ use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
+use crate::format::describe::Shape as Written;
+use crate::format::node::Node;
+use crate::format::problem::Problem;
+use crate::format::text::Text;
+use crate::format::{Codec, Name, Named, Opt, record};
+
 /// An opaque colour in sRGB, written `#rrggbb`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Colour {
@@ -79,17 +85,71 @@ pub enum Shape {
     Round,
 }
 
-/// What a control looks like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Look {
+impl Named for Shape {
+    const ALL: &'static [(&'static str, Self)] = &[("Box", Self::Box), ("Round", Self::Round)];
+}
+
+record! {
+    /// What a control looks like; a calm grey blue where nothing is said.
+    pub struct Look = "Look", Copy;
     /// Outline of the face.
-    pub shape: Shape,
+    pub shape: Shape = "shape", Name => Shape::Box;
     /// Face at rest.
-    pub face: Colour,
+    pub face: Colour = "face", Hex => Look::PLAIN.face;
     /// Face while pressed or on, and the filled part of a slider.
-    pub lit: Colour,
+    pub lit: Colour = "lit", Hex => Look::PLAIN.lit;
     /// Label and icon.
-    pub ink: Colour,
+    pub ink: Colour = "ink", Hex => Look::PLAIN.ink;
     /// Picture above the label, or instead of it.
-    pub icon: Option<Icon>,
+    pub icon: Option<Icon> = "icon", Opt(Name) => None;
+}
+
+impl Look {
+    /// The look of kinds that don't say: a calm grey blue.
+    pub const PLAIN: Self = Self {
+        shape: Shape::Box,
+        face: Colour::rgb(0xdd, 0xe4, 0xec),
+        lit: Colour::rgb(0x8f, 0xb6, 0xe0),
+        ink: Colour::rgb(0x1f, 0x2a, 0x36),
+        icon: None,
+    };
+}
+
+/// A colour as files write it: `"#rrggbb"`.
+pub(crate) struct Hex;
+
+impl Codec<Colour> for Hex {
+    fn read(&self, node: Node<'_>, _: Option<&Colour>) -> Option<Colour> {
+        let text = node.text(64)?;
+        if let Ok(colour) = text.parse() {
+            return Some(colour);
+        }
+        let is_hex = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_hexdigit());
+        let digits = text.trim().trim_start_matches('#');
+        let help = match digits.len() {
+            3 if is_hex(digits) => {
+                let doubled: String = digits.chars().flat_map(|digit| [digit, digit]).collect();
+                Some(format!("write all six digits: \"#{doubled}\""))
+            }
+            6 if is_hex(digits) => Some(format!("write \"#{digits}\"")),
+            8 if is_hex(digits) => Some("colours are opaque: leave out the last two digits".to_owned()),
+            _ => None,
+        };
+        let message = format!("`{}` must be a colour", node.what);
+        let expected = "expected \"#rrggbb\" with six hexadecimal digits";
+        node.report(Problem::error(node.span(), message).expected(expected).help_if(help));
+        None
+    }
+
+    fn write(&self, colour: &Colour) -> Text {
+        Text::Plain(format!("\"{colour}\""))
+    }
+
+    fn shape(&self) -> Written {
+        Written::Words("a colour in quotes, \"#rrggbb\"")
+    }
+
+    fn stand_in(&self) -> Colour {
+        Colour::default()
+    }
 }

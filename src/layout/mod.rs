@@ -13,6 +13,7 @@ mod region;
 pub use ground::Ground;
 pub use hit::HitIndex;
 pub use icon::Icon;
+pub(crate) use look::Hex;
 pub use look::{Colour, Look, Shape};
 pub use page::Page;
 pub use region::{CursorRule, Region, Stance};

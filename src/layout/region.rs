@@ -1,4 +1,5 @@
 use crate::floor::Rect;
+use crate::format::Named;
 
 /// Which contacts in a region operate its controls.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +15,11 @@ pub enum CursorRule {
     Working,
     /// Each of them, so that several controls can be engaged at once, each by one foot.
     Each,
+}
+
+impl Named for CursorRule {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("Largest", Self::Largest), ("Working", Self::Working), ("Each", Self::Each)];
 }
 
 /// An active control area with cursors of its own.

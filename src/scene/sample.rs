@@ -13,8 +13,8 @@ use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Wid
 use crate::sense::{Contact, ContactId, Covariance, Cursor, Quality, TileLoad};
 use crate::units::{Instant, Newtons};
 use crate::widget::{
-    Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec,
-    SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
+    Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Repeat, Scale,
+    SelectorSpec, SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
 };
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
@@ -38,6 +38,7 @@ pub(crate) fn others() -> Vec<Behaviour> {
     let scale = Scale { step: 0.5, ..Scale::new(-10.0, 10.0) };
     let options = ["Pan", "Zoom by hand", "Turn"].map(Arc::from).into();
     let slider = SliderSpec::new(thresholds, Scale::UNIT);
+    let repeat = Repeat::NEVER;
     let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     vec![
         Behaviour::Hold(HoldSpec { thresholds }),
@@ -48,14 +49,17 @@ pub(crate) fn others() -> Vec<Behaviour> {
         Behaviour::Pedal(PedalSpec {
             thresholds,
             scale: Scale::new(0.0, 10.0),
-            deadband: Newtons(60.0),
+            deadband: None,
             full: Newtons(250.0),
             curve: 1.0,
         }),
-        Behaviour::Pad(PadSpec { thresholds, x: Scale::new(-1.0, 1.0), y: scale, initial: Vec2::ZERO }),
+        Behaviour::Pad(PadSpec {
+            initial: Vec2::ZERO,
+            ..PadSpec::new(thresholds, Scale::new(-1.0, 1.0), scale)
+        }),
         Behaviour::Dial(DialSpec { thresholds, scale, turn_degrees: 270.0, initial: -10.0 }),
-        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::East, scale, initial: 0.0, repeat: None }),
-        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::North, scale, initial: 0.0, repeat: None }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::East, scale, initial: 0.0, repeat }),
+        Behaviour::Stepper(StepperSpec { thresholds, axis: Axis::North, scale, initial: 0.0, repeat }),
         Behaviour::Lean(LeanSpec {
             thresholds,
             settle: Duration::from_millis(250),

@@ -4,11 +4,9 @@ use std::ops::Range;
 
 use super::area::Placed;
 use super::behaviour;
-use super::feel;
 use super::fields::Fields;
 use super::inherit::Choice;
 use super::kind::Kind;
-use super::look;
 use super::node::{Node, is_id};
 use super::pages::Goto;
 use super::place::Placing;
@@ -235,7 +233,7 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
 /// `base` with the fields that this widget overrides.
 fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
-    let look = fields.read("look", Some(base.look), |node| look::read_over(node, base.look));
+    let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look)));
     if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.written_span("look"))
         && look.icon.is_some()
         && base.look.icon != look.icon
@@ -246,6 +244,6 @@ fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
             problem.expected("its face shows its value").help("buttons, holds and switches show icons"),
         );
     }
-    let feel = fields.read("feel", Some(base.feel.clone()), |node| feel::read_over(node, &base.feel));
+    let feel = fields.read("feel", Some(base.feel.clone()), |node| node.record(Some(&base.feel)));
     Some(Kind { name: base.name.clone(), behaviour: behaviour?, look: look?, feel: feel? })
 }

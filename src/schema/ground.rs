@@ -10,20 +10,17 @@
 use std::ops::Range;
 
 use super::area::{Area, Placed};
-use super::behaviour::{optional, single, variant};
 use super::fields::Fields;
-use super::ground_parts as parts;
-use super::look::colour;
 use super::node::Node;
 use super::number::plain;
 use super::page;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
+use crate::format::describe::Description;
+use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, IceSpec, Material, WoodSpec};
-use crate::layout::{Colour, Ground};
-use crate::units::Newtons;
-use crate::widget::Axis;
+use crate::layout::{Colour, Ground, Hex};
 
 /// Most grounds of one layout: each has state for every tile.
 const MOST: usize = 16;
@@ -55,15 +52,10 @@ pub(super) fn read(fields: &mut Fields<'_>, page: Option<usize>) -> Vec<Plot> {
 
 impl Plot {
     fn read(node: Node<'_>, page: Option<usize>) -> Option<Self> {
-        let (name, fields) = variant::read(node, &NAMES)?;
+        let (name, mut fields) = node.variant(&NAMES)?;
         let standard = standard(name);
         let (surface, deep) = colours(name);
         let at = node.span();
-        let Some(mut fields) = fields else {
-            let whole = Some(None);
-            let (seed, colours) = (Some(1), Some([surface, deep]));
-            return Some(Self { place: whole, page, seed, material: Some(standard), colours, at });
-        };
         let place = if fields.written_span("at").is_none() && fields.written_span("size").is_none() {
             let _ = (fields.take("at"), fields.take("size"));
             Some(None)
@@ -71,13 +63,14 @@ impl Plot {
             Placed::read(&mut fields).map(Some)
         };
         let seed = fields.read("seed", Some(1), |node| node.whole(0..=u32::MAX));
-        let surface = fields.read("surface", Some(surface), colour);
-        let deep = fields.read("deep", Some(deep), colour);
+        let surface = fields.read("surface", Some(surface), |node| Hex.read(node, None));
+        let deep = fields.read("deep", Some(deep), |node| Hex.read(node, None));
         let material = match standard {
-            Material::Ice(base) => ice(&mut fields, &base).map(Material::Ice),
-            Material::Grain(base) => grains(&mut fields, &base).map(Material::Grain),
-            Material::Wood(base) => wood(&mut fields, &base).map(Material::Wood),
+            Material::Ice(base) => Material::Ice(IceSpec::read_fields(&mut fields, Some(&base))),
+            Material::Grain(base) => Material::Grain(GrainSpec::read_fields(&mut fields, Some(&base))),
+            Material::Wood(base) => Material::Wood(WoodSpec::read_fields(&mut fields, Some(&base))),
         };
+        let material = fields.are_read().then_some(material);
         fields.finish();
         let colours = surface.zip(deep).map(|(surface, deep)| [surface, deep]);
         Some(Self { place, page, seed, material, colours, at })
@@ -148,6 +141,34 @@ fn standard(name: &str) -> Material {
     }
 }
 
+/// What is known of each ground; what is not written is as in the usual ground of its name.
+pub(super) fn describe() -> Vec<Description> {
+    let described = NAMES.map(|name| {
+        let mut usual = Vec::new();
+        let description = match standard(name) {
+            Material::Ice(spec) => {
+                spec.write_fields(&mut usual);
+                IceSpec::describe()
+            }
+            Material::Grain(spec) => {
+                spec.write_fields(&mut usual);
+                GrainSpec::describe()
+            }
+            Material::Wood(spec) => {
+                spec.write_fields(&mut usual);
+                WoodSpec::describe()
+            }
+        };
+        let mut fields = description.fields;
+        for field in &mut fields {
+            let usual = usual.iter().find(|(name, _)| *name == field.name);
+            field.default = usual.map(|(_, text)| text.inline());
+        }
+        Description { name, fields, ..description }
+    });
+    described.into()
+}
+
 /// Surface and depth.
 fn colours(name: &str) -> (Colour, Colour) {
     match name {
@@ -157,76 +178,6 @@ fn colours(name: &str) -> (Colour, Colour) {
         "Wood" => (Colour::rgb(0xc9, 0x9b, 0x66), Colour::rgb(0x4a, 0x2f, 0x1b)),
         _ => (Colour::rgb(0x9f, 0xd3, 0xd6), Colour::rgb(0x0b, 0x3a, 0x47)),
     }
-}
-
-fn ice(fields: &mut Fields<'_>, base: &IceSpec) -> Option<IceSpec> {
-    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
-    let onsets =
-        fields.read("onsets_per_j_s", Some(base.onsets_per_j_s), |node| single(node, 0.0..=10_000_000.0));
-    let calm = fields.read("calm_j", Some(base.calm_j), |node| single(node, 0.0..=1000.0));
-    let energy = fields.read("energy", Some(base.energy), |node| parts::energy(node, base.energy));
-    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
-    let cracks = fields.read("cracks", Some(base.cracks), |node| parts::cracks(node, base.cracks));
-    let sheet = fields.read("sheet", Some(base.sheet), |node| parts::sheet(node, base.sheet));
-    let (mut cracks, sheet) = (cracks?, sheet?);
-    // Cracks freeze shut as the sheet around them does.
-    cracks.refreeze_s = sheet.refreeze_s;
-    Some(IceSpec {
-        body: body?,
-        onsets_per_j_s: onsets?,
-        calm_j: calm?,
-        energy: energy?,
-        ring: ring?,
-        cracks,
-        sheet,
-    })
-}
-
-fn grains(fields: &mut Fields<'_>, base: &GrainSpec) -> Option<GrainSpec> {
-    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
-    let collisions =
-        fields.read("collisions_per_s", Some(base.collisions_per_s), |node| single(node, 1.0..=10_000.0));
-    let full = fields.read("full_j", Some(base.full_j), |node| single(node, 0.0001..=1000.0));
-    let settle = fields.read("settle_ms", Some(base.settle_s * 1000.0), |node| single(node, 1.0..=5000.0));
-    let energy = fields.read("energy", Some(base.energy), |node| parts::energy(node, base.energy));
-    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
-    let packing = fields.read("packing_per_j", Some(base.packing_per_j), |node| single(node, 0.0..=100.0));
-    let reach = fields.read("reach_m", Some(base.reach_m), |node| single(node, 0.01..=2.0));
-    let packed = fields.read("packed", Some(base.packed), |node| single(node, 0.0..=1.0));
-    let renew = optional(fields, "renew_s", base.renew_s, |node| single(node, 1.0..=1_000_000.0));
-    Some(GrainSpec {
-        grain: base.grain,
-        body: body?,
-        collisions_per_s: collisions?,
-        full_j: full?,
-        settle_s: settle? / 1000.0,
-        energy: energy?,
-        ring: ring?,
-        packing_per_j: packing?,
-        reach_m: reach?,
-        packed: packed?,
-        renew_s: renew?,
-    })
-}
-
-fn wood(fields: &mut Fields<'_>, base: &WoodSpec) -> Option<WoodSpec> {
-    let body = fields.read("body", Some(base.body), |node| parts::body(node, base.body));
-    let plank = fields.read("plank_m", Some(base.plank_m), |node| single(node, 0.02..=5.0));
-    let along = fields
-        .read("along", Some(base.along), |node| node.choice(&[("East", Axis::East), ("North", Axis::North)]));
-    let stick = fields.read("stick_n", Some(base.stick.0), |node| single(node, 1.0..=2000.0));
-    let scatter = fields.read("scatter", Some(base.scatter), |node| single(node, 0.0..=0.9));
-    let slip = fields.read("slip", Some(base.slip), |node| single(node, 0.05..=1.0));
-    let ring = fields.read("ring", Some(base.ring), |node| parts::ring(node, base.ring));
-    Some(WoodSpec {
-        body: body?,
-        plank_m: plank?,
-        along: along?,
-        stick: Newtons(stick?),
-        scatter: scatter?,
-        slip: slip?,
-        ring: ring?,
-    })
 }
 
 #[cfg(test)]

@@ -2,17 +2,14 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::behaviour::{self, Form};
+use super::behaviour;
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
-use super::effect::Effects;
-use super::feel;
 use super::inherit;
-use super::look;
 use super::node::Node;
 use super::problem::Problem;
 use super::version;
-use crate::feel::Feel;
+use crate::feel::{Effects, Feel};
 use crate::layout::Look;
 use crate::widget::Behaviour;
 
@@ -125,7 +122,7 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     let name = fields.read("name", None, |node| node.id());
     // Looked up by whoever knows the other kinds.
     fields.take("from");
-    let plain = (look::PLAIN, Feel::default());
+    let plain = (Look::PLAIN, Feel::default());
     let (base_look, base_feel) = parent.map_or(plain, |parent| (parent.look, parent.feel.clone()));
     let mut knows_fields = true;
     let behaviour = match parent {
@@ -139,13 +136,13 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
             behaviour::read_over(&mut fields, &parent.behaviour)
         }
         None => {
-            let form = fields.read("behaviour", None, Form::read);
-            knows_fields = form.is_some();
-            form.and_then(|form| behaviour::read(&mut fields, form))
+            let name = fields.read("behaviour", None, behaviour::name);
+            knows_fields = name.is_some();
+            name.and_then(|name| behaviour::read(&mut fields, name, None))
         }
     };
-    let look = fields.read("look", Some(base_look), |node| look::read_over(node, base_look));
-    let feel = fields.read("feel", Some(base_feel.clone()), |node| feel::read_over(node, &base_feel));
+    let look = fields.read("look", Some(base_look), |node| node.record(Some(&base_look)));
+    let feel = fields.read("feel", Some(base_feel.clone()), |node| node.record(Some(&base_feel)));
     if knows_fields {
         fields.finish();
     } else {

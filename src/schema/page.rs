@@ -15,11 +15,11 @@ use super::pages::{self, Sheet};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
-use super::region;
 use super::source::{Source, read_text};
 use super::units::Units;
 use super::version;
 use crate::floor::Geometry;
+use crate::format::{Codec, Name};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
 
@@ -182,8 +182,11 @@ impl<'r> Zone<'r> {
         };
         let place = Placed::read(&mut fields);
         let name_at = fields.span(field);
-        let cursor =
-            if field == "id" { region::read_cursor(&mut fields) } else { Some(CursorRule::default()) };
+        let cursor = if field == "id" {
+            fields.read("cursor", Some(CursorRule::default()), |node| Name.read(node, None))
+        } else {
+            Some(CursorRule::default())
+        };
         fields.finish();
         Some(Self { name, name_at, place, cursor })
     }

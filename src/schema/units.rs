@@ -1,5 +1,8 @@
+use super::fields::Fields;
 use super::node::Node;
+use super::reader::Reader;
 use crate::floor::Geometry;
+use std::sync::Arc;
 
 /// What the places, sizes and gaps of a layout count in.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -54,5 +57,25 @@ impl Units {
             Self::Tiles => 0.05,
             Self::Metres => 0.01,
         }
+    }
+}
+
+impl Reader<'_> {
+    /// What places and sizes count in.
+    pub(super) fn units(&self) -> Units {
+        *self.known()
+    }
+
+    /// From now on places and sizes count in these.
+    pub(super) fn count_in(&self, units: Units) {
+        self.know(Arc::new(units));
+        self.show_lengths_in(units.suffix());
+    }
+}
+
+impl Fields<'_> {
+    /// What places and sizes count in.
+    pub(super) fn units(&self) -> Units {
+        self.reader().units()
     }
 }

@@ -248,7 +248,7 @@ fn values(behaviour: &Behaviour, held: Value) -> Vec<Argument> {
         (Value::Number(_), Behaviour::Stepper(stepper)) => vec![number("value", Some(&stepper.scale))],
         (Value::Number(_), _) => vec![number("value", None)],
         (Value::Pair(_), Behaviour::Pad(pad)) => {
-            vec![number("x_value", Some(&pad.x)), number("y_value", Some(&pad.y))]
+            vec![number("x_value", Some(&pad.x())), number("y_value", Some(&pad.y()))]
         }
         (Value::Pair(_), _) => vec![number("x_value", None), number("y_value", None)],
     }

@@ -2,10 +2,11 @@ use super::{
     ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
     StepperSpec, SwitchSpec, Thresholds, Value,
 };
+use crate::format::choices;
 
-/// What a control does, with its settings.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Behaviour {
+choices! {
+    /// What a control does, with its settings.
+    pub enum Behaviour;
     /// A push button.
     Button(ButtonSpec),
     /// On while it is held.
@@ -72,7 +73,7 @@ impl Behaviour {
             (Self::Dial(spec), Value::Number(number)) => spec.scale.is_stop(number),
             (Self::Stepper(_), Value::Number(_)) => true,
             // With one axis free, the other's stops would be felt all the time.
-            (Self::Pad(spec), Value::Pair(pair)) => spec.x.is_stop(pair.x) && spec.y.is_stop(pair.y),
+            (Self::Pad(spec), Value::Pair(pair)) => spec.x().is_stop(pair.x) && spec.y().is_stop(pair.y),
             _ => false,
         }
     }

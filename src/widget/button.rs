@@ -33,21 +33,55 @@ use glam::Vec2;
 
 use super::moment::{Foot, Machine, Moment};
 use super::press::Outcome;
-use super::{Direction, Emitted, EventKind, Thresholds};
+use super::stage::Stage;
+use super::{Direction, Emitted, EventKind, Guard, Thresholds};
+use crate::format::number::plain;
+use crate::format::{Faults, Flat, Name, Named, Opt, num, record};
 use crate::units::{Instant, Newtons};
 
-/// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ButtonSpec {
+record! {
+    /// A push button: `Pressed`, then `Released` and `Clicked`, or `Cancelled`.
+    pub struct ButtonSpec = "Button", Copy => ButtonSpec::rules;
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// When it clicks.
-    pub acts_on: ActsOn,
+    pub acts_on: ActsOn = "acts_on", Name => ActsOn::Release;
     /// What else it understands.
-    pub gestures: Gestures,
+    pub gestures: Gestures = "", Flat;
 }
 
 impl ButtonSpec {
+    /// Settings that contradict each other.
+    fn rules(&mut self, faults: &mut Faults) {
+        let Gestures { double_tap, long_press, swipe_m, hard } = self.gestures;
+        if let Some(HardStage { press, release }) = hard {
+            let light = self.thresholds.press;
+            if release >= press || release <= light {
+                let shown = |force: Newtons| plain(force.0.into());
+                let (light, release, hard) = (shown(light), shown(release), shown(press));
+                faults.error(
+                    &["hard_release_n", "hard_n", "press_n"],
+                    "the second stage must end between `press_n` and its own beginning",
+                    format!("press_n is {light} N, hard_release_n {release} N, hard_n {hard} N"),
+                );
+            }
+        }
+        let waits: [(&'static [&'static str], bool); 3] = [
+            (&["double_tap_ms", "acts_on"], double_tap.is_some()),
+            (&["long_press_ms", "acts_on"], long_press.is_some()),
+            (&["swipe_m", "acts_on"], swipe_m.is_some()),
+        ];
+        for (fields, _) in waits.into_iter().filter(|(_, given)| *given && self.acts_on == ActsOn::Press) {
+            let message = format!("a button that acts on press cannot wait for `{}`", fields[0]);
+            faults.error(fields, message, "what it is shows later");
+            faults.help("write acts_on: Release, or leave the gesture out");
+        }
+        if double_tap.is_some() && matches!(self.thresholds.guard, Guard::Confirm(_)) {
+            let message = "a guard that confirms takes two presses already";
+            faults.error(&["double_tap_ms", "guard"], message, "a double tap can't be told from them");
+        }
+    }
+
     /// A button that clicks on release and knows no gestures.
     #[must_use]
     pub const fn new(thresholds: Thresholds) -> Self {
@@ -66,18 +100,31 @@ pub enum ActsOn {
     Release,
 }
 
-/// What a button understands besides a tap; nothing by default.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Gestures {
-    /// How soon after a tap a second press must be down to make it a double tap.
-    pub double_tap: Option<Duration>,
-    /// How long a press must last to be a long one.
-    pub long_press: Option<Duration>,
-    /// How far a foot must go to swipe, in metres.
-    pub swipe_m: Option<f32>,
-    /// The second stage.
-    pub hard: Option<HardStage>,
+impl Named for ActsOn {
+    const ALL: &'static [(&'static str, Self)] = &[("Press", Self::Press), ("Release", Self::Release)];
 }
+
+record! {
+    /// What a button understands besides a tap; nothing by default.
+    pub struct Gestures = "Gestures", Copy, Default;
+    /// How soon after a tap a second press must be down to make it a double tap.
+    pub double_tap: Option<Duration> = "double_tap_ms", Opt(num(100.0..=1000.0).milli()) => None;
+    /// How long a press must last to be a long one.
+    pub long_press: Option<Duration> = "long_press_ms", Opt(num(200.0..=5000.0).milli()) => None;
+    /// How far a foot must go to swipe, in metres.
+    pub swipe_m: Option<f32> = "swipe_m", Opt(num(0.02..=1.0)) => None;
+    /// The second stage: force from which on a press is hard.
+    pub hard: Option<HardStage> = "hard_n", HARD => None;
+}
+
+const HARD: Stage = Stage {
+    press: num(10.0..=2000.0),
+    release: num(1.0..=2000.0),
+    names: ["hard_n", "hard_release_n"],
+    about: "Force below which it is hard no longer; less than `hard_n`, more than `press_n`.",
+    follows: 0.75,
+    lonely: "a second stage needs both",
+};
 
 /// The second stage of a press. It grows with the first where that is a share of the person's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -86,6 +133,18 @@ pub struct HardStage {
     pub press: Newtons,
     /// Force below which it is hard no longer; less than `press`.
     pub release: Newtons,
+}
+
+impl From<[f32; 2]> for HardStage {
+    fn from([press, release]: [f32; 2]) -> Self {
+        Self { press: Newtons(press), release: Newtons(release) }
+    }
+}
+
+impl From<HardStage> for [f32; 2] {
+    fn from(stage: HardStage) -> Self {
+        [stage.press.0, stage.release.0]
+    }
 }
 
 /// How far beyond its edge a button that keeps its foot still counts the foot as on it, in metres

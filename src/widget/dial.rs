@@ -17,20 +17,22 @@
 use super::moment::{Machine, Moment};
 use super::number::Number;
 use super::press::Outcome;
+use super::scale::INITIAL;
 use super::track::wrapped;
 use super::{Emitted, Scale, SetError, Thresholds, Value};
+use crate::format::{Flat, num, record};
 
-/// A dial.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct DialSpec {
+record! {
+    /// A dial.
+    pub struct DialSpec = "Dial", Copy => |it, faults| it.scale.check_initial(&mut it.initial, faults);
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Its values; they grow clockwise.
-    pub scale: Scale,
+    pub scale: Scale = "", Flat;
     /// How far it is from the least to the greatest value, in degrees; may be several turns.
-    pub turn_degrees: f32,
+    pub turn_degrees: f32 = "turn_deg", num(45.0..=3600.0) => 270.0;
     /// Value to begin with, within the range.
-    pub initial: f32,
+    pub initial: f32 = "initial", INITIAL;
 }
 
 /// Part of the way from middle to edge within which a foot is at no angle to speak of

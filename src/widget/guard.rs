@@ -24,26 +24,53 @@ use std::time::Duration;
 
 use super::press::{Outcome, Press};
 use super::{Emitted, EventKind, Input};
+use crate::format::{Opt, choices, num, record};
 use crate::units::Instant;
 
-/// What it takes besides force for a control to act.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Guard {
+choices! {
+    /// What it takes besides force for a control to act.
+    pub enum Guard: Copy, Eq;
     /// Nothing: for what does no harm.
-    #[default]
     Free,
     /// A first press, which only arms it, then a second one.
-    Confirm {
-        /// How long after the first press was released the second must be down.
-        within: Duration,
-    },
+    Confirm(Confirm),
     /// It acts only while a foot holds it, and never longer than a while: off on any doubt.
-    HoldToRun {
-        /// How long it acts at most; then it must be lifted.
-        max: Duration,
-        /// How long before that it warns.
-        warn: Duration,
-    },
+    HoldToRun(HoldToRun),
+}
+
+impl Default for Guard {
+    fn default() -> Self {
+        Self::Free
+    }
+}
+
+record! {
+    /// A first press, which only arms it, then a second one.
+    pub struct Confirm = "Confirm", Copy, Eq;
+    /// How long after the first press was released the second must be down.
+    pub within: Duration = "within_s", num(0.5..=30.0) => Duration::from_secs(3);
+}
+
+record! {
+    /// It acts only while a foot holds it, and never longer than a while: off on any doubt.
+    pub struct HoldToRun = "HoldToRun", Copy, Eq => |it, faults| {
+        if it.warn.is_some_and(|warn| warn > it.max) {
+            let message = "`warn_s` is longer than `max_s`";
+            faults.error(&["warn_s", "max_s"], message, "it counts back from the end");
+        }
+    };
+    /// How long it acts at most; then it must be lifted.
+    pub max: Duration = "max_s", num(1.0..=3600.0);
+    /// How long before that it warns; half a minute or a quarter of `max` where it doesn't say, whichever is shorter.
+    pub warn: Option<Duration> = "warn_s", Opt(num(0.0..=3600.0)) => None;
+}
+
+impl HoldToRun {
+    /// How long before its end it warns.
+    #[must_use]
+    pub fn warns(&self) -> Duration {
+        self.warn.unwrap_or(Duration::from_secs(30).min(self.max / 4))
+    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -101,8 +128,7 @@ impl Guarding {
         outcome: Option<Outcome>,
         emitted: &mut Emitted,
     ) -> Option<Outcome> {
-        let (Guard::HoldToRun { max, warn }, State::Acting { since, warned }) = (self.guard, self.state)
-        else {
+        let (Guard::HoldToRun(run), State::Acting { since, warned }) = (self.guard, self.state) else {
             return outcome;
         };
         let doubtful = matches!(input, Input::Foot { trusted: false, .. });
@@ -111,10 +137,10 @@ impl Guarding {
             return Some(Outcome::Cancelled);
         }
         let held = now.since(since);
-        if outcome.is_none() && held >= max {
+        if outcome.is_none() && held >= run.max {
             return press.cancel();
         }
-        if outcome.is_none() && !warned && held >= max.saturating_sub(warn) {
+        if outcome.is_none() && !warned && held >= run.max.saturating_sub(run.warns()) {
             self.state = State::Acting { since, warned: true };
             emitted.push(EventKind::Warned);
         }
@@ -129,7 +155,7 @@ impl Guarding {
         broken: bool,
         emitted: &mut Emitted,
     ) -> bool {
-        let Guard::Confirm { within } = self.guard else {
+        let Guard::Confirm(Confirm { within }) = self.guard else {
             if outcome == Some(Outcome::Pressed) {
                 self.state = State::Acting { since: now, warned: false };
             }

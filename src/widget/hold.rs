@@ -12,12 +12,13 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
+use crate::format::{Flat, record};
 
-/// A control that is on while a foot holds it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HoldSpec {
+record! {
+    /// A control that is on while a foot holds it.
+    pub struct HoldSpec = "Hold", Copy;
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
 }
 
 /// A momentary control at work.

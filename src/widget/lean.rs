@@ -19,19 +19,29 @@ use glam::Vec2;
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
+use crate::format::number::plain;
+use crate::format::{Flat, num, record};
 use crate::units::Instant;
 
-/// A direction pad worked by leaning.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LeanSpec {
+record! {
+    /// A direction pad worked by leaning.
+    ///
+    /// A foot's pressure wanders by half a centimetre while it stands, and by about four when it leans.
+    pub struct LeanSpec = "Lean", Copy => |it, faults| {
+        if it.deadband_m >= it.full_m {
+            let [deadband, full] = [it.deadband_m, it.full_m].map(|metres| plain(metres.into()));
+            let found = format!("deadband_m is {deadband} m, full_m is {full} m");
+            faults.error(&["full_m", "deadband_m"], "`full_m` must be above `deadband_m`", found);
+        }
+    };
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// How long a foot takes to settle: its heel lands first and it rolls on.
-    pub settle: Duration,
+    pub settle: Duration = "settle_ms", num(0.0..=2000.0).milli() => Duration::from_millis(250);
     /// How far the pressure must move before it counts, in metres.
-    pub deadband_m: f32,
+    pub deadband_m: f32 = "deadband_m", num(0.0..=0.5) => 0.008;
     /// How far it must move for a length of 1, in metres; more than `deadband_m`.
-    pub full_m: f32,
+    pub full_m: f32 = "full_m", num(0.001..=0.5) => 0.03;
 }
 
 /// Smallest change of the length worth an event (our choice: standing still sways by as much).

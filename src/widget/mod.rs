@@ -27,6 +27,7 @@ mod random;
 mod scale;
 mod selector;
 mod slider;
+mod stage;
 mod stepper;
 mod switch;
 #[cfg(test)]
@@ -39,7 +40,7 @@ pub use button::{ActsOn, ButtonSpec, Gestures, HardStage};
 pub use control::{Control, Emitted, SetError};
 pub use dial::DialSpec;
 pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
-pub use guard::Guard;
+pub use guard::{Confirm, Guard, HoldToRun};
 pub use hold::HoldSpec;
 pub use input::{Indicator, Input};
 pub use lean::LeanSpec;
@@ -47,11 +48,13 @@ pub use pad::PadSpec;
 pub use pedal::PedalSpec;
 pub use scale::Scale;
 pub use selector::SelectorSpec;
-pub use slider::{Mapping, SliderSpec};
+pub use slider::{Mapping, Rate, Relative, SliderSpec};
 pub use stepper::{Repeat, StepperSpec};
 pub use switch::SwitchSpec;
 pub use thresholds::{Thresholds, WeightShare};
 pub use track::Track;
+
+use crate::format::Named;
 
 /// Along which axis of the floor something lies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -61,4 +64,8 @@ pub enum Axis {
     East,
     /// Northwards (away from the user).
     North,
+}
+
+impl Named for Axis {
+    const ALL: &'static [(&'static str, Self)] = &[("East", Self::East), ("North", Self::North)];
 }

@@ -16,19 +16,70 @@ use glam::Vec2;
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::scale::QUANTUM;
+use super::scale::{VALUES, WIDTHS};
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
+use crate::format::number::plain;
+use crate::format::{Faults, Flat, Follow, Num, Pair, record};
 
-/// A pad with two axes.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PadSpec {
+/// A pair of numbers, eastwards and northwards.
+const fn pair(each: Num) -> Pair {
+    Pair { each, pattern: "(east, north)", parts: ["eastwards", "northwards"] }
+}
+
+record! {
+    /// A pad with two axes; every setting is written eastwards and northwards.
+    pub struct PadSpec = "Pad", Copy => PadSpec::rules;
     /// When it engages.
-    pub thresholds: Thresholds,
-    /// Values from west to east.
-    pub x: Scale,
-    /// Values from south to north.
-    pub y: Scale,
+    pub thresholds: Thresholds = "", Flat;
+    /// The least values.
+    pub min: Vec2 = "min", pair(VALUES);
+    /// The greatest; more than `min`.
+    pub max: Vec2 = "max", pair(VALUES);
+    /// Distances between the values it may take, counted from `min`; 0 for any value.
+    pub step: Vec2 = "step", pair(WIDTHS) => Vec2::ZERO;
+    /// Distances between values that draw the numbers to them, counted from `min`; 0 for none.
+    pub detent: Vec2 = "detent", pair(WIDTHS) => Vec2::ZERO;
     /// Values to begin with.
-    pub initial: Vec2,
+    pub initial: Vec2 = "initial", Follow { written: pair(VALUES), otherwise: "the least" };
+}
+
+impl PadSpec {
+    /// A pad of these values from west to east and from south to north, which begins at the least of both.
+    #[must_use]
+    pub const fn new(thresholds: Thresholds, x: Scale, y: Scale) -> Self {
+        Self {
+            thresholds,
+            min: Vec2::new(x.min, y.min),
+            max: Vec2::new(x.max, y.max),
+            step: Vec2::new(x.step, y.step),
+            detent: Vec2::new(x.detent, y.detent),
+            initial: Vec2::new(x.min, y.min),
+        }
+    }
+
+    /// The values from west to east.
+    #[must_use]
+    pub const fn x(&self) -> Scale {
+        Scale { min: self.min.x, max: self.max.x, step: self.step.x, detent: self.detent.x }
+    }
+
+    /// The values from south to north.
+    #[must_use]
+    pub const fn y(&self) -> Scale {
+        Scale { min: self.min.y, max: self.max.y, step: self.step.y, detent: self.detent.y }
+    }
+
+    fn rules(&mut self, faults: &mut Faults) {
+        self.x().check(faults, "eastwards ");
+        self.y().check(faults, "northwards ");
+        let nearest = self.initial.min(self.max).max(self.min);
+        if nearest != self.initial {
+            let range = |scale: Scale| format!("{} to {}", plain(scale.min.into()), plain(scale.max.into()));
+            let expected = format!("expected ({}, {})", range(self.x()), range(self.y()));
+            faults.error(&["initial", "min", "max"], "`initial` lies outside of the range", expected);
+        }
+        self.initial = nearest;
+    }
 }
 
 /// A pad at work.
@@ -41,7 +92,7 @@ pub(super) struct Pad {
 
 impl Pad {
     pub(super) fn new(spec: PadSpec) -> Self {
-        let value = Vec2::new(spec.x.settle(spec.initial.x), spec.y.settle(spec.initial.y));
+        let value = Vec2::new(spec.x().settle(spec.initial.x), spec.y().settle(spec.initial.y));
         Self { spec, value, before: value }
     }
 
@@ -68,7 +119,7 @@ impl Machine for Pad {
             None => {}
         }
         if let Some(foot) = moment.firm_foot() {
-            let PadSpec { x, y, .. } = self.spec;
+            let (x, y) = (self.spec.x(), self.spec.y());
             let follow =
                 |scale: Scale, now: f32, share| scale.follow(now, scale.at(share), QUANTUM).unwrap_or(now);
             let (east, north) = (foot.place.x, foot.place.y);
@@ -85,7 +136,7 @@ impl Machine for Pad {
         if !pair.is_finite() {
             return Err(SetError::NotFinite);
         }
-        self.value = Vec2::new(self.spec.x.settle(pair.x), self.spec.y.settle(pair.y));
+        self.value = Vec2::new(self.spec.x().settle(pair.x), self.spec.y().settle(pair.y));
         Ok(())
     }
 

@@ -14,21 +14,37 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, Scale, SetError, Thresholds, Value};
+use crate::format::number::plain;
+use crate::format::{Flat, Opt, num, record};
 use crate::units::Newtons;
 
-/// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the weight.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PedalSpec {
+record! {
+    /// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the weight.
+    pub struct PedalSpec = "Pedal", Copy => |it, faults| {
+        if it.gives_from() >= it.full {
+            let [deadband, full] = [it.gives_from(), it.full].map(|force| plain(force.0.into()));
+            let found = format!("deadband_n is {deadband} N, full_n is {full} N");
+            faults.error(&["full_n", "deadband_n", "press_n"], "`full_n` must be above `deadband_n`", found);
+        }
+    };
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Its values; the least at rest.
-    pub scale: Scale,
-    /// Force up to which the value is the least.
-    pub deadband: Newtons,
+    pub scale: Scale = "", Flat;
+    /// Force up to which the value is the least; the press threshold where it says none.
+    pub deadband: Option<Newtons> = "deadband_n", Opt(num(0.0..=1000.0)) => None;
     /// Force from which on the value is the greatest; more than `deadband`.
-    pub full: Newtons,
+    pub full: Newtons = "full_n", num(10.0..=2000.0);
     /// Exponent of the curve between: 1 is straight, more gives finer control of light presses.
-    pub curve: f32,
+    pub curve: f32 = "curve", num(0.2..=5.0) => 1.0;
+}
+
+impl PedalSpec {
+    /// Force up to which the value is the least.
+    #[must_use]
+    pub fn gives_from(&self) -> Newtons {
+        self.deadband.unwrap_or(self.thresholds.press)
+    }
 }
 
 /// Smallest change worth an event, as a part of the range (our choice: a foot's force trembles by as much).
@@ -56,7 +72,8 @@ impl Pedal {
 
 impl Machine for Pedal {
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted) {
-        let PedalSpec { thresholds, scale, deadband, full, curve } = self.spec;
+        let PedalSpec { thresholds, scale, full, curve, .. } = self.spec;
+        let deadband = self.spec.gives_from();
         match moment.outcome {
             Some(Outcome::Pressed) => emitted.push(EventKind::Pressed),
             Some(Outcome::Released) => {

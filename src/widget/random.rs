@@ -30,7 +30,7 @@ pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
     let slider = SliderSpec { initial: 1.0, ..SliderSpec::new(at, Scale::new(-1.0, 3.0)) };
     let arc = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
     let repeat = Repeat {
-        after: Duration::from_millis(100),
+        after: Some(Duration::from_millis(100)),
         every: Duration::from_millis(40),
         fastest: Duration::from_millis(10),
     };
@@ -49,24 +49,18 @@ pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
         Behaviour::Slider(slider),
         Behaviour::Slider(SliderSpec { scale, track: Track::Line { degrees: 30.0 }, ..slider }),
         Behaviour::Slider(SliderSpec { scale: Scale { detent: 1.0, ..slider.scale }, track: arc, ..slider }),
-        Behaviour::Slider(SliderSpec { mapping: Mapping::Relative { gain: 2.0 }, ..slider }),
-        Behaviour::Slider(SliderSpec { mapping: Mapping::Rate { full_per_s: 8.0 }, scale, ..slider }),
+        Behaviour::Slider(SliderSpec { mapping: Mapping::Relative(Relative { gain: 2.0 }), ..slider }),
+        Behaviour::Slider(SliderSpec { mapping: Mapping::Rate(Rate { full_per_s: 8.0 }), scale, ..slider }),
         Behaviour::Pedal(PedalSpec {
             thresholds: at,
             scale: Scale::UNIT,
-            deadband: Newtons(60.0),
+            deadband: Some(Newtons(60.0)),
             full: Newtons(150.0),
             curve: 2.0,
         }),
-        Behaviour::Pad(PadSpec { thresholds: at, x: scale, y: Scale::UNIT, initial: Vec2::ZERO }),
+        Behaviour::Pad(PadSpec { initial: Vec2::ZERO, ..PadSpec::new(at, scale, Scale::UNIT) }),
         Behaviour::Dial(DialSpec { thresholds: at, scale, turn_degrees: 270.0, initial: 0.0 }),
-        Behaviour::Stepper(StepperSpec {
-            thresholds: at,
-            axis: Axis::North,
-            scale,
-            initial: 0.0,
-            repeat: Some(repeat),
-        }),
+        Behaviour::Stepper(StepperSpec { thresholds: at, axis: Axis::North, scale, initial: 0.0, repeat }),
         Behaviour::Lean(LeanSpec {
             thresholds: at,
             settle: Duration::from_millis(30),
@@ -77,8 +71,8 @@ pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
 }
 
 fn all() -> Vec<Behaviour> {
-    let confirm = Thresholds { guard: Guard::Confirm { within: Duration::from_millis(900) }, ..AT };
-    let run = Guard::HoldToRun { max: LIMIT, warn: Duration::from_millis(200) };
+    let confirm = Thresholds { guard: Guard::Confirm(Confirm { within: Duration::from_millis(900) }), ..AT };
+    let run = Guard::HoldToRun(HoldToRun { max: LIMIT, warn: Some(Duration::from_millis(200)) });
     let run = Thresholds { guard: run, ..AT };
     let share = Thresholds { share: Some(WeightShare { press: 0.1, release: 0.06 }), ..AT };
     let momentary = |behaviour: &Behaviour| {
@@ -207,9 +201,9 @@ impl Watch<'_> {
                 EventKind::Armed => assert!(!std::mem::replace(&mut self.armed, true) && released),
                 EventKind::Disarmed => assert!(std::mem::take(&mut self.armed)),
                 EventKind::Warned => {
-                    let Guard::HoldToRun { max, warn } = self.guard() else { panic!("{event:?}") };
+                    let Guard::HoldToRun(run) = self.guard() else { panic!("{event:?}") };
                     let held = now.since(self.down.unwrap());
-                    assert!(held >= max - warn && held < max);
+                    assert!(held >= run.max - run.warns() && held < run.max);
                 }
                 EventKind::Refused => panic!("not locked"),
             }
@@ -221,7 +215,7 @@ impl Watch<'_> {
         assert_eq!(control.is_engaged(), self.down.is_some());
         assert_eq!(control.is_armed(), self.armed);
         assert_eq!(control.value(), self.value);
-        if let (Guard::HoldToRun { max, .. }, Some(since)) = (self.guard(), self.down) {
+        if let (Guard::HoldToRun(HoldToRun { max, .. }), Some(since)) = (self.guard(), self.down) {
             assert!(now.since(since) < max);
         }
         let on_steps = |scale: Scale, value: f32| {
@@ -234,8 +228,8 @@ impl Watch<'_> {
             (Behaviour::Dial(spec), Some(Value::Number(value))) => on_steps(spec.scale, value),
             (Behaviour::Stepper(spec), Some(Value::Number(value))) => on_steps(spec.scale, value),
             (Behaviour::Pad(spec), Some(Value::Pair(value))) => {
-                on_steps(spec.x, value.x);
-                on_steps(spec.y, value.y);
+                on_steps(spec.x(), value.x);
+                on_steps(spec.y(), value.y);
             }
             (Behaviour::Pedal(_), Some(Value::Number(value))) => {
                 assert!((0.0..=1.0).contains(&value) && (value == 0.0 || self.down.is_some()));

@@ -1,14 +1,27 @@
-/// The values that a control's number may take.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Scale {
+use crate::format::Faults;
+use crate::format::number::plain;
+use crate::format::{Follow, Num, num, record};
+
+/// Values of controls: as far as `f32` still resolves a tenth.
+pub(super) const VALUES: Num = num(-1e6..=1e6);
+
+/// A value to begin with.
+pub(super) const INITIAL: Follow<Num> = Follow { written: VALUES, otherwise: "the least" };
+
+/// Distances between values.
+pub(super) const WIDTHS: Num = num(0.0..=1e6);
+
+record! {
+    /// The values that a control's number may take.
+    pub struct Scale = "Scale", Copy => |it, faults| it.check(faults, "");
     /// The least.
-    pub min: f32,
+    pub min: f32 = "min", VALUES;
     /// The greatest; more than `min`.
-    pub max: f32,
+    pub max: f32 = "max", VALUES;
     /// Distance between the values it may take, counted from `min`; 0 for any value. `max` may always be taken.
-    pub step: f32,
+    pub step: f32 = "step", WIDTHS => 0.0;
     /// Distance between values that draw the number to them, counted from `min`; 0 for none.
-    pub detent: f32,
+    pub detent: f32 = "detent", WIDTHS => 0.0;
 }
 
 /// How far beyond the middle between two steps the foot must be before the number follows, in steps
@@ -25,6 +38,42 @@ const GRIP: f32 = 1.5;
 pub(super) const QUANTUM: f32 = 1e-3;
 
 impl Scale {
+    /// Notes what is wrong with it; `way` is the direction of a pad's, with a space behind it.
+    pub(super) fn check(&self, faults: &mut Faults, way: &str) {
+        let Self { min, max, step, detent } = *self;
+        let shown = |value: f32| plain(value.into());
+        let range = format!("{way}the range is only {} wide", shown(max - min));
+        let steps = (max - min) / step;
+        if min >= max {
+            let found = format!("{way}min is {}, max is {}", shown(min), shown(max));
+            faults.error(&["max", "min"], "`max` must be greater than `min`", found);
+            return;
+        }
+        if step > max - min {
+            faults.error(&["step", "max", "min"], "`step` is wider than the range", range.clone());
+        } else if step > 0.0 && (steps - steps.round()).abs() > 1e-3 && way.is_empty() {
+            let message = "`max` is no whole number of steps from `min`";
+            let found = format!("{} to {} is {} steps", shown(min), shown(max), shown(steps));
+            faults.warning(&["step", "max", "min"], message, found);
+        }
+        if detent > max - min {
+            faults.error(&["detent", "max", "min"], "`detent` is wider than the range", range);
+        } else if detent > 0.0 && step > 0.0 && way.is_empty() {
+            let expected = "`step` and `detent` are both given";
+            faults.warning(&["detent", "step"], "steps are detents already", expected);
+        }
+    }
+
+    /// Brings a value to begin with into the range; notes it if that was written and lies outside.
+    pub(super) fn check_initial(&self, initial: &mut f32, faults: &mut Faults) {
+        let nearest = initial.min(self.max).max(self.min);
+        if nearest != *initial {
+            let range = format!("expected {} to {}", plain(self.min.into()), plain(self.max.into()));
+            faults.error(&["initial", "min", "max"], "`initial` lies outside of the range", range);
+        }
+        *initial = nearest;
+    }
+
     /// Any value from 0 to 1.
     pub const UNIT: Self = Self::new(0.0, 1.0);
 

@@ -15,18 +15,30 @@ use std::sync::Arc;
 use super::moment::{Foot, Machine, Moment};
 use super::press::Outcome;
 use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
+use crate::format::{Flat, Follow, Name, Text, list, num, record};
 
-/// A selector: one of several options.
-#[derive(Clone, Debug, PartialEq)]
-pub struct SelectorSpec {
+/// Most options: more are too narrow for a foot on any control within reach.
+const MOST: usize = 12;
+
+record! {
+    /// A selector: one of several options.
+    pub struct SelectorSpec = "Selector" => |it, faults| {
+        let last = it.options.len().saturating_sub(1) as u16;
+        if it.initial > last {
+            let expected = format!("expected 0 to {last}");
+            faults.error(&["initial", "options"], "`initial` is no option", expected);
+        }
+        it.initial = it.initial.min(last);
+    };
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Whether the options stand side by side from the west, or one below the other from the north.
-    pub axis: Axis,
+    pub axis: Axis = "axis", Name => Axis::East;
     /// What is written on each option; 2 to 12.
-    pub options: Arc<[Arc<str>]>,
+    pub options: Arc<[Arc<str>]> = "options", list("option", MOST, Text(32))
+        .at_least(2, "a selector needs options to choose from");
     /// The option to begin with, from 0.
-    pub initial: u16,
+    pub initial: u16 = "initial", Follow { written: num(0.0..=MOST as f64 - 1.0), otherwise: "0" };
 }
 
 /// How far beyond the border between two options the foot must be, in widths of one (our choice).

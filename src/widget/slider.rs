@@ -21,22 +21,25 @@ use std::time::Duration;
 use super::moment::{Machine, Moment};
 use super::number::Number;
 use super::press::Outcome;
+use super::scale::INITIAL;
 use super::scale::QUANTUM;
+use super::track::WrittenTrack;
 use super::{Emitted, Scale, SetError, Thresholds, Track, Value};
+use crate::format::{Flat, OneOf, choices, num, record};
 
-/// A slider: the foot's place along its track is its value, or moves it.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SliderSpec {
+record! {
+    /// A slider: the foot's place along its track is its value, or moves it.
+    pub struct SliderSpec = "Slider", Copy => |it, faults| it.scale.check_initial(&mut it.initial, faults);
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Where its value grows.
-    pub track: Track,
+    pub track: Track = "axis", WrittenTrack => Track::EAST;
     /// What the foot's place does to its value.
-    pub mapping: Mapping,
+    pub mapping: Mapping = "mapping", OneOf => Mapping::Absolute;
     /// Its values.
-    pub scale: Scale,
+    pub scale: Scale = "", Flat;
     /// Value to begin with, within the range.
-    pub initial: f32,
+    pub initial: f32 = "initial", INITIAL;
 }
 
 impl SliderSpec {
@@ -48,22 +51,35 @@ impl SliderSpec {
     }
 }
 
-/// What the place of a foot does to a slider's value.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub enum Mapping {
+choices! {
+    /// What the place of a foot does to a slider's value.
+    pub enum Mapping: Copy;
     /// The place is the value.
-    #[default]
     Absolute,
     /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
-    Relative {
-        /// Ranges per length of the track.
-        gain: f32,
-    },
+    Relative(Relative),
     /// The way from where it was pressed is the speed at which the value moves.
-    Rate {
-        /// Change per second with the foot half a track away.
-        full_per_s: f32,
-    },
+    Rate(Rate),
+}
+
+impl Default for Mapping {
+    fn default() -> Self {
+        Self::Absolute
+    }
+}
+
+record! {
+    /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
+    pub struct Relative = "Relative", Copy;
+    /// Ranges per length of the track.
+    pub gain: f32 = "gain", num(0.01..=10.0) => 1.0;
+}
+
+record! {
+    /// The way from where it was pressed is the speed at which the value moves.
+    pub struct Rate = "Rate", Copy;
+    /// Change of the value per second at full deflection, half the track.
+    pub full_per_s: f32 = "full_per_s", num(1e-6..=1e6);
 }
 
 /// Part of the way to full speed within which a rate slider stands still (our choice).
@@ -90,11 +106,11 @@ impl Slider {
         let range = self.spec.scale.range();
         match self.spec.mapping {
             Mapping::Absolute => self.number.follow(self.spec.scale.at(share), QUANTUM, emitted),
-            Mapping::Relative { gain } => {
+            Mapping::Relative(Relative { gain }) => {
                 let way = share - self.anchor.replace(share).unwrap_or(share);
                 self.number.move_by(way * gain * range, emitted);
             }
-            Mapping::Rate { full_per_s } => {
+            Mapping::Rate(Rate { full_per_s }) => {
                 let way = 2.0 * (share - *self.anchor.get_or_insert(share)).clamp(-0.5, 0.5);
                 let speed = (way.abs() - DEAD).max(0.0) / (1.0 - DEAD) * way.signum();
                 self.number.move_by(speed * full_per_s * elapsed.min(LONGEST).as_secs_f32(), emitted);

@@ -17,33 +17,57 @@ use std::time::Duration;
 use super::moment::{Foot, Machine, Moment};
 use super::number::Number;
 use super::press::Outcome;
+use super::scale::INITIAL;
 use super::{Axis, Emitted, Scale, SetError, Thresholds, Value};
+use crate::format::{Flat, Name, Opt, num, record};
+
 use crate::units::Instant;
 
-/// A stepper.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StepperSpec {
+record! {
+    /// A stepper.
+    pub struct StepperSpec = "Stepper", Copy => |it, faults| {
+        it.scale.check_initial(&mut it.initial, faults);
+        if it.scale.step <= 0.0 {
+            faults.error(&["step"], "a stepper needs a `step`", "expected more than 0");
+        }
+    };
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Which half counts up: the eastern or the northern one.
-    pub axis: Axis,
+    pub axis: Axis = "axis", Name => Axis::East;
     /// Its values; its step is not 0.
-    pub scale: Scale,
+    pub scale: Scale = "", Flat;
     /// Value to begin with, within the range.
-    pub initial: f32,
-    /// How long a press must last before it repeats; `None` for never.
-    pub repeat: Option<Repeat>,
+    pub initial: f32 = "initial", INITIAL;
+    /// How a held one repeats.
+    pub repeat: Repeat = "", Flat;
 }
 
-/// How a held stepper repeats.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Repeat {
-    /// How long after the first step the second follows.
-    pub after: Duration,
+record! {
+    /// How a held stepper repeats; unless told otherwise slowly enough to let go in time.
+    pub struct Repeat = "Repeat", Copy, Eq => |it, faults| {
+        if it.fastest > it.every || it.fastest < Duration::from_millis(10) {
+            let (fastest, every) = (it.fastest.as_millis(), it.every.as_millis());
+            faults.error(
+                &["fastest_ms", "repeat_every_ms"],
+                "`fastest_ms` must be 10 or more and at most `repeat_every_ms`",
+                format!("fastest_ms is {fastest}, repeat_every_ms is {every}"),
+            );
+        }
+    };
+    /// How long after the first step the second follows; `None` for never.
+    pub after: Option<Duration> = "repeat_after_ms", Opt(num(50.0..=5000.0).milli())
+        => Some(Duration::from_millis(600));
     /// How long after the second the third follows.
-    pub every: Duration,
+    pub every: Duration = "repeat_every_ms", num(0.0..=5000.0).milli() => Duration::from_millis(250);
     /// Shortest time between two steps, at most `every`.
-    pub fastest: Duration,
+    pub fastest: Duration = "fastest_ms", num(0.0..=5000.0).milli() => Duration::from_millis(60);
+}
+
+impl Repeat {
+    /// Not at all.
+    pub const NEVER: Self =
+        Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
 }
 
 /// How much shorter each pause is than the one before.
@@ -78,7 +102,7 @@ impl Stepper {
     }
 
     fn first(&self, now: Instant) -> Option<(Instant, Duration)> {
-        self.spec.repeat.map(|repeat| (now + repeat.after, repeat.every))
+        self.spec.repeat.after.map(|after| (now + after, self.spec.repeat.every))
     }
 
     fn step(&mut self, up: bool, emitted: &mut Emitted) {
@@ -108,7 +132,7 @@ impl Machine for Stepper {
         let next = match held.next {
             Some((due, pause)) if stays && moment.now >= due => {
                 self.step(held.up, emitted);
-                let fastest = self.spec.repeat.map_or(pause, |repeat| repeat.fastest);
+                let fastest = self.spec.repeat.fastest;
                 Some((moment.now + pause, pause.mul_f32(ACCELERATION).max(fastest)))
             }
             waiting if stays => waiting,

@@ -10,14 +10,15 @@
 use super::moment::{Machine, Moment};
 use super::press::Outcome;
 use super::{Emitted, EventKind, SetError, Thresholds, Value};
+use crate::format::{Flag, Flat, record};
 
-/// A switch: each completed press turns it over.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SwitchSpec {
+record! {
+    /// A switch: each completed press turns it over.
+    pub struct SwitchSpec = "Switch", Copy;
     /// When it engages.
-    pub thresholds: Thresholds,
+    pub thresholds: Thresholds = "", Flat;
     /// Whether it is on to begin with.
-    pub initial: bool,
+    pub initial: bool = "initial", Flag => false;
 }
 
 /// A switch at work.

@@ -61,7 +61,7 @@ fn a_button_clicks_on_release_and_never_after_a_cancel() {
 fn a_guard_that_confirms_waits_for_a_second_tap_and_leaves_nothing_of_it() {
     use EventKind::{Armed, Clicked, Disarmed, DoubleTapped, Pressed, Released};
     // No layout may say so, but an app can.
-    let thresholds = Thresholds { guard: Guard::Confirm { within: Duration::from_secs(3) }, ..AT };
+    let thresholds = Thresholds { guard: Guard::Confirm(Confirm { within: Duration::from_secs(3) }), ..AT };
     let mut spec = ButtonSpec::new(thresholds);
     spec.gestures.double_tap = Some(Duration::from_millis(350));
     let both = || control(&Behaviour::Button(spec));

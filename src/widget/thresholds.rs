@@ -1,24 +1,41 @@
 use std::time::Duration;
 
 use super::Guard;
+use super::stage::Stage;
+use crate::format::number::plain;
+use crate::format::{Faults, Num, OneOf, num, record};
 use crate::units::Newtons;
 
-/// When a foot's force counts as a press.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thresholds {
-    /// Force from which on the control engages.
-    pub press: Newtons,
+/// Longest dwell or lockout.
+const BRIEF: Num = num(0.0..=2000.0).milli();
+
+record! {
+    /// When a foot's force counts as a press.
+    pub struct Thresholds = "Thresholds", Copy => Thresholds::rules;
+    /// Force from which on the control engages: a press below 10 N cannot be told from a foot resting beside the
+    /// control, one above 1000 N is a jump.
+    pub press: Newtons = "press_n", num(10.0..=1000.0);
     /// Force below which it lets go; less than `press`.
-    pub release: Newtons,
+    pub release: Newtons = "release_n", num(1.0..=1000.0);
     /// How long the force must hold before the press counts.
-    pub dwell: Duration,
+    pub dwell: Duration = "dwell_ms", BRIEF => Duration::from_millis(20);
     /// How long after a release no new press counts.
-    pub lockout: Duration,
-    /// What takes the place of `press` and `release` once the person's weight is known.
-    pub share: Option<WeightShare>,
+    pub lockout: Duration = "lockout_ms", BRIEF => Duration::from_millis(20);
+    /// What takes the place of `press` and `release` once the person's weight is known: parts of it.
+    pub share: Option<WeightShare> = "press_share", SHARE => None;
     /// What it takes besides force.
-    pub guard: Guard,
+    pub guard: Guard = "guard", OneOf => Guard::Free;
 }
+
+/// Parts of a person's weight; twice the weight is a jump.
+const SHARE: Stage = Stage {
+    press: num(0.01..=2.0),
+    release: num(0.005..=2.0),
+    names: ["press_share", "release_share"],
+    about: "Part of the weight below which it lets go; less than `press_share`.",
+    follows: TWO_THIRDS,
+    lonely: "parts of the person's weight come in pairs",
+};
 
 /// Thresholds as parts of a person's weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,10 +46,35 @@ pub struct WeightShare {
     pub release: f32,
 }
 
+impl From<[f32; 2]> for WeightShare {
+    fn from([press, release]: [f32; 2]) -> Self {
+        Self { press, release }
+    }
+}
+
+impl From<WeightShare> for [f32; 2] {
+    fn from(share: WeightShare) -> Self {
+        [share.press, share.release]
+    }
+}
+
+/// Share of the press force from which on a release follows a press by mere swaying.
+const RELEASE_SHARE: f32 = 0.8;
+
+/// Release threshold of those who give only the other one, as a part of that.
+const TWO_THIRDS: f32 = 0.67;
+
 /// Force below which no press can be told from a foot that rests beside the control.
 const LEAST_PRESS: Newtons = Newtons(10.0);
 
 impl Thresholds {
+    fn rules(&mut self, faults: &mut Faults) {
+        check_hysteresis(faults, &["release_n", "press_n"], [self.release.0, self.press.0], " N");
+        if let Some(WeightShare { press, release }) = self.share {
+            check_hysteresis(faults, &["release_share", "press_share"], [release, press], "");
+        }
+    }
+
     /// Absolute thresholds with a dwell and a lockout of 20 ms, unguarded.
     #[must_use]
     pub const fn new(press: Newtons, release: Newtons) -> Self {
@@ -55,6 +97,28 @@ impl Thresholds {
             _ => self,
         }
     }
+}
+
+fn check_hysteresis(
+    faults: &mut Faults,
+    names: &'static [&'static str; 2],
+    [release, press]: [f32; 2],
+    unit: &str,
+) {
+    let [release_name, press_name] = names;
+    let shown = |force: f32| plain(force.into());
+    let found = format!("{press_name} is {}{unit}, {release_name} is {}{unit}", shown(press), shown(release));
+    let digits = if unit.is_empty() { 1000.0 } else { 1.0 };
+    let good = shown((TWO_THIRDS * press * digits).round() / digits);
+    if release >= press {
+        faults.error(names, format!("`{release_name}` must be below `{press_name}`"), found);
+    } else if release > RELEASE_SHARE * press {
+        let message = format!("`{release_name}` is so close to `{press_name}` that a swaying foot chatters");
+        faults.warning(names, message, found);
+    } else {
+        return;
+    }
+    faults.help(format!("two thirds of {press_name} are a good start: {release_name}: {good}"));
 }
 
 #[cfg(test)]

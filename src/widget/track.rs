@@ -2,6 +2,13 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec2;
 
+use crate::format::describe::{FieldDescription, Shape};
+use crate::format::fields::Fields;
+use crate::format::node::Node;
+use crate::format::problem::Problem;
+use crate::format::text::{Entry, Text};
+use crate::format::{Codec, Num, Pair, num};
+
 /// The way along which a slider is worked, through the middle of its area.
 ///
 /// Angles count in degrees from east, counter-clockwise: 90 is north.
@@ -19,6 +26,105 @@ pub enum Track {
         /// Where it ends; less than `from_degrees` if the value grows clockwise, at most 360 degrees away.
         to_degrees: f32,
     },
+}
+
+/// A track as files write it: `axis`, `angle_deg` or `arc_deg`.
+pub(super) struct WrittenTrack;
+
+/// Angles, in degrees from east, counter-clockwise.
+const ANGLE: Num = num(-360.0..=360.0);
+
+const ARC: Pair = Pair { each: ANGLE, pattern: "(from, to)", parts: ["from", "to"] };
+
+const FIELDS: [(&str, &str); 3] = [
+    ("axis", "Straight from edge to edge: the value grows eastwards or northwards."),
+    (
+        "angle_deg",
+        "Straight, in any direction: the angle in which the value grows, counter-clockwise from east.",
+    ),
+    ("arc_deg", "Part of a circle: where it begins and ends, counter-clockwise from east."),
+];
+
+impl Codec<Track> for WrittenTrack {
+    fn read(&self, node: Node<'_>, _: Option<&Track>) -> Option<Track> {
+        match node.what {
+            "angle_deg" => ANGLE.read(node, None).map(|degrees| Track::Line { degrees }),
+            "arc_deg" => {
+                let [from_degrees, to_degrees]: [f32; 2] = ARC.read(node, None)?;
+                if (20.0..=340.0).contains(&(to_degrees - from_degrees).abs()) {
+                    return Some(Track::Arc { from_degrees, to_degrees });
+                }
+                let problem = Problem::error(node.span(), "an arc is 20 to 340 degrees long");
+                let help = "angles count from east, counter-clockwise: \
+                    (180, 0) is a half circle from west over north to east";
+                node.report(problem.expected("from where to where, in degrees").help(help));
+                None
+            }
+            _ => node.choice(&[("East", Track::EAST), ("North", Track::NORTH)]),
+        }
+    }
+
+    fn write(&self, track: &Track) -> Text {
+        match track {
+            Track::Line { degrees } => ANGLE.write(degrees),
+            Track::Arc { from_degrees, to_degrees } => ARC.write(&[*from_degrees, *to_degrees]),
+        }
+    }
+
+    fn shape(&self) -> Shape {
+        Shape::Names(vec!["East", "North"])
+    }
+
+    fn stand_in(&self) -> Track {
+        Track::EAST
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        _: &'static str,
+        base: Option<&Track>,
+        default: Option<Track>,
+    ) -> Track {
+        let mut written: Vec<(Node<'_>, Option<Track>)> = Vec::new();
+        for (name, _) in FIELDS {
+            let Some(node) = fields.take(name) else { continue };
+            let track = self.read(node, None);
+            if track.is_none() {
+                fields.fail(name);
+            }
+            written.push((node, track));
+        }
+        if let [(first, _), (second, _), ..] = written.as_slice() {
+            let message = format!("`{}` contradicts `{}`", second.what, first.what);
+            fields.report(Problem::error(second.span(), message).expected("a slider has one track"));
+        }
+        let known = || base.copied().or(default).unwrap_or(Track::EAST);
+        written.pop().and_then(|(_, track)| track).unwrap_or_else(known)
+    }
+
+    fn write_field(&self, track: &Track, _: &'static str, _: Option<Track>, entries: &mut Vec<Entry>) {
+        let name = match track {
+            Track::Line { .. } => "angle_deg",
+            Track::Arc { .. } => "arc_deg",
+        };
+        entries.push((name, self.write(track)));
+    }
+
+    fn describe_field(
+        &self,
+        _: &'static str,
+        _: &[&str],
+        _: Option<Track>,
+        fields: &mut Vec<FieldDescription>,
+    ) {
+        let shapes =
+            [Codec::<Track>::shape(self), Codec::<f32>::shape(&ANGLE), Codec::<[f32; 2]>::shape(&ARC)];
+        let defaults = ["East", "none", "none"].map(|default| Some(default.to_owned()));
+        for (((name, about), shape), default) in FIELDS.into_iter().zip(shapes).zip(defaults) {
+            fields.push(FieldDescription { name, about: about.to_owned(), shape, default });
+        }
+    }
 }
 
 /// Part of an arc's radius within which a place is too near its centre to be at an angle.

@@ -109,7 +109,7 @@ fn shares(behaviour: &Behaviour, value: Value) -> Vec2 {
     };
     match (behaviour, value) {
         (Behaviour::Pad(spec), Value::Pair(pair)) => {
-            Vec2::new(share(&spec.x, pair.x), share(&spec.y, pair.y))
+            Vec2::new(share(&spec.x(), pair.x), share(&spec.y(), pair.y))
         }
         (Behaviour::Pedal(spec), Value::Number(number)) => Vec2::new(share(&spec.scale, number), f32::NAN),
         (_, Value::Number(number)) => {

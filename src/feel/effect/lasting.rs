@@ -1,4 +1,28 @@
+use arrayvec::ArrayVec;
+
+use crate::feel::cue::{HZ, LEVEL, SHARE};
+use crate::format::describe::Shape;
+use crate::format::hand::Hand;
+use crate::format::node::Node;
+use crate::format::text::Text;
+use crate::format::{Codec, Flat, List, Num, Own, Rec, list, num, record};
 use crate::units::Newtons;
+
+/// Slip speeds of files, in metres per second.
+const SPEED: Num = num(0.01..=5.0);
+
+/// Normal forces of files.
+const FORCE: Num = num(1.0..=2000.0);
+
+/// Distances between ridges or grains, in metres.
+const SPACING: Num = num(0.0003..=0.2);
+
+/// How long a ridge or a grain pushes.
+const PUSH: Num = num(0.3..=10.0).milli();
+
+/// What a foot does at its fastest and heaviest, where an effect doesn't say.
+const FULL_SPEED_M_S: f32 = 0.6;
+const FULL_FORCE: Newtons = Newtons(200.0);
 
 /// What is felt for as long as something lasts.
 ///
@@ -31,41 +55,43 @@ impl From<Friction> for Lasting {
     }
 }
 
-/// A rubbing texture: noise whose band follows the slip speed and whose level follows speed and force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Friction {
+record! {
+    /// A rubbing texture: noise whose band follows the slip speed and whose level follows speed and force.
+    pub struct Friction = "Friction", Copy => |it, faults| {
+        faults.not_below(&["high_hz", "low_hz"], [it.high_hz, it.low_hz]);
+    };
     /// Force at the plate at full slip speed and full normal force.
-    pub level: Newtons,
+    pub level: Newtons = "level_n", LEVEL;
     /// Centre of the noise band when barely moving, in hertz; 20 to 1000.
-    pub low_hz: f32,
+    pub low_hz: f32 = "low_hz", num(20.0..=1000.0);
     /// Centre of the noise band at full slip speed, in hertz; `low_hz` to 1000.
-    pub high_hz: f32,
+    pub high_hz: f32 = "high_hz", num(20.0..=1000.0);
     /// Slip speed at which level and band reach their upper end, in metres per second.
-    pub full_speed_m_s: f32,
+    pub full_speed_m_s: f32 = "full_speed_m_s", SPEED => FULL_SPEED_M_S;
     /// Normal force at which the level reaches its upper end.
-    pub full_force: Newtons,
+    pub full_force: Newtons = "full_force_n", FORCE => FULL_FORCE;
 }
 
-/// A tone or noise that goes on.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Hum {
+record! {
+    /// A tone or noise that goes on.
+    pub struct Hum = "Hum", Copy, Default;
     /// Force at the plate.
-    pub level: Newtons,
+    pub level: Newtons = "level_n", LEVEL;
     /// Its pitch, or the centre of its noise, in hertz; 20 to 1000.
-    pub hz: f32,
+    pub hz: f32 = "hz", HZ;
     /// From a pure tone (0) to a band of noise (1).
-    pub noise: f32,
+    pub noise: f32 = "noise", SHARE => 0.0;
 }
 
-/// One resonance of what is rubbed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Resonance {
+record! {
+    /// One resonance of what is rubbed.
+    pub struct Resonance = "Resonance", Copy;
     /// Frequency, in hertz; 20 to 1000.
-    pub hz: f32,
+    pub hz: f32 = "hz", HZ;
     /// Time after which a factor 1/e is left, in seconds; 0.001 to 0.2.
-    pub decay_s: f32,
+    pub decay_s: f32 = "decay_ms", num(1.0..=200.0).milli();
     /// Share of the whole, 0 to 1.
-    pub amplitude: f32,
+    pub amplitude: f32 = "amplitude", SHARE => 1.0;
 }
 
 impl Resonance {
@@ -73,72 +99,106 @@ impl Resonance {
     pub const NONE: Self = Self { hz: 200.0, decay_s: 0.005, amplitude: 0.0 };
 }
 
-/// What every rubbed material has: how strong it is, and how its plate rings.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Material {
+record! {
+    /// What every rubbed material has: how strong it is, and how its plate rings.
+    pub struct Material = "Material", Copy;
     /// Force at the plate at full slip speed and full normal force.
-    pub level: Newtons,
+    pub level: Newtons = "level_n", LEVEL;
     /// The two resonances that it excites.
-    pub resonances: [Resonance; 2],
+    pub resonances: [Resonance; 2] = "resonances", Resonances;
     /// Share of the bare exciting force, beside the resonances, 0 to 1.
-    pub bare: f32,
+    pub bare: f32 = "bare", SHARE => 0.0;
     /// Slip speed of the full level, in metres per second.
-    pub full_speed_m_s: f32,
+    pub full_speed_m_s: f32 = "full_speed_m_s", SPEED => FULL_SPEED_M_S;
     /// Normal force of the full level.
-    pub full_force: Newtons,
+    pub full_force: Newtons = "full_force_n", FORCE => FULL_FORCE;
     /// What brings the model to its level; [`Lasting::balanced`] finds it.
-    pub trim: f32,
+    pub trim: f32 = "", Own(1.0);
 }
 
-/// Ridges: the foot strikes one after another, so that the pitch is the speed over their distance.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Texture {
+/// One or two resonances; one that isn't written has no amplitude.
+struct Resonances;
+
+const RESONANCES: List<Rec> = list("resonance", 2, Rec).at_least(1, "a material needs a resonance");
+
+impl Codec<[Resonance; 2]> for Resonances {
+    fn read(&self, node: Node<'_>, _: Option<&[Resonance; 2]>) -> Option<[Resonance; 2]> {
+        let read: ArrayVec<Resonance, 2> = RESONANCES.read(node, None)?;
+        let mut both = [Resonance::NONE; 2];
+        both.iter_mut().zip(read).for_each(|(resonance, read)| *resonance = read);
+        Some(both)
+    }
+
+    fn write(&self, both: &[Resonance; 2]) -> Text {
+        let [first, second] = both;
+        RESONANCES
+            .write_all([Some(first), Some(second).filter(|one| one.amplitude > 0.0)].into_iter().flatten())
+    }
+
+    fn shape(&self) -> Shape {
+        RESONANCES.described::<Resonance>()
+    }
+
+    fn stand_in(&self) -> [Resonance; 2] {
+        [Resonance::NONE; 2]
+    }
+
+    fn turn(&self, both: &mut [Resonance; 2], _: &'static str, hand: &mut Hand<'_>) {
+        RESONANCES.turn_all(both, hand);
+    }
+}
+
+record! {
+    /// Ridges: the foot strikes one after another, so that the pitch is the speed over their distance.
+    pub struct Texture = "Texture", Copy;
     /// How strong it is and how it rings.
-    pub material: Material,
+    pub material: Material = "", Flat;
     /// Distance between two ridges, in metres; 0.0003 to 0.2.
-    pub spacing_m: f32,
+    pub spacing_m: f32 = "spacing_m", SPACING;
     /// How long each ridge pushes, in seconds; 0.0003 to 0.01.
-    pub width_s: f32,
+    pub width_s: f32 = "width_ms", PUSH => 0.0015;
     /// How uneven they are in distance and height, 0 to 1.
-    pub uneven: f32,
+    pub uneven: f32 = "uneven", SHARE => 0.0;
 }
 
-/// Grains: the foot crunches them by chance, so many to the metre.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Grains {
+record! {
+    /// Grains: the foot crunches them by chance, so many to the metre.
+    pub struct Grains = "Grains", Copy;
     /// How strong it is and how it rings.
-    pub material: Material,
+    pub material: Material = "", Flat;
     /// Mean distance between two grains, in metres; 0.0003 to 0.2.
-    pub spacing_m: f32,
+    pub spacing_m: f32 = "spacing_m", SPACING;
     /// How long each grain pushes, in seconds; 0.0003 to 0.01.
-    pub width_s: f32,
+    pub width_s: f32 = "width_ms", PUSH => 0.001;
     /// From grains of one size (0) to few large ones among many small ones (1).
-    pub spread: f32,
+    pub spread: f32 = "spread", SHARE => 0.5;
 }
 
-/// Stick-slip: a sole on its spring that sticks to the plate, lets go, slips and sticks again.
-///
-/// # Source
-/// Friction as bristles that bend elastically up to a breakaway and then creep: P. Dupont, V. Hayward,
-/// B. Armstrong, F. Altpeter, "Single state elastoplastic friction models", IEEE Trans. Automatic Control 47(5),
-/// 2002. With no elastic part it is the LuGre model: C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky,
-/// "A new model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct StickSlip {
+record! {
+    /// Stick-slip: a sole on its spring that sticks to the plate, lets go, slips and sticks again.
+    ///
+    /// # Source
+    /// Friction as bristles that bend elastically up to a breakaway and then creep: P. Dupont, V. Hayward,
+    /// B. Armstrong, F. Altpeter, "Single state elastoplastic friction models", IEEE Trans. Automatic Control 47(5),
+    /// 2002. With no elastic part it is the LuGre model: C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky,
+    /// "A new model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
+    pub struct StickSlip = "StickSlip", Copy => |it, faults| {
+        faults.not_above(&["glide", "grip"], [it.glide, it.grip]);
+    };
     /// How strong it is and how it rings.
-    pub material: Material,
+    pub material: Material = "", Flat;
     /// Coefficient of friction at rest, 0.1 to 2.
-    pub grip: f32,
+    pub grip: f32 = "grip", num(0.1..=2.0);
     /// Coefficient of friction of a fast slip, 0.05 to `grip`.
-    pub glide: f32,
+    pub glide: f32 = "glide", num(0.05..=2.0);
     /// Slip speed at which half of the difference is lost (Stribeck's), in metres per second; 0.001 to 1.
-    pub let_go_m_s: f32,
+    pub let_go_m_s: f32 = "let_go_m_s", num(0.001..=1.0) => 0.05;
     /// How far the sole is drawn along before it lets go, at full force, in metres; 0.0002 to 0.05.
-    pub stretch_m: f32,
+    pub stretch_m: f32 = "stretch_m", num(0.0002..=0.05);
     /// How fast the sole swings on its spring, in hertz; 20 to 500.
-    pub sole_hz: f32,
+    pub sole_hz: f32 = "sole_hz", num(20.0..=500.0) => 150.0;
     /// How rough the surface is: share of the friction that varies by chance, 0 to 1.
-    pub rough: f32,
+    pub rough: f32 = "rough", SHARE => 0.1;
 }
 
 impl Lasting {

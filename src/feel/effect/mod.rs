@@ -9,18 +9,24 @@
 mod feel;
 mod knobs;
 mod lasting;
+mod parts;
 mod sequence;
 mod stops;
 mod tone;
+mod written;
 
-pub use feel::{Feel, Use};
-pub use knobs::Knob;
+pub use feel::Feel;
 pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip, Texture};
 pub use sequence::{Beat, CurvePoint, MAX_PARTS, Part, Sequence};
 pub use stops::{Detents, EndStop, MAX_MARKS, Push};
 pub use tone::{MAX_POINTS, Tone, TonePoint};
+pub use written::{Effects, NamedEffect};
 
+use self::written::WrittenBand;
+pub(crate) use self::written::written;
 use super::Click;
+pub use crate::format::hand::Knob;
+use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
 
 /// One effect, with how it gets along with others.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,16 +37,11 @@ pub struct Effect {
     pub manner: Manner,
 }
 
-/// What is felt.
-#[derive(Clone, Debug, PartialEq)]
-pub enum EffectKind {
+choices! {
+    /// What is felt.
+    pub enum EffectKind;
     /// Modes struck once, and perhaps others where the foot lets go.
-    Click {
-        /// Felt wherever it is played, but for releases if there is a `release`.
-        press: Click,
-        /// Felt where it answers a release.
-        release: Option<Click>,
-    },
+    Click(Clicks),
     /// A tone or a band of noise under an envelope.
     Continuous(Tone),
     /// Clicks and tones one after the other.
@@ -59,21 +60,61 @@ pub enum EffectKind {
     EndStop(EndStop),
 }
 
+/// What plays an effect, which decides which ones fit.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Use {
+    /// An event, once.
+    Once,
+    /// Each step of a value.
+    Step,
+    /// The ends of a value.
+    End,
+    /// A press that lasts.
+    Hold,
+    /// A foot that slides.
+    Drag,
+}
+
+impl Use {
+    /// The kinds that can be played so, first the one that is used so most often.
+    #[must_use]
+    pub const fn kinds(self) -> &'static [&'static str] {
+        match self {
+            Self::Once => &["Click", "Continuous", "Sequence"],
+            Self::Step => &["Click", "Detents"],
+            Self::End => &["Click", "EndStop"],
+            Self::Hold => &["Continuous", "Sequence"],
+            Self::Drag => &["Friction", "StickSlip", "Texture", "Grains"],
+        }
+    }
+
+    /// Whether an effect of this kind can be played so.
+    #[must_use]
+    pub fn fits(self, kind: &EffectKind) -> bool {
+        self.kinds().contains(&kind.name())
+    }
+}
+
+record! {
+    /// A click, and perhaps another one where the foot lets go.
+    pub struct Clicks = "Click";
+    /// Felt wherever it is played, but for releases if there is a `release`.
+    pub press: Click = "", Flat;
+    /// Felt where it answers a release.
+    pub release: Option<Click> = "release", Opt(Rec) => None;
+}
+
 impl EffectKind {
     /// The name by which files call it.
     #[must_use]
-    pub const fn name(&self) -> &'static str {
-        match self {
-            Self::Click { .. } => "Click",
-            Self::Continuous(_) => "Continuous",
-            Self::Sequence(_) => "Sequence",
-            Self::Friction(_) => "Friction",
-            Self::StickSlip(_) => "StickSlip",
-            Self::Texture(_) => "Texture",
-            Self::Grains(_) => "Grains",
-            Self::Detents(_) => "Detents",
-            Self::EndStop(_) => "EndStop",
-        }
+    pub fn name(&self) -> &'static str {
+        self.variant()
+    }
+
+    /// The names of all kinds, those first that are played once, then those that last, then those that a value drives.
+    #[must_use]
+    pub const fn names() -> &'static [&'static str] {
+        Self::NAMES
     }
 
     /// What it is when a moving foot drives it; `None` for what is played once or driven by a value.
@@ -84,24 +125,20 @@ impl EffectKind {
             Self::StickSlip(stick) => Some(Lasting::StickSlip(*stick)),
             Self::Texture(texture) => Some(Lasting::Texture(*texture)),
             Self::Grains(grains) => Some(Lasting::Grains(*grains)),
-            Self::Click { .. }
-            | Self::Continuous(_)
-            | Self::Sequence(_)
-            | Self::Detents(_)
-            | Self::EndStop(_) => None,
+            _ => None,
         }
     }
 }
 
-/// How an effect gets along with what else is felt on the same tiles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Manner {
+record! {
+    /// How an effect gets along with what else is felt on the same tiles.
+    pub struct Manner = "Manner", Copy;
     /// What it may move, in hertz.
-    pub band: Band,
+    pub band: Band = "band_hz", WrittenBand => Band::USEFUL;
     /// How far everything that lasts and is no more important goes down while it plays, in decibels; 0 to 60.
-    pub duck_db: f32,
+    pub duck_db: f32 = "duck_db", num(0.0..=60.0).hand(0.0..=40.0) => 0.0;
     /// How important it is, 0 to 9: when there are too many voices, the least important one makes room.
-    pub priority: u8,
+    pub priority: u8 = "priority", num(0.0..=9.0) => 5;
 }
 
 impl Manner {
@@ -151,7 +188,7 @@ impl Band {
 
 impl From<Click> for Effect {
     fn from(press: Click) -> Self {
-        Self { kind: EffectKind::Click { press, release: None }, manner: Manner::PLAIN }
+        Self { kind: EffectKind::Click(Clicks { press, release: None }), manner: Manner::PLAIN }
     }
 }
 

@@ -2,19 +2,24 @@ use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
+use super::parts::Parts;
+use super::tone::{STRENGTH, TIME, check_order};
 use super::{MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
+use crate::format::{Rec, list, record};
 
 /// Most parts of a sequence.
 pub const MAX_PARTS: usize = 128;
 
-/// Clicks and tones one after the other, or at once.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Sequence {
+record! {
+    /// Clicks and tones one after the other, or at once.
+    pub struct Sequence = "Sequence" => |it, faults| {
+        check_order(it.curve.iter().map(|point| point.at_s), faults);
+    };
     /// The parts, in order of time.
-    pub parts: Arc<[Part]>,
+    pub parts: Arc<[Part]> = "parts", Parts;
     /// Share of each part's level over time, in order of time; empty for all of it.
-    pub curve: ArrayVec<CurvePoint, MAX_POINTS>,
+    pub curve: ArrayVec<CurvePoint, MAX_POINTS> = "curve", list("point", MAX_POINTS, Rec).still() => ArrayVec::new();
 }
 
 /// One part of a sequence.
@@ -35,13 +40,13 @@ pub enum Beat {
     Tone(Tone),
 }
 
-/// A share of the level at one moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct CurvePoint {
+record! {
+    /// A share of the level at one moment.
+    pub struct CurvePoint = "Point", Copy, Default;
     /// Seconds from the start.
-    pub at_s: f32,
+    pub at_s: f32 = "at_ms", TIME;
     /// Share of the level.
-    pub level: f32,
+    pub level: f32 = "level", STRENGTH;
 }
 
 impl Sequence {
@@ -98,7 +103,7 @@ impl Sequence {
         for at_s in times {
             if at_s - last > 1e-5 && !curve.is_full() {
                 let (level, hz) = plain.held_at(at_s);
-                curve.push(TonePoint { at_s, level: level * self.share_at(start + at_s), hz });
+                curve.push(TonePoint { at_s, level: level * self.share_at(start + at_s), hz: Some(hz) });
                 last = at_s;
             }
         }

@@ -2,25 +2,34 @@ use arrayvec::ArrayVec;
 
 use super::Hum;
 use crate::feel::Click;
+use crate::feel::cue::SHARE;
+use crate::format::{Flat, Opt, Pair, Rec, list, num, record};
 
 /// Most marks of a row of detents.
 pub const MAX_MARKS: usize = 8;
 
-/// A click at each step of a number, told apart by value and by direction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Detents {
+/// Factors of the frequencies at the low and the high end of a range.
+const PITCH: Pair = Pair {
+    each: num(0.1..=10.0).hand(0.5..=2.0),
+    pattern: "(low end, high end)",
+    parts: ["pitch, low end", "pitch, high end"],
+};
+
+record! {
+    /// A click at each step of a number, told apart by value and by direction.
+    pub struct Detents = "Detents";
     /// What each feels like, at the middle of the range and upwards.
-    pub click: Click,
+    pub click: Click = "", Flat;
     /// Distance between two, as a share of the range; 0 for the control's own steps and detents.
-    pub every: f32,
+    pub every: f32 = "every", num(0.0..=1.0).hand(0.0..=0.5) => 0.0;
     /// How strong those are that are passed downwards, as a share.
-    pub falling: f32,
+    pub falling: f32 = "falling", num(0.0..=4.0).hand(0.0..=2.0) => 1.0;
     /// What the frequencies are multiplied with at the low and at the high end.
-    pub pitch: [f32; 2],
+    pub pitch: [f32; 2] = "pitch", PITCH => [1.0; 2];
     /// Where they are felt stronger, as shares of the range.
-    pub marks: ArrayVec<f32, MAX_MARKS>,
+    pub marks: ArrayVec<f32, MAX_MARKS> = "marks", list("mark", MAX_MARKS, SHARE) => ArrayVec::new();
     /// How much stronger.
-    pub mark: f32,
+    pub mark: f32 = "mark", num(0.0..=4.0) => 1.6;
 }
 
 impl Detents {
@@ -51,24 +60,24 @@ impl Detents {
     }
 }
 
-/// What the ends of a number feel like.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EndStop {
+record! {
+    /// What the ends of a number feel like.
+    pub struct EndStop = "EndStop";
     /// Felt when an end is reached; the faster, the stronger.
-    pub click: Click,
+    pub click: Click = "", Flat;
     /// What the frequencies are multiplied with at the low and at the high end.
-    pub pitch: [f32; 2],
+    pub pitch: [f32; 2] = "pitch", PITCH => [1.0; 2];
     /// Felt while a foot pushes on against the end.
-    pub push: Option<Push>,
+    pub push: Option<Push> = "push", Opt(Rec) => None;
 }
 
-/// What pushing against an end feels like.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Push {
+record! {
+    /// What pushing against an end feels like.
+    pub struct Push = "Push", Copy;
     /// What is felt, at its full level.
-    pub hum: Hum,
+    pub hum: Hum = "", Flat;
     /// How far beyond the end it is at its full level, in metres.
-    pub full_m: f32,
+    pub full_m: f32 = "full_m", num(0.001..=0.5).hand(0.001..=0.2) => 0.03;
 }
 
 /// The speed at which an end is hit at its full level, in metres per second (our choice: a brisk slide).

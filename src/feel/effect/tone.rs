@@ -1,49 +1,69 @@
 use arrayvec::ArrayVec;
 
+use crate::feel::cue::{HZ, LEVEL, SHARE};
+use crate::format::{Faults, Num, Opt, Rec, list, num, record};
 use crate::units::Newtons;
 
 /// Most points of a curve; as many as an AHAP parameter curve may have.
 pub const MAX_POINTS: usize = 16;
 
-/// A tone or a band of noise that sounds for a while.
-///
-/// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`,
-/// stays there until `length_s`, and is gone `release_s` later; all of it times
-/// the curve, which also says the pitch.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct Tone {
+/// Longest that one effect may last, in milliseconds in files.
+pub(super) const TIME: Num = num(0.0..=60_000.0).milli();
+
+/// Most that a curve may strengthen.
+pub(super) const STRENGTH: Num = num(0.0..=4.0);
+
+record! {
+    /// A tone or a band of noise that sounds for a while.
+    ///
+    /// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`,
+    /// stays there until `length_s`, and is gone `release_s` later; all of it times
+    /// the curve, which also says the pitch.
+    pub struct Tone = "Continuous", Default => Tone::rules;
     /// Force at the plate of its tone; a noise is as strong as a tone of this amplitude.
-    pub level: Newtons,
-    /// Its pitch, or the centre of its noise, where the curve has no points, in hertz; 20 to 1000.
-    pub hz: f32,
+    pub level: Newtons = "level_n", LEVEL;
+    /// Its pitch, or the centre of its noise, where the curve doesn't say, in hertz; 20 to 1000.
+    pub hz: f32 = "hz", HZ;
     /// From a pure tone (0) to a band of noise (1).
-    pub noise: f32,
+    pub noise: f32 = "noise", SHARE => 0.0;
     /// Time until it lets go, in seconds.
-    pub length_s: f32,
+    pub length_s: f32 = "length_ms", num(1.0..=60_000.0).hand(1.0..=5000.0).milli();
     /// Time in which it comes, in seconds.
-    pub attack_s: f32,
+    pub attack_s: f32 = "attack_ms", TIME.hand(0.0..=1000.0) => 0.005;
     /// Time in which it falls to `sustain` afterwards, in seconds.
-    pub decay_s: f32,
+    pub decay_s: f32 = "decay_ms", TIME.hand(0.0..=1000.0) => 0.0;
     /// What stays after the decay, 0 to 1.
-    pub sustain: f32,
+    pub sustain: f32 = "sustain", SHARE => 1.0;
     /// Time in which it goes after `length_s`, in seconds.
-    pub release_s: f32,
+    pub release_s: f32 = "release_ms", TIME.hand(0.0..=1000.0) => 0.02;
     /// Level and pitch over time, in order of time; before the first point as there, after the last as there.
-    pub curve: ArrayVec<TonePoint, MAX_POINTS>,
+    pub curve: ArrayVec<TonePoint, MAX_POINTS> = "curve", list("point", MAX_POINTS, Rec).still() => ArrayVec::new();
 }
 
-/// Level and pitch of a tone at one moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct TonePoint {
+record! {
+    /// Level and pitch of a tone at one moment.
+    pub struct TonePoint = "Point", Copy, Default;
     /// Seconds from the tone's start.
-    pub at_s: f32,
+    pub at_s: f32 = "at_ms", TIME;
     /// Share of the tone's level.
-    pub level: f32,
-    /// Pitch, in hertz.
-    pub hz: f32,
+    pub level: f32 = "level", STRENGTH => 1.0;
+    /// Pitch, in hertz; the tone's where it says none.
+    pub hz: Option<f32> = "hz", Opt(HZ) => None;
+}
+
+/// Notes that the points of a curve go backwards in time, if they do.
+pub(super) fn check_order(times: impl Iterator<Item = f32> + Clone, faults: &mut Faults) {
+    if !times.clone().zip(times.skip(1)).all(|(a, b)| a < b) {
+        let expected = "each `at_ms` must be later than the one before";
+        faults.error(&["curve"], "a curve's points go forwards in time", expected);
+    }
 }
 
 impl Tone {
+    fn rules(&mut self, faults: &mut Faults) {
+        check_order(self.curve.iter().map(|point| point.at_s), faults);
+    }
+
     /// Share of the level and pitch `t` seconds after the start; no level before it and after the end.
     ///
     /// # Real-time
@@ -88,12 +108,18 @@ impl Tone {
         let before = after.checked_sub(1).and_then(|before| self.curve.get(before));
         match (before, self.curve.get(after)) {
             (None, None) => (1.0, self.hz),
-            (Some(point), None) | (None, Some(point)) => (point.level, point.hz),
+            (Some(point), None) | (None, Some(point)) => (point.level, self.hz_at(point)),
             (Some(a), Some(b)) => {
                 let share = (t - a.at_s) / (b.at_s - a.at_s).max(1e-6);
-                (a.level + (b.level - a.level) * share, a.hz + (b.hz - a.hz) * share)
+                let (a_hz, b_hz) = (self.hz_at(a), self.hz_at(b));
+                (a.level + (b.level - a.level) * share, a_hz + (b_hz - a_hz) * share)
             }
         }
+    }
+
+    /// Pitch at one of the points of its curve, in hertz.
+    pub(crate) fn hz_at(&self, point: &TonePoint) -> f32 {
+        point.hz.unwrap_or(self.hz)
     }
 }
 
@@ -136,7 +162,7 @@ mod tests {
 
     #[test]
     fn the_curve_is_straight_between_its_points_and_even_beyond_them() {
-        let point = |at_s, level, hz| TonePoint { at_s, level, hz };
+        let point = |at_s, level, hz| TonePoint { at_s, level, hz: Some(hz) };
         let curve = [point(0.2, 0.0, 80.0), point(0.6, 1.0, 160.0)].into_iter().collect();
         let tone = Tone { attack_s: 0.0, decay_s: 0.0, curve, ..tone() };
         assert_eq!(tone.at(0.1), (0.0, 80.0));

@@ -13,16 +13,12 @@ use super::super::feed::PreviewCommand;
 use super::super::painter::color;
 use super::super::style::{panel_frame, quiet, section};
 use super::super::trace::Trace;
-use crate::feel::{Effect, Gesture, Knob};
+use crate::feel::{Effect, EffectKind, Gesture, Knob};
 use crate::scene::Theme;
 use crate::schema::{NamedEffect, write_named_effect};
 
 /// How long a hand rests before the effect is played again by itself, in seconds.
 const RESTS_S: f64 = 0.12;
-
-/// The order of kinds in the list: what answers once, what lasts, what a value drives.
-const KINDS: [&str; 9] =
-    ["Click", "Continuous", "Sequence", "Friction", "StickSlip", "Texture", "Grains", "Detents", "EndStop"];
 
 /// What is being tuned.
 pub(crate) struct Tuner {
@@ -117,7 +113,8 @@ impl Tuner {
                 // Those of a kind together.
                 let mut order: Vec<usize> = (0..self.effects.len()).collect();
                 order.sort_by_key(|&index| {
-                    KINDS.iter().position(|kind| *kind == self.effects[index].effect.kind.name())
+                    let kind = self.effects[index].effect.kind.name();
+                    EffectKind::names().iter().position(|known| *known == kind)
                 });
                 let mut kind = "";
                 for index in order {
@@ -202,14 +199,13 @@ impl Tuner {
     fn knobs(&mut self, ui: &mut Ui, theme: &Theme) -> bool {
         let mut turned = (*self.effect).clone();
         let mut changed = false;
-        let mut part: Option<(&'static str, usize)> = None;
+        let mut part: Option<String> = None;
         turned.turn(&mut |knob: &Knob, value: &mut f32| {
-            if part != Some((knob.part, knob.number)) {
-                part = Some((knob.part, knob.number));
+            if part.as_ref() != Some(&knob.part) {
+                part = Some(knob.part.clone());
                 ui.add_space(5.0);
                 if !knob.part.is_empty() {
-                    let number = if knob.number > 0 { format!(" {}", knob.number) } else { String::new() };
-                    ui.label(quiet(theme, format!("{}{number}", knob.part)).size(12.0));
+                    ui.label(quiet(theme, &knob.part).size(12.0));
                 }
             }
             changed |= slider(ui, knob, value);
@@ -235,12 +231,11 @@ fn slider(ui: &mut Ui, knob: &Knob, value: &mut f32) -> bool {
         let font = egui::FontId::proportional(13.0);
         let ink = ui.visuals().text_color();
         ui.painter().text(rect.left_center(), egui::Align2::LEFT_CENTER, knob.name, font, ink);
-        let whole = knob.name == "priority";
         let slider = Slider::new(&mut shown, knob.range.0..=knob.range.1)
             .logarithmic(knob.by_ratio)
             .smallest_positive(0.01)
-            .max_decimals(if whole { 0 } else { 4 })
-            .step_by(if whole { 1.0 } else { 0.0 });
+            .max_decimals(if knob.whole { 0 } else { 4 })
+            .step_by(if knob.whole { 1.0 } else { 0.0 });
         let response = ui.add(slider.custom_formatter(|value, _| short(value)));
         let spoken = format!("{} {}", knob.part, knob.name).trim().to_owned();
         response.widget_info(|| WidgetInfo::slider(true, f64::from(shown), &spoken));

@@ -15,22 +15,22 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &PadSpec, value: Ve
     let area = face.area;
     let strip = strip_m(face);
     let top = Rect::new(Vec2::new(area.min.x, area.max.y - strip), area.max);
-    caption(scene, face, top, &Reading::pair(&spec.x, &spec.y, value));
+    caption(scene, face, top, &Reading::pair(&spec.x(), &spec.y(), value));
     let field = Rect::new(area.min + 0.010, Vec2::new(area.max.x - 0.010, area.max.y - strip));
     let ground = face.colour.mix(face.theme.shadow, 0.13);
     scene.add_box(field, face.radius_m - 0.008, Paint::fill(Ink::solid(ground)));
     // The control's own edges are what the foot is measured by.
     let whole = face.widget.area;
     let at = |share: Vec2| (whole.min + share * whole.size()).clamp(field.min, field.max);
-    grid(&spec.x, |share| {
+    grid(&spec.x(), |share| {
         let x = at(Vec2::splat(share)).x;
         scene.add_line(Vec2::new(x, field.min.y), Vec2::new(x, field.max.y), faint(face));
     });
-    grid(&spec.y, |share| {
+    grid(&spec.y(), |share| {
         let y = at(Vec2::splat(share)).y;
         scene.add_line(Vec2::new(field.min.x, y), Vec2::new(field.max.x, y), faint(face));
     });
-    let mark = at(Vec2::new(spec.x.share(value.x), spec.y.share(value.y)));
+    let mark = at(Vec2::new(spec.x().share(value.x), spec.y().share(value.y)));
     let hair = Paint::stroke(Stroke::new(0.004, Ink::faint(face.ink, 0.75)));
     scene.add_line(Vec2::new(mark.x, field.min.y), Vec2::new(mark.x, field.max.y), hair);
     scene.add_line(Vec2::new(field.min.x, mark.y), Vec2::new(field.max.x, mark.y), hair);

@@ -9,7 +9,7 @@ use super::{
     AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
     sharpness_of,
 };
-use crate::feel::{Beat, Click, Effect, EffectKind, Impulse, Manner, Mode, Part, Tone};
+use crate::feel::{Beat, Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part, Tone};
 
 /// The AHAP file of an effect that is played once, and what of it has no counterpart there.
 ///
@@ -20,7 +20,7 @@ use crate::feel::{Beat, Click, Effect, EffectKind, Impulse, Manner, Mode, Part, 
 pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), AhapError> {
     let mut lost = Lost::default();
     let parts: Vec<Part> = match &effect.kind {
-        EffectKind::Click { press, release } => {
+        EffectKind::Click(Clicks { press, release }) => {
             lost.note(release.is_some(), "what is felt for a release");
             vec![Part { at_s: 0.0, beat: Beat::Click(press.clone()) }]
         }
@@ -164,7 +164,9 @@ fn continuous(at_s: f32, tone: &Tone, follows: bool, pattern: &mut Vec<Entry>, l
     let pitches: Vec<(f32, f32)> = tone
         .curve
         .iter()
-        .map(|point| (point.at_s, within(sharpness_of(CONTINUOUS_HZ, point.hz), lost, BEYOND) - sharpness))
+        .map(|point| {
+            (point.at_s, within(sharpness_of(CONTINUOUS_HZ, tone.hz_at(point)), lost, BEYOND) - sharpness)
+        })
         .collect();
     for (id, points, neutral) in
         [("HapticIntensityControl", levels, 1.0), ("HapticSharpnessControl", pitches, 0.0)]

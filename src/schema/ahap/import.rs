@@ -9,8 +9,8 @@ use super::{
     AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
 };
 use crate::feel::{
-    Beat, Click, Effect, EffectKind, Impulse, MAX_PARTS, MAX_POINTS, Manner, Mode, Part, Sequence, Tone,
-    TonePoint,
+    Beat, Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, MAX_POINTS, Manner, Mode, Part, Sequence,
+    Tone, TonePoint,
 };
 use crate::units::Newtons;
 
@@ -58,7 +58,7 @@ pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapEr
     let kind = match parts.as_slice() {
         [] => return Err(AhapError::Empty(name.to_owned())),
         [Part { at_s, beat: Beat::Click(click) }] if *at_s == 0.0 => {
-            EffectKind::Click { press: click.clone(), release: None }
+            EffectKind::Click(Clicks { press: click.clone(), release: None })
         }
         [Part { at_s, beat: Beat::Tone(tone) }] if *at_s == 0.0 => EffectKind::Continuous(tone.clone()),
         _ => EffectKind::Sequence(Sequence { parts: Arc::from(parts), curve: ArrayVec::new() }),
@@ -169,7 +169,7 @@ fn part(event: &Event, intensity: &Control, sharpness: &Control, warnings: &mut 
                 } else {
                     (intensity.at(t), sharp(t))
                 };
-                TonePoint { at_s: t - at_s, level, hz: at_sharpness(CONTINUOUS_HZ, sharpness) }
+                TonePoint { at_s: t - at_s, level, hz: Some(at_sharpness(CONTINUOUS_HZ, sharpness)) }
             }));
         }
         // Without bends the controls are the same all along.

@@ -8,7 +8,7 @@ use underfoot::experiment::{Guarded, IntentEffort, IntentTable};
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::units::Newtons;
-use underfoot::widget::{Behaviour, EventKind, Guard};
+use underfoot::widget::{Behaviour, Confirm, EventKind, Guard, HoldToRun};
 
 use super::desk::{FIRM, at_the_map, clicks, middle};
 use crate::support::{Walker, layout};
@@ -38,8 +38,9 @@ fn role(walker: &Walker, place: Vec2) -> Option<FootRole> {
     snapshot.feet.iter().find(|foot| foot.contact == contact).map(|foot| foot.role)
 }
 
-const CONFIRM: Guard = Guard::Confirm { within: Duration::from_secs(3) };
-const HOLD: Guard = Guard::HoldToRun { max: Duration::from_secs(4), warn: Duration::from_secs(2) };
+const CONFIRM: Guard = Guard::Confirm(Confirm { within: Duration::from_secs(3) });
+const HOLD: Guard =
+    Guard::HoldToRun(HoldToRun { max: Duration::from_secs(4), warn: Some(Duration::from_secs(2)) });
 
 #[test]
 fn r7_a_foot_that_slides_from_one_control_to_the_next_cancels_the_first_and_needs_a_lift_for_the_second() {

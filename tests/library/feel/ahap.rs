@@ -158,7 +158,7 @@ fn tone() -> impl Strategy<Value = Beat> {
             let curve = points.iter().enumerate().map(|(n, &(level, sharp))| TonePoint {
                 at_s: whole * n as f32 / last,
                 level,
-                hz: hz(sharp),
+                hz: Some(hz(sharp)),
             });
             let curve = if points.len() > 1 { curve.collect() } else { Default::default() };
             Beat::Tone(Tone {

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use underfoot::feel::{Effect, EffectKind, Lasting, Rub};
+use underfoot::feel::{Clicks, Effect, EffectKind, Lasting, Rub};
 use underfoot::floor::Geometry;
 use underfoot::schema::{Effects, Kinds, parse_layout};
 use underfoot::units::Newtons;
@@ -188,10 +188,10 @@ fn layout_with(effects: &str, press: &str) -> Result<Arc<Effect>, String> {
 fn a_layout_brings_effects_of_its_own_and_makes_them_from_others() {
     let bump = r#"(name: "bump", plays: Click(level_n: 9, modes: [(hz: 120, decay_ms: 20)]))"#;
     let effect = layout_with(bump, r#""bump""#).unwrap();
-    let EffectKind::Click { press, .. } = &effect.kind else { panic!("a click") };
+    let EffectKind::Click(Clicks { press, .. }) = &effect.kind else { panic!("a click") };
     assert_eq!(press.level, Newtons(9.0));
     let louder = layout_with(bump, r#"Click(from: "bump", level_n: 20)"#).unwrap();
-    let EffectKind::Click { press: louder, .. } = &louder.kind else { panic!("a click") };
+    let EffectKind::Click(Clicks { press: louder, .. }) = &louder.kind else { panic!("a click") };
     assert_eq!((louder.level, &louder.modes), (Newtons(20.0), &press.modes));
     let pair = r#"(name: "pair", plays: Sequence(parts: [(at_ms: 0, plays: "bump"), (at_ms: 60, level: 0.5, plays: "bump")]))"#;
     let pair = layout_with(&format!("{bump}, {pair}"), r#""pair""#).unwrap();
@@ -209,7 +209,7 @@ fn a_folder_of_effects_replaces_shipped_ones_wherever_they_are_named() {
     effects.read_folder(folder.path()).unwrap();
     let kinds = Kinds::shipped(effects.clone()).unwrap();
     let press = kinds.get("button").unwrap().feel.press.clone().unwrap();
-    let EffectKind::Click { press, release } = &press.kind else { panic!("a click") };
+    let EffectKind::Click(Clicks { press, release }) = &press.kind else { panic!("a click") };
     assert_eq!(press.level, Newtons(3.0));
     assert!(release.is_some(), "what is not written stays");
 

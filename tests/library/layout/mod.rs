@@ -3,4 +3,5 @@
 mod ergonomics;
 mod language;
 mod random_files;
+mod reference;
 mod shipped;

@@ -8,7 +8,7 @@ use proptest::sample::{Index, select};
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use underfoot::ergonomics;
-use underfoot::feel::EffectKind;
+use underfoot::feel::{Clicks, EffectKind};
 use underfoot::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, Day, Floor, Geometry, LawKind, MapRecord,
     PositionMap, SensorId,
@@ -134,7 +134,7 @@ fn check_layout(layout: &Layout) {
             assert!((scale.min..=scale.max).contains(&slider.initial), "{id}");
         }
         for effect in [&widget.feel.press, &widget.feel.release].into_iter().flatten() {
-            let EffectKind::Click { press: click, .. } = &effect.kind else { continue };
+            let EffectKind::Click(Clicks { press: click, .. }) = &effect.kind else { continue };
             assert!(click.level.is_finite() && !click.modes.is_empty(), "{id}");
             assert!(click.modes.iter().all(|mode| (20.0..=1000.0).contains(&mode.frequency_hz)), "{id}");
         }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use underfoot::ergonomics;
-use underfoot::feel::{Click, Effect, EffectKind, Lasting};
+use underfoot::feel::{Click, Clicks, Effect, EffectKind, Lasting};
 use underfoot::floor::{Floor, Geometry, Rect};
 use underfoot::glam::Vec2;
 use underfoot::layout::{Colour, Layout, Shape, Widget};
@@ -126,7 +126,7 @@ fn shipped_kinds_feel_different_and_as_soles_feel() {
 
 /// The click of `effect` where it answers a press or a release.
 fn click(effect: Option<&Arc<Effect>>, releases: bool) -> Click {
-    let EffectKind::Click { press, release } = &effect.unwrap().kind else { panic!("no click") };
+    let EffectKind::Click(Clicks { press, release }) = &effect.unwrap().kind else { panic!("no click") };
     release.as_ref().filter(|_| releases).unwrap_or(press).clone()
 }
 

@@ -1,0 +1,108 @@
+//! The parts of a sequence as files write them: any effect that is played once, changed and moved in time.
+
+use std::sync::Arc;
+
+use super::written::Played;
+use super::{Beat, Clicks, Effect, EffectKind, MAX_PARTS, Manner, Part, Tone, TonePoint, Use};
+use crate::feel::MODE_HZ;
+use crate::format::describe::Shape;
+use crate::format::hand::Hand;
+use crate::format::node::{Node, Within};
+use crate::format::problem::Problem;
+use crate::format::text::Text;
+use crate::format::{Codec, List, Rec, list, num, record};
+
+record! {
+    /// One part of a sequence.
+    struct WrittenPart = "Part";
+    /// When it begins, from the sequence's start.
+    at_s: f32 = "at_ms", super::tone::TIME;
+    /// What its level is multiplied with.
+    level: f32 = "level", super::tone::STRENGTH => 1.0;
+    /// What its frequencies are multiplied with.
+    pitch: f32 = "pitch", num(0.1..=10.0) => 1.0;
+    /// What is played: an effect that is played once, by its name or written out.
+    plays: Arc<Effect> = "plays", Played(Use::Once);
+}
+
+const PARTS: List<Rec> = list("part", MAX_PARTS, Rec).at_least(1, "a sequence needs a part");
+
+/// The parts of a sequence.
+pub(super) struct Parts;
+
+impl Codec<Arc<[Part]>> for Parts {
+    fn read(&self, node: Node<'_>, _: Option<&Arc<[Part]>>) -> Option<Arc<[Part]>> {
+        let within = node.reader.within();
+        let written: Vec<WrittenPart> = PARTS.read_all(node)?;
+        let mut parts: Vec<Part> = written.into_iter().flat_map(|part| part.into_parts(within)).collect();
+        if parts.len() > MAX_PARTS {
+            let problem = Problem::error(node.span(), "this sequence has too many parts");
+            let expected = format!("expected at most {MAX_PARTS} clicks and tones, found {}", parts.len());
+            node.report(problem.expected(expected));
+            return None;
+        }
+        parts.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+        Some(parts.into())
+    }
+
+    fn write(&self, parts: &Arc<[Part]>) -> Text {
+        let written = parts.iter().map(|part| {
+            let kind = match part.beat.clone() {
+                Beat::Click(press) => EffectKind::Click(Clicks { press, release: None }),
+                Beat::Tone(tone) => EffectKind::Continuous(tone),
+            };
+            let plays = Arc::new(Effect { kind, manner: Manner::PLAIN });
+            WrittenPart { at_s: part.at_s, level: 1.0, pitch: 1.0, plays }
+        });
+        PARTS.write_all(&written.collect::<Vec<_>>())
+    }
+
+    fn shape(&self) -> Shape {
+        PARTS.described::<WrittenPart>()
+    }
+
+    fn stand_in(&self) -> Arc<[Part]> {
+        Arc::from([])
+    }
+
+    fn turn(&self, parts: &mut Arc<[Part]>, _: &'static str, hand: &mut Hand<'_>) {
+        for (index, part) in Arc::make_mut(parts).iter_mut().enumerate() {
+            hand.part(&format!("part {}", index + 1), |hand| {
+                super::tone::TIME.hand(0.0..=3000.0).turn(&mut part.at_s, "at_ms", hand);
+                match &mut part.beat {
+                    Beat::Click(click) => Rec.turn(click, "", hand),
+                    Beat::Tone(tone) => Rec.turn(tone, "", hand),
+                }
+            });
+        }
+    }
+}
+
+impl WrittenPart {
+    /// What it plays, one by one: several if it is a sequence itself.
+    fn into_parts(self, within: Option<Within>) -> Vec<Part> {
+        let Self { at_s, level, pitch, plays } = self;
+        let turned = |hz: f32| {
+            let hz = (hz * pitch).clamp(*MODE_HZ.start(), *MODE_HZ.end());
+            within.map_or(hz, |within| hz.max(within.low as f32).min(within.high as f32))
+        };
+        let changed = |beat: Beat| match beat {
+            Beat::Click(click) => Beat::Click(click.scaled(level, pitch)),
+            Beat::Tone(tone) => {
+                let point = |point: TonePoint| TonePoint { hz: point.hz.map(turned), ..point };
+                let curve = tone.curve.iter().copied().map(point).collect();
+                Beat::Tone(Tone { level: tone.level * level, hz: turned(tone.hz), curve, ..tone })
+            }
+        };
+        let part = |at_s, beat| Part { at_s, beat: changed(beat) };
+        match plays.kind.clone() {
+            EffectKind::Click(Clicks { press, .. }) => vec![part(at_s, Beat::Click(press))],
+            EffectKind::Continuous(tone) => vec![part(at_s, Beat::Tone(tone))],
+            EffectKind::Sequence(inner) => (0..inner.parts.len())
+                .filter_map(|index| inner.part(index))
+                .map(|inner| part(at_s + inner.at_s, inner.beat))
+                .collect(),
+            _ => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,231 @@
+//! Effects where they are written: by name, or written out, made from another one or over what is there already.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use ron2::ast::Expr;
+
+use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
+use crate::feel::Click;
+use crate::format::describe::{Description, Shape};
+use crate::format::node::{Node, Within};
+use crate::format::number::plain;
+use crate::format::problem::Problem;
+use crate::format::suggest::{did_you_mean, listed, nearest};
+use crate::format::text::{Entry, Text};
+use crate::format::{Codec, Num, Pair, Record, Variants, num};
+
+/// An effect with a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NamedEffect {
+    /// What layouts and kinds call it.
+    pub name: String,
+    /// What it is for, in a sentence; may be empty.
+    pub about: String,
+    /// What is felt.
+    pub effect: Arc<Effect>,
+}
+
+/// Effects by their names.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Effects {
+    effects: BTreeMap<String, NamedEffect>,
+}
+
+impl Effects {
+    /// Puts `effect` in place of any other of its name.
+    pub fn insert(&mut self, effect: NamedEffect) {
+        self.effects.insert(effect.name.clone(), effect);
+    }
+
+    /// The effect called `name`.
+    #[must_use]
+    pub fn get(&self, name: &str) -> Option<&NamedEffect> {
+        self.effects.get(name)
+    }
+
+    /// All effects, by name.
+    pub fn iter(&self) -> impl Iterator<Item = &NamedEffect> {
+        self.effects.values()
+    }
+}
+
+/// An effect that can be played so.
+pub(crate) struct Played(pub(crate) Use);
+
+impl Codec<Arc<Effect>> for Played {
+    fn read(&self, node: Node<'_>, base: Option<&Arc<Effect>>) -> Option<Arc<Effect>> {
+        let effect = match node.expr {
+            Expr::String(_) => named(node)?,
+            Expr::Struct(_) | Expr::AnonStruct(_) | Expr::Unit(_) => {
+                let released = base.filter(|_| node.what == "release").and_then(|base| released(base));
+                let base = released.as_ref().or(base.map(|base| &**base));
+                Arc::new(written(node, base, self.0)?)
+            }
+            _ => return node.mismatch("an effect, by its name or written out"),
+        };
+        if self.0.fits(&effect.kind) {
+            return Some(effect);
+        }
+        let kind = a(effect.kind.name());
+        let message = match node.what {
+            "plays" => format!("{kind} can't be part of a sequence"),
+            part => format!("{kind} can't be played for `{part}`"),
+        };
+        node.report(
+            Problem::error(node.span(), message)
+                .expected(format!("expected {}", listed(self.0.kinds(), "or"))),
+        );
+        None
+    }
+
+    fn write(&self, effect: &Arc<Effect>) -> Text {
+        effect.written()
+    }
+
+    fn shape(&self) -> Shape {
+        Shape::Names(self.0.kinds().to_vec())
+    }
+
+    fn stand_in(&self) -> Arc<Effect> {
+        Arc::new(Click::default().into())
+    }
+}
+
+/// What of a click is felt for a release, so that it is what an override of it changes.
+fn released(effect: &Effect) -> Option<Effect> {
+    let EffectKind::Click(Clicks { release: Some(release), .. }) = &effect.kind else { return None };
+    let kind = EffectKind::Click(Clicks { press: release.clone(), release: None });
+    Some(Effect { kind, manner: effect.manner })
+}
+
+/// The effect that `node` names.
+fn named(node: Node<'_>) -> Option<Arc<Effect>> {
+    let name = node.text(64)?;
+    let effects = node.reader.known::<Effects>();
+    effects.get(name).map(|found| Arc::clone(&found.effect)).or_else(|| {
+        let known: Vec<&str> = effects.iter().map(|effect| effect.name.as_str()).collect();
+        let problem = Problem::error(node.span(), format!("unknown effect \"{name}\""));
+        node.report(problem.expected("no effect is called so").help_if(did_you_mean(name, &known, '"')));
+        None
+    })
+}
+
+/// The effect that is written out at `node`; what it leaves out is `base`'s if that is of the same kind.
+///
+/// Fields without a name are what the base is, or what is `used` so most often.
+pub(crate) fn written(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
+    let name = match node.expr {
+        Expr::Struct(variant) => {
+            let written = &*variant.name.name;
+            let Some(known) = EffectKind::NAMES.iter().find(|name| **name == written) else {
+                report_unknown(node, written, variant.body.is_none(), used);
+                return None;
+            };
+            known
+        }
+        _ => base.map_or(used.kinds()[0], |base| base.kind.name()),
+    };
+    let releases = node.what == "release";
+    let mut fields = node.fields(name)?;
+    let from = match fields.take("from") {
+        Some(node) => {
+            let from = named(node)?;
+            if from.kind.name() != name {
+                let message = format!("\"{}\" is {}", node.peek_text()?, a(from.kind.name()));
+                let problem = Problem::error(node.span(), message);
+                node.report(problem.expected(format!("expected the name of {}", a(name))));
+                return None;
+            }
+            if releases { released(&from).map(Arc::new).or(Some(from)) } else { Some(from) }
+        }
+        None => None,
+    };
+    let base = from.as_deref().or(base).filter(|base| base.kind.name() == name);
+    let manner = Manner::read_fields(&mut fields, base.map(|base| &base.manner));
+    // A band that can't be used is told of; what else is wrong is looked for within the usual one.
+    let outer = node.reader.keep_within(Some(manner.band.as_bounds()));
+    let kind = EffectKind::read_fields(name, &mut fields, base.map(|base| &base.kind));
+    node.reader.keep_within(outer);
+    let all = fields.are_read();
+    fields.finish();
+    let mut effect = Effect { kind: kind?, manner };
+    if all {
+        effect.balance();
+    }
+    all.then_some(effect)
+}
+
+fn report_unknown(node: Node<'_>, written: &str, stands_alone: bool, used: Use) {
+    let is_name = stands_alone && node.reader.known::<Effects>().get(written).is_some();
+    let help = if is_name {
+        Some(format!("names of effects stand in quotes: \"{written}\""))
+    } else {
+        let near = nearest(written, EffectKind::NAMES.iter().copied());
+        let near = near.map(|name| format!("did you mean {name}?"));
+        near.or_else(|| did_you_mean(written, EffectKind::NAMES, '`'))
+    };
+    let start = node.span().start;
+    let problem = Problem::error(start..start + written.len(), format!("no effect is a {written}"));
+    node.report(problem.expected(format!("expected {}(...)", used.kinds()[0])).help_if(help));
+}
+
+/// The name of a kind with its article.
+fn a(name: &str) -> String {
+    format!("{} {name}", if name.starts_with('E') { "an" } else { "a" })
+}
+
+impl Effect {
+    /// As it is written where it is played.
+    pub(crate) fn written(&self) -> Text {
+        let mut entries: Vec<Entry> = Vec::new();
+        self.kind.write_fields(&mut entries);
+        self.manner.write_fields(&mut entries);
+        Text::Fields(self.kind.name(), entries)
+    }
+
+    /// What is known of each kind of effect; of all of them, at last.
+    #[must_use]
+    pub fn describe() -> (Vec<Description>, Description) {
+        (EffectKind::describe(), Manner::describe())
+    }
+}
+
+/// A band of frequencies, in hertz.
+pub(super) struct WrittenBand;
+
+const BAND: Pair = Pair { each: HERTZ, pattern: "(lowest, highest)", parts: ["lowest", "highest"] };
+
+const HERTZ: Num = num(20.0..=1000.0);
+
+impl Codec<Band> for WrittenBand {
+    fn read(&self, node: Node<'_>, _: Option<&Band>) -> Option<Band> {
+        let [low_hz, high_hz] = BAND.read(node, None)?;
+        if high_hz < 1.5 * low_hz {
+            let found = format!("{} to {} Hz", plain(low_hz.into()), plain(high_hz.into()));
+            let expected = format!("expected 1.5 times the lowest as the highest, found {found}");
+            node.report(Problem::error(node.span(), "this band is too narrow").expected(expected));
+            return None;
+        }
+        Some(Band { low_hz, high_hz })
+    }
+
+    fn write(&self, band: &Band) -> Text {
+        BAND.write(&[band.low_hz, band.high_hz])
+    }
+
+    fn shape(&self) -> Shape {
+        Codec::<[f32; 2]>::shape(&BAND)
+    }
+
+    fn stand_in(&self) -> Band {
+        Band::USEFUL
+    }
+}
+
+impl Band {
+    pub(super) fn as_bounds(self) -> Within {
+        let (low, high) = (f64::from(self.low_hz), f64::from(self.high_hz));
+        Within { low, high, noun: "the effect's band", wider: "widen the band: band_hz" }
+    }
+}

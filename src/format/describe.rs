@@ -1,0 +1,120 @@
+//! What is known of records, for people: the reference of the format, inspectors.
+
+use super::number::plain;
+use super::words::unit;
+
+/// What is known of one record.
+#[derive(Clone, Debug)]
+pub struct Description {
+    /// What files call it.
+    pub name: &'static str,
+    /// What it is.
+    pub about: String,
+    /// Its fields, in the order in which they are usually written.
+    pub fields: Vec<FieldDescription>,
+}
+
+/// What is known of one field of a record.
+#[derive(Clone, Debug)]
+pub struct FieldDescription {
+    /// What files call it.
+    pub name: &'static str,
+    /// What it is.
+    pub about: String,
+    /// What is written for it.
+    pub shape: Shape,
+    /// What it is where nothing is written, as it would be written; `None` if it must be written.
+    pub default: Option<String>,
+}
+
+/// What is written for a field.
+#[derive(Clone, Debug)]
+pub enum Shape {
+    /// A number.
+    Number {
+        /// The least and the greatest.
+        range: (f64, f64),
+        /// Whether it has no point.
+        whole: bool,
+    },
+    /// `true` or `false`.
+    Flag,
+    /// Text in quotes, and what it must be.
+    Text(String),
+    /// One of these names.
+    Names(Vec<&'static str>),
+    /// Values in square brackets.
+    List {
+        /// The fewest and the most.
+        count: (usize, usize),
+        /// What is written for each.
+        each: Box<Shape>,
+    },
+    /// Two values in round brackets, such as `(low end, high end)`.
+    Pair(&'static str, Box<Shape>),
+    /// The shape, or `None`.
+    Optional(Box<Shape>),
+    /// Named fields in round brackets.
+    Record(fn() -> Description),
+    /// One of several names, with named fields in round brackets.
+    Variants(fn() -> Vec<Description>),
+    /// What words say best.
+    Words(&'static str),
+}
+
+impl Description {
+    pub(crate) fn new(name: &'static str, about: &[&str], fields: Vec<FieldDescription>) -> Self {
+        Self { name, about: first_paragraph(about), fields }
+    }
+}
+
+/// The lines of a documentation comment up to the first empty one, as one.
+pub(crate) fn first_paragraph(lines: &[&str]) -> String {
+    let lines = lines.iter().map(|line| line.trim()).take_while(|line| !line.is_empty());
+    lines.collect::<Vec<_>>().join(" ")
+}
+
+impl Shape {
+    /// What is written for the field called `name`, in words; records by their names.
+    #[must_use]
+    pub fn told(&self, name: &str) -> String {
+        match self {
+            Self::Number { range: (low, high), whole } => {
+                let noun = if *whole { "a whole number" } else { "a number" };
+                let unit = if *whole { "" } else { unit(name) };
+                format!("{noun} from {} to {}{unit}", plain(*low), plain(*high))
+            }
+            Self::Flag => "true or false".to_owned(),
+            Self::Text(what) => what.clone(),
+            Self::Names(names) => names.join(" | "),
+            Self::List { count: (least, most), each } => {
+                let count =
+                    if *least == 0 { format!("at most {most}") } else { format!("{least} to {most}") };
+                format!("a list of {count}, each {}", each.told(""))
+            }
+            Self::Pair(pattern, each) => format!("{pattern}, each {}", each.told(name)),
+            Self::Optional(shape) => format!("{}, or None", shape.told(name)),
+            Self::Record(describe) => format!("({}: ...)", describe().name),
+            Self::Variants(describe) => {
+                let all = describe();
+                let names = all.iter().map(|variant| match variant.fields.as_slice() {
+                    [] => variant.name.to_owned(),
+                    _ => format!("{}(...)", variant.name),
+                });
+                names.collect::<Vec<_>>().join(" | ")
+            }
+            Self::Words(words) => (*words).to_owned(),
+        }
+    }
+
+    /// The records that are part of it.
+    #[must_use]
+    pub fn parts(&self) -> Vec<Description> {
+        match self {
+            Self::Record(describe) => vec![describe()],
+            Self::Variants(describe) => describe(),
+            Self::List { each, .. } | Self::Pair(_, each) | Self::Optional(each) => each.parts(),
+            Self::Number { .. } | Self::Flag | Self::Text(_) | Self::Names(_) | Self::Words(_) => Vec::new(),
+        }
+    }
+}

@@ -1,0 +1,233 @@
+use std::ops::Range;
+
+use ron2::ast::StructField;
+
+use super::fault::{Fault, Faults};
+use super::node::Node;
+use super::problem::Problem;
+use super::reader::{Reader, bytes};
+use super::suggest::{did_you_mean, listed, nearest};
+use super::words::example;
+
+/// The named fields of one `Name(...)`, each to be read once.
+///
+/// Which names are valid follows from which are asked for;
+/// [`Fields::finish`] then reports the others.
+#[must_use = "unknown and missing fields are only reported by finish()"]
+pub(crate) struct Fields<'r> {
+    reader: &'r Reader<'r>,
+    /// What messages call that which has the fields.
+    noun: String,
+    /// All of it.
+    extent: Range<usize>,
+    /// Where to point for what is missing.
+    open: Range<usize>,
+    /// The name, if that is all that is written.
+    bare: Option<&'static str>,
+    written: Vec<Written<'r>>,
+    known: Vec<&'static str>,
+    missing: Vec<&'static str>,
+    /// Those that could not be read, or are missing.
+    failed: Vec<&'static str>,
+    /// Those that follow from others.
+    follow: Vec<&'static str>,
+}
+
+struct Written<'r> {
+    field: &'r StructField<'r>,
+    taken: bool,
+}
+
+impl<'r> Fields<'r> {
+    /// The `fields` of `node`, which is a `Name(...)` beginning at `open`.
+    pub(crate) fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
+        let written = fields.iter().map(|field| Written { field, taken: false }).collect();
+        Self {
+            reader: node.reader,
+            noun: name.to_lowercase(),
+            extent: node.span(),
+            open,
+            bare: None,
+            written,
+            known: Vec::new(),
+            missing: Vec::new(),
+            failed: Vec::new(),
+            follow: Vec::new(),
+        }
+    }
+
+    /// No fields, behind a `name` that stands alone.
+    pub(crate) fn bare(node: Node<'r>, name: &'static str) -> Self {
+        Self { bare: Some(name), ..Self::new(node, name, node.span(), &[]) }
+    }
+
+    /// Calls what has the fields `noun` in messages from now on.
+    pub(crate) fn call(&mut self, noun: String) {
+        self.noun = noun;
+    }
+
+    /// What `read` makes of the field `name`; `otherwise` if it is not written.
+    ///
+    /// A field that is neither written nor has an `otherwise` is reported as missing.
+    pub(crate) fn read<T>(
+        &mut self,
+        name: &'static str,
+        otherwise: Option<T>,
+        read: impl FnOnce(Node<'r>) -> Option<T>,
+    ) -> Option<T> {
+        match self.take(name) {
+            Some(node) => read(node),
+            None => {
+                if otherwise.is_none() {
+                    self.lack(name);
+                }
+                otherwise
+            }
+        }
+    }
+
+    /// The value of the field `name` if it is written.
+    pub(crate) fn take(&mut self, name: &'static str) -> Option<Node<'r>> {
+        self.known.push(name);
+        let mut found: Option<&'r StructField<'r>> = None;
+        for written in self.written.iter_mut().filter(|written| written.field.name.name == name) {
+            written.taken = true;
+            match found {
+                None => found = Some(written.field),
+                Some(first) => {
+                    let line = self.reader.line(&bytes(&first.name.span));
+                    let message = format!("`{name}` is given twice");
+                    let problem = Problem::error(bytes(&written.field.name.span), message);
+                    self.reader.report(problem.expected(format!("the first is on line {line}")));
+                }
+            }
+        }
+        found.map(|field| Node { reader: self.reader, expr: &field.value, what: name }.inside())
+    }
+
+    /// Notes that the field `name` is missing.
+    pub(crate) fn lack(&mut self, name: &'static str) {
+        self.missing.push(name);
+    }
+
+    /// Notes that nothing can be made of the field `name`.
+    pub(crate) fn fail(&mut self, name: &'static str) {
+        self.failed.push(name);
+    }
+
+    /// Notes that the field `name` is not written and follows from others: no rule is broken by it.
+    pub(crate) fn follow(&mut self, name: &'static str) {
+        self.follow.push(name);
+    }
+
+    /// Whether something could be made of every field.
+    pub(crate) fn are_read(&self) -> bool {
+        self.failed.is_empty()
+    }
+
+    /// Notes what is wrong between fields, as far as all that it concerns could be read.
+    ///
+    /// What `is_based` and not written here has been told of where the base is written.
+    pub(crate) fn judge(&mut self, faults: Faults, is_based: bool) {
+        for Fault { severity, fields, message, expected, help } in faults.0 {
+            if fields.iter().any(|field| self.failed.contains(field) || self.follow.contains(field)) {
+                continue;
+            }
+            let written = fields.iter().find_map(|field| self.written_span(field));
+            if written.is_none() && is_based {
+                continue;
+            }
+            let problem = Problem::error(written.unwrap_or_else(|| self.start()), message);
+            self.report(Problem { severity, ..problem.expected(expected).help_if(help) });
+        }
+    }
+
+    /// What reads the file that they are in.
+    pub(crate) fn reader(&self) -> &'r Reader<'r> {
+        self.reader
+    }
+
+    /// Where the fields begin.
+    pub(crate) fn start(&self) -> Range<usize> {
+        self.open.clone()
+    }
+
+    /// Where the value of `name` is written; where the fields begin if it is not.
+    pub(crate) fn span(&self, name: &str) -> Range<usize> {
+        self.written_span(name).unwrap_or_else(|| self.start())
+    }
+
+    /// Where the value of `name` is written, if it is.
+    pub(crate) fn written_span(&self, name: &str) -> Option<Range<usize>> {
+        let written = self.written.iter().find(|written| written.field.name.name == name)?;
+        Some(bytes(written.field.value.span()))
+    }
+
+    /// Whether the text is broken somewhere among the fields.
+    pub(crate) fn are_broken(&self) -> bool {
+        self.reader.is_broken(&self.extent)
+    }
+
+    /// Notes a problem.
+    pub(crate) fn report(&self, problem: Problem) {
+        self.reader.report(problem);
+    }
+
+    /// Reports fields nobody asked for, and those that were asked for and are missing.
+    pub(crate) fn finish(mut self) {
+        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        for written in unknown {
+            let name = &*written.field.name.name;
+            // A misspelt field is not missing as well.
+            if let Some(meant) = nearest(name, self.known.iter().copied()) {
+                self.missing.retain(|missing| *missing != meant);
+            }
+            self.report_unknown(written, did_you_mean(name, &self.known, '`'));
+        }
+        self.report_missing();
+    }
+
+    /// Like [`Fields::finish`] where it cannot be known which other fields are valid:
+    /// reports only fields that look like one that is missing.
+    pub(crate) fn finish_leniently(mut self) {
+        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        for written in unknown {
+            if let Some(meant) = nearest(&written.field.name.name, self.missing.iter().copied()) {
+                self.missing.retain(|missing| *missing != meant);
+                self.report_unknown(written, Some(format!("did you mean `{meant}`?")));
+            }
+        }
+        self.report_missing();
+    }
+
+    fn report_unknown(&self, written: &Written<'_>, help: Option<String>) {
+        let name = &written.field.name;
+        let problem = Problem::error(bytes(&name.span), format!("unknown field `{}`", name.name));
+        let article = if self.noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        self.reader
+            .report(problem.expected(format!("{article} {} has no such field", self.noun)).help_if(help));
+    }
+
+    fn report_missing(&mut self) {
+        let Some(&first) = self.missing.first() else { return };
+        // What is missing from a broken text may be what broke it.
+        if self.are_broken() {
+            return;
+        }
+        let names: Vec<String> = self.missing.iter().map(|name| format!("`{name}`")).collect();
+        let all = listed(&names, "and");
+        let (message, expected) = match (self.bare, names.len()) {
+            (Some(name), 1) => (format!("{name} needs {all}"), format!("{all} is missing")),
+            (Some(name), _) => (format!("{name} needs {all}"), format!("{all} are missing")),
+            (None, 1) => (format!("this {} lacks {all}", self.noun), "a field is missing".to_owned()),
+            (None, _) => (format!("this {} lacks {all}", self.noun), "some fields are missing".to_owned()),
+        };
+        let help = match (self.missing.as_slice(), self.bare) {
+            ([only], None) => example(only).map(|example| format!("add {example}")),
+            ([only], Some(name)) => example(only).map(|example| format!("write {name}({example})")),
+            _ => None,
+        };
+        let problem = Problem::error(self.open.clone(), message).expected(expected).help_if(help);
+        self.reader.report(Problem { missing: Some(first), ..problem });
+    }
+}

@@ -1,0 +1,326 @@
+use std::ops::{Range, RangeInclusive};
+
+use ron2::ast::{Expr, StructBody};
+
+use super::fields::Fields;
+use super::number::{NotANumber, Number, parse_number, plain};
+use super::problem::Problem;
+use super::reader::{Reader, bytes};
+use super::remedy::{NAMED_FIELDS, describe, remedy};
+use super::suggest::{listed, nearest};
+use super::words::unit;
+
+/// What numbers of a record keep to beyond their own range, because of another field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Within {
+    pub(crate) low: f64,
+    pub(crate) high: f64,
+    /// What messages call it.
+    pub(crate) noun: &'static str,
+    /// How to let more in: what to do, and the field that says it.
+    pub(crate) wider: &'static str,
+}
+
+impl Within {
+    /// Whether `number` keeps to it; reports it if not.
+    fn holds(&self, node: &Node<'_>, number: f64) -> bool {
+        let holds = (self.low..=self.high).contains(&number);
+        if !holds {
+            let message = format!("`{}` is outside of {}", node.what, self.noun);
+            let (low, high, unit) = (plain(self.low), plain(self.high), node.unit());
+            let expected = format!("expected {low} to {high}{unit}, found {}{unit}", plain(number));
+            let wider = (plain(self.low.min(number)), plain(self.high.max(number)));
+            let help = format!("or {}: ({}, {})", self.wider, wider.0, wider.1);
+            node.report(Problem::error(node.span(), message).expected(expected).help(help));
+        }
+        holds
+    }
+}
+
+/// One value of the file, and the name by which messages speak of it.
+#[derive(Clone, Copy)]
+pub(crate) struct Node<'r> {
+    pub(crate) reader: &'r Reader<'r>,
+    pub(crate) expr: &'r Expr<'r>,
+    /// The field it is the value of, or what the entries of its list are.
+    pub(crate) what: &'static str,
+}
+
+impl<'r> Node<'r> {
+    /// Where it stands.
+    pub(crate) fn span(&self) -> Range<usize> {
+        bytes(self.expr.span())
+    }
+
+    /// Notes a problem.
+    pub(crate) fn report(&self, problem: Problem) {
+        self.reader.report(problem);
+    }
+
+    /// Whether it is `None`.
+    pub(crate) fn is_none(&self) -> bool {
+        matches!(self.expr, Expr::Option(option) if option.value.is_none())
+    }
+
+    /// What is inside of any `Some(...)` around it.
+    pub(crate) fn inside(mut self) -> Self {
+        while let Expr::Option(option) = self.expr
+            && let Some(some) = &option.value
+        {
+            self.expr = &some.expr;
+        }
+        self
+    }
+
+    /// The value of the field `name` if this is a `Kind(...)` that has one; nothing is reported.
+    pub(crate) fn peek(&self, kind: &'static str, name: &'static str) -> Option<Node<'r>> {
+        let fields = match self.expr {
+            Expr::AnonStruct(node) => &node.fields,
+            Expr::Struct(node) if node.name.name == kind => match &node.body {
+                Some(StructBody::Fields(body)) => &body.fields,
+                _ => return None,
+            },
+            _ => return None,
+        };
+        let field = fields.iter().find(|field| field.name.name == name)?;
+        Some(Node { expr: &field.value, what: name, ..*self }.inside())
+    }
+
+    /// Whether it is a `Name(...)` of this name, or the name alone.
+    pub(crate) fn is_called(&self, name: &str) -> bool {
+        matches!(self.expr, Expr::Struct(node) if node.name.name == name)
+    }
+
+    /// Its value if it is text; nothing is reported.
+    pub(crate) fn peek_text(&self) -> Option<&'r str> {
+        let Expr::String(text) = self.expr else { return None };
+        Some(&text.value)
+    }
+
+    /// The unit of the number it is, with a space before it; empty if it has none.
+    fn unit(&self) -> &'static str {
+        match self.what {
+            "at" | "size" | "gap" => self.reader.length_unit(),
+            what => unit(what),
+        }
+    }
+
+    /// Its value if it is a number; nothing is reported.
+    pub(crate) fn peek_number(&self) -> Option<f64> {
+        let Expr::Number(number) = self.expr else { return None };
+        parse_number(&number.raw).ok().map(|number| number.value)
+    }
+
+    /// Reports that this is not the `expected` thing, and gives `None`.
+    pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
+        // The parser has said already why an error node is none.
+        if !matches!(self.expr, Expr::Error(_)) {
+            let message = format!("`{}` must be {expected}", self.what);
+            let found = format!("expected {expected}, found {}", describe(self.expr));
+            self.report(
+                Problem::error(self.span(), message).expected(found).help_if(remedy(self.expr, expected)),
+            );
+        }
+        None
+    }
+
+    /// A finite number within `range`.
+    pub(crate) fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
+        let Expr::Number(number) = self.expr else { return self.mismatch("a number") };
+        let (what, raw) = (self.what, &number.raw);
+        let (message, found) = match parse_number(raw) {
+            Ok(number) if range.contains(&number.value) => return Some(number),
+            Ok(number) => {
+                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), self.unit()))
+            }
+            Err(NotANumber::TooLarge) => (format!("`{what}` is out of range"), raw.to_string()),
+            Err(NotANumber::NotFinite) => (format!("`{what}` must be an ordinary number"), raw.to_string()),
+            Err(NotANumber::Malformed) => (format!("`{what}` must be a number"), raw.to_string()),
+        };
+        let (least, most) = (plain(*range.start()), plain(*range.end()));
+        let bounds = if least == most { least } else { format!("{least} to {most}{}", self.unit()) };
+        self.report(
+            Problem::error(self.span(), message).expected(format!("expected {bounds}, found {found}")),
+        );
+        None
+    }
+
+    /// A whole number within `range`.
+    pub(crate) fn whole(&self, range: RangeInclusive<u32>) -> Option<u32> {
+        let number = self.number(f64::from(*range.start())..=f64::from(*range.end()))?;
+        if !number.whole {
+            self.report_fraction();
+        }
+        number.whole.then_some(number.value as u32)
+    }
+
+    /// Reports that this is no whole number.
+    pub(crate) fn report_fraction(&self) {
+        let message = format!("`{}` must be a whole number", self.what);
+        self.report(Problem::error(self.span(), message).expected("expected digits only"));
+    }
+
+    /// A finite number within `range`, and within what bounds such numbers here.
+    pub(crate) fn bounded(&self, range: RangeInclusive<f64>) -> Option<Number> {
+        let number = self.number(range)?;
+        let within = self.reader.within();
+        within.is_none_or(|within| within.holds(self, f64::from(number.single))).then_some(number)
+    }
+
+    /// `true` or `false`.
+    pub(crate) fn flag(&self) -> Option<bool> {
+        let Expr::Bool(flag) = self.expr else { return self.mismatch("true or false") };
+        Some(flag.value)
+    }
+
+    /// Text of at most `longest` characters.
+    pub(crate) fn text(&self, longest: usize) -> Option<&'r str> {
+        let Expr::String(text) = self.expr else { return self.mismatch("text") };
+        let length = text.value.chars().count();
+        if length > longest {
+            let message = format!("`{}` is too long", self.what);
+            let expected = format!("expected at most {longest} characters, found {length}");
+            self.report(Problem::error(self.span(), message).expected(expected));
+            return None;
+        }
+        Some(&text.value)
+    }
+
+    /// A name that can be part of an OSC address: `a` to `z`, `0` to `9` and `_`, at most 64 of them.
+    pub(crate) fn id(&self) -> Option<&'r str> {
+        let text = self.text(64)?;
+        if is_id(text) {
+            return Some(text);
+        }
+        let legal = in_id;
+        let mended: String = text.to_lowercase().chars().map(|c| if legal(c) { c } else { '_' }).collect();
+        let help = if text.contains('{') {
+            Some("patterns such as {n} are for widgets with `repeat`".to_owned())
+        } else {
+            (mended.len() == text.len() && !mended.is_empty()).then(|| format!("write \"{mended}\""))
+        };
+        let message = format!("`{}` can't be part of an address", self.what);
+        let expected = "expected 1 to 64 of the characters a-z, 0-9 and _";
+        self.report(Problem::error(self.span(), message).expected(expected).help_if(help));
+        None
+    }
+
+    /// One of the names in `choices`, and what it stands for.
+    pub(crate) fn choice<T: Copy>(&self, choices: &[(&str, T)]) -> Option<T> {
+        let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
+        let all = listed(&names, "or");
+        // What is too long to stand beside the carets is told below them.
+        let (expected, many) =
+            if names.len() <= 8 { (all, None) } else { (format!("one of {} names", names.len()), Some(all)) };
+        let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
+        let written = &*variant.name.name;
+        if let (Some((_, choice)), None) = (choices.iter().find(|(name, _)| *name == written), &variant.body)
+        {
+            return Some(*choice);
+        }
+        if names.contains(&written) {
+            let problem = Problem::error(self.span(), format!("{written} stands alone"));
+            let help = format!("its settings are fields beside `{}`", self.what);
+            self.report(problem.expected(format!("expected {written} without brackets")).help(help));
+            return None;
+        }
+        let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.what));
+        let help = nearest(written, names).map(|name| format!("did you mean {name}?"));
+        let help = help.or_else(|| many.map(|all| format!("there is {}", all.replace(" or ", " and "))));
+        self.report(problem.expected(format!("expected {expected}")).help_if(help));
+        None
+    }
+
+    /// Which of `names` is written, and the fields in the brackets behind it, if there are any.
+    pub(crate) fn variant(&self, names: &[&'static str]) -> Option<(&'static str, Fields<'r>)> {
+        let expected = listed(names, "or");
+        let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
+        let written = &*variant.name.name;
+        let Some(name) = names.iter().copied().find(|name| *name == written) else {
+            let message = format!("there is no `{}` called {written}", self.what);
+            let help = nearest(written, names.iter().copied()).map(|name| format!("did you mean {name}?"));
+            let problem = Problem::error(self.span(), message).expected(format!("expected {expected}"));
+            self.report(problem.help_if(help));
+            return None;
+        };
+        let fields = match &variant.body {
+            None => Fields::bare(*self, name),
+            Some(_) => self.fields(name)?,
+        };
+        Some((name, fields))
+    }
+
+    /// The entries of a list of at most `most`; messages call each of them `entry`.
+    pub(crate) fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
+        let Expr::Seq(list) = self.expr else { return self.mismatch("a list") };
+        if list.items.len() > most {
+            let message = format!("`{}` has too many entries", self.what);
+            let expected = format!("expected at most {most}, found {}", list.items.len());
+            self.report(Problem::error(bytes(&list.open_bracket), message).expected(expected));
+            return None;
+        }
+        Some(list.items.iter().map(|item| Node { expr: &item.expr, what: entry, ..*self }.inside()).collect())
+    }
+
+    /// The values of a tuple of `N`, shown as `pattern` if it is none.
+    pub(crate) fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
+        let elements = match self.expr {
+            Expr::Tuple(tuple) => &tuple.elements,
+            _ => return self.mismatch(pattern),
+        };
+        let nodes: Vec<_> =
+            elements.iter().map(|element| Node { expr: &element.expr, ..*self }.inside()).collect();
+        nodes.try_into().ok().or_else(|| self.mismatch(pattern))
+    }
+
+    /// Two numbers within `range`: east and north.
+    pub(crate) fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+        let [east, north] =
+            self.tuple(if self.what == "size" { "(width, depth)" } else { "(east, north)" })?;
+        let (east, north) = (east.number(range.clone()), north.number(range));
+        Some([east?.value, north?.value])
+    }
+
+    /// One number within `range` for both directions, or one for each.
+    pub(crate) fn one_or_two(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
+        match self.expr {
+            Expr::Tuple(_) => self.pair(range),
+            _ => self.number(range).map(|number| [number.value; 2]),
+        }
+    }
+
+    /// The named fields of a `Name(...)`, the name being optional.
+    pub(crate) fn fields(&self, name: &'static str) -> Option<Fields<'r>> {
+        let (written, open, fields) = match self.expr {
+            Expr::AnonStruct(node) => (None, bytes(&node.open_paren), node.fields.as_slice()),
+            Expr::Unit(node) => (None, bytes(&node.span), [].as_slice()),
+            Expr::Struct(node) => match &node.body {
+                Some(StructBody::Fields(body)) => {
+                    (Some(&node.name), bytes(&node.name.span), body.fields.as_slice())
+                }
+                Some(StructBody::Tuple(body)) if body.elements.is_empty() => {
+                    (Some(&node.name), bytes(&node.name.span), [].as_slice())
+                }
+                _ => return self.mismatch(NAMED_FIELDS),
+            },
+            _ => return self.mismatch(NAMED_FIELDS),
+        };
+        if let Some(written) = written.filter(|written| written.name != name) {
+            let a = |name: &str| if name.starts_with(['A', 'E', 'I', 'O']) { "an" } else { "a" };
+            let (found, wanted) = (&*written.name, name);
+            let message = format!("this is {} {found}, not {} {wanted}", a(found), a(wanted));
+            self.report(Problem::error(open, message).expected(format!("expected {name}(...)")));
+            return None;
+        }
+        Some(Fields::new(*self, name, open, fields))
+    }
+}
+
+/// Whether `text` can be part of an OSC address.
+pub(crate) fn is_id(text: &str) -> bool {
+    (1..=64).contains(&text.len()) && text.chars().all(in_id)
+}
+
+fn in_id(c: char) -> bool {
+    c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_'
+}

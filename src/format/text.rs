@@ -1,0 +1,77 @@
+//! Values as they are written to files.
+
+/// A named field of a record.
+pub(crate) type Entry = (&'static str, Text);
+
+/// A value as it is written.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Text {
+    /// A number, a name or a text in quotes.
+    Plain(String),
+    /// Values in square brackets.
+    List(Vec<Text>),
+    /// Named fields in round brackets behind a name, which may be empty.
+    Fields(&'static str, Vec<Entry>),
+}
+
+/// Longest line that holds a whole record, in characters.
+const WIDTH: usize = 96;
+
+impl Text {
+    /// The value on one line.
+    pub(crate) fn inline(&self) -> String {
+        match self {
+            Self::Plain(text) => text.clone(),
+            Self::List(values) => {
+                format!("[{}]", values.iter().map(Self::inline).collect::<Vec<_>>().join(", "))
+            }
+            Self::Fields(name, entries) => {
+                let entries = entries.iter().map(|(field, value)| format!("{field}: {}", value.inline()));
+                format!("{name}({})", entries.collect::<Vec<_>>().join(", "))
+            }
+        }
+    }
+
+    /// The value behind `column` characters of a line that is indented by so many steps, on as many lines as it takes.
+    pub(crate) fn lay_out(&self, indent: usize, column: usize) -> String {
+        let whole = self.inline();
+        if column + whole.chars().count() <= WIDTH {
+            return whole;
+        }
+        let pad = "    ".repeat(indent + 1);
+        let lines = |lines: Vec<String>| -> String {
+            lines.into_iter().map(|line| format!("{pad}{line},\n")).collect()
+        };
+        let end = "    ".repeat(indent);
+        match self {
+            Self::Plain(_) => whole,
+            Self::List(values) => {
+                let values = values.iter().map(|value| value.lay_out(indent + 1, pad.len()));
+                format!("[\n{}{end}]", lines(values.collect()))
+            }
+            Self::Fields(name, entries) => {
+                let entries = entries.iter().map(|(field, value)| {
+                    format!("{field}: {}", value.lay_out(indent + 1, pad.len() + field.len() + 2))
+                });
+                format!("{name}(\n{}{end})", lines(entries.collect()))
+            }
+        }
+    }
+}
+
+/// The shortest text that reads back as `value` once it is divided by `scale`, without a point where none is needed.
+pub(crate) fn number(value: f32, scale: f64) -> String {
+    if !value.is_finite() {
+        return "0".to_owned();
+    }
+    if scale == 1.0 {
+        return format!("{value}");
+    }
+    // Most are whole hundredths; those that are not need all digits, found by trying.
+    let written = f64::from(value) * scale;
+    (2..=9)
+        .map(|digits| format!("{written:.digits$}"))
+        .map(|text| text.trim_end_matches('0').trim_end_matches('.').to_owned())
+        .find(|text| text.parse::<f32>().is_ok_and(|read| read / scale as f32 == value))
+        .unwrap_or_else(|| format!("{}", written as f32))
+}

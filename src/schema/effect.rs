@@ -1,0 +1,162 @@
+//! Files of effects, and lists of them in layouts.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::sync::{Arc, LazyLock};
+
+use super::builtin;
+use super::diagnostic::{Diagnostic, Diagnostics};
+use super::kind::ron_files;
+use super::node::{Node, is_id};
+use super::page::MAX_WIDGETS;
+use super::pairs::Limits;
+use super::problem::Problem;
+use super::reader::Reader;
+use super::source::{Source, read_text};
+use super::version;
+use crate::feel::{Effect, Effects, NamedEffect, Use, written};
+
+/// The shipped ones, read once: balancing each takes a moment.
+static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {
+    let mut effects = Effects::default();
+    for (name, text) in builtin::EFFECTS {
+        // That each of them reads without a warning is tested.
+        let added = effects.add(text, name);
+        debug_assert!(added.is_ok(), "{added:?}");
+    }
+    effects
+});
+
+impl Effects {
+    /// The effects that come with underfoot: the files of `effects/`, compiled in.
+    #[must_use]
+    pub fn builtin() -> Self {
+        BUILTIN.clone()
+    }
+
+    /// Adds the effect that `text` describes, in place of any other of its name; gives back warnings.
+    ///
+    /// It may be made of these effects, also of the one that it replaces.
+    /// `name` is what diagnostics call the text, usually a path.
+    ///
+    /// # Errors
+    /// Everything wrong with the text; these effects then stay as they were.
+    pub fn add(&mut self, text: &str, name: &str) -> Result<Diagnostics, Diagnostics> {
+        let (effect, warnings) = parse_effect(text, name, self)?;
+        self.insert(effect);
+        Ok(warnings)
+    }
+
+    /// Adds the effects of all files named `*.ron` in `folder`, in place of others of their names; gives back warnings.
+    ///
+    /// Effects may be made of these ones, and of those whose files come before theirs in the alphabet.
+    ///
+    /// # Errors
+    /// Everything wrong with any of the files, two files that describe an effect
+    /// of the same name, or a folder that cannot be read; these effects then stay as they were.
+    pub fn read_folder(&mut self, folder: &Path) -> Result<Diagnostics, Diagnostics> {
+        let mut problems = Diagnostics::default();
+        let mut all = self.clone();
+        let mut read: BTreeMap<String, String> = BTreeMap::new();
+        for path in ron_files(folder, "effects")? {
+            let file = path.display().to_string();
+            let text = match read_text(&path) {
+                Ok(text) => text,
+                Err(unreadable) => {
+                    problems.append(unreadable);
+                    continue;
+                }
+            };
+            match parse_effect(&text, &file, &all) {
+                Ok((effect, warnings)) => {
+                    problems.append(warnings);
+                    if let Some(first) = read.insert(effect.name.clone(), file.clone()) {
+                        let message = format!("two effects are called \"{}\"", effect.name);
+                        let help =
+                            Some(format!("the other one is in {first}; give one of them another name"));
+                        problems.append(Diagnostic::of_file(&file, message, help).into());
+                    }
+                    all.insert(effect);
+                }
+                Err(errors) => problems.append(errors),
+            }
+        }
+        if problems.errors() > 0 {
+            return Err(problems);
+        }
+        *self = all;
+        Ok(problems)
+    }
+}
+
+/// Whether `name` can be an effect's: 1 to 64 of the characters a-z, 0-9 and _.
+#[must_use]
+pub fn is_effect_name(name: &str) -> bool {
+    is_id(name)
+}
+
+/// The effect that `text` describes, made of those in `effects`, and warnings.
+///
+/// `name` is what diagnostics call the text, usually a path.
+///
+/// # Errors
+/// Everything wrong with the text.
+pub fn parse_effect(
+    text: &str,
+    name: &str,
+    effects: &Effects,
+) -> Result<(NamedEffect, Diagnostics), Diagnostics> {
+    let source = Source::new(name, text)?;
+    let reader = Reader::new(&source, "Effect", Limits::LAYOUT);
+    reader.know(Arc::new(effects.clone()));
+    if let Some(newer) = version::newer(&reader, "Effect") {
+        return Err(newer);
+    }
+    let effect = reader.root("effect").and_then(read);
+    reader.conclude(effect)
+}
+
+/// The named effect that is written at `node`.
+fn read(node: Node<'_>) -> Option<NamedEffect> {
+    let mut fields = node.fields("Effect")?;
+    fields.read("version", Some(1), version::read);
+    let name = fields.read("name", None, |node| node.id());
+    let about = fields.read("about", Some(""), |node| node.text(200));
+    let effect = fields.read("plays", None, |node| written(node, None, Use::Once));
+    fields.finish();
+    Some(NamedEffect { name: name?.to_owned(), about: about?.to_owned(), effect: Arc::new(effect?) })
+}
+
+/// From now on the reader also knows the effects of a layout's own list.
+pub(super) fn list(node: Node<'_>) {
+    let mut known = (*node.reader.known::<Effects>()).clone();
+    let mut here: BTreeMap<String, usize> = BTreeMap::new();
+    for node in node.list("effect", MAX_WIDGETS).unwrap_or_default() {
+        let Some(effect) = read(node) else { continue };
+        let line = node.reader.line(&node.span());
+        if let Some(first) = here.insert(effect.name.clone(), line) {
+            let span = node.peek("Effect", "name").map_or(node.span(), |name| name.span());
+            let problem = Problem::error(span, format!("two effects are called \"{}\"", effect.name));
+            node.report(problem.expected(format!("the first is on line {first}")));
+        }
+        known.insert(effect);
+        // Each may be made of the ones before it.
+        node.reader.know(Arc::new(known.clone()));
+    }
+}
+
+/// The file that describes `effect`; [`parse_effect`] reads the same effect from it.
+#[must_use]
+pub fn write_named_effect(effect: &NamedEffect) -> String {
+    let mut text = format!("Effect(\n    name: {:?},\n", effect.name);
+    if !effect.about.is_empty() {
+        text.push_str(&format!("    about: {:?},\n", effect.about));
+    }
+    text + &format!("    plays: {},\n)\n", write_effect(&effect.effect, 1))
+}
+
+/// The effect as it is written where it is played, its lines indented by so many steps.
+#[must_use]
+pub fn write_effect(effect: &Effect, indent: usize) -> String {
+    effect.written().lay_out(indent, 4 * indent + "plays: ".len())
+}

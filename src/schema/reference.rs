@@ -1,0 +1,150 @@
+//! The reference of the format, made of the descriptions that its reader goes by.
+
+use std::fmt::Write;
+
+use super::ground;
+use super::suggest::did_you_mean;
+use crate::feel::{EffectKind, Feel, Manner};
+use crate::format::describe::{Description, FieldDescription};
+use crate::format::{Record, Variants};
+use crate::layout::Look;
+use crate::widget::Behaviour;
+
+/// One kind of thing that files hold, with all records that it may be.
+#[derive(Clone, Debug)]
+pub struct Chapter {
+    /// What it is called.
+    pub name: &'static str,
+    /// Where it is written.
+    pub about: &'static str,
+    /// What each of them may say.
+    pub common: Vec<FieldDescription>,
+    /// What each of them may say besides.
+    pub records: Vec<Description>,
+}
+
+impl Chapter {
+    fn new(name: &'static str, about: &'static str, mut records: Vec<Description>) -> Self {
+        // What all say alike is told once.
+        let is_common = |field: &FieldDescription| {
+            let has = |record: &Description| {
+                record.fields.iter().any(|other| other.name == field.name && other.about == field.about)
+            };
+            records.len() > 1 && records.iter().all(has)
+        };
+        let common: Vec<FieldDescription> = records
+            .iter()
+            .take(1)
+            .flat_map(|first| first.fields.iter().filter(|f| is_common(f)).cloned())
+            .collect();
+        for record in &mut records {
+            record.fields.retain(|field| common.iter().all(|common| common.name != field.name));
+        }
+        Self { name, about, common, records }
+    }
+}
+
+/// All that is described of layouts, kinds and effects.
+#[must_use]
+pub fn reference() -> Vec<Chapter> {
+    let mut effects = Chapter::new(
+        "effects",
+        "What is felt: under a name in a file of `effects/` or in `effects` of a layout, or where it is played.",
+        EffectKind::describe(),
+    );
+    effects.common.extend(Manner::describe().fields);
+    vec![
+        Chapter::new(
+            "controls",
+            "What a control does: `behaviour` of a kind, its settings beside it; a widget overrides what it writes.",
+            Behaviour::describe(),
+        ),
+        Chapter::new(
+            "feel",
+            "What a control feels like: `feel` of a kind or widget.",
+            vec![Feel::describe()],
+        ),
+        Chapter::new(
+            "look",
+            "What a control looks like: `look` of a kind or widget.",
+            vec![Look::describe()],
+        ),
+        effects,
+        Chapter::new(
+            "grounds",
+            "What the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
+            ground::describe(),
+        ),
+    ]
+}
+
+/// The reference as Markdown: all of it, or only the chapter or record called `name`.
+///
+/// # Errors
+/// That nothing is called so, and what might have been meant.
+pub fn write_reference(name: Option<&str>) -> Result<String, String> {
+    let chapters = reference();
+    let is_meant = |other: &str| name.is_none_or(|name| name.eq_ignore_ascii_case(other));
+    let mut text = String::new();
+    for chapter in &chapters {
+        let whole = is_meant(chapter.name);
+        if whole {
+            heading(&mut text, 2, chapter.name, chapter.about, &chapter.common);
+        }
+        for record in chapter.records.iter().filter(|record| whole || is_meant(record.name)) {
+            heading(&mut text, 3, record.name, &record.about, &record.fields);
+            parts(&mut text, record.name, &record.fields);
+        }
+        if whole {
+            parts(&mut text, chapter.name, &chapter.common);
+        }
+    }
+    if text.is_empty() {
+        let names: Vec<&str> = chapters
+            .iter()
+            .flat_map(|chapter| [chapter.name].into_iter().chain(chapter.records.iter().map(|it| it.name)))
+            .collect();
+        let name = name.unwrap_or_default();
+        let help = did_you_mean(name, &names, '`').unwrap_or_default();
+        return Err(format!("nothing is called `{name}`; {help}"));
+    }
+    Ok(text)
+}
+
+/// The records that `fields` of `owner` hold, and theirs.
+fn parts(text: &mut String, owner: &str, fields: &[FieldDescription]) {
+    for field in fields {
+        for part in field.shape.parts().iter().filter(|part| !part.fields.is_empty()) {
+            let name = format!("{} of {owner}: {}", field.name, part.name);
+            heading(text, 4, &name, &part.about, &part.fields);
+            parts(text, part.name, &part.fields);
+        }
+    }
+}
+
+fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[FieldDescription]) {
+    // Writing to a String cannot fail.
+    let _ = writeln!(text, "{} {name}\n\n{}\n", "#".repeat(level), plain(about));
+    for field in fields {
+        let default = match &field.default {
+            Some(default) if default == "()" => String::new(),
+            Some(default) => format!("; {default} where nothing is written"),
+            None => "; must be written".to_owned(),
+        };
+        let _ = writeln!(
+            text,
+            "- `{}`: {}{default}. {}",
+            field.name,
+            field.shape.told(field.name),
+            plain(&field.about)
+        );
+    }
+    if !fields.is_empty() {
+        text.push('\n');
+    }
+}
+
+/// Documentation without the brackets of its links.
+fn plain(about: &str) -> String {
+    about.replace("[`", "`").replace("`]", "`")
+}

@@ -1,0 +1,158 @@
+//! Layouts made in code, as files.
+
+use super::version::FORMAT_VERSION;
+use crate::floor::Rect;
+use crate::format::text::{Entry, Text};
+use crate::format::{Codec, Name, Rec, Record, Variants};
+use crate::ground::Material;
+use crate::layout::{Ground, Hex, Layout, Widget};
+
+/// The file that describes `layout`, in metres; [`super::parse_layout`] reads it again.
+///
+/// Places are rounded to a ten thousandth of a millimetre. What widgets do, feel and look like is written once, in
+/// kinds of the layout's own. Reading puts the controls of all pages before those of the first page and so on, each
+/// group in its order here.
+#[must_use]
+pub fn write_layout(layout: &Layout) -> String {
+    let mut kinds: Vec<(String, &Widget)> = Vec::new();
+    let names: Vec<String> = layout.widgets.iter().map(|widget| kind_of(widget, &mut kinds)).collect();
+    let kinds = kinds.iter().map(|(name, widget)| {
+        let mut entries = vec![("name", quoted(name)), ("behaviour", bare(widget.behaviour.variant()))];
+        widget.behaviour.write_fields(&mut entries);
+        entries.push(("feel", Rec.write(&widget.feel)));
+        entries.push(("look", Rec.write(&widget.look)));
+        Text::Fields("", entries)
+    });
+    let regions = layout.regions.iter().map(|region| {
+        let mut entries = vec![("id", quoted(&region.id))];
+        place(region.area, &mut entries);
+        entries.push(("cursor", Name.write(&region.cursor)));
+        Text::Fields("", entries)
+    });
+    let stances = layout.stances.iter().map(|stance| {
+        let mut entries = vec![("label", quoted(&stance.label))];
+        place(stance.area, &mut entries);
+        Text::Fields("", entries)
+    });
+    let mut entries = vec![
+        ("version", bare(&FORMAT_VERSION.to_string())),
+        ("units", bare("Metres")),
+        ("title", quoted(&layout.title)),
+        ("regions", Text::List(regions.collect())),
+        ("stances", Text::List(stances.collect())),
+        ("kinds", Text::List(kinds.collect())),
+    ];
+    of_page(layout, &names, None, &mut entries);
+    let pages = layout.pages.iter().enumerate().map(|(number, page)| {
+        let mut entries = vec![("id", quoted(page.id.as_str())), ("title", quoted(&page.title))];
+        of_page(layout, &names, Some(number), &mut entries);
+        Text::Fields("", entries)
+    });
+    entries.push(("pages", Text::List(pages.collect())));
+    entries.retain(|(_, value)| *value != Text::List(Vec::new()));
+    format!("{}\n", Text::Fields("Layout", entries).lay_out(0, 0))
+}
+
+/// The name of the kind among `kinds` that `widget` is of; it is added if there is none.
+fn kind_of<'l>(widget: &'l Widget, kinds: &mut Vec<(String, &'l Widget)>) -> String {
+    let is_like = |other: &Widget| {
+        (&other.behaviour, &other.feel, &other.look) == (&widget.behaviour, &widget.feel, &widget.look)
+    };
+    if let Some((name, _)) = kinds.iter().find(|(_, other)| other.kind == widget.kind && is_like(other)) {
+        return name.clone();
+    }
+    let is_free = |name: &String| kinds.iter().all(|(known, _)| known != name);
+    let numbered = (2..).map(|number| format!("{}_{number}", widget.kind));
+    let name = std::iter::once(widget.kind.clone()).chain(numbered).find(is_free).unwrap_or_default();
+    kinds.push((name.clone(), widget));
+    name
+}
+
+/// The controls and grounds of one page, or those of all pages.
+fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut Vec<Entry>) {
+    let widgets = layout.widgets.iter().zip(kinds).filter(|(widget, _)| widget.page == page);
+    let widgets = widgets.map(|(widget, kind)| {
+        let mut entries = vec![("id", quoted(widget.id.as_str())), ("kind", quoted(kind))];
+        place(widget.area, &mut entries);
+        if !widget.label.is_empty() {
+            entries.push(("label", quoted(&widget.label)));
+        }
+        if let Some(page) = widget.goto.and_then(|goto| layout.pages.get(goto)) {
+            entries.push(("goto", quoted(page.id.as_str())));
+        }
+        Text::Fields("", entries)
+    });
+    entries.push(("widgets", Text::List(widgets.collect())));
+    let grounds = layout.grounds.iter().filter(|ground| ground.page == page).map(ground);
+    entries.push(("grounds", Text::List(grounds.collect())));
+}
+
+fn ground(ground: &Ground) -> Text {
+    let mut entries = Vec::new();
+    place(ground.area, &mut entries);
+    entries.push(("seed", bare(&ground.seed.to_string())));
+    entries.push(("surface", Hex.write(&ground.surface)));
+    entries.push(("deep", Hex.write(&ground.deep)));
+    match &ground.material {
+        Material::Ice(spec) => spec.write_fields(&mut entries),
+        Material::Grain(spec) => spec.write_fields(&mut entries),
+        Material::Wood(spec) => spec.write_fields(&mut entries),
+    }
+    Text::Fields(ground.material.name(), entries)
+}
+
+fn place(area: Rect, entries: &mut Vec<Entry>) {
+    let rounded = |metres: f64| (metres * 1e7).round() / 1e7;
+    let [min, max] = [area.min, area.max].map(|corner| corner.as_dvec2());
+    let pair = |x: f64, y: f64| Text::Plain(format!("({}, {})", rounded(x), rounded(y)));
+    entries.push(("at", pair(min.x, min.y)));
+    entries.push(("size", pair(max.x - min.x, max.y - min.y)));
+}
+
+fn quoted(text: &str) -> Text {
+    Text::Plain(format!("{text:?}"))
+}
+
+fn bare(text: &str) -> Text {
+    Text::Plain(text.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+    use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
+
+    #[test]
+    fn every_shipped_layout_is_written_and_read_again() {
+        for name in builtin_layouts() {
+            let read = |text: &str| {
+                let kinds = Kinds::builtin();
+                let loaded = parse_layout(text, name, &kinds, &Geometry::default());
+                loaded.unwrap_or_else(|problems| panic!("{text}\n{problems}")).layout
+            };
+            let layout = read(builtin_layout(name).unwrap());
+            let mut again = read(&write_layout(&layout));
+            assert_eq!(again.widgets.len(), layout.widgets.len(), "{name}");
+            let near = |a: Rect, b: Rect| {
+                (a.min - b.min).abs().max_element() < 1e-6 && (a.max - b.max).abs().max_element() < 1e-6
+            };
+            for (again, before) in again.widgets.iter_mut().zip(&layout.widgets) {
+                assert!(near(again.area, before.area), "{name}: {}", before.id);
+                (again.area, again.kind) = (before.area, before.kind.clone());
+            }
+            for (again, before) in again.regions.iter_mut().zip(&layout.regions) {
+                assert!(near(again.area, before.area), "{name}: {}", before.id);
+                again.area = before.area;
+            }
+            for (again, before) in again.stances.iter_mut().zip(&layout.stances) {
+                again.area = before.area;
+            }
+            for (again, before) in again.grounds.iter_mut().zip(&layout.grounds) {
+                assert!(near(again.area, before.area), "{name}");
+                again.area = before.area;
+            }
+            assert_eq!(again, layout, "{name}");
+        }
+    }
+}

@@ -1,0 +1,110 @@
+use crate::format::describe::{FieldDescription, Shape, first_paragraph};
+use crate::format::fields::Fields;
+use crate::format::node::Node;
+use crate::format::problem::Problem;
+use crate::format::text::{Entry, Text};
+use crate::format::{Codec, Num};
+
+/// A pair of thresholds in two fields, which may be absent; the second one follows the first unless it is written.
+pub(super) struct Stage {
+    pub(super) press: Num,
+    pub(super) release: Num,
+    /// The fields.
+    pub(super) names: [&'static str; 2],
+    /// What the second one is.
+    pub(super) about: &'static str,
+    /// What part of the first one the second one is where nothing says it.
+    pub(super) follows: f32,
+    /// What is said of the second one without the first.
+    pub(super) lonely: &'static str,
+}
+
+impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for Stage {
+    fn read(&self, node: Node<'_>, _: Option<&Option<T>>) -> Option<Option<T>> {
+        if node.is_none() {
+            return Some(None);
+        }
+        let press: f32 = self.press.read(node, None)?;
+        Some(Some([press, press * self.follows].into()))
+    }
+
+    fn write(&self, value: &Option<T>) -> Text {
+        value.map_or(Text::Plain("None".to_owned()), |value| self.press.write(&value.into()[0]))
+    }
+
+    fn shape(&self) -> Shape {
+        Shape::Optional(Box::new(Codec::<f32>::shape(&self.press)))
+    }
+
+    fn stand_in(&self) -> Option<T> {
+        None
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        base: Option<&Option<T>>,
+        _: Option<Option<T>>,
+    ) -> Option<T> {
+        let base: Option<[f32; 2]> = base.copied().flatten().map(T::into);
+        let release_name = self.names[1];
+        let mut failed = false;
+        let mut read = |name, codec: &Num| {
+            let node = fields.take(name)?;
+            if node.is_none() && name != release_name {
+                return Some(None);
+            }
+            let number: Option<f32> = codec.read(node, None);
+            if number.is_none() {
+                fields.fail(name);
+                failed = true;
+            }
+            Some(number)
+        };
+        let (press, release) = (read(name, &self.press), read(release_name, &self.release).flatten());
+        if failed {
+            return base.map(T::from);
+        }
+        let Some(press) = press.unwrap_or(base.map(|[press, _]| press)) else {
+            if let Some(span) = fields.written_span(release_name) {
+                let message = format!("`{release_name}` needs `{name}`");
+                fields.report(Problem::error(span, message).expected(self.lonely));
+            }
+            return None;
+        };
+        // A base's release follows a new press.
+        let part = base.map_or(self.follows, |[press, release]| release / press);
+        Some([press, release.unwrap_or(press * part)].into())
+    }
+
+    fn write_field(
+        &self,
+        value: &Option<T>,
+        name: &'static str,
+        _: Option<Option<T>>,
+        entries: &mut Vec<Entry>,
+    ) {
+        if let Some([press, release]) = value.map(T::into) {
+            entries.push((name, self.press.write(&press)));
+            entries.push((self.names[1], self.release.write(&release)));
+        }
+    }
+
+    fn describe_field(
+        &self,
+        name: &'static str,
+        about: &[&str],
+        _: Option<Option<T>>,
+        fields: &mut Vec<FieldDescription>,
+    ) {
+        let (about, shape) = (first_paragraph(about), Codec::<Option<T>>::shape(self));
+        fields.push(FieldDescription { name, about, shape, default: Some("None".to_owned()) });
+        fields.push(FieldDescription {
+            name: self.names[1],
+            about: self.about.to_owned(),
+            shape: Codec::<f32>::shape(&self.release),
+            default: Some(format!("{} of `{name}`", self.follows)),
+        });
+    }
+}
