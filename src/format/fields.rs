@@ -224,7 +224,11 @@ impl<'r> Fields<'r> {
         };
         let help = match (self.missing.as_slice(), self.bare) {
             ([only], None) => example(only).map(|example| format!("add {example}")),
-            ([only], Some(name)) => example(only).map(|example| format!("write {name}({example})")),
+            // What it is stands behind the brackets.
+            ([only], Some(name)) => example(only).map(|example| match example.split_once(", the ") {
+                Some((example, about)) => format!("write {name}({example}), the {about}"),
+                None => format!("write {name}({example})"),
+            }),
             _ => None,
         };
         let problem = Problem::error(self.open.clone(), message).expected(expected).help_if(help);

@@ -144,7 +144,24 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     }
 }
 
-/// Documentation without the brackets of its links.
+/// Documentation without the brackets of its links, and without the unit and range that values have in code: files
+/// have their own, which are told beside it.
 fn plain(about: &str) -> String {
-    about.replace("[`", "`").replace("`]", "`")
+    let mut text = about.replace("[`", "`").replace("`]", "`");
+    for unit in UNITS {
+        let Some(at) = text.find(unit) else { continue };
+        let rest = &text[at + unit.len()..];
+        let last = rest.strip_suffix('.').unwrap_or(rest).len();
+        let end = rest.find(". ").unwrap_or(last);
+        let clause = &rest[..end];
+        let is_range =
+            clause.starts_with("; ") && (clause.contains(" to ") || clause.contains(" in degrees"));
+        let kept = if is_range { &rest[end..] } else { rest };
+        text = format!("{}{kept}", &text[..at]);
+    }
+    text
 }
+
+/// How documentation tells the unit of a value in code.
+const UNITS: [&str; 6] =
+    [", in seconds", ", in hertz", ", in metres", ", in degrees", ", in radians", ", in decibels"];

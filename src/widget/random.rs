@@ -20,11 +20,13 @@ const LIMIT: Duration = Duration::from_millis(700);
 /// One of each, plain.
 pub(super) fn behaviours(at: Thresholds) -> Vec<Behaviour> {
     let scale = Scale { step: 0.5, ..Scale::new(-1.0, 3.0) };
+    let hard = HardStage { press: Newtons(120.0), release: Newtons(90.0) };
+    let hard = Gestures { hard: Some(hard), ..Gestures::default() };
     let gestures = Gestures {
         double_tap: Some(Duration::from_millis(150)),
         long_press: Some(Duration::from_millis(300)),
         swipe_m: Some(0.1),
-        hard: Some(HardStage { press: Newtons(120.0), release: Newtons(90.0) }),
+        ..hard
     };
     let button = ButtonSpec::new(at);
     let slider = SliderSpec { initial: 1.0, ..SliderSpec::new(at, Scale::new(-1.0, 3.0)) };

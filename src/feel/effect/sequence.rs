@@ -43,7 +43,7 @@ pub enum Beat {
 record! {
     /// A share of the level at one moment.
     pub struct CurvePoint = "Point", Copy, Default;
-    /// Seconds from the start.
+    /// How long after the start, in seconds.
     pub at_s: f32 = "at_ms", TIME;
     /// Share of the level.
     pub level: f32 = "level", STRENGTH;

@@ -43,11 +43,11 @@ record! {
 record! {
     /// Level and pitch of a tone at one moment.
     pub struct TonePoint = "Point", Copy, Default;
-    /// Seconds from the tone's start.
+    /// How long after the tone's start, in seconds.
     pub at_s: f32 = "at_ms", TIME;
     /// Share of the tone's level.
     pub level: f32 = "level", STRENGTH => 1.0;
-    /// Pitch, in hertz; the tone's where it says none.
+    /// Pitch; the tone's where it says none, in hertz.
     pub hz: Option<f32> = "hz", Opt(HZ) => None;
 }
 
