@@ -148,10 +148,12 @@ macro_rules! record {
 }
 
 /// Defines an enum of which each variant holds the record that is written under its name, or nothing.
+///
+/// Behind `=` stands the variant that is its default, if it has one.
 macro_rules! choices {
     (
         $(#[doc = $doc:expr])*
-        $vis:vis enum $Type:ident $(: $($derive:ident),*)? ;
+        $vis:vis enum $Type:ident $(: $($derive:ident),*)? $(= $default:ident)? ;
         $(
             $(#[doc = $about:expr])*
             $variant:ident $(($record:ident))?,
@@ -162,6 +164,12 @@ macro_rules! choices {
         $vis enum $Type {
             $($(#[doc = $about])* $variant $(($record))?,)*
         }
+
+        $(impl Default for $Type {
+            fn default() -> Self {
+                Self::$default
+            }
+        })?
 
         impl $crate::format::Variants for $Type {
             const NAMES: &'static [&'static str] = &[$(stringify!($variant)),*];

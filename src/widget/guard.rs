@@ -29,19 +29,13 @@ use crate::units::Instant;
 
 choices! {
     /// What it takes besides force for a control to act.
-    pub enum Guard: Copy, Eq;
+    pub enum Guard: Copy, Eq = Free;
     /// Nothing: for what does no harm.
     Free,
     /// A first press, which only arms it, then a second one.
     Confirm(Confirm),
     /// It acts only while a foot holds it, and never longer than a while: off on any doubt.
     HoldToRun(HoldToRun),
-}
-
-impl Default for Guard {
-    fn default() -> Self {
-        Self::Free
-    }
 }
 
 record! {

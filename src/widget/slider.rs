@@ -53,19 +53,13 @@ impl SliderSpec {
 
 choices! {
     /// What the place of a foot does to a slider's value.
-    pub enum Mapping: Copy;
+    pub enum Mapping: Copy = Absolute;
     /// The place is the value.
     Absolute,
     /// The way from where it was pressed moves the value: to lift and press again is to reach farther.
     Relative(Relative),
     /// The way from where it was pressed is the speed at which the value moves.
     Rate(Rate),
-}
-
-impl Default for Mapping {
-    fn default() -> Self {
-        Self::Absolute
-    }
 }
 
 record! {
