@@ -4,6 +4,8 @@
 //! heading. The points pressed so far are kept as their extents along a fan of directions; a further point can belong
 //! to the foot if some heading has room for all of them.
 
+use std::f64::consts::FRAC_1_SQRT_2;
+
 use glam::DVec2;
 
 /// Directions of the fan, over half a turn: a shoe's breadth at 7.5 degrees off its heading is 4 mm too wide at most.
@@ -36,13 +38,13 @@ const FAN: [(f64, f64); DIRECTIONS] = [
     (1.0, 0.0),
     (0.965_925_826_289_068_3, 0.258_819_045_102_520_74),
     (0.866_025_403_784_438_6, 0.5),
-    (0.707_106_781_186_547_6, 0.707_106_781_186_547_5),
+    (FRAC_1_SQRT_2, FRAC_1_SQRT_2),
     (0.5, 0.866_025_403_784_438_6),
     (0.258_819_045_102_520_74, 0.965_925_826_289_068_3),
     (0.0, 1.0),
     (-0.258_819_045_102_520_63, 0.965_925_826_289_068_3),
     (-0.5, 0.866_025_403_784_438_7),
-    (-0.707_106_781_186_547_5, 0.707_106_781_186_547_6),
+    (-FRAC_1_SQRT_2, FRAC_1_SQRT_2),
     (-0.866_025_403_784_438_7, 0.5),
     (-0.965_925_826_289_068_2, 0.258_819_045_102_521),
 ];
@@ -56,11 +58,7 @@ impl Outline {
 
     /// Adds a pressed point.
     pub(super) fn add(&mut self, point: DVec2) {
-        let at = projections(point);
-        for which in 0..DIRECTIONS {
-            self.low[which] = self.low[which].min(at[which]);
-            self.high[which] = self.high[which].max(at[which]);
-        }
+        self.unite(&Self::new(point));
     }
 
     /// Adds all points of `other`.

@@ -79,7 +79,7 @@ impl Track {
                 match residual.axis {
                     Axis::East => (low.x, high.x) = (low.x.min(residual.number), high.x.max(residual.number)),
                     Axis::North => {
-                        (low.y, high.y) = (low.y.min(residual.number), high.y.max(residual.number))
+                        (low.y, high.y) = (low.y.min(residual.number), high.y.max(residual.number));
                     }
                 }
             }

@@ -192,7 +192,7 @@ impl Strips {
                     noise.east += moment + force * (strip.middle(self.pitch) - self.middle.x).powi(2);
                 }
                 Axis::North => {
-                    noise.north += moment + force * (strip.middle(self.pitch) - self.middle.y).powi(2)
+                    noise.north += moment + force * (strip.middle(self.pitch) - self.middle.y).powi(2);
                 }
             }
         }
