@@ -94,7 +94,7 @@ pub(super) enum Second {
 
 impl Explanation {
     pub(super) fn new() -> Self {
-        Self { log_odds: LONE }
+        Self { log_odds: ACCOMPANIED }
     }
 
     /// Takes in what the track's tiles carry now; `alone`: no other foot is within a stride.
@@ -108,7 +108,9 @@ impl Explanation {
         alone: bool,
         dt: f64,
     ) -> Option<Second> {
-        let prior = if foot.accompanied { ACCOMPANIED } else { LONE };
+        // A light contact far from all others is a foot that taps; a body stands on one foot or on two.
+        let lone = !foot.accompanied && (foot.bears() || seen.force > BODY_N);
+        let prior = if lone { LONE } else { ACCOMPANIED };
         let mut spread = Spread::default();
         if seen.force > SPREAD_N && foot.tiles.len() > 1 {
             spread = Spread::of(foot.tiles.iter().map(|&position| &list[position as usize]), seen.middle);
