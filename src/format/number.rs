@@ -61,7 +61,13 @@ fn without_suffix(digits: &str, base: u32) -> &str {
 pub(crate) fn plain(value: f64) -> String {
     let rounded = format!("{value:.4}");
     let text = rounded.trim_end_matches('0').trim_end_matches('.');
-    if text == "-0" || (text == "0" && value != 0.0) { value.to_string() } else { text.to_owned() }
+    if value != 0.0 && value.abs() < 1e-6 {
+        format!("{value:e}")
+    } else if text == "-0" || (text == "0" && value != 0.0) {
+        value.to_string()
+    } else {
+        text.to_owned()
+    }
 }
 
 #[cfg(test)]

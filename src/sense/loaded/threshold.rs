@@ -19,7 +19,7 @@ use crate::units::Newtons;
 const VISIT_S: f32 = 0.012;
 
 /// From how many visits on end on a loaded tile carries a foot: hum that crosses the threshold does not stay above it.
-const SETTLED: u32 = 4;
+const SETTLED: u32 = 2;
 
 /// Longest time between two readings that says something of noise, in seconds.
 const GAP_S: f32 = 0.5;

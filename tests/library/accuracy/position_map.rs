@@ -44,12 +44,12 @@ impl Bench {
         }
     }
 
-    /// Errors of a point load that has been lying still for 80 ms, in metres: without, with; and
+    /// Errors of a point load that has been lying still for 30 ms, in metres: without, with; and
     /// whether no sensor was at the end of its range.
     fn errors(&mut self, at: Vec2, force: f32) -> ([f32; 2], bool) {
         let load = Load { print: Print::Point, position: at, heading: 0.0, force: Newtons(force) };
         for pressed in [false, true] {
-            for _ in 0..if pressed { 80 } else { 5 } {
+            for _ in 0..if pressed { 30 } else { 5 } {
                 self.millis += 1;
                 let readings = self.sim.step_under(pressed.then_some(load));
                 let received = Instant::from_millis(self.millis.into());
