@@ -20,7 +20,7 @@ pub const FORCES_N: [f32; 4] = [50.0, 100.0, 200.0, 400.0];
 const SETTLE_MS: u32 = 60;
 
 /// How long the floor is empty between two contacts, in milliseconds.
-const PAUSE_MS: u32 = 15;
+const PAUSE_MS: u32 = 60;
 
 /// How far inside the plate's edges contacts are tried, in metres.
 const MARGIN_M: f32 = 0.005;

@@ -109,11 +109,12 @@ impl Twist {
 }
 
 /// By how much the one diagonal of a tile carries more, what it would by its centre of pressure if the plate were limp,
-/// and the whole load, in newtons; `None` without load.
+/// and the whole load, in newtons; `None` without load, or for readings so absurd that they add up to no number.
 fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
     let whole = sw + se + nw + ne;
     let place = (se + ne - sw - nw) * (nw + ne - sw - se) / whole;
-    (whole > 1.0).then_some((sw - se - nw + ne, place, whole))
+    let diagonal = sw - se - nw + ne;
+    (whole > 1.0 && place.is_finite() && diagonal.is_finite()).then_some((diagonal, place, whole))
 }
 
 /// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`; only plates that are known to
