@@ -16,7 +16,7 @@ fn one_contact_over_a_whole_tile() {
         // few for that (80 floors of 15 x 15 places: 94 to 98 %).
         let inside = 100.0 * row.share_inside();
         // From 350 N on a lone contact may be two feet, and its ellipse is as wide.
-        let expected = 90.0..=if row.force.0 < 350.0 { 99.5 } else { 100.0 };
+        let expected = 90.0..=if row.force.0 < 350.0 { 99.9 } else { 100.0 };
         assert!(expected.contains(&inside), "{inside} % in the ellipse, {what}");
         // The paper, without a position map: typically under 2 cm, under 5 cm at worst.
         assert!(found.median_cm < 2.0 && found.worst_cm < 5.0, "{what}");

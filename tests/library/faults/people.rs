@@ -152,7 +152,7 @@ fn s10_an_object_left_on_a_control_is_shown_after_a_minute_and_presses_nothing()
     walker.lift();
     walker.wait(100);
     walker.stand(Newtons(690.0));
-    walker.wait(300);
+    walker.wait(800);
     assert!(clicks(&mut walker, "home"));
 }
 
