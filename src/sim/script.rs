@@ -151,7 +151,8 @@ mod tests {
         let length = script.duration().as_millis() as u64;
         for ms in 0..length {
             let at = Instant::from_millis(ms);
-            (loads.clear(), feet.clear());
+            loads.clear();
+            feet.clear();
             script.loads_at(at, &mut loads);
             script.feet_at(at, &mut feet);
             whole += loads.iter().map(|load| load.force.0).sum::<f32>();
@@ -173,7 +174,8 @@ mod tests {
         assert!(jump < 0.006, "{jump} m in a millisecond");
         // Steps are those of the seed.
         let other = walk(someone().rolling_as_people_do(4));
-        (loads.clear(), feet.clear());
+        loads.clear();
+        feet.clear();
         let mut others = Vec::new();
         script.loads_at(Instant::from_millis(1500), &mut loads);
         other.loads_at(Instant::from_millis(1500), &mut others);

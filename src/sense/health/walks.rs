@@ -100,11 +100,11 @@ impl Walk {
         for (tile, forces) in forces.iter_mut().enumerate() {
             let least = (0..4).min_by(|&a, &b| forces[a].total_cmp(&forces[b])).unwrap();
             let lifts = (-RESTS_N - forces[least]).max(0.0);
-            for corner in 0..4 {
+            for (corner, &force) in forces.iter().enumerate() {
                 // Force and moments stay; the load goes over to the diagonal.
                 let sign = if corner == least || corner == least ^ 3 { 1.0 } else { -1.0 };
                 let noise = self.noise[(self.now as usize * 31 + tile * 4 + corner) % self.noise.len()];
-                let mut reads = (forces[corner] + sign * lifts) * self.gains[tile][corner] + noise;
+                let mut reads = (force + sign * lifts) * self.gains[tile][corner] + noise;
                 if let Some((at, which, fault, since, held)) = self.fault
                     && (at, which) == (tile, corner)
                 {
