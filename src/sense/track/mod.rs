@@ -235,7 +235,7 @@ impl Tracker {
                 let foot = &mut self.tracks[which];
                 let before = foot.centre();
                 let until_now = std::mem::replace(&mut foot.shared, false);
-                foot.alone(tiles.list(), until_now, dt);
+                foot.alone(tiles.list(), dt);
                 let quality_changed = std::mem::take(&mut foot.quality_changed);
                 if until_now || quality_changed {
                     foot.restart_smoothing();

@@ -42,8 +42,6 @@ pub(super) struct Track {
     pub peak: f64,
     /// Seconds for which another foot alone has been enough.
     pub enough_s: f64,
-    /// Seconds for which its own sway is not to be taken for a newcomer.
-    pub cooldown: f64,
     /// Seconds for which not even a slow shift of weight is.
     pub suppressed_s: f64,
     /// Which group of feet it is estimated with.
@@ -111,7 +109,6 @@ impl Track {
             empty_s: 0.0,
             peak: 0.0,
             enough_s: 0.0,
-            cooldown: 0.0,
             suppressed_s: 0.0,
             group: 0,
             links_from: 0,
@@ -228,8 +225,8 @@ impl Track {
         }
     }
 
-    /// Measures the track by the tiles that it has to itself (Eq. 4); `until_now` it has shared them.
-    pub(super) fn alone(&mut self, list: &[LoadedTile], until_now: bool, dt: f64) {
+    /// Measures the track by the tiles that it has to itself (Eq. 4).
+    pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
@@ -240,7 +237,6 @@ impl Track {
             sum += tile.centroid.as_dvec2() * weighed;
         }
         let centre = sum / weight;
-        let _ = until_now;
         if dt > 0.0 {
             let weight = 1.0 - (-dt / 0.015).exp();
             let rate = (force - self.state[FORCE]) / dt;
@@ -260,7 +256,6 @@ impl Track {
     /// Moves the slow past on by `dt`.
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
-        self.cooldown = (self.cooldown - dt).max(0.0);
         self.suppressed_s = (self.suppressed_s - dt).max(0.0);
         self.partner = self.partner.map(|(place, ago)| (place, ago + dt)).filter(|&(_, ago)| ago < PARTNER_S);
         self.smoothed.centre += self.smoothed.velocity * dt;
@@ -273,13 +268,12 @@ impl Track {
     pub(super) fn on_quality_change(&mut self, quality: Quality, lasts: bool) {
         self.quality = quality;
         self.quality_changed = true;
-        self.cooldown = CALM_S;
         self.suppressed_s = if lasts { CALM_S } else { 0.0 };
     }
 
     /// Takes nothing of what happens in the next moment for a newcomer.
     pub(super) fn suppress_births(&mut self) {
-        (self.cooldown, self.suppressed_s) = (CALM_S, CALM_S);
+        self.suppressed_s = CALM_S;
     }
 
     /// Stands alone with this force and centre of pressure from now on.
