@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::engine::Engine;
 use crate::floor::{Floor, Geometry, PositionMap, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, ForceFrame, Method, Sensing, TileLoad};
+use crate::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorDoubt, TileLoad};
 use crate::sim::{
     self, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor,
 };
@@ -130,7 +130,7 @@ impl Rig {
     /// Sensing as this floor's calibration allows, with nobody on it yet.
     #[must_use]
     pub fn sensing(&self, method: Method) -> Sensing {
-        Sensing::new(self.geometry, method).with_maps(&self.maps)
+        self.sensing_without_maps(method).with_maps(&self.maps)
     }
 
     /// The controls of `layout` on this floor.
@@ -148,7 +148,9 @@ impl Rig {
     /// Sensing that knows the floor's calibration but none of its position maps.
     #[must_use]
     pub fn sensing_without_maps(&self, method: Method) -> Sensing {
-        Sensing::new(self.geometry, method)
+        let doubt =
+            if self.sim.has_memory() { SensorDoubt::default() } else { SensorDoubt::without_memory() };
+        Sensing::with_config(self.geometry, method, SensingConfig { doubt, ..SensingConfig::default() })
     }
 
     /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.

@@ -173,6 +173,12 @@ impl SimFloor {
         floor
     }
 
+    /// Whether a reading depends on what came before: some part lags or creeps.
+    #[must_use]
+    pub const fn has_memory(&self) -> bool {
+        !self.memories.is_empty()
+    }
+
     /// Where its tiles and sensors are.
     #[must_use]
     pub const fn geometry(&self) -> &Geometry {

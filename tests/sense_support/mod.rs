@@ -317,7 +317,7 @@ impl Score {
     /// Runs `method` over `scene` and adds what comes out.
     pub fn add(&mut self, scene: &Scene, method: Method) {
         // What is known of these sensors is how they were made.
-        let doubt = SensorDoubt { offset_n: 0.5, gain: 0.05 };
+        let doubt = SensorDoubt { offset_n: 0.5, gain: 0.05, memory: 0.0 };
         let config = SensingConfig { doubt, ..SensingConfig::default() };
         let mut sensing = Sensing::with_config(scene.geometry, method, config);
         let mut last: HashMap<usize, u32> = HashMap::new();
