@@ -100,7 +100,8 @@ impl SensorDoubt {
         let offset = Vec4::splat(self.offset_n);
         let noise = Vec4::splat(tile.noise_n * tile.noise_n);
         let memory = share * self.memory * Vec4::from_array(tile.corners);
-        let variance = (offset * offset + misread * misread + memory * memory + vague * vague + noise) * scale;
+        let variance =
+            (offset * offset + misread * misread + memory * memory + vague * vague + noise) * scale;
         Covariance {
             xx: strayed + (x * x).dot(variance),
             xy: (x * y).dot(variance),
