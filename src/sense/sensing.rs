@@ -176,9 +176,12 @@ mod tests {
 
     #[test]
     fn a_light_contact_is_less_certain_than_a_heavy_one() {
-        let (geometry, sensing) = eq4();
-        // Of tiles with a map, for without one the doubt about each part's law outweighs its zero.
-        let mut sensing = sensing.with_maps(&vec![Some(PositionMap::NONE); geometry.tile_count()]);
+        let geometry = Geometry::default();
+        // Of load cells with maps: otherwise each part's law and memory outweigh its zero.
+        let config = SensingConfig { doubt: SensorDoubt::without_memory(), ..SensingConfig::default() };
+        let mut sensing =
+            Sensing::with_config(geometry, Method::Eq4, config)
+                .with_maps(&vec![Some(PositionMap::NONE); geometry.tile_count()]);
         let mut radius = |force| {
             let mut frame = ForceFrame::empty(&geometry);
             press(&mut frame, &geometry, Vec2::splat(0.45), force);

@@ -79,6 +79,8 @@ pub struct LoadedTile {
     /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
     /// zero on a floor on which it is too small to matter.
     pub noise_n: f32,
+    /// How much of `wrench` is taken to be left by a recent load, in newtons; 0 under heavy loads.
+    pub left_n: f32,
     /// Where the load acts, in floor metres: on the tile's plate, or up to a few centimetres beside it
     /// if part of the load lies on tiles around it that are too light to count themselves.
     pub centroid: Vec2,
@@ -278,6 +280,7 @@ impl LoadedTile {
             wrench,
             vague: corners::contradicted(corners),
             noise_n: 0.0,
+            left_n: 0.0,
             centroid: centre + arm,
             quality: Quality::Live,
             weight: counted(wrench.force),

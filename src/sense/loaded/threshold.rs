@@ -173,6 +173,13 @@ impl Thresholds {
         noise + self.residual[index].min(self.lowest[index])
     }
 
+    /// What a recent load is taken to have left on the loaded tile at `index`, which carries `force`, in newtons: all of
+    /// its residual load as long as that alone would keep it loaded, nothing from twice as much on.
+    pub(super) fn left_n(&self, index: usize, force: f32) -> f32 {
+        let residual = self.residual[index].min(self.lowest[index]);
+        residual * (2.0 - force / (self.on[index] + residual)).clamp(0.0, 1.0)
+    }
+
     /// Standard deviation of the noise of each sensor of the tile at `index`, in newtons.
     pub(super) fn noise_n(&self, index: usize) -> f32 {
         if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 }
@@ -466,6 +473,19 @@ mod tests {
         sound.run(700, 0.001, &[(12, 700.0)]);
         sound.run(6000, 0.01, &[]);
         assert_eq!(sound.run(10, 0.001, &[(12, 6.5)]).1, 0);
+    }
+
+    #[test]
+    fn light_loads_right_after_heavy_ones_are_taken_to_be_left_by_them_in_part() {
+        let mut floor = Floor::new(0.0, 0.0, 0.0);
+        let mut left = |force: f32, millis: u32| {
+            floor.run(millis, 0.001, &[(12, force)]);
+            floor.tiles.list().first().map(|tile| tile.left_n)
+        };
+        assert_eq!(left(60.0, 50), Some(0.0), "nothing came before");
+        assert_eq!(left(700.0, 700), Some(0.0), "far more than can be left");
+        // 5.5 % a decade of 700 N over 0.7 s is some 50 N.
+        assert!(left(60.0, 10).is_some_and(|left| (25.0..60.0).contains(&left)));
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! Feet as contacts.
 
 use super::params::dormant::{PLACE_M, REPORTED};
-use super::params::output::{AMBIGUOUS_M, INFLATION, LOST_M, OTHERS_MISREAD, TOGETHER_M};
+use super::params::output::{AMBIGUOUS_M, INFLATION, LEAST_N, LOST_M, OTHERS_MISREAD, TOGETHER_M};
 use glam::Vec2;
 
 use super::state::{EAST, NORTH, Track};
@@ -43,6 +43,10 @@ impl Tracker {
             } else {
                 Covariance::default()
             };
+            if !foot.shared {
+                let left: f32 = foot.tiles.iter().map(|&position| list[position as usize].left_n).sum();
+                contact.force = Newtons((contact.force.0 - left).max(LEAST_N));
+            }
             for &position in &foot.tiles {
                 let tile = &list[position as usize];
                 let (mut share, load) = part_of(foot, tile, &self.cells);

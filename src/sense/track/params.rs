@@ -398,6 +398,9 @@ pub(super) mod output {
 
     /// The largest standard deviation that inflation may lead to: it is in this group of tiles, no more is known.
     pub(in crate::sense::track) const LOST_M: f64 = 0.3;
+
+    /// The least force of a contact all of which may be residual load, in newtons: as much as can be placed.
+    pub(in crate::sense::track) const LEAST_N: f32 = 2.0;
 }
 
 /// The tracker.
