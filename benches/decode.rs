@@ -13,7 +13,7 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
-use underfoot::wire::garble::{bundle_bomb, hostile_address, tag_bomb};
+use underfoot::wire::corrupt::{bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{Batch, Decoder, Limits, Readings, SensorEncoder, SensorFormat, SensorPacket, check};
 
 /// The packets of one millisecond, one per board.

@@ -6,7 +6,7 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use underfoot::feel::{Hum, Lasting, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::feel::{Hum, Lasting, RendererConfig, Spot, SustainedCue, SustainedCues, renderer};
 use underfoot::floor::Floor;
 use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
@@ -21,22 +21,22 @@ fn voices(criterion: &mut Criterion) {
     for name in ["smooth", "rubber", "wood", "gravel", "a hum"] {
         let hum = Lasting::Hum(Hum { level: Newtons(2.0), hz: 90.0, noise: 0.3 });
         let effect = effects.get(name).and_then(|named| named.effect.kind.lasting()).unwrap_or(hum);
-        let rub = |tile: u16| Rub {
+        let sustained_cue = |tile: u16| SustainedCue {
             key: u32::from(tile),
             spots: [Spot { tile, weight: 1.0 }].into_iter().collect(),
             effect,
             speed_m_s: 0.3,
             force: Newtons(150.0),
-            ..Rub::default()
+            ..SustainedCue::default()
         };
-        let rubs: Rubs = (0..36).map(rub).collect();
+        let sustained: SustainedCues = (0..36).map(sustained_cue).collect();
         let (mut sender, mut renderer) = renderer(RendererConfig::of(&Floor::default(), RATE as u32));
         let mut out = vec![0.0; BLOCK * renderer.channels()];
         let mut frame = 0_u64;
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 for _ in 0..RATE / BLOCK as u64 {
-                    sender.rubs(&rubs);
+                    sender.sustain(&sustained);
                     renderer.render(&mut out, Instant::from_micros(frame * 1_000_000 / RATE));
                     frame += BLOCK as u64;
                     black_box(&out);

@@ -20,7 +20,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 /// Waits for one datagram and gives what it says of controls; resets the zoom whenever `home` is clicked.
 ///
 /// # Errors
-/// What the socket says, or that the datagram is no OSC.
+/// What the socket says, or that the datagram is not OSC.
 pub fn listen(socket: &UdpSocket, floor: &str) -> Result<Vec<String>, Box<dyn Error>> {
     let mut bytes = [0; 1536];
     let length = socket.recv(&mut bytes)?;

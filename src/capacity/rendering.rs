@@ -2,8 +2,8 @@ use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
 use crate::feel::{
-    Click, Cue, CueSender, FeelCounters, Friction, MAX_MODES, ModalBank, Mode, Renderer, RendererConfig, Rub,
-    Rubs, Spot, renderer,
+    Click, Cue, CueSender, FeelCounters, Friction, MAX_MODES, ModalBank, Mode, Renderer, RendererConfig,
+    Spot, SustainedCue, SustainedCues, renderer,
 };
 use crate::floor::Floor;
 use crate::units::{Instant, Newtons};
@@ -21,7 +21,7 @@ pub struct RenderWork {
     pub sample_rate: u32,
     /// Modes that each tile is struck with 20 times a second; 0 for no strikes, at most 64.
     pub modes: usize,
-    /// Whether nine feet rub, on all tiles between them.
+    /// Whether nine feet slide, on all tiles between them.
     pub friction: bool,
     /// Force of each mode: 0.4 N leaves the limiters at rest, 20 N keeps all of them at work.
     pub level: Newtons,
@@ -49,7 +49,7 @@ pub struct RenderLoad {
     /// The clicks that strike each tile together.
     clicks: Vec<Click>,
     strikes_per_second: u64,
-    rubs: Rubs,
+    sustained: SustainedCues,
     frame: u64,
     next_strike: u64,
     out: Vec<f32>,
@@ -69,7 +69,7 @@ impl RenderLoad {
         Self {
             clicks: clicks.collect(),
             strikes_per_second: if work.modes == 0 { 0 } else { STRIKES * renderer.channels() as u64 },
-            rubs: if work.friction { nine_rubs() } else { Rubs::new() },
+            sustained: if work.friction { nine_sustained() } else { SustainedCues::new() },
             frame: 0,
             next_strike: 0,
             out: vec![0.0; BLOCK * renderer.channels()],
@@ -97,7 +97,7 @@ impl RenderLoad {
                 }
                 self.next_strike += 1;
             }
-            self.sender.rubs(&self.rubs);
+            self.sender.sustain(&self.sustained);
             self.renderer.render(&mut self.out, block_start);
             std::hint::black_box(&self.out);
         }
@@ -155,10 +155,10 @@ fn mode(number: usize) -> Mode {
     Mode { frequency_hz: 55.0 + 10.0 * number as f32, decay_s: 0.03 + 0.001 * number as f32, amplitude: 0.1 }
 }
 
-/// Nine feet that between them rub on all 36 tiles.
-fn nine_rubs() -> Rubs {
+/// Nine feet that between them slide on all 36 tiles.
+fn nine_sustained() -> SustainedCues {
     (0..9_u32)
-        .map(|foot| Rub {
+        .map(|foot| SustainedCue {
             key: foot,
             spots: (0..4).map(|spot| Spot { tile: foot as u16 * 4 + spot, weight: 0.25 }).collect(),
             effect: Friction {
@@ -171,7 +171,7 @@ fn nine_rubs() -> Rubs {
             .into(),
             speed_m_s: 0.3,
             force: Newtons(300.0),
-            ..Rub::default()
+            ..SustainedCue::default()
         })
         .collect()
 }

@@ -181,15 +181,15 @@ fn list(effects: &Effects, as_json: bool) {
 }
 
 fn measured(sheet: &EffectSheet) -> serde_json::Value {
-    let heard = sheet.heard.as_ref();
+    let analysis = sheet.analysis.as_ref();
     json!({
         "name": sheet.name,
         "kind": sheet.effect.kind.name(),
-        "peak_n": heard.map(|heard| heard.peak),
-        "rms_n": heard.map(|heard| heard.rms),
-        "within_band": heard.map(|heard| heard.within),
-        "loudest_hz": heard.map(|heard| heard.loudest_hz),
-        "centroid_hz": heard.map(|heard| heard.centroid_hz),
+        "peak_n": analysis.map(|analysis| analysis.peak),
+        "rms_n": analysis.map(|analysis| analysis.rms),
+        "within_band": analysis.map(|analysis| analysis.within),
+        "loudest_hz": analysis.map(|analysis| analysis.loudest_hz),
+        "centroid_hz": analysis.map(|analysis| analysis.centroid_hz),
         "decay_s": sheet.decay_s,
         "band_hz": [sheet.effect.manner.band.low_hz, sheet.effect.manner.band.high_hz],
     })

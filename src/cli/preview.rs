@@ -18,7 +18,7 @@ use underfoot::preview::{
 use underfoot::schema;
 use underfoot::sense::{Contact, Method};
 use underfoot::serve::{Command, Server};
-use underfoot::sim::{Encore, Foot, FootDriver, FootHandle, feet_by_hand};
+use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
 use underfoot::sink::{EventSink, Fanout};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, UdpSource};
 use underfoot::units::{HostClock, Instant};
@@ -85,7 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
     let (news, layouts) = mpsc::channel();
     let (notice_sender, notices) = mpsc::channel();
-    let (commands, inbox) = mpsc::channel();
+    let (commands, received) = mpsc::channel();
     let (wishes, wished) = mpsc::channel();
 
     let desk = Desk::new(commands.clone(), news);
@@ -98,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         desk,
         commands,
     };
-    told.obey(wished, notice_sender.clone());
+    told.process_commands(wished, notice_sender.clone());
 
     let mut told = args.outputs.open(&floor.geometry)?;
     told.push(ToWindow { events: event_sender, missed: 0 });
@@ -112,7 +112,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         told,
         prefix: args.outputs.prefix.osc_prefix.clone(),
         snapshots: snapshot_input,
-        inbox,
+        received,
         notices: notice_sender,
     };
     let stop = Arc::new(AtomicBool::new(false));
@@ -175,7 +175,7 @@ impl Args {
         let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
             if self.session || self.scenario.is_some() {
                 let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
-                (Box::new(Encore::new(script, PAUSE)), "scenario on a simulated floor", None)
+                (Box::new(LoopingScript::new(script, PAUSE)), "scenario on a simulated floor", None)
             } else {
                 let (handle, driver) = feet_by_hand();
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
@@ -209,7 +209,7 @@ struct Served {
     told: Fanout,
     prefix: Prefix,
     snapshots: triple_buffer::Input<Snapshot>,
-    inbox: Receiver<Command>,
+    received: Receiver<Command>,
     notices: Sender<String>,
 }
 
@@ -228,7 +228,7 @@ impl Served {
             .with_events(Box::new(self.told))
             .with_prefix(self.prefix)
             .with_snapshots(self.snapshots)
-            .with_commands(self.inbox);
+            .with_commands(self.received);
         Ok(server.run(stop)?)
     }
 }
@@ -282,7 +282,7 @@ struct Obeyed {
 
 impl Obeyed {
     /// Does what the person at the window wants, on a thread that ends with the window.
-    fn obey(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
+    fn process_commands(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
         thread::spawn(move || {
             for wish in wished {
                 let command = match wish {

@@ -6,7 +6,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Rubs, Spot, renderer};
+use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Spot, SustainedCues, renderer};
 use underfoot::floor::{Floor, TileId};
 use underfoot::sink::{ActuatorSink, ChannelMap, WavOptions, WavSink, WhenFull};
 use underfoot::units::{HostClock, Instant, Newtons};
@@ -198,7 +198,7 @@ fn wait(
         if stop.load(Ordering::Relaxed) {
             return Ok(false);
         }
-        feel.rubs(&Rubs::new());
+        feel.sustain(&SustainedCues::new());
         sink.advance(clock())?;
         thread::sleep(at.since(clock()).min(Duration::from_millis(5)));
     }

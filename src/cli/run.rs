@@ -57,7 +57,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
     let stop = stop_flag()?;
-    let (commands, inbox) = mpsc::channel();
+    let (commands, received) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
         Ok(layout) => {
             info!("the changed layout is on the floor");
@@ -83,7 +83,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_latency(latency.clone())
         .with_events(Box::new(args.outputs.open(&floor.geometry)?))
         .with_prefix(prefix)
-        .with_commands(inbox);
+        .with_commands(received);
     // Last, since threads inherit it. Where it is denied, the sound card's thread says what to do.
     claim_priority(Rank::Sensing);
     let served = server.run(&stop);
@@ -133,17 +133,17 @@ fn report_felt(felt: &FeelCounters) {
     }
 }
 
-/// What gave way on each ground of the layout that is on the floor at the end, a line each.
+/// The ground events on each ground of the layout that is on the floor at the end, a line each.
 fn grounds(engine: &Engine) -> Vec<String> {
     let mut snapshot = Snapshot::default();
     engine.snapshot(&mut snapshot);
     let grounds = engine.layout().grounds.iter().zip(&snapshot.grounds);
     grounds
         .map(|(ground, state)| {
-            let GroundCounters { events, unfelt, crowded_out } = state.counters;
+            let GroundCounters { events, unfelt, evicted } = state.counters;
             let cracks = match ground.material {
                 Material::Ice(_) => format!(
-                    "; pieces of crack {}, seeds {}, crowded out {crowded_out}",
+                    "; pieces of crack {}, seeds {}, evicted {evicted}",
                     state.cracks.len(),
                     state.seeds.len()
                 ),

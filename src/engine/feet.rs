@@ -7,14 +7,14 @@ use glam::Vec2;
 
 use super::people::{Person, SAME_FOOT_M};
 use super::snapshot::{FootRole, FootState};
-use super::step::{Burden, Landing, RESTS, RESTS_N, StepWatch, Support};
+use super::step::{Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
 use super::still::Stillness;
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
 use crate::units::{Instant, Newtons};
 use crate::widget::Guard;
 
-/// Feet and people for which there is room from the start; more cost an allocation once.
+/// FootHistories and people for which there is room from the start; more cost an allocation once.
 const ROOM: usize = 64;
 
 /// How often a foot's place is kept, and how many of them: the last 0.4 s.
@@ -38,7 +38,7 @@ const STEADY_M: f32 = 0.015;
 const FALLEN: f32 = 0.6;
 const FALL_PLACES: usize = 15;
 
-/// Whose other foot carried less than this did not stand on it, in newtons.
+/// Least force on the other foot for it to count as standing, in newtons.
 const STOOD_N: f32 = 150.0;
 
 /// A press has most of its force after so long; weight is shifted from foot to foot in no less than 0.3 s.
@@ -59,26 +59,26 @@ const OTHERS_N: f32 = 50.0;
 
 /// Where a foot was, with which force, and what the person's other feet carried.
 #[derive(Clone, Copy, Debug, Default)]
-struct Past {
+struct PastLoad {
     place: Vec2,
     force: f32,
     others: f32,
 }
 
-/// What a control wants of a foot.
+/// Which way of pressing a control answers to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Takes {
+pub(super) enum PressMode {
     /// A press that is over soon.
     Tap,
     /// A press that may last.
     Hold,
-    /// Somebody who stands on it.
-    Body,
+    /// A stance: the person stands on it.
+    Stand,
 }
 
 /// One contact with its past.
 #[derive(Clone, Debug)]
-pub(super) struct Foot {
+pub(super) struct FootHistory {
     pub(super) id: ContactId,
     pub(super) person: u32,
     pub(super) landed: Instant,
@@ -90,7 +90,7 @@ pub(super) struct Foot {
     /// Whether it came from elsewhere, and not from a control back to where it had stood.
     stepped: bool,
     /// Whether somebody stood on the other foot when it landed.
-    vouched: bool,
+    has_support: bool,
     in_stance: bool,
     step: bool,
     watch: StepWatch,
@@ -99,15 +99,15 @@ pub(super) struct Foot {
     share: Option<f32>,
     /// What it pressed with when it had been down for a moment.
     early: Option<f32>,
-    /// What the person's other feet carried when this one was last looked at.
+    /// What the person's other feet carried when this one was last examined.
     others: f32,
-    past: [Past; PLACES],
+    past: [PastLoad; PLACES],
     next: usize,
     kept: usize,
     kept_at: Instant,
 }
 
-impl Foot {
+impl FootHistory {
     fn new(contact: &Contact, person: &Person, now: Instant) -> Self {
         let (place, force) = (contact.centroid, contact.force.0);
         Self {
@@ -119,7 +119,7 @@ impl Foot {
             force,
             pressing: false,
             stepped: person.steps_to(place, now),
-            vouched: false,
+            has_support: false,
             in_stance: false,
             step: false,
             watch: StepWatch::default(),
@@ -128,14 +128,14 @@ impl Foot {
             early: None,
             others: 0.0,
             // The latest is at `next` - 1.
-            past: [Past { place, force, others: 0.0 }; PLACES],
+            past: [PastLoad { place, force, others: 0.0 }; PLACES],
             next: 0,
             kept: 0,
             kept_at: now,
         }
     }
 
-    /// Whether it has been left on the floor and is no foot.
+    /// Whether it has been left on the floor and counts as an object.
     pub(super) fn is_object(&self) -> bool {
         self.still.is_object()
     }
@@ -145,12 +145,12 @@ impl Foot {
         !self.in_stance && !self.is_object()
     }
 
-    /// Whether it walks, stands or rests on a control that takes something else, and so presses nothing on purpose.
-    pub(super) fn is_step_on(&self, takes: Takes, now: Instant) -> bool {
-        match takes {
-            Takes::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
-            Takes::Hold => self.step || self.watch.stands(now) && self.took_weight_over(),
-            Takes::Body => false,
+    /// Whether it walks, stands or rests on a control of this mode, which therefore must not answer.
+    pub(super) fn is_step_on(&self, mode: PressMode, now: Instant) -> bool {
+        match mode {
+            PressMode::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
+            PressMode::Hold => self.step || self.watch.stands(now) && self.took_weight_over(),
+            PressMode::Stand => false,
         }
     }
 
@@ -159,7 +159,7 @@ impl Foot {
         self.still.update(self.force, self.place, now);
         if now.since(self.kept_at) >= PLACE_EVERY {
             self.kept_at = now;
-            self.past[self.next] = Past { place: self.place, force: self.force, others: self.others };
+            self.past[self.next] = PastLoad { place: self.place, force: self.force, others: self.others };
             self.next = (self.next + 1) % PLACES;
             self.kept = (self.kept + 1).min(PLACES);
         }
@@ -177,7 +177,7 @@ impl Foot {
     }
 
     /// What it was like so many kept places ago.
-    fn past(&self, ago: usize) -> Past {
+    fn past(&self, ago: usize) -> PastLoad {
         self.past[(self.next + 2 * PLACES - 1 - ago) % PLACES]
     }
 
@@ -205,16 +205,17 @@ impl Foot {
 
     /// Whether it may start a press of a control with this `guard`, as far as its past tells.
     ///
-    /// What is stood upon waits until somebody stands there. What must not start by accident waits until the foot has shown that it takes no step. What only
-    /// asks waits so where nobody is known to stand there who can have meant it. What is free never waits.
-    pub(super) fn is_meant(&self, takes: Takes, guard: Guard, now: Instant) -> bool {
+    /// A control to stand on ([`PressMode::Stand`]) starts once the foot has settled. A guarded control starts once
+    /// the foot has settled and has not taken the weight over, since that would be a step; one that only asks for
+    /// confirmation does so at once if the other foot supports the person. A free control starts at once.
+    pub(super) fn is_meant(&self, mode: PressMode, guard: Guard, now: Instant) -> bool {
         let stays = || now.since(self.landed) >= SETTLED && self.is_steady();
         let settled = || stays() && !self.took_weight_over();
-        match (takes, guard) {
-            (Takes::Body, _) => stays(),
-            (Takes::Tap | Takes::Hold, Guard::Free) => true,
-            (Takes::Tap | Takes::Hold, Guard::Confirm { .. }) => self.vouched || settled(),
-            (Takes::Tap | Takes::Hold, Guard::HoldToRun { .. }) => settled(),
+        match (mode, guard) {
+            (PressMode::Stand, _) => stays(),
+            (PressMode::Tap | PressMode::Hold, Guard::Free) => true,
+            (PressMode::Tap | PressMode::Hold, Guard::Confirm { .. }) => self.has_support || settled(),
+            (PressMode::Tap | PressMode::Hold, Guard::HoldToRun { .. }) => settled(),
         }
     }
 
@@ -252,14 +253,14 @@ impl Foot {
         if now.since(self.landed) >= EARLY {
             self.early.get_or_insert(self.force);
         }
-        let burden = Burden {
+        let loading = Loading {
             force: self.force,
             share,
             age: now.since(self.landed),
             travelled: self.place.distance(self.landed_at),
-            vouched: self.vouched,
+            has_support: self.has_support,
         };
-        self.step |= self.watch.is_step(&burden, now);
+        self.step |= self.watch.is_step(&loading, now);
     }
 
     fn role(&self, now: Instant) -> FootRole {
@@ -267,7 +268,7 @@ impl Foot {
             FootRole::Object
         } else if self.in_stance {
             FootRole::Stance
-        } else if self.is_step_on(Takes::Tap, now) {
+        } else if self.is_step_on(PressMode::Tap, now) {
             FootRole::Step
         } else {
             FootRole::Free
@@ -277,20 +278,20 @@ impl Foot {
 
 /// All contacts with their past, and the people they belong to.
 #[derive(Clone, Debug)]
-pub(super) struct Feet {
+pub(super) struct FootHistories {
     /// In the order of their ids.
-    feet: Vec<Foot>,
+    feet: Vec<FootHistory>,
     people: Vec<Person>,
     next_person: u32,
 }
 
-impl Default for Feet {
+impl Default for FootHistories {
     fn default() -> Self {
         Self { feet: Vec::with_capacity(ROOM), people: Vec::with_capacity(ROOM), next_person: 1 }
     }
 }
 
-impl Feet {
+impl FootHistories {
     /// Takes in the contacts of one frame.
     ///
     /// # Real-time
@@ -333,7 +334,7 @@ impl Feet {
     }
 
     /// The foot of a contact.
-    pub(super) fn of(&self, id: ContactId) -> Option<&Foot> {
+    pub(super) fn of(&self, id: ContactId) -> Option<&FootHistory> {
         self.feet.binary_search_by_key(&id, |foot| foot.id).ok().and_then(|at| self.feet.get(at))
     }
 
@@ -364,21 +365,21 @@ impl Feet {
         self.people.iter().find(|known| known.id == person)
     }
 
-    fn land(&mut self, contact: &Contact, now: Instant) -> Foot {
+    fn land(&mut self, contact: &Contact, now: Instant) -> FootHistory {
         let whose = self.whose(contact.centroid, now);
         let person = &self.people[whose];
-        let mut foot = Foot::new(contact, person, now);
+        let mut foot = FootHistory::new(contact, person, now);
         let support = self
             .feet
             .iter()
             .filter(|other| other.person == person.id && !other.is_object())
             .filter(|other| other.force >= SUPPORT_N && !other.pressing)
             .max_by(|a, b| a.force.total_cmp(&b.force));
-        let mut mates = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
-        if let Some(mate) = mates.find(|mate| mate.was_at(foot.place)) {
+        let mut others = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
+        if let Some(other) = others.find(|other| other.was_at(foot.place)) {
             // No second foot, but the first one under another name, or a part of it told apart for a while.
-            (foot.landed, foot.landed_at) = (mate.landed, mate.landed_at);
-            (foot.step, foot.stepped, foot.vouched) = (mate.step, mate.stepped, mate.vouched);
+            (foot.landed, foot.landed_at) = (other.landed, other.landed_at);
+            (foot.step, foot.stepped, foot.has_support) = (other.step, other.stepped, other.has_support);
             return foot;
         }
         let landing = Landing {
@@ -386,7 +387,7 @@ impl Feet {
             support: support.map(|support| support.as_support(now)),
             left: person.last_left(now),
         };
-        foot.vouched = landing.is_vouched();
+        foot.has_support = landing.has_standing_support();
         foot.step = landing.walks();
         foot
     }
@@ -410,7 +411,7 @@ impl Feet {
         }
     }
 
-    /// The position of the person to whom a foot that lands at `place` belongs; a new one if it is nobody's.
+    /// The position of the person to whom a foot that lands at `place` belongs; a new person if no known one can have put it there.
     fn whose(&mut self, place: Vec2, now: Instant) -> usize {
         let near = self
             .people

@@ -1,4 +1,4 @@
-use crate::feel::{Cue, Rubs};
+use crate::feel::{Cue, SustainedCues};
 use crate::floor::{Geometry, PositionMap};
 use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
@@ -39,7 +39,7 @@ pub struct Engine {
     pending: Vec<WidgetEvent>,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
-    rubs: Rubs,
+    sustained: SustainedCues,
 }
 
 /// What one frame led to.
@@ -52,8 +52,8 @@ pub struct Step<'a> {
     /// Clicks to be felt.
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
-    pub rubs: &'a Rubs,
-    /// What gave way under feet; their cues are among `cues`.
+    pub sustained: &'a SustainedCues,
+    /// Ground events of the frame; their cues are among `cues`.
     pub grounds: &'a [GroundEvent],
     /// The feet on the floor.
     pub contacts: &'a [Contact],
@@ -91,7 +91,7 @@ impl Engine {
             pending: Vec::with_capacity(CUES),
             events: Vec::with_capacity(CUES),
             cues,
-            rubs: Rubs::new(),
+            sustained: SustainedCues::new(),
         }
     }
 
@@ -120,12 +120,12 @@ impl Engine {
         self.events.clear();
         self.events.append(&mut self.pending);
         self.cues.clear();
-        self.rubs.clear();
+        self.sustained.clear();
         self.interaction.step(frame, contacts, &self.layout, &mut self.events);
         let (interaction, now) = (&self.interaction, Now::of(frame, &self.layout, contacts));
         self.responses.answer(&self.events, now, &mut self.cues);
         let sliding = interaction.sliding();
-        self.responses.last(sliding, &interaction.holding(), now, &mut self.cues, &mut self.rubs);
+        self.responses.last(sliding, &interaction.holding(), now, &mut self.cues, &mut self.sustained);
         let broken = self.grounds.step(frame, &self.last_frame, contacts, self.interaction.page());
         self.responses.give_way(broken, now, &mut self.cues);
         self.responses.remember(contacts, |id| interaction.holds(id));
@@ -138,7 +138,7 @@ impl Engine {
             events: &self.events,
             page: self.page_told.as_ref(),
             cues: &self.cues,
-            rubs: &self.rubs,
+            sustained: &self.sustained,
             grounds: self.grounds.events(),
             contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }

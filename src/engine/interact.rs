@@ -4,7 +4,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::feet::{Feet, Foot, Takes};
+use super::feet::{FootHistories, FootHistory, PressMode};
 use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
@@ -35,7 +35,7 @@ pub(super) struct Interaction {
     lost: Vec<usize>,
     /// Controls for which even an empty floor changes something.
     awake: Vec<usize>,
-    feet: Feet,
+    feet: FootHistories,
     rises: Rises,
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
@@ -80,7 +80,7 @@ impl Interaction {
             lost: Vec::with_capacity(controls.len()),
             awake: (0..controls.len()).collect(),
             controls,
-            feet: Feet::default(),
+            feet: FootHistories::default(),
             rises: Rises::default(),
             running: false,
         }
@@ -150,14 +150,14 @@ impl Interaction {
         self.held().any(|held| held.contact == contact)
     }
 
-    /// Feet that slide on a control that keeps them.
+    /// FootHistories that slide on a control that keeps them.
     pub(super) fn sliding(&self) -> impl Iterator<Item = Sliding> + '_ {
         self.held()
             .filter(|held| self.controls.get(held.widget).is_some_and(Control::captures))
             .map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
 
-    /// Feet that keep a control pressed.
+    /// FootHistories that keep a control pressed.
     pub(super) fn holding(&self) -> impl Iterator<Item = Sliding> + Clone + '_ {
         self.held().map(|held| Sliding { widget: held.widget, contact: held.contact })
     }
@@ -216,10 +216,10 @@ impl Interaction {
             return;
         };
         let (feet, hits, page) = (&self.feet, &self.hits, self.page);
-        let works = |contact: &Contact, foot: &Foot| {
+        let works = |contact: &Contact, foot: &FootHistory| {
             let widget = hits.widget_at(at.layout, page, contact.centroid);
             let spec = widget.and_then(|widget| at.layout.widgets.get(widget));
-            spec.is_some_and(|spec| spec.region == index && !foot.is_step_on(Takes::of(spec), at.now()))
+            spec.is_some_and(|spec| spec.region == index && !foot.is_step_on(PressMode::of(spec), at.now()))
         };
         let may = |contact: &Contact| {
             let all = region.cursor != CursorRule::Working;
@@ -294,19 +294,19 @@ impl Interaction {
             return;
         };
         let (foot, weight) = (self.feet.of(contact.id), self.feet.weight(contact.id));
-        let (takes, thresholds) = (Takes::of(spec), spec.behaviour.thresholds().for_weight(weight));
+        let (mode, thresholds) = (PressMode::of(spec), spec.behaviour.thresholds().for_weight(weight));
         let slid_on = is_new
             && contact.force >= thresholds.release
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let unbelieved = contact.force >= thresholds.press && !may_start(contact, at.frame);
-        let input = if foot.is_some_and(|foot| foot.is_step_on(takes, now) || foot.is_object()) {
+        let input = if foot.is_some_and(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
             Input::Stepping { force: contact.force }
         } else if slid_on || unbelieved {
             Input::SlidOn { force: contact.force }
         } else {
             let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
-            let meant = foot.is_none_or(|foot| foot.is_meant(takes, thresholds.guard, now));
+            let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
             self::foot(contact, spec, at.frame, weight, risen && meant && !rivals)
         };
         let emitted = control.step(now, input);
@@ -342,8 +342,9 @@ impl Interaction {
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 let guard = spec.behaviour.thresholds().guard;
-                let falls = guard != Guard::Free && foot.is_some_and(Foot::falls);
-                let is_step = |foot: &Foot| foot.is_step_on(Takes::of(spec), at.now()) || foot.is_object();
+                let falls = guard != Guard::Free && foot.is_some_and(FootHistory::falls);
+                let is_step =
+                    |foot: &FootHistory| foot.is_step_on(PressMode::of(spec), at.now()) || foot.is_object();
                 if falls || foot.is_some_and(is_step) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
@@ -448,11 +449,11 @@ fn holds_to_run(layout: &Layout, widget: usize) -> bool {
     spec.is_some_and(|spec| matches!(spec.behaviour.thresholds().guard, Guard::HoldToRun { .. }))
 }
 
-impl Takes {
+impl PressMode {
     fn of(widget: &Widget) -> Self {
         let held = matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun { .. });
         match &widget.behaviour {
-            Behaviour::Lean(_) => Self::Body,
+            Behaviour::Lean(_) => Self::Stand,
             Behaviour::Button(button) if button.gestures.long_press.is_none() && !held => Self::Tap,
             Behaviour::Switch(_) | Behaviour::Selector(_) if !held => Self::Tap,
             Behaviour::Button(_)

@@ -10,7 +10,7 @@ use std::time::Duration;
 use arrayvec::ArrayVec;
 use glam::Vec2;
 
-use super::feet::Foot;
+use super::feet::FootHistory;
 use super::weight::Scale;
 use crate::units::{Instant, Newtons};
 
@@ -69,7 +69,7 @@ impl Person {
     }
 
     /// How far somebody of these `feet` would have stepped to `place`; `None` if it is none of theirs.
-    pub(super) fn reach_to(&self, place: Vec2, feet: &[Foot], now: Instant) -> Option<f32> {
+    pub(super) fn reach_to(&self, place: Vec2, feet: &[FootHistory], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
         let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);
         if nearest <= ONE_FOOT_M {
@@ -84,7 +84,7 @@ impl Person {
     }
 
     /// Whether two feet of the person are on the floor.
-    fn has_both_down(&self, feet: &[Foot]) -> bool {
+    fn has_both_down(&self, feet: &[FootHistory]) -> bool {
         let firm = || {
             feet.iter()
                 .filter(|foot| foot.person == self.id && !foot.is_object())
@@ -94,9 +94,9 @@ impl Person {
     }
 
     /// Whether this person and the `other` one, each with one foot down, stand as one person does.
-    pub(super) fn is_one_with(&self, other: &Self, feet: &[Foot]) -> bool {
+    pub(super) fn is_one_with(&self, other: &Self, feet: &[FootHistory]) -> bool {
         let of = |id: u32| feet.iter().filter(move |foot| foot.person == id && !foot.is_object());
-        let near = |one: &Foot| of(other.id).any(|foot| foot.place.distance(one.place) <= STANCE_M);
+        let near = |one: &FootHistory| of(other.id).any(|foot| foot.place.distance(one.place) <= STANCE_M);
         of(self.id).any(near) && !self.has_both_down(feet) && !other.has_both_down(feet)
     }
 
@@ -114,7 +114,7 @@ impl Person {
     }
 
     /// One of the person's feet has left the floor.
-    pub(super) fn leave(&mut self, foot: &Foot, now: Instant) {
+    pub(super) fn leave(&mut self, foot: &FootHistory, now: Instant) {
         if self.left.is_full() {
             self.left.remove(0);
         }

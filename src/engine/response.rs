@@ -5,7 +5,9 @@ mod values;
 use std::sync::Arc;
 
 use super::interact::Sliding;
-use crate::feel::{Click, Clicks, Cue, Effect, EffectKind, Manner, Player, Rub, Rubs, Spot, Spots, key};
+use crate::feel::{
+    Click, Clicks, Cue, Effect, EffectKind, Manner, Player, Spot, Spots, SustainedCue, SustainedCues, key,
+};
 use crate::ground::GroundEvent;
 use crate::layout::{Layout, Widget};
 use crate::sense::{Contact, ContactId, ForceFrame};
@@ -83,8 +85,8 @@ impl Responses {
                     None => continue,
                 },
             };
-            let to_air = spec.feel.sound;
-            let cue = Cue { at: event.at, received: now.received, spots, to_air, ..Cue::default() };
+            let audio_gain = spec.feel.sound;
+            let cue = Cue { at: event.at, received: now.received, spots, audio_gain, ..Cue::default() };
             if let (EventKind::Changed(Value::Number(_) | Value::Pair(_)), Some(way)) = (event.kind, way) {
                 self.ends.reach(widget, spec, way, id, now);
                 if let Some((click, manner)) = self.stop((widget, spec), way, event, now) {
@@ -151,26 +153,26 @@ impl Responses {
         holding: &(impl Iterator<Item = Sliding> + Clone),
         now: Now<'_>,
         cues: &mut Vec<Cue>,
-        rubs: &mut Rubs,
+        sustained: &mut SustainedCues,
     ) {
         for sliding in sliding {
-            push(rubs, rub(sliding, now.layout, now.contacts));
+            push(sustained, sustained_cue(sliding, now.layout, now.contacts));
         }
-        self.ends.push(&self.shares, now, rubs);
+        self.ends.push(&self.shares, now, sustained);
         for Sliding { widget, contact } in holding.clone() {
             let Some(feel) = now.layout.widgets.get(widget).map(|widget| &widget.feel) else { continue };
             if let (Some(effect), Some(contact)) = (&feel.hold, now.contact(contact)) {
-                let (at, received, to_air) = (now.at, now.received, feel.sound);
-                let cue = Cue { at, received, spots: spots(contact), to_air, ..Cue::default() };
+                let (at, received, audio_gain) = (now.at, now.received, feel.sound);
+                let cue = Cue { at, received, spots: spots(contact), audio_gain, ..Cue::default() };
                 self.player.hold(effect, contact.id.0, &cue);
             }
         }
         self.player.let_go(|owner| holding.clone().any(|holding| holding.contact.0 == owner));
         let place = |owner: u32| now.contact(ContactId(owner)).map(spots);
-        self.player.due(now.at, place, cues, rubs);
+        self.player.due(now.at, place, cues, sustained);
     }
 
-    /// Appends the cues of what gave way underfoot: felt on the tiles under the contact that did it, by its
+    /// Appends the cues of ground events: felt on the tiles under the contact that did it, by its
     /// weights, or on the tile alone where the contact is not known any more.
     pub(super) fn give_way(&self, broken: &[GroundEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
         for event in broken {
@@ -219,26 +221,26 @@ fn steps(widget: &Widget) -> bool {
 }
 
 /// What a foot sliding on a control feels like now; `None` if the control has no friction.
-fn rub(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<Rub> {
+fn sustained_cue(sliding: Sliding, layout: &Layout, contacts: &[Contact]) -> Option<SustainedCue> {
     let feel = &layout.widgets.get(sliding.widget)?.feel;
     let effect = feel.drag.as_ref()?;
     let contact = contacts.iter().find(|contact| contact.id == sliding.contact)?;
-    Some(Rub {
+    Some(SustainedCue {
         key: key(contact.id.0, DRAG),
         spots: spots(contact),
         effect: effect.kind.lasting()?,
         manner: effect.manner,
         speed_m_s: contact.velocity.length(),
         force: contact.force,
-        to_air: feel.sound,
+        audio_gain: feel.sound,
     })
 }
 
-/// Appends `rub` unless the list is full, which takes more feet than a floor control page has room for.
-fn push(rubs: &mut Rubs, rub: Option<Rub>) {
-    // The rubs beyond the limit are the latest to land; they stay silent until one ends.
-    if let Some(rub) = rub {
-        let _ = rubs.try_push(rub);
+/// Appends `cue` unless the list is full, which takes more feet than a floor control page has room for.
+fn push(sustained: &mut SustainedCues, cue: Option<SustainedCue>) {
+    // Cues beyond the limit are the latest to land; they stay silent until one ends.
+    if let Some(cue) = cue {
+        let _ = sustained.try_push(cue);
     }
 }
 

@@ -21,7 +21,7 @@ const GAIN_N: f32 = 2.0;
 /// down, and ever less later. Drift of a zero is slower by far.
 const GAIN_SHARE: f32 = 0.04;
 
-/// Feet looked after at once; more than can stand on a floor with controls.
+/// Feet watched at once; more than can stand on a floor with controls.
 const FEET: usize = 64;
 
 /// The least force of each foot over the last seconds.
@@ -30,11 +30,11 @@ const FEET: usize = 64;
 /// force read then passes the threshold one day, but nobody has pressed.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Rises {
-    feet: ArrayVec<Past, FEET>,
+    feet: ArrayVec<RecentLeast, FEET>,
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Past {
+struct RecentLeast {
     id: ContactId,
     bucket: u64,
     /// Least force in this bucket and the three before, the latest first.
@@ -51,14 +51,14 @@ impl Rises {
                 Some(foot) => foot.add(bucket, contact.force.0),
                 None => {
                     // A foot comes down from nothing.
-                    let _ = self.feet.try_push(Past { id: contact.id, bucket, least: [0.0; 4] });
+                    let _ = self.feet.try_push(RecentLeast { id: contact.id, bucket, least: [0.0; 4] });
                 }
             }
         }
     }
 
     /// Whether `contact` has pressed harder within the last three to four seconds than its sensors
-    /// creep; a foot that is not looked after never has.
+    /// creep; a foot that is not watched never has.
     pub(super) fn has_risen(&self, contact: &Contact) -> bool {
         let Some(foot) = self.feet.iter().find(|foot| foot.id == contact.id) else { return false };
         let least = foot.least.into_iter().fold(f32::INFINITY, f32::min);
@@ -66,7 +66,7 @@ impl Rises {
     }
 }
 
-impl Past {
+impl RecentLeast {
     fn add(&mut self, bucket: u64, force: f32) {
         let [latest, before, third, last] = self.least;
         self.least = match bucket.saturating_sub(self.bucket) {

@@ -111,7 +111,7 @@ pub enum FootRole {
     /// A foot that may press controls.
     #[default]
     Free,
-    /// A foot in a stance zone, which is no cursor.
+    /// A foot in a stance zone, which is not a cursor.
     Stance,
     /// A foot that walks or carries the body, and presses nothing until it has lifted.
     Step,

@@ -55,7 +55,7 @@ const CARRIES: f32 = 0.65;
 /// known, in newtons: far above any press (three times the heaviest shipped threshold).
 const CARRIES_ALONE_N: f32 = 350.0;
 
-/// How long it must, so that one bad estimate is no step.
+/// How long it must, so that one bad estimate is not a step.
 const CARRIES_FOR: Duration = Duration::from_millis(30);
 
 /// A foot that stands beside the other one carries half of the body, give and take some sway;
@@ -71,7 +71,7 @@ pub(super) const RESTS: f32 = 0.25;
 pub(super) const RESTS_N: f32 = 110.0;
 const RESTS_FOR: Duration = Duration::from_secs(1);
 
-/// How far a foot rolls over before that is no wobble, in metres, and within which time of its landing.
+/// How far a foot rolls over before that is not a wobble, in metres, and within which time of its landing.
 const ROLLED_M: f32 = 0.07;
 const ROLLED_WITHIN: Duration = Duration::from_millis(1200);
 
@@ -126,14 +126,14 @@ impl Landing {
     }
 
     /// Whether somebody stood there on the other foot, who has not just come.
-    pub(super) fn is_vouched(&self) -> bool {
+    pub(super) fn has_standing_support(&self) -> bool {
         self.support.as_ref().is_some_and(|support| !support.stepped || support.age > STEP_TIME)
     }
 }
 
 /// What one foot carries at one moment.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Burden {
+pub(super) struct Loading {
     pub(super) force: f32,
     /// Share of the person's weight, or of all that the person's feet carry now; `None` if nothing
     /// is known of either.
@@ -143,7 +143,7 @@ pub(super) struct Burden {
     /// How far its centre of pressure is from where it landed, in metres.
     pub(super) travelled: f32,
     /// Whether somebody stood on the other foot when it landed.
-    pub(super) vouched: bool,
+    pub(super) has_support: bool,
 }
 
 /// Watches one foot for signs that it carries a body.
@@ -156,8 +156,8 @@ pub(super) struct StepWatch {
 
 impl StepWatch {
     /// Takes in what the foot carries now; whether it is a step (lines 3, 5 and 6).
-    pub(super) fn is_step(&mut self, burden: &Burden, now: Instant) -> bool {
-        let Burden { force, share, age, travelled, vouched } = *burden;
+    pub(super) fn is_step(&mut self, loading: &Loading, now: Instant) -> bool {
+        let Loading { force, share, age, travelled, has_support } = *loading;
         let above = |least: f32, newtons: f32| force >= newtons && share.is_none_or(|share| share >= least);
         let carries = share.map_or(force >= CARRIES_ALONE_N, |share| share >= CARRIES);
         // Of a foot alone on the floor nobody knows whether it is at rest or held there.
@@ -166,7 +166,7 @@ impl StepWatch {
         self.stands.note(above(STANDS, STANDS_N), now);
         self.carries.note(carries, now) >= Some(CARRIES_FOR)
             || rolls
-            || !vouched && force >= IMPACT_N && age <= IMPACT_WITHIN
+            || !has_support && force >= IMPACT_N && age <= IMPACT_WITHIN
     }
 
     /// Whether the foot has carried about half of the body for longer than a press lasts (line 4).
@@ -228,15 +228,15 @@ mod tests {
     fn step_after(force: f32, share: Option<f32>, travelled: impl Fn(u64) -> f32) -> Option<u64> {
         let mut watch = StepWatch::default();
         (0..5000).find(|&ms| {
-            let burden = Burden {
+            let loading = Loading {
                 force,
                 share,
                 age: Duration::from_millis(ms),
                 travelled: travelled(ms),
-                vouched: true,
+                has_support: true,
             };
             let now = Instant::from_millis(ms);
-            watch.is_step(&burden, now) || watch.stands(now)
+            watch.is_step(&loading, now) || watch.stands(now)
         })
     }
 
@@ -255,13 +255,13 @@ mod tests {
 
     #[test]
     fn line_6_an_impact_is_a_step_unless_somebody_stands_there_who_may_stamp() {
-        let lands = |vouched: bool, newtons_per_ms: f32| {
+        let lands = |has_support: bool, newtons_per_ms: f32| {
             let mut watch = StepWatch::default();
             (0..100).any(|ms| {
                 let force = (newtons_per_ms * ms as f32).min(320.0);
                 let age = Duration::from_millis(ms);
-                let burden = Burden { force, share: Some(0.3), age, travelled: 0.0, vouched };
-                watch.is_step(&burden, Instant::from_millis(ms))
+                let loading = Loading { force, share: Some(0.3), age, travelled: 0.0, has_support };
+                watch.is_step(&loading, Instant::from_millis(ms))
             })
         };
         assert!(lands(false, 10.0), "a heel strikes");

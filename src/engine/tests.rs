@@ -90,7 +90,7 @@ struct Floor {
     now: Instant,
     events: Vec<(String, EventKind)>,
     cues: Vec<Cue>,
-    rub_speeds: Vec<f32>,
+    slip_speeds: Vec<f32>,
 }
 
 impl Floor {
@@ -102,7 +102,7 @@ impl Floor {
             now: Instant::START,
             events: Vec::new(),
             cues: Vec::new(),
-            rub_speeds: Vec::new(),
+            slip_speeds: Vec::new(),
         };
         floor.stand(&[], 30);
         floor
@@ -123,7 +123,7 @@ impl Floor {
         let step = self.engine.step(frame);
         self.events.extend(step.events.iter().map(|event| (event.id.to_string(), event.kind)));
         self.cues.extend_from_slice(step.cues);
-        self.rub_speeds.extend(step.rubs.iter().map(|rub| rub.speed_m_s));
+        self.slip_speeds.extend(step.sustained.iter().map(|sustained_cue| sustained_cue.speed_m_s));
     }
 
     fn stand(&mut self, feet: &[(Vec2, f32)], millis: u64) {
@@ -205,15 +205,15 @@ fn a_loaded_foot_that_slides_onto_a_button_does_not_press_it_until_lifted() {
 }
 
 #[test]
-fn a_slider_keeps_its_foot_and_rubs_while_it_moves() {
+fn a_slider_keeps_its_foot_and_slides_while_it_moves() {
     let mut floor = Floor::with_page();
     let (west, east) = (Vec2::new(0.6, 1.5), Vec2::new(1.2, 1.5));
     floor.stand(&[(west, 80.0)], 60);
     floor.slide(west, east, 80.0, 0.3);
     // Far off the slider to the north: captured all the same.
     floor.slide(east, east + Vec2::new(0.0, 0.25), 80.0, 0.3);
-    let fastest = floor.rub_speeds.iter().copied().fold(0.0, f32::max);
-    assert!((0.2..0.4).contains(&fastest), "moved at 0.3 m/s, rubbed at {fastest}");
+    let fastest = floor.slip_speeds.iter().copied().fold(0.0, f32::max);
+    assert!((0.2..0.4).contains(&fastest), "moved at 0.3 m/s, slid at {fastest}");
     floor.stand(&[], 50);
     let events = floor.events_of("zoom");
     assert_eq!(events.first(), Some(&EventKind::Pressed));

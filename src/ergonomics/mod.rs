@@ -115,13 +115,13 @@ impl Subject<'_> {
     /// Other controls that are ever there at the same time.
     fn others(&self) -> impl Iterator<Item = &Widget> {
         let own = self.widget.page;
-        let meets = move |other: &Widget| own.is_none() || other.page.is_none() || other.page == own;
+        let shares_page = move |other: &Widget| own.is_none() || other.page.is_none() || other.page == own;
         let index = self.index;
         self.layout
             .widgets
             .iter()
             .enumerate()
-            .filter(move |(other, widget)| *other != index && meets(widget))
+            .filter(move |(other, widget)| *other != index && shares_page(widget))
             .map(|(_, widget)| widget)
     }
 }

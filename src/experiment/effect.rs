@@ -5,7 +5,7 @@ use glam::Vec2;
 
 use super::Figure;
 use super::chart::{Axis, LINE_M, MARGIN_M, Page, Plot, Sample, THEME, Type};
-use crate::feel::{Band, Effect, Gesture, Heard, audition, heard};
+use crate::feel::{Analysis, Band, Effect, Gesture, analyse, audition};
 use crate::floor::Rect;
 use crate::layout::Colour;
 use crate::scene::{Ink, Paint, Scene, Stroke};
@@ -26,7 +26,7 @@ pub struct EffectSheet {
     /// Newtons at the plate.
     pub samples: Vec<f32>,
     /// What was measured; `None` of silence.
-    pub heard: Option<Heard>,
+    pub analysis: Option<Analysis>,
     /// How fast what was played once falls to a tenth, in seconds; of a click, that of the press.
     pub decay_s: Option<f32>,
 }
@@ -43,13 +43,13 @@ impl EffectSheet {
     #[must_use]
     pub fn new(name: &str, about: &str, effect: Arc<Effect>, gesture: Gesture, sample_rate: u32) -> Self {
         let samples = audition(&effect, &gesture, sample_rate);
-        let heard = heard(&samples, sample_rate as f32, effect.manner.band);
+        let analysis = analyse(&samples, sample_rate as f32, effect.manner.band);
         let pressed =
             gesture.release_s.map_or(samples.len(), |release| (release * sample_rate as f32) as usize);
-        let press = heard_of(samples.get(..pressed.min(samples.len())), sample_rate, effect.manner.band);
+        let press = analysis_of(samples.get(..pressed.min(samples.len())), sample_rate, effect.manner.band);
         let decay_s = press.filter(|_| gesture.press_s.is_some()).map(|press| press.decay_s);
         let (name, about) = (name.to_owned(), about.to_owned());
-        Self { name, about, effect, gesture, sample_rate, samples, heard, decay_s }
+        Self { name, about, effect, gesture, sample_rate, samples, analysis, decay_s }
     }
 
     /// What was measured, by name.
@@ -57,13 +57,13 @@ impl EffectSheet {
     pub fn figures(&self) -> Vec<(&'static str, String)> {
         let band = self.effect.manner.band;
         let mut figures = vec![("kind", self.effect.kind.name().to_owned())];
-        if let Some(heard) = &self.heard {
+        if let Some(analysis) = &self.analysis {
             figures.extend([
-                ("peak", format!("{:.1} N", heard.peak)),
-                ("root mean square", format!("{:.2} N", heard.rms)),
-                ("within its band", format!("{:.1} %", 100.0 * heard.within)),
-                ("loudest at", format!("{:.0} Hz", heard.loudest_hz)),
-                ("mean frequency", format!("{:.0} Hz", heard.centroid_hz)),
+                ("peak", format!("{:.1} N", analysis.peak)),
+                ("root mean square", format!("{:.2} N", analysis.rms)),
+                ("within its band", format!("{:.1} %", 100.0 * analysis.within)),
+                ("loudest at", format!("{:.0} Hz", analysis.loudest_hz)),
+                ("mean frequency", format!("{:.0} Hz", analysis.centroid_hz)),
             ]);
             if let Some(decay_s) = self.decay_s {
                 figures.push(("falls to a tenth in", format!("{:.0} ms", 1000.0 * decay_s)));
@@ -86,7 +86,7 @@ impl EffectSheet {
 
     fn waveform(&self, page: &mut Page, area: Rect) {
         let ms = 1000.0 * self.samples.len() as f32 / self.sample_rate as f32;
-        let most = even(1.04 * self.heard.as_ref().map_or(1.0, |heard| heard.peak));
+        let most = even(1.04 * self.analysis.as_ref().map_or(1.0, |analysis| analysis.peak));
         let x = Axis { from: 0.0, to: ms.max(1.0), tick: tick(ms.max(1.0), 12.0), label: "milliseconds" };
         let y = Axis { from: -most, to: most, tick: 0.5 * most, label: "newtons" };
         let plot = Plot::draw(page, area, "At the plate", x, y);
@@ -124,12 +124,12 @@ impl EffectSheet {
             let dashes = Stroke::new(0.0004, Ink::solid(THEME.good)).dashed(0.0014, 0.001);
             page.line(Vec2::new(edge, area.min.y), Vec2::new(edge, area.max.y), dashes);
         }
-        let Some(heard) = &self.heard else { return };
+        let Some(analysis) = &self.analysis else { return };
         // Power per five hertz, the greatest at 0 dB.
-        let width = (5.0 / heard.bin_hz).ceil().max(1.0) as usize;
-        let power: Vec<f32> = heard.spectrum.chunks(width).map(|bins| bins.iter().sum()).collect();
+        let width = (5.0 / analysis.bin_hz).ceil().max(1.0) as usize;
+        let power: Vec<f32> = analysis.spectrum.chunks(width).map(|bins| bins.iter().sum()).collect();
         let greatest = power.iter().copied().fold(f32::MIN_POSITIVE, f32::max);
-        let at = |number: usize| (number as f32 + 0.5) * width as f32 * heard.bin_hz;
+        let at = |number: usize| (number as f32 + 0.5) * width as f32 * analysis.bin_hz;
         let points: Vec<Vec2> = power
             .iter()
             .enumerate()
@@ -195,8 +195,8 @@ impl EffectSheet {
     }
 }
 
-fn heard_of(samples: Option<&[f32]>, sample_rate: u32, band: Band) -> Option<Heard> {
-    heard(samples?, sample_rate as f32, band)
+fn analysis_of(samples: Option<&[f32]>, sample_rate: u32, band: Band) -> Option<Analysis> {
+    analyse(samples?, sample_rate as f32, band)
 }
 
 impl Figure for EffectSheet {

@@ -48,11 +48,11 @@ pub struct Followed {
     pub one_foot: Errors,
     /// Feet of `one_foot` and of `two_feet` that were within the 95 % ellipse of their contacts.
     pub inside: [usize; 2],
-    /// Feet looked for, one per foot that was down and sample.
+    /// Feet searched for, one per foot that was down and sample.
     pub feet: usize,
     /// Those of them for which there was no contact.
     pub missed: usize,
-    /// Feet looked for while two were down, and those of them found within 5 cm.
+    /// Feet searched for while two were down, and those of them found within 5 cm.
     pub of_two: usize,
     /// Feet found within 5 cm while two were down.
     pub of_two_within_5cm: usize,
@@ -196,7 +196,7 @@ fn count(
     score: &mut Followed,
 ) {
     let heavy = contacts.iter().filter(|contact| contact.force.0 > DOWN_N).count();
-    // A foot that is just landing or leaving is looked for no more, but its contact is no extra one.
+    // A foot that is just landing or leaving is searched for no more, but its contact is not an extra one.
     score.extra += heavy.saturating_sub(feet.len());
     score.feet += down.len();
     let mut all_near = true;
@@ -231,7 +231,7 @@ const NEAR_M: f32 = 0.05;
 /// The 95 % quantile of chi-squared with two degrees of freedom.
 pub(super) const ELLIPSE_95: f32 = 5.991;
 
-/// Most contacts that feet are looked for among, heaviest first: beyond it the search grows out of hand.
+/// Most contacts that feet are searched for among, heaviest first: beyond it the search grows out of hand.
 const MOST_CONTACTS: usize = 6;
 
 /// For each foot the place of its contact: as many pairs as there can be, with the least total distance.

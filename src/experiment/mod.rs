@@ -32,13 +32,13 @@
 mod chart;
 mod effect;
 mod errors;
+mod fault_hook;
 mod figure;
 mod follow;
 mod goodness;
 mod intent;
 mod intent_act;
 mod intent_sweep;
-mod mishap;
 mod orientation;
 mod people;
 mod place;
@@ -55,12 +55,12 @@ mod wilson;
 
 pub use effect::EffectSheet;
 pub use errors::{Errors, Summary};
+pub use fault_hook::FaultHook;
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
 pub use goodness::Goodness;
 pub use intent::{Guarded, IntentEffort, IntentLine, IntentScore, IntentTable};
 pub use intent_sweep::{IntentSweep, SweepCell};
-pub use mishap::Mishap;
 pub use orientation::{Orientation, OrientationRow};
 pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use place::{PlaceLine, PlaceTable};

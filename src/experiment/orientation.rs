@@ -16,7 +16,7 @@ use crate::units::Newtons;
 
 /// A contact lying across a seam.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Shape {
+struct SeamContact {
     name: &'static str,
     print: Print,
     /// Half its width and half its length, in metres.
@@ -26,14 +26,14 @@ struct Shape {
 
 const HALF_LENGTH_M: f32 = 0.11;
 
-const SHAPES: [Shape; 4] = [
-    Shape::bar("line", 0.004),
-    Shape::ellipse("ellipse 1 : 3", HALF_LENGTH_M / 3.0),
-    Shape::ellipse("ellipse 2 : 3", HALF_LENGTH_M / 1.5),
-    Shape::ellipse("disc", HALF_LENGTH_M),
+const SEAM_CONTACTS: [SeamContact; 4] = [
+    SeamContact::bar("line", 0.004),
+    SeamContact::ellipse("ellipse 1 : 3", HALF_LENGTH_M / 3.0),
+    SeamContact::ellipse("ellipse 2 : 3", HALF_LENGTH_M / 1.5),
+    SeamContact::ellipse("disc", HALF_LENGTH_M),
 ];
 
-impl Shape {
+impl SeamContact {
     const fn bar(name: &'static str, half_width: f32) -> Self {
         let half = Vec2::new(half_width, HALF_LENGTH_M);
         Self { name, print: Print::Bar { half_m: half }, half, round: false }
@@ -71,7 +71,7 @@ impl Shape {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OrientationRow {
     /// Which of the shapes.
-    shape: Shape,
+    shape: SeamContact,
     /// Whether the sensors are without error.
     pub exact: bool,
     /// Between the seam's normal and the shape's long axis, in degrees.
@@ -114,7 +114,7 @@ impl Orientation {
     pub fn measure(seed: u64) -> Result<Self, ExperimentError> {
         let geometry = Geometry::of_paper_tiles(2, 1).unwrap_or_default();
         let mut rows = Vec::new();
-        for shape in SHAPES {
+        for shape in SEAM_CONTACTS {
             for exact in [true, false] {
                 let mut rig =
                     if exact { Rig::ideal(geometry) } else { Rig::of_calibrated_parts(geometry, seed)? };
@@ -148,12 +148,12 @@ impl Orientation {
         Ok(Self { rows })
     }
 
-    fn of(&self, shape: Shape, exact: bool) -> impl Iterator<Item = &OrientationRow> {
+    fn of(&self, shape: SeamContact, exact: bool) -> impl Iterator<Item = &OrientationRow> {
         self.rows.iter().filter(move |row| row.shape.name == shape.name && row.exact == exact)
     }
 
     /// Greatest distance of the measured angles from the expected ones, in degrees.
-    fn worst(&self, shape: Shape, exact: bool) -> f32 {
+    fn worst(&self, shape: SeamContact, exact: bool) -> f32 {
         self.of(shape, exact).map(|row| (row.measured_deg - row.expected_deg).abs()).fold(0.0, f32::max)
     }
 }
@@ -180,7 +180,7 @@ impl Figure for Orientation {
              the rounder the contact, the more it leans to the seam's normal",
         );
         let (cell, left, top) = (Vec2::new(0.0215, 0.0245), MARGIN_M + 0.0235, 0.1135);
-        for (line, shape) in SHAPES.into_iter().enumerate() {
+        for (line, shape) in SEAM_CONTACTS.into_iter().enumerate() {
             let y = top - (line + 1) as f32 * cell.y;
             let name = Type { strong: true, colour: COLOURS[line], ..Type::PLAIN };
             page.text(Vec2::new(MARGIN_M, y + 0.5 * cell.y - 0.001), name, format_args!("{}", shape.name));
@@ -199,7 +199,7 @@ impl Figure for Orientation {
         let title = "Angle from the seam's normal, degrees";
         let plot =
             Plot::draw(&mut page, area, title, axis("of the contact"), axis("of the difference vector"));
-        for (shape, colour) in SHAPES.into_iter().zip(COLOURS) {
+        for (shape, colour) in SEAM_CONTACTS.into_iter().zip(COLOURS) {
             let expected = (0..=85).map(|deg| Vec2::new(deg as f32, shape.expected(deg as f32)));
             plot.curve(&mut page, expected, Stroke::new(LINE_M, Ink::faint(colour, 0.55)));
             // At 0 degrees all of them point along the normal, and their marks would cover the axes.
@@ -252,7 +252,7 @@ impl Figure for Orientation {
             "angle of the difference vector from the seam's normal, degrees (theory / exact floor / calibrated parts)\n\
              contact at         15                30                45                60                75     worst\n",
         );
-        for shape in SHAPES {
+        for shape in SEAM_CONTACTS {
             let _ = write!(text, "{:14}", shape.name);
             for deg in [15.0_f32, 30.0, 45.0, 60.0, 75.0] {
                 let at = |exact| {
@@ -295,12 +295,12 @@ mod tests {
     fn an_exact_floor_sees_the_angles_that_geometry_gives() {
         let figure = Orientation::measure(1).unwrap();
         assert_eq!(figure.rows.len(), 4 * 2 * 18);
-        for shape in SHAPES {
+        for shape in SEAM_CONTACTS {
             // Prints are made of half-centimetre cells, and a tile's lever is half a degree at most.
             assert!(figure.worst(shape, true) < 2.5, "{}: {}", shape.name, figure.worst(shape, true));
         }
         // A line is followed, a disc gives the normal, an ellipse lies between.
-        let at_45 = SHAPES.map(|shape| shape.expected(45.0));
+        let at_45 = SEAM_CONTACTS.map(|shape| shape.expected(45.0));
         assert!((at_45[0] - 45.0).abs() < 1e-3 && at_45[3].abs() < 1e-3, "{at_45:?}");
         assert!(at_45[0] > at_45[1] && at_45[1] > at_45[2] && at_45[2] > at_45[3]);
     }

@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use super::METHODS;
 use super::errors::Summary;
+use super::fault_hook::FaultHook;
 use super::follow::{Followed, Follower, Truth};
-use super::mishap::Mishap;
 use super::rig::{ExperimentError, Rig};
 use crate::floor::Geometry;
 use crate::sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
@@ -199,8 +199,8 @@ impl PeopleTable {
         Ok(())
     }
 
-    /// Lets `visit` happen on the floor of `rig` while `mishap` does.
-    pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, mishap: &mut impl Mishap) {
+    /// Lets `visit` happen on the floor of `rig` while `fault` does.
+    pub fn add_visit(&mut self, rig: &mut Rig, visit: &Visit, fault: &mut impl FaultHook) {
         let mut methods = METHODS.map(|(method, _)| (rig.sensing(method), Follower::default()));
         let mut loads: Vec<Load> = Vec::new();
         let mut truth: Vec<Truth> = Vec::new();
@@ -212,8 +212,8 @@ impl PeopleTable {
             truth.clear();
             truth.extend(loads.iter().filter_map(|load| Truth::of(load, rig)));
             let activity = visit.activity(at) as usize;
-            mishap.before(milli, rig);
-            let shared = RefCell::new(&mut *mishap);
+            fault.before(milli, rig);
+            let shared = RefCell::new(&mut *fault);
             let disturb =
                 |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(milli, board, readings);
             rig.step_disturbed(loads.iter().copied(), disturb, |frame| {

@@ -9,7 +9,7 @@ use thiserror::Error;
 use crate::engine::Engine;
 use crate::floor::{Floor, Geometry, PositionMap, SensorId};
 use crate::layout::Layout;
-use crate::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorDoubt, TileLoad};
+use crate::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty, TileLoad};
 use crate::sim::{
     self, CalibrationError, FloorQuality, Load, MappingError, MoveError, SensorFault, SimConfig, SimFloor,
 };
@@ -148,9 +148,9 @@ impl Rig {
     /// Sensing that knows the floor's calibration but none of its position maps.
     #[must_use]
     pub fn sensing_without_maps(&self, method: Method) -> Sensing {
-        let doubt =
-            if self.sim.has_memory() { SensorDoubt::default() } else { SensorDoubt::without_memory() };
-        Sensing::with_config(self.geometry, method, SensingConfig { doubt, ..SensingConfig::default() })
+        let uncertainty =
+            if self.sim.has_memory() { SensorUncertainty::default() } else { SensorUncertainty::without_memory() };
+        Sensing::with_config(self.geometry, method, SensingConfig { uncertainty, ..SensingConfig::default() })
     }
 
     /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.

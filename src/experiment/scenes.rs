@@ -137,7 +137,7 @@ pub struct SceneLine {
     pub floor: &'static str,
     /// How contacts were made.
     pub method: &'static str,
-    /// Feet looked for: one per foot down and sample of 10 ms.
+    /// Feet searched for: one per foot down and sample of 10 ms.
     pub feet: usize,
     /// Share of the feet that were found within 5 cm.
     pub within_5cm: f32,

@@ -159,7 +159,7 @@ pub struct SpotRow {
     pub thing: Thing,
     /// Its force.
     pub force: Newtons,
-    /// How it was looked for.
+    /// How it was searched for.
     pub way: Way,
     /// Distance from the true centre of pressure.
     pub errors: Errors,

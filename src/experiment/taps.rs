@@ -13,8 +13,8 @@ use smallvec::SmallVec;
 
 use super::METHODS;
 use super::errors::{Errors, Summary};
+use super::fault_hook::FaultHook;
 use super::follow::DOWN_N;
-use super::mishap::Mishap;
 use super::people::quality_note;
 use super::rig::{ExperimentError, Rig};
 use crate::engine::{Engine, Snapshot};
@@ -274,8 +274,8 @@ impl TapTable {
         Ok(())
     }
 
-    /// Lets `scene` happen on the floor of `rig` while `mishap` does.
-    pub fn add_scene(&mut self, rig: &mut Rig, scene: &TapScene, mishap: &mut impl Mishap) {
+    /// Lets `scene` happen on the floor of `rig` while `fault` does.
+    pub fn add_scene(&mut self, rig: &mut Rig, scene: &TapScene, fault: &mut impl FaultHook) {
         let which = scene.way as usize;
         let scores = &mut self.scores;
         let mut engines = METHODS.map(|(method, _)| Watched {
@@ -286,10 +286,10 @@ impl TapTable {
         });
         for milli in 1..=scene.length_ms() {
             let (feet, time) = (scene.feet(milli), u64::from(milli));
-            mishap.before(time, rig);
+            fault.before(time, rig);
             let mut cues: SmallVec<[Cue; 4]> = SmallVec::new();
             let loads = feet.iter().map(Foot::as_load);
-            let shared = RefCell::new(&mut *mishap);
+            let shared = RefCell::new(&mut *fault);
             let disturb =
                 |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(time, board, readings);
             rig.step_disturbed(loads, disturb, |frame| {
@@ -298,7 +298,7 @@ impl TapTable {
                     cues = watched.step(frame, scene, milli, &feet[1], &mut scores[which]);
                 }
             });
-            mishap.felt(time, &cues);
+            fault.felt(time, &cues);
         }
         for (watched, scores) in engines.iter().zip(scores.iter_mut()) {
             let score = &mut scores[which];
@@ -473,7 +473,7 @@ mod tests {
     }
 
     #[test]
-    fn feet_neither_jump_nor_leap_while_they_press() {
+    fn feet_never_jump_while_they_press() {
         for (_, scene) in scenes().take(20) {
             for milli in 201..scene.length_ms() {
                 let ([stance, working], [next, later]) = (scene.feet(milli), scene.feet(milli + 1));

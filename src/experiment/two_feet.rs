@@ -229,7 +229,7 @@ const HALO: Paint = Paint { fill: Some(Ink::faint(THEME.plate, 0.75)), stroke: N
 fn draw_contact(page: &mut Page, map: &Map, contact: &Contact, colour: Colour, badge: f32) {
     let edge = Stroke::new(0.0003, Ink::solid(colour));
     let paint = Paint::fill(Ink::faint(colour, 0.12)).with_stroke(edge);
-    // A doubtful contact's ellipse may reach beyond the floor.
+    // An ambiguous contact's ellipse may reach beyond the floor.
     let ellipse = within(map.floor, ellipse_95(contact.centroid, contact.covariance).collect());
     map.outline(page, ellipse, paint);
     let at = map.at(contact.centroid);

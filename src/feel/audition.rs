@@ -2,7 +2,8 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use super::{
-    Clicks, Cue, Effect, EffectKind, Lasting, Player, RendererConfig, Rub, Rubs, Spots, key, renderer,
+    Clicks, Cue, Effect, EffectKind, Lasting, Player, RendererConfig, Spots, SustainedCue, SustainedCues,
+    key, renderer,
 };
 use crate::floor::{Actuator, Floor, Geometry};
 use crate::units::{Instant, Newtons};
@@ -179,7 +180,13 @@ impl Audition {
     }
 
     /// Appends what happens at `now`, to be called about once a millisecond; whether there is more to come.
-    pub fn step(&mut self, now: Instant, spots: &Spots, cues: &mut Vec<Cue>, rubs: &mut Rubs) -> bool {
+    pub fn step(
+        &mut self,
+        now: Instant,
+        spots: &Spots,
+        cues: &mut Vec<Cue>,
+        sustained: &mut SustainedCues,
+    ) -> bool {
         let t = now.since(self.start).as_secs_f32();
         let moment = self.gesture.at(t);
         let last = self.last.replace(moment).unwrap_or(moment);
@@ -204,15 +211,15 @@ impl Audition {
                 }
                 self.thud = at_end;
                 if let Some(push) = end.push.filter(|_| at_end && moment.beyond_m > 0.0) {
-                    self.rub(Lasting::Hum(push.hum_at(moment.beyond_m)), moment, spots, rubs);
+                    self.sustain(Lasting::Hum(push.hum_at(moment.beyond_m)), moment, spots, sustained);
                 }
             }
             kind => match kind.lasting() {
-                Some(lasting) => self.rub(lasting, moment, spots, rubs),
+                Some(lasting) => self.sustain(lasting, moment, spots, sustained),
                 None => self.press(t, &cue, cues),
             },
         }
-        self.player.due(now, |_| Some(spots.clone()), cues, rubs);
+        self.player.due(now, |_| Some(spots.clone()), cues, sustained);
         t < self.gesture.length_s
     }
 
@@ -241,16 +248,16 @@ impl Audition {
         }
     }
 
-    fn rub(&self, effect: Lasting, moment: Moment, spots: &Spots, rubs: &mut Rubs) {
+    fn sustain(&self, effect: Lasting, moment: Moment, spots: &Spots, sustained: &mut SustainedCues) {
         // One thing at a time always fits.
-        let _ = rubs.try_push(Rub {
+        let _ = sustained.try_push(SustainedCue {
             key: key(FOOT, 0),
             spots: spots.clone(),
             effect,
             manner: self.effect.manner,
             speed_m_s: moment.speed_m_s,
             force: moment.force,
-            ..Rub::default()
+            ..SustainedCue::default()
         });
     }
 }
@@ -272,17 +279,17 @@ pub fn audition(effect: &Arc<Effect>, gesture: &Gesture, sample_rate: u32) -> Ve
     let mut more = true;
     for ms in 0.. {
         let now = Instant::from_millis(ms);
-        let mut rubs = Rubs::new();
+        let mut sustained = SustainedCues::new();
         cues.clear();
         if more {
-            more = audition.step(now, &spots, &mut cues, &mut rubs);
+            more = audition.step(now, &spots, &mut cues, &mut sustained);
         } else {
             break;
         }
         cues.iter().for_each(|cue| {
             sender.send(cue);
         });
-        sender.rubs(&rubs);
+        sender.sustain(&sustained);
         // The millisecond that begins now, whole samples of it.
         let (from, to) = (ms * rate / 1000, (ms + 1) * rate / 1000);
         let begin = samples.len();

@@ -14,7 +14,7 @@ pub const MAX_MODES: usize = 8;
 pub const MAX_SPOTS: usize = 4;
 
 /// Most things that last (frictions, textures, held tones) and are felt at once.
-pub const MAX_RUBS: usize = 40;
+pub const MAX_SUSTAINED: usize = 40;
 
 /// Force at the plate; actuators give 40 N and more.
 pub(crate) const LEVEL: Num = num(0.0..=200.0).hand(0.0..=40.0);
@@ -119,13 +119,13 @@ pub struct Cue {
     /// How it gets along with what else is felt there.
     pub manner: Manner,
     /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
-    pub to_air: f32,
+    pub audio_gain: f32,
 }
 
 /// Something felt for as long as a foot slides, presses or pushes, as it is now.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Rub {
-    /// Tells this rub from others from one update to the next.
+pub struct SustainedCue {
+    /// Tells this sustained cue from others from one update to the next.
     pub key: u32,
     /// Where it is felt.
     pub spots: Spots,
@@ -138,8 +138,8 @@ pub struct Rub {
     /// Normal force.
     pub force: Newtons,
     /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
-    pub to_air: f32,
+    pub audio_gain: f32,
 }
 
-/// All that lasts at this moment; a rub that is not in it fades out.
-pub type Rubs = ArrayVec<Rub, MAX_RUBS>;
+/// All that lasts at this moment; a sustained cue that is not in it fades out.
+pub type SustainedCues = ArrayVec<SustainedCue, MAX_SUSTAINED>;

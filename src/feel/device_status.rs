@@ -33,11 +33,11 @@ pub enum DeviceState {
     /// It plays.
     #[default]
     Playing,
-    /// It is unplugged or its host has gone; it is looked for once a second.
+    /// It is unplugged or its host has gone; it is searched for once a second.
     Lost,
     /// It is there and takes no samples; it is opened anew once a second.
     Faulty,
-    /// It is there and can no longer do what the floor needs; it is looked at once a second.
+    /// It is there and can no longer do what the floor needs; it is examined once a second.
     Unfit,
 }
 

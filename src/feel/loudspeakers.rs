@@ -5,7 +5,7 @@ use super::Spot;
 use super::mix::{FAINT, Output};
 use crate::floor::{Actuator, Loudspeaker};
 
-/// Loudspeakers that play one cue or rub at most.
+/// Loudspeakers that play one cue or sustained cue at most.
 pub(super) const NEAREST: usize = 3;
 
 /// Full scales per newton of a loudspeaker without a gain of its own: as a nominal actuator has them.
@@ -14,7 +14,7 @@ pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 /// As near as a loudspeaker gets, in metres: nobody stands inside of one.
 const NEAR_M: f32 = 0.1;
 
-/// The loudspeakers that play one cue or rub, and how much of it each gets.
+/// The loudspeakers that play one cue or sustained cue, and how much of it each gets.
 pub(super) type Panned = ArrayVec<Output, NEAREST>;
 
 /// The loudspeakers around the floor.
@@ -39,7 +39,7 @@ impl Loudspeakers {
         Self { all: all.collect(), centres: centres.into() }
     }
 
-    /// Where something on these spots is heard, of which `to_air` (0 to 1) is to be heard at all.
+    /// Where something on these spots is heard, of which `audio_gain` (0 to 1) is to be heard at all.
     ///
     /// The three nearest loudspeakers share it, the nearer the more, with the same
     /// power together wherever it is. The share of the third falls to nothing
@@ -47,9 +47,9 @@ impl Loudspeakers {
     ///
     /// # Real-time
     /// No allocation.
-    pub(super) fn heard(&self, spots: &[Spot], to_air: f32) -> Panned {
+    pub(super) fn pan(&self, spots: &[Spot], audio_gain: f32) -> Panned {
         let mut heard = Panned::new();
-        if to_air.is_nan() || to_air <= 0.0 || self.all.is_empty() {
+        if audio_gain.is_nan() || audio_gain <= 0.0 || self.all.is_empty() {
             return heard;
         }
         let (mut sum, mut place) = (0.0, Vec2::ZERO);
@@ -62,7 +62,7 @@ impl Loudspeakers {
                 place += *centre * spot.weight;
             }
         }
-        let level = to_air.min(1.0) * sum.min(1.0);
+        let level = audio_gain.min(1.0) * sum.min(1.0);
         if level < FAINT || !sum.is_finite() {
             return heard;
         }
@@ -111,7 +111,7 @@ mod tests {
         let speakers = corners();
         let mut last: Option<[f32; 4]> = None;
         for tile in 0..200 {
-            let gains = gains(&speakers.heard(&[Spot { tile, weight: 1.0 }], 1.0));
+            let gains = gains(&speakers.pan(&[Spot { tile, weight: 1.0 }], 1.0));
             let power: f32 = gains.iter().map(|gain| gain * gain).sum();
             assert!((power - 1.0).abs() < 1e-4, "tile {tile}: {power}");
             if let Some(last) = last {
@@ -125,10 +125,10 @@ mod tests {
     #[test]
     fn the_nearest_is_the_loudest_and_a_cue_on_two_tiles_lies_between_them() {
         let speakers = corners();
-        let west = gains(&speakers.heard(&[Spot { tile: 0, weight: 1.0 }], 0.5));
+        let west = gains(&speakers.pan(&[Spot { tile: 0, weight: 1.0 }], 0.5));
         assert!(west[0] > 0.49 && west[0] <= 0.5, "{west:?}");
-        let between = speakers.heard(&[Spot { tile: 20, weight: 0.5 }, Spot { tile: 60, weight: 0.5 }], 1.0);
-        let middle = speakers.heard(&[Spot { tile: 40, weight: 1.0 }], 1.0);
+        let between = speakers.pan(&[Spot { tile: 20, weight: 0.5 }, Spot { tile: 60, weight: 0.5 }], 1.0);
+        let middle = speakers.pan(&[Spot { tile: 40, weight: 1.0 }], 1.0);
         for (a, b) in gains(&between).iter().zip(gains(&middle)) {
             assert!((a - b).abs() < 1e-4);
         }
@@ -138,7 +138,7 @@ mod tests {
     fn nothing_is_heard_that_is_not_meant_to_be_or_makes_no_sense() {
         let speakers = corners();
         // The last is so little that it would sound in denormal numbers.
-        for (tile, weight, to_air) in [
+        for (tile, weight, audio_gain) in [
             (0, 1.0, 0.0),
             (0, 1.0, f32::NAN),
             (0, f32::NAN, 1.0),
@@ -146,12 +146,10 @@ mod tests {
             (999, 1.0, 1.0),
             (0, 1e-35, 1.0),
         ] {
-            assert!(speakers.heard(&[Spot { tile, weight }], to_air).is_empty());
+            assert!(speakers.pan(&[Spot { tile, weight }], audio_gain).is_empty());
         }
         assert!(
-            Loudspeakers::new(&[], vec![Vec2::ZERO], 4)
-                .heard(&[Spot { tile: 0, weight: 1.0 }], 1.0)
-                .is_empty()
+            Loudspeakers::new(&[], vec![Vec2::ZERO], 4).pan(&[Spot { tile: 0, weight: 1.0 }], 1.0).is_empty()
         );
         let far = Loudspeaker { at: Vec2::ZERO, channel: 4, gain_db: 0.0 };
         assert!(Loudspeakers::new(&[far], vec![Vec2::ZERO], 4).all.is_empty());

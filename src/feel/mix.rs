@@ -91,7 +91,7 @@ impl Mix {
     /// Rows that nobody wrote to add nothing. Columns beyond `samples` are of no meaning afterwards.
     ///
     /// # Panics
-    /// If `from` is no multiple of [`LANES`].
+    /// If `from` is not a multiple of [`LANES`].
     #[inline(always)]
     pub(super) fn add_to(&self, group: usize, from: usize, samples: usize, columns: &mut [[f32; LANES]]) {
         debug_assert!(from.is_multiple_of(LANES));

@@ -3,7 +3,7 @@
 //! ```text
 //! CueSender ==ring==> schedule -> clicks strike ModalBanks -+
 //!                              -> tones -+                 |
-//!           ==rubs================> voices of what lasts --+-> mix -> rack -> samples
+//!           ==sustained cues======> voices of what lasts --+-> mix -> rack -> samples
 //! ```
 //!
 //! [`renderer()`] makes both ends. Everything behind [`Renderer::render`] is
@@ -13,38 +13,41 @@
 
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
+mod active_modes;
+mod analysis;
 mod audition;
 mod click;
 mod cue;
 mod device_status;
 mod effect;
-mod heard;
+mod evicting_queue;
 mod limiter;
 mod loudspeakers;
 mod mix;
 mod modal;
 mod muted;
-mod newest;
 mod player;
 mod push;
 mod rack;
 mod renderer;
-mod ringing;
 mod schedule;
 mod scope;
 mod sender;
 mod voice;
 
+pub use analysis::{Analysis, analyse};
 pub use audition::{Audition, Gesture, Moment, audition};
-pub use cue::{Click, Cue, Impulse, MAX_MODES, MAX_RUBS, MAX_SPOTS, MODE_HZ, Mode, Rub, Rubs, Spot, Spots};
+pub use cue::{
+    Click, Cue, Impulse, MAX_MODES, MAX_SPOTS, MAX_SUSTAINED, MODE_HZ, Mode, Spot, Spots, SustainedCue,
+    SustainedCues,
+};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
-pub(crate) use effect::written;
+pub(crate) use effect::effect_at;
 pub use effect::{
-    Band, Beat, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains,
-    Hum, Knob, Lasting, MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, NamedEffect, Part, Push,
+    Band, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains, Hum,
+    Knob, Lasting, MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, NamedEffect, Part, PartKind, Push,
     Resonance, Sequence, StickSlip, Texture, Tone, TonePoint, Use,
 };
-pub use heard::{Heard, heard};
 pub use modal::ModalBank;
 pub use muted::Muted;
 pub use player::{Player, key};

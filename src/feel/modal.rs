@@ -27,7 +27,7 @@ const SLOW: f64 = 44_000.0;
 /// A mode whose amplitude falls below this (-154 dB of full scale) has rung out.
 const SILENCE: f64 = 2e-8;
 
-/// How often, in samples, modes that have rung out are looked for.
+/// How often, in samples, modes that have rung out are searched for.
 const CHECK: usize = 512;
 
 /// A bank of decaying sine modes, struck and left to ring.
@@ -74,16 +74,16 @@ struct Eight {
     /// `r`.
     turn: Complexes,
     /// `r` to the power of [`SPAN`].
-    leap: Complexes,
-    shapes: [Shape; EIGHT],
-    /// The state once more, as precise as the shapes.
+    pole_power: Complexes,
+    power_terms: [PowerTerms; EIGHT],
+    /// The state once more, as precise as the power_terms.
     rounded_re: [f32; EIGHT],
     rounded_im: [f32; EIGHT],
 }
 
 /// The terms of `r` to the power of 1 to [`SPAN`].
 #[derive(Clone, Copy, Debug)]
-struct Shape {
+struct PowerTerms {
     re: [f32; TERMS],
     im: [f32; TERMS],
 }
@@ -122,7 +122,7 @@ impl ModalBank {
 
     /// Number of modes that ring.
     #[must_use]
-    pub fn ringing(&self) -> usize {
+    pub fn active_modes(&self) -> usize {
         self.active
     }
 
@@ -299,17 +299,17 @@ impl Eight {
     const SILENT: Self = Self {
         state: Complexes::ZERO,
         turn: Complexes::ZERO,
-        leap: Complexes::ZERO,
-        shapes: [Shape { re: [0.0; TERMS], im: [0.0; TERMS] }; EIGHT],
+        pole_power: Complexes::ZERO,
+        power_terms: [PowerTerms { re: [0.0; TERMS], im: [0.0; TERMS] }; EIGHT],
         rounded_re: [0.0; EIGHT],
         rounded_im: [0.0; EIGHT],
     };
 
     /// Makes `lane` the mode that `from` holds in another lane.
     fn copy(&mut self, lane: usize, from: &Self, other: usize) {
-        self.shapes[lane] = from.shapes[other];
+        self.power_terms[lane] = from.power_terms[other];
         self.turn.set(lane, from.turn.get(other));
-        self.leap.set(lane, from.leap.get(other));
+        self.pole_power.set(lane, from.pole_power.get(other));
         self.set_state(lane, from.state.get(other));
     }
 
@@ -321,12 +321,12 @@ impl Eight {
             for term in 0..TERMS {
                 sums[of_re][term] = multiply_add::<FUSED>(
                     self.rounded_re[lane],
-                    self.shapes[lane].im[term],
+                    self.power_terms[lane].im[term],
                     sums[of_re][term],
                 );
                 sums[of_im][term] = multiply_add::<FUSED>(
                     self.rounded_im[lane],
-                    self.shapes[lane].re[term],
+                    self.power_terms[lane].re[term],
                     sums[of_im][term],
                 );
             }
@@ -337,7 +337,7 @@ impl Eight {
     #[inline(always)]
     fn advance(&mut self, samples: usize) {
         if samples == SPAN {
-            self.state = self.state.times(&self.leap);
+            self.state = self.state.times(&self.pole_power);
         } else {
             let mut power = self.turn;
             for exponent in 0..SPAN.ilog2() {
@@ -379,9 +379,9 @@ fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, basis: &Basi
     // What is next to nothing is nothing, lest faint modes end in denormal numbers.
     let rounded = |x: f64| if x.abs() < 1e-11 { 0.0 } else { x as f32 };
     let [of_re, of_im] = basis.terms_of(&re, &im);
-    eight.shapes[lane] = Shape { re: of_re.map(rounded), im: of_im.map(rounded) };
+    eight.power_terms[lane] = PowerTerms { re: of_re.map(rounded), im: of_im.map(rounded) };
     eight.turn.set(lane, turn);
-    eight.leap.set(lane, (re[SPAN - 1], im[SPAN - 1]));
+    eight.pole_power.set(lane, (re[SPAN - 1], im[SPAN - 1]));
     eight.set_state(lane, (0.0, 0.0));
 }
 

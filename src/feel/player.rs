@@ -3,13 +3,16 @@ use std::time::Duration;
 
 use arrayvec::ArrayVec;
 
-use super::{Beat, Clicks, Cue, Effect, EffectKind, Hum, Lasting, MAX_RUBS, Rub, Rubs, Spots};
+use super::{
+    Clicks, Cue, Effect, EffectKind, Hum, Lasting, MAX_SUSTAINED, PartKind, Spots, SustainedCue,
+    SustainedCues,
+};
 use crate::units::{Instant, Newtons};
 
 /// Most effects that are played or held at once; of more, the oldest ends.
 const MAX_PLAYING: usize = 16;
 
-/// Plays effects part by part as time goes on: cues for what begins, rubs for what is held.
+/// Plays effects part by part as time goes on: cues for what begins, sustained cues for what is held.
 ///
 /// It knows no clock: whoever owns it says what time it is, about once a
 /// millisecond, and gets each part ahead of its time by up to a millisecond so
@@ -32,7 +35,7 @@ struct Playing {
     received: Instant,
     next: usize,
     spots: Spots,
-    to_air: f32,
+    audio_gain: f32,
 }
 
 /// How far ahead of its time a part is handed out.
@@ -89,7 +92,7 @@ impl Player {
             received: cue.received,
             next: 0,
             spots: cue.spots.clone(),
-            to_air: cue.to_air,
+            audio_gain: cue.audio_gain,
         });
     }
 
@@ -101,7 +104,7 @@ impl Player {
         now: Instant,
         spots: impl Fn(u32) -> Option<Spots>,
         cues: &mut Vec<Cue>,
-        rubs: &mut Rubs,
+        sustained: &mut SustainedCues,
     ) {
         for playing in &mut self.playing {
             if let Some(spots) = spots(playing.owner) {
@@ -109,7 +112,7 @@ impl Player {
             }
             playing.begin_parts(now + AHEAD, cues);
             if playing.held {
-                playing.sound_on(now, rubs);
+                playing.sound_on(now, sustained);
             }
         }
         self.playing.retain(|playing| !playing.is_over(now));
@@ -117,7 +120,7 @@ impl Player {
 }
 
 impl Playing {
-    /// Hands out the parts that begin before `until`; the tones of what is held sound as rubs instead.
+    /// Hands out the parts that begin before `until`; the tones of what is held sound as sustained cues instead.
     fn begin_parts(&mut self, until: Instant, cues: &mut Vec<Cue>) {
         let EffectKind::Sequence(sequence) = &self.effect.kind else { return };
         while let Some(begins) = sequence.parts.get(self.next).map(|part| self.at + seconds(part.at_s))
@@ -125,31 +128,31 @@ impl Playing {
             && let Some(part) = sequence.part(self.next)
         {
             self.next += 1;
-            let (spots, manner, to_air) = (self.spots.clone(), self.effect.manner, self.to_air);
+            let (spots, manner, audio_gain) = (self.spots.clone(), self.effect.manner, self.audio_gain);
             // What answers the foot is the first part; the others are never late.
             let received = if part.at_s > 0.0 { begins } else { self.received };
-            let cue = Cue { at: begins, received, spots, manner, to_air, ..Cue::default() };
-            match part.beat {
-                Beat::Click(click) => cues.push(Cue { click, ..cue }),
-                Beat::Tone(tone) if !self.held => cues.push(Cue { tone: Some(tone), ..cue }),
-                Beat::Tone(_) => {}
+            let cue = Cue { at: begins, received, spots, manner, audio_gain, ..Cue::default() };
+            match part.kind {
+                PartKind::Click(click) => cues.push(Cue { click, ..cue }),
+                PartKind::Tone(tone) if !self.held => cues.push(Cue { tone: Some(tone), ..cue }),
+                PartKind::Tone(_) => {}
             }
         }
     }
 
     /// Says what is held at `now`.
-    fn sound_on(&self, now: Instant, rubs: &mut Rubs) {
+    fn sound_on(&self, now: Instant, sustained: &mut SustainedCues) {
         let t = now.since(self.at).as_secs_f32();
         match &self.effect.kind {
-            EffectKind::Continuous(tone) => self.push(0, tone.level, tone.noise, tone.held_at(t), rubs),
+            EffectKind::Continuous(tone) => self.push(0, tone.level, tone.noise, tone.held_at(t), sustained),
             EffectKind::Sequence(sequence) => {
                 for (index, part) in sequence.parts.iter().enumerate() {
-                    if let Beat::Tone(tone) = &part.beat
+                    if let PartKind::Tone(tone) = &part.kind
                         && (part.at_s..part.at_s + tone.whole_s()).contains(&t)
                     {
                         let share = sequence.share_at(t);
                         let (level, hz) = tone.at(t - part.at_s);
-                        self.push(index as u32, tone.level, tone.noise, (level * share, hz), rubs);
+                        self.push(index as u32, tone.level, tone.noise, (level * share, hz), sustained);
                     }
                 }
             }
@@ -157,15 +160,22 @@ impl Playing {
         }
     }
 
-    fn push(&self, part: u32, full: Newtons, noise: f32, (level, hz): (f32, f32), rubs: &mut Rubs) {
+    fn push(
+        &self,
+        part: u32,
+        full: Newtons,
+        noise: f32,
+        (level, hz): (f32, f32),
+        sustained: &mut SustainedCues,
+    ) {
         // Beyond what feet can tell apart, what comes last stays silent.
-        let _ = rubs.try_push(Rub {
+        let _ = sustained.try_push(SustainedCue {
             key: key(self.owner, FIRST_HELD + part),
             spots: self.spots.clone(),
             effect: Lasting::Hum(Hum { level: full * level, hz, noise }),
             manner: self.effect.manner,
-            to_air: self.to_air,
-            ..Rub::default()
+            audio_gain: self.audio_gain,
+            ..SustainedCue::default()
         });
     }
 
@@ -181,7 +191,7 @@ impl Playing {
 /// The first key number of what a player holds; lower ones are for frictions and the like.
 const FIRST_HELD: u32 = 16;
 
-/// A [`Rub::key`]: one of up to 256 things that the foot `owner` does at once.
+/// A [`SustainedCue::key`]: one of up to 256 things that the foot `owner` does at once.
 #[must_use]
 pub fn key(owner: u32, part: u32) -> u32 {
     owner.wrapping_mul(256).wrapping_add(part.min(255))
@@ -191,7 +201,7 @@ fn seconds(seconds: f32) -> Duration {
     Duration::from_micros((f64::from(seconds.max(0.0)) * 1e6).round() as u64)
 }
 
-const _: () = assert!(MAX_RUBS >= MAX_PLAYING);
+const _: () = assert!(MAX_SUSTAINED >= MAX_PLAYING);
 
 #[cfg(test)]
 mod tests {
@@ -215,11 +225,11 @@ mod tests {
     }
 
     fn sequence() -> Arc<Effect> {
-        let part = |at_s, beat| Part { at_s, beat };
+        let part = |at_s, kind| Part { at_s, kind };
         let parts = [
-            part(0.0, Beat::Click(click())),
-            part(0.0123, Beat::Click(click())),
-            part(0.02, Beat::Tone(tone())),
+            part(0.0, PartKind::Click(click())),
+            part(0.0123, PartKind::Click(click())),
+            part(0.02, PartKind::Tone(tone())),
         ];
         let kind = EffectKind::Sequence(Sequence { parts: parts.into(), curve: Default::default() });
         Arc::new(Effect { kind, manner: Manner::PLAIN })
@@ -235,21 +245,21 @@ mod tests {
 
     #[test]
     fn parts_come_ahead_of_their_time_and_follow_the_foot() {
-        let (mut player, mut cues, mut rubs) = (Player::default(), Vec::new(), Rubs::new());
-        let cue = Cue { at: at(10), received: at(10), spots: spots(3), to_air: 0.5, ..Cue::default() };
+        let (mut player, mut cues, mut sustained) = (Player::default(), Vec::new(), SustainedCues::new());
+        let cue = Cue { at: at(10), received: at(10), spots: spots(3), audio_gain: 0.5, ..Cue::default() };
         player.play(&sequence(), 1, false, cue, &mut cues);
         assert!(cues.is_empty());
         let mut handed_out = Vec::new();
         for ms in 10..60 {
             let tile = if ms < 20 { 3 } else { 4 };
-            player.due(at(ms), |_| Some(spots(tile)), &mut cues, &mut rubs);
+            player.due(at(ms), |_| Some(spots(tile)), &mut cues, &mut sustained);
             handed_out.extend(cues.drain(..).map(|cue| (ms, cue)));
         }
         let when: Vec<(u64, u64, u16)> =
             handed_out.iter().map(|(ms, cue)| (*ms, cue.at.micros(), cue.spots[0].tile)).collect();
         assert_eq!(when, [(10, 10_000, 3), (22, 22_300, 4), (29, 30_000, 4)]);
-        assert!(handed_out[2].1.tone.is_some() && rubs.is_empty());
-        assert!(handed_out.iter().all(|(_, cue)| cue.to_air == 0.5), "each part is heard as the first");
+        assert!(handed_out[2].1.tone.is_some() && sustained.is_empty());
+        assert!(handed_out.iter().all(|(_, cue)| cue.audio_gain == 0.5), "each part is heard as the first");
         assert!(player.playing.is_empty());
     }
 
@@ -258,15 +268,15 @@ mod tests {
         let (mut player, mut cues) = (Player::default(), Vec::new());
         let held = Arc::new(Effect { kind: EffectKind::Continuous(tone()), manner: Manner::PLAIN });
         for ms in 0..3000 {
-            let mut rubs = Rubs::new();
-            player.hold(&held, 7, &Cue { spots: spots(1), to_air: 0.25, ..Cue::default() });
-            player.due(at(ms), |_| None, &mut cues, &mut rubs);
-            assert_eq!(rubs.len(), 1, "a held tone goes on beyond its length");
-            assert_eq!(rubs[0].to_air, 0.25);
+            let mut sustained = SustainedCues::new();
+            player.hold(&held, 7, &Cue { spots: spots(1), audio_gain: 0.25, ..Cue::default() });
+            player.due(at(ms), |_| None, &mut cues, &mut sustained);
+            assert_eq!(sustained.len(), 1, "a held tone goes on beyond its length");
+            assert_eq!(sustained[0].audio_gain, 0.25);
         }
         player.let_go(|owner| owner != 7);
-        let mut rubs = Rubs::new();
-        player.due(at(3000), |_| None, &mut cues, &mut rubs);
-        assert!(rubs.is_empty() && cues.is_empty());
+        let mut sustained = SustainedCues::new();
+        player.due(at(3000), |_| None, &mut cues, &mut sustained);
+        assert!(sustained.is_empty() && cues.is_empty());
     }
 }

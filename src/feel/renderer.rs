@@ -4,18 +4,18 @@ use std::time::Duration;
 use glam::Vec2;
 use triple_buffer::{Output as Latest, TripleBuffer};
 
+use super::active_modes::ActiveModes;
 use super::click;
+use super::evicting_queue::evicting_queue;
 use super::limiter::Ramp;
 use super::loudspeakers::Loudspeakers;
 use super::mix::{Mix, Output, Wiring};
-use super::newest::newest;
 use super::rack::{Faults, Rack};
-use super::ringing::Ringing;
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
 use super::scope::{ScopeReader, ScopeWriter, scope};
 use super::sender::{CueSender, Shared, count};
 use super::voice::{Started, Voices};
-use super::{FeelCounters, Rubs};
+use super::{FeelCounters, SustainedCues};
 use crate::floor::{Actuator, Drive, Floor, Loudspeaker, Response};
 use crate::units::Instant;
 
@@ -35,7 +35,7 @@ pub struct RendererConfig {
     pub drive: Drive,
     /// The measured response of each tile's actuator, in tile-index order; may be shorter than `actuators`.
     pub responses: Vec<Option<Response>>,
-    /// The loudspeakers that cues and rubs with a share `to_air` are heard from.
+    /// The loudspeakers that cues and sustained cues with a share `audio_gain` are heard from.
     pub loudspeakers: Vec<Loudspeaker>,
     /// The centre of each tile, in floor metres and tile-index order: what is felt on a tile is heard from there.
     pub centres: Vec<Vec2>,
@@ -68,13 +68,14 @@ impl RendererConfig {
 /// All memory is taken here.
 #[must_use]
 pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
-    let (cues, ring) = newest(WAITING);
-    let (input, rubs) = TripleBuffer::new(&Rubs::new()).split();
+    let (cues, ring) = evicting_queue(WAITING);
+    let (input, sustained) = TripleBuffer::new(&SustainedCues::new()).split();
     let sample_rate = config.sample_rate.clamp(8_000, 768_000);
     let max_block = config.max_block.clamp(1, 8192);
     let wiring = Wiring::new(config.actuators, config.channels);
     let shared = Arc::new(Shared::new(wiring.channels().collect()));
-    let sender = CueSender { cues, rubs: input, shared: Arc::clone(&shared), turns: 0, now: Instant::START };
+    let sender =
+        CueSender { cues, sustained: input, shared: Arc::clone(&shared), turns: 0, now: Instant::START };
 
     let mut rack = Rack::new(sample_rate, config.channels);
     for (tile, channel) in wiring.channels().enumerate() {
@@ -95,8 +96,8 @@ pub fn renderer(config: RendererConfig) -> (CueSender, Renderer) {
         mute_changes: 0,
         schedule: Schedule::new(ring),
         clock: SampleClock::new(sample_rate),
-        rubs,
-        ringing: Ringing::new(sample_rate, config.channels, MODES_PER_CHANNEL),
+        sustained,
+        modes: ActiveModes::new(sample_rate, config.channels, MODES_PER_CHANNEL),
         voices: Voices::new(sample_rate as f32, config.channels),
         voiced: 0,
         mix: Mix::new(config.channels, max_block),
@@ -147,8 +148,8 @@ pub struct Renderer {
     mute_changes: u64,
     schedule: Schedule,
     clock: SampleClock,
-    rubs: Latest<Rubs>,
-    ringing: Ringing,
+    sustained: Latest<SustainedCues>,
+    modes: ActiveModes,
     voices: Voices,
     /// Frames of the block at hand that the voices have rendered.
     voiced: usize,
@@ -215,7 +216,7 @@ impl Renderer {
     /// forgotten are counted as muted.
     pub fn restart(&mut self) {
         count(&self.shared.muted, self.schedule.forget_all());
-        self.ringing.clear();
+        self.modes.clear();
         self.rack.clear();
         self.voices.clear();
         self.clock.forget();
@@ -236,7 +237,7 @@ impl Renderer {
     /// # Real-time
     /// No allocation, lock, log or system call.
     pub fn render(&mut self, out: &mut [f32], block_start: Instant) {
-        self.heed_silence();
+        self.update_silence();
         self.clock.begin(block_start);
         let (clock, delay) = (&self.clock, self.delay);
         self.schedule.arrange(|cue| clock.frame_of(cue.at + delay));
@@ -251,7 +252,7 @@ impl Renderer {
     /// # Real-time
     /// No allocation, lock, log or system call.
     pub fn render_now(&mut self, out: &mut [f32]) {
-        self.heed_silence();
+        self.update_silence();
         self.clock.forget();
         self.schedule.arrange(|_| 0);
         self.render_block(out);
@@ -263,8 +264,9 @@ impl Renderer {
             out.fill(0.0);
             return 0;
         }
-        if self.rubs.update() {
-            let started = self.voices.follow(self.rubs.output_buffer(), &self.wiring, &self.loudspeakers);
+        if self.sustained.update() {
+            let started =
+                self.voices.follow(self.sustained.output_buffer(), &self.wiring, &self.loudspeakers);
             note(&self.shared, started);
         }
         let whole = out.len() - out.len() % self.channels;
@@ -277,7 +279,7 @@ impl Renderer {
     }
 
     /// Turns the ramp the way the sender wants it.
-    fn heed_silence(&mut self) {
+    fn update_silence(&mut self) {
         let turns = self.shared.turns();
         if turns != self.turns {
             self.turns = turns;
@@ -306,15 +308,15 @@ impl Renderer {
             if !self.ramp.is_falling() {
                 self.strike_cues(first, frames);
             }
-            let stolen = self.ringing.finish_rows(frames, &mut self.mix);
+            let stolen = self.modes.finish_rows(frames, &mut self.mix);
             count(&self.shared.stolen, stolen);
             self.voices.render(&mut self.mix, self.voiced, frames);
             self.voiced = 0;
             self.ramp.fill(&mut self.gains[..frames]);
-            let faults = self.rack.process(&mut self.ringing, &self.mix, &self.gains[..frames], out);
+            let faults = self.rack.process(&mut self.modes, &self.mix, &self.gains[..frames], out);
             self.count(faults);
             if self.ramp.is_down() {
-                self.ringing.clear();
+                self.modes.clear();
                 self.rack.clear();
                 self.voices.clear();
             }
@@ -340,7 +342,7 @@ impl Renderer {
                 note(&self.shared, started);
             }
             let mut strike = |weight: f32, output: Output| {
-                let bell = self.ringing.strikable(output.channel, frame - first, &mut self.mix);
+                let bell = self.modes.strikable(output.channel, frame - first, &mut self.mix);
                 let gain = cue.click.level.0 * weight * output.per_newton;
                 let struck = click::strike(bell, &cue.click, gain);
                 count(&self.shared.refused, struck.refused);
@@ -359,7 +361,7 @@ impl Renderer {
                 }
             }
             if !cue.click.modes.is_empty() {
-                for output in self.loudspeakers.heard(&cue.spots, cue.to_air) {
+                for output in self.loudspeakers.pan(&cue.spots, cue.audio_gain) {
                     strike(1.0, output);
                     if cue.manner.duck_db > 0.0 {
                         self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());

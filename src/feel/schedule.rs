@@ -1,7 +1,7 @@
 use std::time::Duration;
 
 use super::Cue;
-use super::newest::Reader;
+use super::evicting_queue::Reader;
 use super::sender::Message;
 use crate::units::Instant;
 
@@ -42,7 +42,7 @@ impl Schedule {
         forgotten
     }
 
-    /// Cues given up so far because newer ones took their place.
+    /// Cues evicted so far because newer ones took their place.
     pub(super) fn dropped(&self) -> u64 {
         self.ring.dropped()
     }

@@ -3,20 +3,20 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
 use triple_buffer::Input;
 
-use super::newest::Writer;
-use super::{Cue, Rubs, Spot};
+use super::evicting_queue::Writer;
+use super::{Cue, Spot, SustainedCues};
 use crate::units::Instant;
 
 /// What the renderer could not do, counted since it was made.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct FeelCounters {
-    /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are given up first.
+    /// Cues that the renderer had not taken when 256 newer ones were waiting: the oldest are evicted first.
     pub dropped: u64,
     /// Cues that came while everything was silenced, or a tile that they reach was muted.
     pub muted: u64,
     /// Cues that were played later than their time.
     pub late: u64,
-    /// Spots of cues and of new rubs that no actuator can play.
+    /// Spots of cues and of new sustained cues that no actuator can play.
     pub unfelt: u64,
     /// Modes of clicks that cannot be played: not finite, or outside the ranges of [`super::Mode`].
     pub refused: u64,
@@ -113,7 +113,7 @@ pub(super) struct Message {
 #[derive(Debug)]
 pub struct CueSender {
     pub(super) cues: Writer<Message>,
-    pub(super) rubs: Input<Rubs>,
+    pub(super) sustained: Input<SustainedCues>,
     pub(super) shared: Arc<Shared>,
     pub(super) turns: u64,
     /// The time as it was last told.
@@ -124,7 +124,7 @@ impl CueSender {
     /// Sends a cue to be played; the answer is whether it is on its way.
     ///
     /// It isn't if everything is silenced; one that reaches a muted tile is, but counted too. If the renderer has
-    /// not taken any of the last 256 cues, the oldest of them is given up. All of it is counted.
+    /// not taken any of the last 256 cues, the oldest of them is evicted. All of it is counted.
     pub fn send(&mut self, cue: &Cue) -> bool {
         if self.is_silenced() {
             count(&self.shared.muted, 1);
@@ -141,14 +141,14 @@ impl CueSender {
         self.now = now;
     }
 
-    /// Says which feet rub, and how, from now on.
+    /// Says what lasts, and how, from now on.
     ///
-    /// To be called with every frame, also with no rubs: what was said last
+    /// To be called with every frame, also with no sustained cues: what was said last
     /// holds for 50 ms and then fades out, in case whoever sends has died.
-    pub fn rubs(&mut self, rubs: &Rubs) {
+    pub fn sustain(&mut self, sustained: &SustainedCues) {
         self.cues.flush();
-        self.rubs.input_buffer_mut().clone_from(rubs);
-        self.rubs.publish();
+        self.sustained.input_buffer_mut().clone_from(sustained);
+        self.sustained.publish();
     }
 
     /// Fades everything out within 5 ms and forgets all cues that were sent, because sensing is lost or somebody says stop.

@@ -13,7 +13,7 @@ pub struct Day {
     day: u8,
 }
 
-/// Something that is no day.
+/// Something that is not a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error("expected a day such as 2026-11-20")]
 pub struct NotADay;

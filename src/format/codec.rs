@@ -6,14 +6,14 @@ use std::time::Duration;
 
 use arrayvec::ArrayVec;
 
-use super::describe::{FieldDescription, Shape, first_paragraph};
+use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;
 use super::node::Node;
 use super::number::Number;
 use super::problem::Problem;
 use super::record::{Record, Variants};
-use super::text::{Entry, Text as Written, number};
+use super::text::{Entry, Text as RonText, number};
 use crate::units::Newtons;
 
 /// What is written for a `T`.
@@ -22,10 +22,10 @@ pub(crate) trait Codec<T> {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T>;
 
     /// As it is written.
-    fn write(&self, value: &T) -> Written;
+    fn write(&self, value: &T) -> RonText;
 
     /// What is written, for people.
-    fn shape(&self) -> Shape;
+    fn shape(&self) -> FieldType;
 
     /// Any value of its type.
     fn stand_in(&self) -> T;
@@ -133,7 +133,7 @@ pub(crate) trait Scalar: Copy + PartialEq {
     fn of(written: Number, scale: f64) -> Self;
 
     /// The number that reads back as the same value.
-    fn written(self, scale: f64) -> String;
+    fn to_ron(self, scale: f64) -> String;
 
     /// The value as a hand sees it.
     fn shown(self) -> f32;
@@ -147,7 +147,7 @@ impl Scalar for f32 {
         written.single / scale as Self
     }
 
-    fn written(self, scale: f64) -> String {
+    fn to_ron(self, scale: f64) -> String {
         number(self, scale)
     }
 
@@ -165,8 +165,8 @@ impl Scalar for Newtons {
         Self(f32::of(written, scale))
     }
 
-    fn written(self, scale: f64) -> String {
-        self.0.written(scale)
+    fn to_ron(self, scale: f64) -> String {
+        self.0.to_ron(scale)
     }
 
     fn shown(self) -> f32 {
@@ -184,7 +184,7 @@ impl Scalar for Duration {
         Self::from_micros((written.value / scale * 1e6).round() as u64)
     }
 
-    fn written(self, scale: f64) -> String {
+    fn to_ron(self, scale: f64) -> String {
         let text = format!("{:.6}", self.as_secs_f64() * scale);
         text.trim_end_matches('0').trim_end_matches('.').to_owned()
     }
@@ -208,7 +208,7 @@ macro_rules! whole {
                 written.value as Self
             }
 
-            fn written(self, _: f64) -> String {
+            fn to_ron(self, _: f64) -> String {
                 self.to_string()
             }
 
@@ -236,12 +236,12 @@ impl<T: Scalar> Codec<T> for Num {
         Some(T::of(number, self.scale))
     }
 
-    fn write(&self, value: &T) -> Written {
-        Written::Plain(value.written(self.scale))
+    fn write(&self, value: &T) -> RonText {
+        RonText::Plain(value.to_ron(self.scale))
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Number { range: self.range, whole: T::WHOLE }
+    fn shape(&self) -> FieldType {
+        FieldType::Number { range: self.range, whole: T::WHOLE }
     }
 
     fn stand_in(&self) -> T {
@@ -270,12 +270,12 @@ impl Codec<bool> for Flag {
         node.flag()
     }
 
-    fn write(&self, value: &bool) -> Written {
-        Written::Plain(value.to_string())
+    fn write(&self, value: &bool) -> RonText {
+        RonText::Plain(value.to_string())
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Flag
+    fn shape(&self) -> FieldType {
+        FieldType::Flag
     }
 
     fn stand_in(&self) -> bool {
@@ -291,12 +291,12 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
         node.text(self.0).map(T::from)
     }
 
-    fn write(&self, value: &T) -> Written {
-        Written::Plain(format!("{:?}", value.as_ref()))
+    fn write(&self, value: &T) -> RonText {
+        RonText::Plain(format!("{:?}", value.as_ref()))
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Text(format!("text of at most {} characters", self.0))
+    fn shape(&self) -> FieldType {
+        FieldType::Text(format!("text of at most {} characters", self.0))
     }
 
     fn stand_in(&self) -> T {
@@ -318,13 +318,13 @@ impl<T: Named> Codec<T> for Name {
         node.choice(T::ALL)
     }
 
-    fn write(&self, value: &T) -> Written {
+    fn write(&self, value: &T) -> RonText {
         let name = T::ALL.iter().find(|(_, one)| one == value).map_or("", |(name, _)| name);
-        Written::Plain(name.to_owned())
+        RonText::Plain(name.to_owned())
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Names(T::ALL.iter().map(|(name, _)| *name).collect())
+    fn shape(&self) -> FieldType {
+        FieldType::Names(T::ALL.iter().map(|(name, _)| *name).collect())
     }
 
     fn stand_in(&self) -> T {
@@ -343,12 +343,12 @@ impl<T, C: Codec<T>> Codec<Option<T>> for Opt<C> {
         self.0.read(node, base.and_then(Option::as_ref)).map(Some)
     }
 
-    fn write(&self, value: &Option<T>) -> Written {
-        value.as_ref().map_or(Written::Plain("None".to_owned()), |value| self.0.write(value))
+    fn write(&self, value: &Option<T>) -> RonText {
+        value.as_ref().map_or(RonText::Plain("None".to_owned()), |value| self.0.write(value))
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Optional(Box::new(self.0.shape()))
+    fn shape(&self) -> FieldType {
+        FieldType::Optional(Box::new(self.0.shape()))
     }
 
     fn stand_in(&self) -> Option<T> {
@@ -377,13 +377,13 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
         Some([first?, second?].into())
     }
 
-    fn write(&self, value: &T) -> Written {
-        let [first, second] = (*value).into().map(|value| value.written(self.each.scale));
-        Written::Plain(format!("({first}, {second})"))
+    fn write(&self, value: &T) -> RonText {
+        let [first, second] = (*value).into().map(|value| value.to_ron(self.each.scale));
+        RonText::Plain(format!("({first}, {second})"))
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Pair(self.pattern, Box::new(Codec::<f32>::shape(&self.each)))
+    fn shape(&self) -> FieldType {
+        FieldType::Pair(self.pattern, Box::new(Codec::<f32>::shape(&self.each)))
     }
 
     fn stand_in(&self) -> T {
@@ -401,30 +401,30 @@ impl<T: Copy + From<[f32; 2]> + Into<[f32; 2]>> Codec<T> for Pair {
 
 /// What follows from other fields where it is not written; the record's rules make it so.
 pub(crate) struct Follow<C> {
-    pub(crate) written: C,
+    pub(crate) explicit: C,
     /// What it is then, for people.
     pub(crate) otherwise: &'static str,
 }
 
 impl<T, C: Codec<T>> Codec<T> for Follow<C> {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
-        self.written.read(node, base)
+        self.explicit.read(node, base)
     }
 
-    fn write(&self, value: &T) -> Written {
-        self.written.write(value)
+    fn write(&self, value: &T) -> RonText {
+        self.explicit.write(value)
     }
 
-    fn shape(&self) -> Shape {
-        self.written.shape()
+    fn shape(&self) -> FieldType {
+        self.explicit.shape()
     }
 
     fn stand_in(&self) -> T {
-        self.written.stand_in()
+        self.explicit.stand_in()
     }
 
     fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
-        self.written.turn(value, name, hand);
+        self.explicit.turn(value, name, hand);
     }
 
     fn read_field(&self, fields: &mut Fields<'_>, name: &'static str, base: Option<&T>, _: Option<T>) -> T
@@ -511,19 +511,19 @@ impl<C> List<C> {
         read.into_iter().collect()
     }
 
-    pub(crate) fn write_all<'t, T: 't>(&self, values: impl IntoIterator<Item = &'t T>) -> Written
+    pub(crate) fn write_all<'t, T: 't>(&self, values: impl IntoIterator<Item = &'t T>) -> RonText
     where
         C: Codec<T>,
     {
-        Written::List(values.into_iter().map(|value| self.each.write(value)).collect())
+        RonText::List(values.into_iter().map(|value| self.each.write(value)).collect())
     }
 
-    pub(crate) fn described<T>(&self) -> Shape
+    pub(crate) fn described<T>(&self) -> FieldType
     where
         C: Codec<T>,
     {
         let least = self.few.map_or(0, |(least, ..)| least);
-        Shape::List { count: (least, self.most), each: Box::new(self.each.shape()) }
+        FieldType::List { count: (least, self.most), each: Box::new(self.each.shape()) }
     }
 
     pub(crate) fn turn_all<T>(&self, values: &mut [T], hand: &mut Hand<'_>)
@@ -543,11 +543,11 @@ impl<T, C: Codec<T>, const N: usize> Codec<ArrayVec<T, N>> for List<C> {
         self.read_all(node).map(|read| read.into_iter().take(N).collect())
     }
 
-    fn write(&self, values: &ArrayVec<T, N>) -> Written {
+    fn write(&self, values: &ArrayVec<T, N>) -> RonText {
         self.write_all(values)
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FieldType {
         self.described()
     }
 
@@ -565,11 +565,11 @@ impl<T, C: Codec<T>> Codec<Arc<[T]>> for List<C> {
         self.read_all(node).map(Arc::from)
     }
 
-    fn write(&self, values: &Arc<[T]>) -> Written {
+    fn write(&self, values: &Arc<[T]>) -> RonText {
         self.write_all(values.iter())
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FieldType {
         self.described()
     }
 
@@ -586,14 +586,14 @@ impl<T: Record> Codec<T> for Rec {
         node.record(base)
     }
 
-    fn write(&self, value: &T) -> Written {
+    fn write(&self, value: &T) -> RonText {
         let mut entries = Vec::new();
         value.write_fields(&mut entries);
-        Written::Fields("", entries)
+        RonText::Fields("", entries)
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Record(T::describe)
+    fn shape(&self) -> FieldType {
+        FieldType::Record(T::describe)
     }
 
     fn stand_in(&self) -> T {
@@ -618,11 +618,11 @@ impl<T: Record> Codec<T> for Flat {
         node.record(base)
     }
 
-    fn write(&self, value: &T) -> Written {
+    fn write(&self, value: &T) -> RonText {
         Rec.write(value)
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FieldType {
         Codec::<T>::shape(&Rec)
     }
 
@@ -659,17 +659,17 @@ impl<T: Variants + Default> Codec<T> for OneOf {
         read.filter(|_| all)
     }
 
-    fn write(&self, value: &T) -> Written {
+    fn write(&self, value: &T) -> RonText {
         let mut entries = Vec::new();
         value.write_fields(&mut entries);
         match entries.as_slice() {
-            [] => Written::Plain(value.variant().to_owned()),
-            _ => Written::Fields(value.variant(), entries),
+            [] => RonText::Plain(value.variant().to_owned()),
+            _ => RonText::Fields(value.variant(), entries),
         }
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Variants(T::describe)
+    fn shape(&self) -> FieldType {
+        FieldType::Variants(T::describe)
     }
 
     fn stand_in(&self) -> T {
@@ -689,12 +689,12 @@ impl<T: Clone> Codec<T> for Own<T> {
         Some(base.unwrap_or(&self.0).clone())
     }
 
-    fn write(&self, _: &T) -> Written {
-        Written::Plain(String::new())
+    fn write(&self, _: &T) -> RonText {
+        RonText::Plain(String::new())
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Words("")
+    fn shape(&self) -> FieldType {
+        FieldType::Words("")
     }
 
     fn stand_in(&self) -> T {

@@ -22,14 +22,14 @@ pub struct FieldDescription {
     /// What it is.
     pub about: String,
     /// What is written for it.
-    pub shape: Shape,
+    pub shape: FieldType,
     /// What it is where nothing is written, as it would be written; `None` if it must be written.
     pub default: Option<String>,
 }
 
 /// What is written for a field.
 #[derive(Clone, Debug)]
-pub enum Shape {
+pub enum FieldType {
     /// A number.
     Number {
         /// The least and the greatest.
@@ -48,12 +48,12 @@ pub enum Shape {
         /// The fewest and the most.
         count: (usize, usize),
         /// What is written for each.
-        each: Box<Shape>,
+        each: Box<FieldType>,
     },
     /// Two values in round brackets, such as `(low end, high end)`.
-    Pair(&'static str, Box<Shape>),
+    Pair(&'static str, Box<FieldType>),
     /// The shape, or `None`.
-    Optional(Box<Shape>),
+    Optional(Box<FieldType>),
     /// Named fields in round brackets.
     Record(fn() -> Description),
     /// One of several names, with named fields in round brackets.
@@ -74,7 +74,7 @@ pub(crate) fn first_paragraph(lines: &[&str]) -> String {
     lines.collect::<Vec<_>>().join(" ")
 }
 
-impl Shape {
+impl FieldType {
     /// What is written for the field called `name`, in words; records by their names.
     #[must_use]
     pub fn told(&self, name: &str) -> String {

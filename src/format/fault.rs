@@ -4,7 +4,7 @@ use super::number::plain;
 /// Something wrong between the fields of a record.
 pub(crate) struct Fault {
     pub(crate) severity: Severity,
-    /// The fields that it concerns, those first that are to blame; the first that is written is where it is shown.
+    /// The fields that it concerns, the causes first; the first that is written is where it is shown.
     pub(crate) fields: &'static [&'static str],
     pub(crate) message: String,
     pub(crate) expected: String,

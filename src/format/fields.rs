@@ -24,7 +24,7 @@ pub(crate) struct Fields<'r> {
     open: Range<usize>,
     /// The name, if that is all that is written.
     bare: Option<&'static str>,
-    written: Vec<Written<'r>>,
+    written: Vec<FieldUse<'r>>,
     known: Vec<&'static str>,
     missing: Vec<&'static str>,
     /// Those that could not be read, or are missing.
@@ -33,7 +33,7 @@ pub(crate) struct Fields<'r> {
     follow: Vec<&'static str>,
 }
 
-struct Written<'r> {
+struct FieldUse<'r> {
     field: &'r StructField<'r>,
     taken: bool,
 }
@@ -41,7 +41,7 @@ struct Written<'r> {
 impl<'r> Fields<'r> {
     /// The `fields` of `node`, which is a `Name(...)` beginning at `open`.
     pub(crate) fn new(node: Node<'r>, name: &str, open: Range<usize>, fields: &'r [StructField<'r>]) -> Self {
-        let written = fields.iter().map(|field| Written { field, taken: false }).collect();
+        let written = fields.iter().map(|field| FieldUse { field, taken: false }).collect();
         Self {
             reader: node.reader,
             noun: name.to_lowercase(),
@@ -62,7 +62,7 @@ impl<'r> Fields<'r> {
     }
 
     /// Calls what has the fields `noun` in messages from now on.
-    pub(crate) fn call(&mut self, noun: String) {
+    pub(crate) fn set_noun(&mut self, noun: String) {
         self.noun = noun;
     }
 
@@ -102,7 +102,7 @@ impl<'r> Fields<'r> {
                 }
             }
         }
-        found.map(|field| Node { reader: self.reader, expr: &field.value, what: name }.inside())
+        found.map(|field| Node { reader: self.reader, expr: &field.value, name }.inside())
     }
 
     /// Notes that the field `name` is missing.
@@ -133,7 +133,7 @@ impl<'r> Fields<'r> {
             if fields.iter().any(|field| self.failed.contains(field) || self.follow.contains(field)) {
                 continue;
             }
-            let written = fields.iter().find_map(|field| self.written_span(field));
+            let written = fields.iter().find_map(|field| self.value_span(field));
             if written.is_none() && is_based {
                 continue;
             }
@@ -154,11 +154,11 @@ impl<'r> Fields<'r> {
 
     /// Where the value of `name` is written; where the fields begin if it is not.
     pub(crate) fn span(&self, name: &str) -> Range<usize> {
-        self.written_span(name).unwrap_or_else(|| self.start())
+        self.value_span(name).unwrap_or_else(|| self.start())
     }
 
     /// Where the value of `name` is written, if it is.
-    pub(crate) fn written_span(&self, name: &str) -> Option<Range<usize>> {
+    pub(crate) fn value_span(&self, name: &str) -> Option<Range<usize>> {
         let written = self.written.iter().find(|written| written.field.name.name == name)?;
         Some(bytes(written.field.value.span()))
     }
@@ -175,7 +175,7 @@ impl<'r> Fields<'r> {
 
     /// Reports fields nobody asked for, and those that were asked for and are missing.
     pub(crate) fn finish(mut self) {
-        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
         for written in unknown {
             let name = &*written.field.name.name;
             // A misspelt field is not missing as well.
@@ -190,7 +190,7 @@ impl<'r> Fields<'r> {
     /// Like [`Fields::finish`] where it cannot be known which other fields are valid:
     /// reports only fields that look like one that is missing.
     pub(crate) fn finish_leniently(mut self) {
-        let unknown: Vec<&Written<'r>> = self.written.iter().filter(|written| !written.taken).collect();
+        let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
         for written in unknown {
             if let Some(meant) = nearest(&written.field.name.name, self.missing.iter().copied()) {
                 self.missing.retain(|missing| *missing != meant);
@@ -200,7 +200,7 @@ impl<'r> Fields<'r> {
         self.report_missing();
     }
 
-    fn report_unknown(&self, written: &Written<'_>, help: Option<String>) {
+    fn report_unknown(&self, written: &FieldUse<'_>, help: Option<String>) {
         let name = &written.field.name;
         let problem = Problem::error(bytes(&name.span), format!("unknown field `{}`", name.name));
         let article = if self.noun.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };

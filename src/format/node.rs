@@ -26,7 +26,7 @@ impl Within {
     fn holds(&self, node: &Node<'_>, number: f64) -> bool {
         let holds = (self.low..=self.high).contains(&number);
         if !holds {
-            let message = format!("`{}` is outside of {}", node.what, self.noun);
+            let message = format!("`{}` is outside of {}", node.name, self.noun);
             let (low, high, unit) = (plain(self.low), plain(self.high), node.unit());
             let expected = format!("expected {low} to {high}{unit}, found {}{unit}", plain(number));
             let wider = (plain(self.low.min(number)), plain(self.high.max(number)));
@@ -43,7 +43,7 @@ pub(crate) struct Node<'r> {
     pub(crate) reader: &'r Reader<'r>,
     pub(crate) expr: &'r Expr<'r>,
     /// The field it is the value of, or what the entries of its list are.
-    pub(crate) what: &'static str,
+    pub(crate) name: &'static str,
 }
 
 impl<'r> Node<'r> {
@@ -83,7 +83,7 @@ impl<'r> Node<'r> {
             _ => return None,
         };
         let field = fields.iter().find(|field| field.name.name == name)?;
-        Some(Node { expr: &field.value, what: name, ..*self }.inside())
+        Some(Node { expr: &field.value, name, ..*self }.inside())
     }
 
     /// Whether it is a `Name(...)` of this name, or the name alone.
@@ -99,9 +99,9 @@ impl<'r> Node<'r> {
 
     /// The unit of the number it is, with a space before it; empty if it has none.
     fn unit(&self) -> &'static str {
-        match self.what {
+        match self.name {
             "at" | "size" | "gap" => self.reader.length_unit(),
-            what => unit(what),
+            name => unit(name),
         }
     }
 
@@ -115,7 +115,7 @@ impl<'r> Node<'r> {
     pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
         // The parser has said already why an error node is none.
         if !matches!(self.expr, Expr::Error(_)) {
-            let message = format!("`{}` must be {expected}", self.what);
+            let message = format!("`{}` must be {expected}", self.name);
             let found = format!("expected {expected}, found {}", describe(self.expr));
             self.report(
                 Problem::error(self.span(), message).expected(found).help_if(remedy(self.expr, expected)),
@@ -127,15 +127,15 @@ impl<'r> Node<'r> {
     /// A finite number within `range`.
     pub(crate) fn number(&self, range: RangeInclusive<f64>) -> Option<Number> {
         let Expr::Number(number) = self.expr else { return self.mismatch("a number") };
-        let (what, raw) = (self.what, &number.raw);
+        let (name, raw) = (self.name, &number.raw);
         let (message, found) = match parse_number(raw) {
             Ok(number) if range.contains(&number.value) => return Some(number),
             Ok(number) => {
-                (format!("`{what}` is out of range"), format!("{}{}", plain(number.value), self.unit()))
+                (format!("`{name}` is out of range"), format!("{}{}", plain(number.value), self.unit()))
             }
-            Err(NotANumber::TooLarge) => (format!("`{what}` is out of range"), raw.to_string()),
-            Err(NotANumber::NotFinite) => (format!("`{what}` must be an ordinary number"), raw.to_string()),
-            Err(NotANumber::Malformed) => (format!("`{what}` must be a number"), raw.to_string()),
+            Err(NotANumber::TooLarge) => (format!("`{name}` is out of range"), raw.to_string()),
+            Err(NotANumber::NotFinite) => (format!("`{name}` must be an ordinary number"), raw.to_string()),
+            Err(NotANumber::Malformed) => (format!("`{name}` must be a number"), raw.to_string()),
         };
         let (least, most) = (plain(*range.start()), plain(*range.end()));
         let bounds = if least == most { least } else { format!("{least} to {most}{}", self.unit()) };
@@ -154,9 +154,9 @@ impl<'r> Node<'r> {
         number.whole.then_some(number.value as u32)
     }
 
-    /// Reports that this is no whole number.
+    /// Reports that this is not a whole number.
     pub(crate) fn report_fraction(&self) {
-        let message = format!("`{}` must be a whole number", self.what);
+        let message = format!("`{}` must be a whole number", self.name);
         self.report(Problem::error(self.span(), message).expected("expected digits only"));
     }
 
@@ -178,7 +178,7 @@ impl<'r> Node<'r> {
         let Expr::String(text) = self.expr else { return self.mismatch("text") };
         let length = text.value.chars().count();
         if length > longest {
-            let message = format!("`{}` is too long", self.what);
+            let message = format!("`{}` is too long", self.name);
             let expected = format!("expected at most {longest} characters, found {length}");
             self.report(Problem::error(self.span(), message).expected(expected));
             return None;
@@ -199,7 +199,7 @@ impl<'r> Node<'r> {
         } else {
             (mended.len() == text.len() && !mended.is_empty()).then(|| format!("write \"{mended}\""))
         };
-        let message = format!("`{}` can't be part of an address", self.what);
+        let message = format!("`{}` can't be part of an address", self.name);
         let expected = "expected 1 to 64 of the characters a-z, 0-9 and _";
         self.report(Problem::error(self.span(), message).expected(expected).help_if(help));
         None
@@ -220,11 +220,11 @@ impl<'r> Node<'r> {
         }
         if names.contains(&written) {
             let problem = Problem::error(self.span(), format!("{written} stands alone"));
-            let help = format!("its settings are fields beside `{}`", self.what);
+            let help = format!("its settings are fields beside `{}`", self.name);
             self.report(problem.expected(format!("expected {written} without brackets")).help(help));
             return None;
         }
-        let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.what));
+        let problem = Problem::error(self.span(), format!("there is no `{}` called {written}", self.name));
         let help = nearest(written, names).map(|name| format!("did you mean {name}?"));
         let help = help.or_else(|| many.map(|all| format!("there is {}", all.replace(" or ", " and "))));
         self.report(problem.expected(format!("expected {expected}")).help_if(help));
@@ -237,7 +237,7 @@ impl<'r> Node<'r> {
         let Expr::Struct(variant) = self.expr else { return self.mismatch(&expected) };
         let written = &*variant.name.name;
         let Some(name) = names.iter().copied().find(|name| *name == written) else {
-            let message = format!("there is no `{}` called {written}", self.what);
+            let message = format!("there is no `{}` called {written}", self.name);
             let help = nearest(written, names.iter().copied()).map(|name| format!("did you mean {name}?"));
             let problem = Problem::error(self.span(), message).expected(format!("expected {expected}"));
             self.report(problem.help_if(help));
@@ -254,12 +254,12 @@ impl<'r> Node<'r> {
     pub(crate) fn list(&self, entry: &'static str, most: usize) -> Option<Vec<Node<'r>>> {
         let Expr::Seq(list) = self.expr else { return self.mismatch("a list") };
         if list.items.len() > most {
-            let message = format!("`{}` has too many entries", self.what);
+            let message = format!("`{}` has too many entries", self.name);
             let expected = format!("expected at most {most}, found {}", list.items.len());
             self.report(Problem::error(bytes(&list.open_bracket), message).expected(expected));
             return None;
         }
-        Some(list.items.iter().map(|item| Node { expr: &item.expr, what: entry, ..*self }.inside()).collect())
+        Some(list.items.iter().map(|item| Node { expr: &item.expr, name: entry, ..*self }.inside()).collect())
     }
 
     /// The values of a tuple of `N`, shown as `pattern` if it is none.
@@ -276,7 +276,7 @@ impl<'r> Node<'r> {
     /// Two numbers within `range`: east and north.
     pub(crate) fn pair(&self, range: RangeInclusive<f64>) -> Option<[f64; 2]> {
         let [east, north] =
-            self.tuple(if self.what == "size" { "(width, depth)" } else { "(east, north)" })?;
+            self.tuple(if self.name == "size" { "(width, depth)" } else { "(east, north)" })?;
         let (east, north) = (east.number(range.clone()), north.number(range));
         Some([east?.value, north?.value])
     }

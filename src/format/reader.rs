@@ -47,8 +47,8 @@ impl<'t> Reader<'t> {
     }
 
     /// What the file holds.
-    pub(crate) fn root(&self, what: &'static str) -> Option<Node<'_>> {
-        self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, what })
+    pub(crate) fn root(&self, name: &'static str) -> Option<Node<'_>> {
+        self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, name })
     }
 
     /// From now on readings can ask for `what`.

@@ -76,7 +76,7 @@ impl<'t> Source<'t> {
 /// The text of the file at `path`.
 ///
 /// # Errors
-/// If it cannot be opened or read, is no ordinary file, is larger than [`MAX_BYTES`] or is not UTF-8.
+/// If it cannot be opened or read, is not an ordinary file, is larger than [`MAX_BYTES`] or is not UTF-8.
 pub(crate) fn read_text(path: &Path) -> Result<String, Diagnostics> {
     let name = path.display().to_string();
     let bytes = match read_bytes(path) {
@@ -92,7 +92,7 @@ pub(crate) fn read_text(path: &Path) -> Result<String, Diagnostics> {
 
 /// At most one byte more than [`MAX_BYTES`], so that too much is noticed and not read.
 fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    // Looked at before it is opened: opening a pipe waits for somebody to write.
+    // Examined before it is opened: opening a pipe waits for somebody to write.
     let metadata = path.metadata()?;
     if metadata.is_dir() {
         return Err(io::ErrorKind::IsADirectory.into());

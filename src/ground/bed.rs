@@ -47,9 +47,9 @@ impl Bed {
         }
     }
 
-    pub(super) fn crowded_out(&self) -> u64 {
+    pub(super) fn evicted(&self) -> u64 {
         match self {
-            Self::Ice(ice) => ice.fracture.crowded_out(),
+            Self::Ice(ice) => ice.fracture.evicted(),
             Self::Grains(_) | Self::Wood(_) => 0,
         }
     }

@@ -106,7 +106,7 @@ pub struct Fracture {
     /// Pieces that have been taken off the front of `cracks`.
     healed: u64,
     /// Of these, those that had to make room.
-    crowded_out: u64,
+    evicted: u64,
     seeds: Vec<Seed>,
     next_seed: u32,
     next_line: u32,
@@ -114,7 +114,7 @@ pub struct Fracture {
     revision: u64,
 }
 
-/// Most seeds of one sheet; the one that rested longest is given up for a new one.
+/// Most seeds of one sheet; the one that rested longest is evicted for a new one.
 const MOST_SEEDS: usize = 512;
 
 /// How long a seed without cracks is kept after its last event.
@@ -133,7 +133,7 @@ impl Fracture {
             area,
             cracks: VecDeque::with_capacity(most),
             healed: 0,
-            crowded_out: 0,
+            evicted: 0,
             seeds: Vec::with_capacity(MOST_SEEDS),
             next_seed: 0,
             next_line: 0,
@@ -166,8 +166,8 @@ impl Fracture {
 
     /// Pieces that healed before their time to make room for new ones.
     #[must_use]
-    pub fn crowded_out(&self) -> u64 {
-        self.crowded_out
+    pub fn evicted(&self) -> u64 {
+        self.evicted
     }
 
     /// Takes in an event of `energy_j` joules at `at`.
@@ -323,7 +323,7 @@ impl Fracture {
     fn open(&mut self, crack: Crack) {
         if self.cracks.len() >= self.rules.most {
             self.drop_oldest();
-            self.crowded_out += 1;
+            self.evicted += 1;
         }
         let number = self.healed + self.cracks.len() as u64;
         self.cracks.push_back(Crack { number, ..crack });
@@ -453,7 +453,7 @@ mod tests {
             fracture.grow(place, 0.5, at(step as f32 * 1e-3), &mut rng);
         }
         assert_eq!(fracture.cracks().len(), 100);
-        assert!(fracture.crowded_out() > 1000, "{}", fracture.crowded_out());
+        assert!(fracture.evicted() > 1000, "{}", fracture.evicted());
         assert_eq!((fracture.cracks.capacity(), fracture.seeds.capacity()), capacity, "no memory was taken");
         let oldest = fracture.cracks().next().unwrap().born;
         assert!(fracture.cracks().all(|crack| crack.born >= oldest), "the oldest have healed first");

@@ -72,11 +72,11 @@ impl Grains {
             let share = energy / full;
             if share < STILL { 0.0 } else { f64::from(spec.collisions_per_s) * share.sqrt() }
         });
-        let stirred = (bed.energy_j / full).min(1.0) as f32;
+        let moved = (bed.energy_j / full).min(1.0) as f32;
         let stones = &bed.stones;
         bed.onsets.advance(rates, step_s, rng, |share, rng| {
             let law = spec.energy.quantile(rng.random()) as f32 / spec.energy.most_j;
-            let energy = law * stirred;
+            let energy = law * moved;
             let stone = &stones[rng.random_range(0..STONES)];
             // Sand has no voice of its own for each grain; stones knock at their own pitch.
             let pitch = if spec.grain == Grain::Sand { rng.random_range(0.8..1.25) } else { 1.0 };

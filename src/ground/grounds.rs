@@ -13,7 +13,7 @@ use crate::units::Instant;
 /// Length of one step.
 const STEP: Duration = Duration::from_millis(1);
 
-/// A gap of more frames than this is no walking: what stands there then has settled.
+/// A gap of more frames than this is not walking: what stands there then has settled.
 const LONGEST_GAP: u64 = 20;
 
 /// Most events of one frame that are felt one by one.
@@ -35,14 +35,14 @@ const HEAL_EVERY: Duration = Duration::from_millis(100);
 /// "Separate, independent responses are rendered in parallel for each tile" (paper, section 4.1.1).
 #[derive(Clone, Debug, Default)]
 pub struct Grounds {
-    plots: Vec<Plot>,
+    beds: Vec<GroundBed>,
     last: Option<Instant>,
     events: Vec<GroundEvent>,
 }
 
 /// One ground.
 #[derive(Clone, Debug)]
-struct Plot {
+struct GroundBed {
     ground: Ground,
     elastic: Elastic,
     bed: Bed,
@@ -61,7 +61,7 @@ impl Grounds {
     #[must_use]
     pub fn new(grounds: &[Ground], geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count();
-        let plots = grounds.iter().map(|ground| Plot {
+        let beds = grounds.iter().map(|ground| GroundBed {
             elastic: Elastic::new(ground.material.body(), STEP.as_secs_f64()),
             bed: Bed::new(&ground.material, ground.area, ground.seed, tiles),
             ground: ground.clone(),
@@ -72,33 +72,33 @@ impl Grounds {
             counters: GroundCounters::default(),
             is_fresh: true,
         });
-        let plots: Vec<Plot> = plots.collect();
-        let events = Vec::with_capacity(MOST_EVENTS * plots.len());
-        Self { plots, last: None, events }
+        let beds: Vec<GroundBed> = beds.collect();
+        let events = Vec::with_capacity(MOST_EVENTS * beds.len());
+        Self { beds, last: None, events }
     }
 
     /// How many events one frame gives at most.
     pub(crate) fn most_events(&self) -> usize {
-        MOST_EVENTS * self.plots.len()
+        MOST_EVENTS * self.beds.len()
     }
 
     /// Keeps the state of grounds that both have, so that editing one leaves the cracks in the other.
     pub fn inherit(&mut self, old: &mut Self) {
         self.last = old.last;
-        for plot in &mut self.plots {
-            let same = old.plots.iter().position(|other| {
-                let page = plot.ground.page;
-                Ground { page, ..other.ground.clone() } == plot.ground
+        for bed in &mut self.beds {
+            let same = old.beds.iter().position(|other| {
+                let page = bed.ground.page;
+                Ground { page, ..other.ground.clone() } == bed.ground
             });
             if let Some(same) = same {
-                let page = plot.ground.page;
-                *plot = old.plots.swap_remove(same);
-                plot.ground.page = page;
+                let page = bed.ground.page;
+                *bed = old.beds.swap_remove(same);
+                bed.ground.page = page;
             }
         }
     }
 
-    /// Takes in a frame, with what sensing made of it, and gives what gave way, in order of time.
+    /// Takes in a frame, with what sensing made of it, and gives the ground events, in order of time.
     ///
     /// `previous` is the frame before. Only the grounds of `page` and of all pages are trodden. A tile
     /// of which nothing is known holds still, and a load that stands there when it is known again has
@@ -114,27 +114,27 @@ impl Grounds {
         page: usize,
     ) -> &[GroundEvent] {
         self.events.clear();
-        if self.plots.is_empty() {
+        if self.beds.is_empty() {
             return &self.events;
         }
         let passed = self.last.map_or(u64::MAX, |last| frame.at.since(last).as_millis() as u64);
         self.last = Some(frame.at);
-        for (number, plot) in self.plots.iter_mut().enumerate() {
-            let is_shown = plot.ground.is_on(page);
+        for (number, bed) in self.beds.iter_mut().enumerate() {
+            let is_shown = bed.ground.is_on(page);
             if !is_shown || passed > LONGEST_GAP {
-                plot.doze();
+                bed.doze();
             }
             if is_shown && passed > 0 {
-                plot.wake(contacts, frame, previous);
+                bed.wake(contacts, frame, previous);
                 let first = self.events.len();
-                plot.tread(number, frame, passed.min(LONGEST_GAP), &mut self.events);
+                bed.tread(number, frame, passed.min(LONGEST_GAP), &mut self.events);
                 self.events[first..].sort_unstable_by_key(|event| (event.at, event.tile));
             }
         }
         &self.events
     }
 
-    /// What gave way in the last frame.
+    /// Ground events of the last frame.
     #[must_use]
     pub fn events(&self) -> &[GroundEvent] {
         &self.events
@@ -143,32 +143,32 @@ impl Grounds {
     /// How many grounds there are.
     #[must_use]
     pub fn len(&self) -> usize {
-        self.plots.len()
+        self.beds.len()
     }
 
     /// Whether there are none.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.plots.is_empty()
+        self.beds.is_empty()
     }
 
     /// Writes what the grounds look like into `states`, one each, in the layout's order.
     ///
     /// A state that is up to date already is left alone, so that looking often costs little.
     pub fn show(&self, states: &mut Vec<GroundState>) {
-        states.resize_with(self.plots.len(), GroundState::default);
-        for (plot, state) in self.plots.iter().zip(states) {
+        states.resize_with(self.beds.len(), GroundState::default);
+        for (bed, state) in self.beds.iter().zip(states) {
             // What has nothing to do with this ground may have the same revision by chance: it covers another area.
-            if state.revision != plot.revision || state.counters != plot.counters || state.is_empty() {
-                state.revision = plot.revision;
-                plot.bed.show(state);
+            if state.revision != bed.revision || state.counters != bed.counters || state.is_empty() {
+                state.revision = bed.revision;
+                bed.bed.show(state);
             }
-            state.counters = plot.counters;
+            state.counters = bed.counters;
         }
     }
 }
 
-impl Plot {
+impl GroundBed {
     /// Forgets who treads.
     fn doze(&mut self) {
         for tile in self.awake.drain(..) {
@@ -273,7 +273,7 @@ impl Plot {
         if counters.events > before {
             *revision += 1;
         }
-        counters.crowded_out = bed.crowded_out();
+        counters.evicted = bed.evicted();
     }
 }
 

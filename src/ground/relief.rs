@@ -5,7 +5,7 @@ use crate::units::Instant;
 
 /// How far a sheet has been worn at an even grid of points, and how it recovers: broken ice, trodden snow.
 ///
-/// Recovery is worked out when a point is looked at, so that a ground nobody steps on costs nothing.
+/// Recovery is worked out when a point is examined, so that a ground nobody steps on costs nothing.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Relief {
     area: Rect,
@@ -147,7 +147,7 @@ mod tests {
             relief.wear(at, 0.5, 0.1, now);
         }
         assert!(relief.depth_at(at, now) <= 1.0);
-        // Off the sheet or nonsense wears nothing away that could be looked at, and stops nothing.
+        // Off the sheet or nonsense wears nothing away that could be examined, and stops nothing.
         relief.wear(Vec2::new(-9.0, 99.0), 0.5, 0.1, now);
         relief.wear(Vec2::NAN, 0.5, 0.1, now);
     }

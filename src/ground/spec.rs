@@ -112,7 +112,7 @@ record! {
     pub struct GrainSpec = "Grain", Copy;
     /// Which grains they are: how they look.
     pub grain: Grain = "", Own(Grain::Snow);
-    /// The elastic bed that stirs them.
+    /// The elastic bed that moves them.
     pub body: Body = "body", Rec;
     /// Collisions per second at `full_j`; fewer with the root of the energy.
     pub collisions_per_s: f32 = "collisions_per_s", num(1.0..=10_000.0);

@@ -5,14 +5,14 @@ use crate::feel::Click;
 use crate::sense::ContactId;
 use crate::units::Instant;
 
-/// Something that gave way underfoot: one event for touch, sound and picture.
+/// A ground event: something broke or moved under a foot; one event for touch, sound and picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct GroundEvent {
     /// When it is felt: as long after its millisecond began as the force that caused it, one millisecond later.
     pub at: Instant,
     /// Which of the layout's grounds.
     pub ground: usize,
-    /// The tile that gave way, in tile-index order.
+    /// The tile it happened on, in tile-index order.
     pub tile: usize,
     /// The contact that loads it; `None` for one that has just left.
     pub contact: Option<ContactId>,
@@ -34,7 +34,7 @@ pub struct GroundCounters {
     /// Events that came too thick to be felt one by one: more than 32 in a millisecond. They left their marks.
     pub unfelt: u64,
     /// Pieces of crack that healed before their time to make room for new ones.
-    pub crowded_out: u64,
+    pub evicted: u64,
 }
 
 /// What one ground looks like.

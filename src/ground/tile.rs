@@ -30,7 +30,7 @@ pub(super) struct Stride<'a> {
     pub(super) from: Instant,
 }
 
-/// Something that gave way.
+/// One event of a tile.
 pub(super) struct Event {
     /// When in the millisecond, 0 to 1.
     pub(super) share: f64,

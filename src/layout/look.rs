@@ -2,7 +2,7 @@ use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::format::describe::Shape as Written;
+use crate::format::describe::FieldType;
 use crate::format::node::Node;
 use crate::format::problem::Problem;
 use crate::format::text::Text;
@@ -135,7 +135,7 @@ impl Codec<Colour> for Hex {
             8 if is_hex(digits) => Some("colours are opaque: leave out the last two digits".to_owned()),
             _ => None,
         };
-        let message = format!("`{}` must be a colour", node.what);
+        let message = format!("`{}` must be a colour", node.name);
         let expected = "expected \"#rrggbb\" with six hexadecimal digits";
         node.report(Problem::error(node.span(), message).expected(expected).help_if(help));
         None
@@ -145,8 +145,8 @@ impl Codec<Colour> for Hex {
         Text::Plain(format!("\"{colour}\""))
     }
 
-    fn shape(&self) -> Written {
-        Written::Words("a colour in quotes, \"#rrggbb\"")
+    fn shape(&self) -> FieldType {
+        FieldType::Words("a colour in quotes, \"#rrggbb\"")
     }
 
     fn stand_in(&self) -> Colour {

@@ -10,7 +10,7 @@ pub enum CursorRule {
     /// Paper, section 4.2.
     #[default]
     Largest,
-    /// The one with the largest force of those that press on a control and are no steps:
+    /// The one with the largest force of those that press on a control and are not steps:
     /// for people who stand inside of the region, between its controls.
     Working,
     /// Each of them, so that several controls can be engaged at once, each by one foot.

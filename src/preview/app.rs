@@ -7,33 +7,33 @@ use eframe::egui::Ui;
 
 use super::PreviewOptions;
 use super::feed::{FootSink, PreviewCommand, PreviewInput};
-use super::feet::Feet;
+use super::feet::MouseFeet;
 use super::floor_view::Grip;
-use super::inbox::Inbox;
-use super::looked::Looked;
+use super::messages::Messages;
 use super::painter::Palette;
 use super::panel::Tuner;
 use super::rate::Rate;
 use super::scopes::Scopes;
+use super::selection::Selection;
 use super::style;
 use super::watch::Watch;
 use crate::engine::Snapshot;
 use crate::floor::Floor;
 use crate::scene::{Scene, Theme};
 
-/// Time between pictures: 60 a second.
+/// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
 
-/// The window's contents and what they remember from one picture to the next.
+/// The window's contents and what they remember from one frame to the next.
 pub(super) struct App {
     pub(super) floor: Arc<Floor>,
     pub(super) source: String,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
-    pub(super) inbox: Inbox,
+    pub(super) messages: Messages,
     pub(super) scopes: Scopes,
-    pub(super) feet: Option<(Feet, Box<dyn FootSink>)>,
+    pub(super) feet: Option<(MouseFeet, Box<dyn FootSink>)>,
     pub(super) grip: Grip,
-    pub(super) looked: Looked,
+    pub(super) selection: Selection,
     pub(super) watch: Watch,
     pub(super) scene: Scene,
     pub(super) palette: Palette,
@@ -46,22 +46,22 @@ pub(super) struct App {
     commands: Sender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
-    pub(super) pictures: Rate,
+    pub(super) window_frames: Rate,
     pub(super) frames: Rate,
-    picture_count: u64,
-    /// When the next picture is due.
+    frame_count: u64,
+    /// When the next frame is due.
     due: Instant,
-    /// Height of the side panel's other parts at the last picture, in points.
+    /// Height of the side panel's other parts at the last frame, in points.
     pub(super) other_parts: f32,
 }
 
 impl App {
     pub(super) fn new(input: PreviewInput, options: &PreviewOptions) -> Self {
         Self {
-            looked: Looked::new(&input.floor.geometry),
+            selection: Selection::new(&input.floor.geometry),
             scopes: Scopes::new(input.scopes, &input.floor),
-            inbox: Inbox::new(input.layout, input.events, input.layouts, input.notices),
-            feet: input.feet.map(|sink| (Feet::new(), sink)),
+            messages: Messages::new(input.layout, input.events, input.layouts, input.notices),
+            feet: input.feet.map(|sink| (MouseFeet::new(), sink)),
             floor: input.floor,
             source: input.source,
             snapshots: input.snapshots,
@@ -75,18 +75,18 @@ impl App {
             theme: options.theme,
             marks: true,
             now_s: 0.0,
-            pictures: Rate::default(),
+            window_frames: Rate::default(),
             frames: Rate::default(),
-            picture_count: 0,
+            frame_count: 0,
             due: Instant::now(),
             other_parts: 0.0,
         }
     }
 
-    /// One picture.
+    /// One frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
-        self.heed_mute_key(ui);
+        self.handle_mute_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
         self.notices(ui);
@@ -95,7 +95,7 @@ impl App {
         self.problems(ui);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| self.floor_view(ui));
-        self.ask_for_the_next_picture(ui);
+        self.request_next_frame(ui);
     }
 
     fn receive(&mut self, ui: &Ui) {
@@ -103,21 +103,21 @@ impl App {
         self.now_s = now_s;
         let fresh = self.snapshots.update();
         let snapshot = self.snapshots.output_buffer();
-        self.inbox.receive(now_s, snapshot.layout_revision);
-        self.inbox.relabel(&snapshot.labels);
+        self.messages.receive(now_s, snapshot.layout_revision);
+        self.messages.relabel(&snapshot.labels);
         self.watch.observe(now_s, snapshot, fresh);
-        self.looked.follow(snapshot);
-        self.scopes.update(&self.floor, snapshot, self.looked.tile(), elapsed_s);
-        self.picture_count += 1;
-        self.pictures.observe(now_s, self.picture_count);
+        self.selection.follow(snapshot);
+        self.scopes.update(&self.floor, snapshot, self.selection.tile(), elapsed_s);
+        self.frame_count += 1;
+        self.window_frames.observe(now_s, self.frame_count);
         self.frames.observe(now_s, snapshot.counters.frames);
     }
 
     /// Pictures come 60 times a second, also where the display does not pace them.
-    fn ask_for_the_next_picture(&mut self, ui: &Ui) {
+    fn request_next_frame(&mut self, ui: &Ui) {
         let now = Instant::now();
         self.due = (self.due + PICTURE).max(now);
-        // Never zero: that would ask for two pictures.
+        // Never zero: that would ask for two frames.
         ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
     }
 

@@ -34,7 +34,7 @@ impl App {
     }
 
     fn heading(&mut self, ui: &mut Ui) {
-        let title = self.inbox.layout.title.clone();
+        let title = self.messages.layout.title.clone();
         if self.choices.is_empty() {
             let text = RichText::new(&title).size(17.0).strong().color(color(self.theme.ink));
             ui.add(egui::Label::new(text).truncate());
@@ -54,7 +54,7 @@ impl App {
                 self.command(PreviewCommand::Open(index));
             }
         }
-        match &self.inbox.file {
+        match &self.messages.file {
             Some(file) if file.diagnostics.is_some() => {
                 pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
             }
@@ -89,7 +89,7 @@ impl App {
         pill(ui, colour, theme, text);
         let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
         let texts = [
-            (74.0, format!("{} fps", rate(self.pictures.per_second())), "Pictures a second in this window"),
+            (74.0, format!("{} fps", rate(self.window_frames.per_second())), "Frames a second in this window"),
             (96.0, format!("{} frames/s", rate(self.frames.per_second())), "Sensor frames a second"),
         ];
         for (width, text, meaning) in texts {
@@ -133,7 +133,7 @@ impl App {
                 feet.lift_standing();
             } else {
                 let floor = self.floor.geometry.bounds();
-                let place = self.inbox.layout.stances.first().map(|stance| stance.area);
+                let place = self.messages.layout.stances.first().map(|stance| stance.area);
                 // Where people stand if the layout does not say: in the middle of the south side.
                 let south = floor.min + floor.size() * glam::Vec2::new(0.5, 0.12);
                 feet.stand(place.map_or(south, |area| area.centre()).clamp(floor.min, floor.max));
@@ -142,7 +142,7 @@ impl App {
     }
 
     /// Mutes everything, or nothing any more, where nobody is writing.
-    pub(super) fn heed_mute_key(&self, ui: &Ui) {
+    pub(super) fn handle_mute_key(&self, ui: &Ui) {
         let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
         if is_free && self.scopes.is_fed() && ui.input(|i| i.key_pressed(Key::M)) {
             self.command(PreviewCommand::Mute(!self.snapshots.output_buffer().muted.all));
@@ -183,14 +183,14 @@ impl App {
 
     /// Sentences from the program, until they are put away.
     pub(super) fn notices(&mut self, ui: &mut Ui) {
-        if self.inbox.notes.is_empty() {
+        if self.messages.notes.is_empty() {
             return;
         }
         let ground = color(panel_colour(&self.theme).mix(self.theme.warning, 0.12));
         let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 4));
         let mut put_away = None;
         Panel::top("notices").frame(frame).resizable(false).show(ui, |ui| {
-            for (index, note) in self.inbox.notes.iter().enumerate() {
+            for (index, note) in self.messages.notes.iter().enumerate() {
                 ui.horizontal(|ui| {
                     ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                         let button = ui.small_button("Hide");
@@ -207,13 +207,13 @@ impl App {
             }
         });
         if let Some(index) = put_away {
-            self.inbox.notes.remove(index);
+            self.messages.notes.remove(index);
         }
     }
 
     /// What is wrong with the layout file, under the floor that still shows the last good one.
     pub(super) fn problems(&mut self, ui: &mut Ui) {
-        let Some(file) = &self.inbox.file else { return };
+        let Some(file) = &self.messages.file else { return };
         let Some(diagnostics) = &file.diagnostics else { return };
         let theme = &self.theme;
         let frame = egui::Frame::new()

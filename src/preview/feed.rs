@@ -17,7 +17,7 @@ pub type PreviewFoot = Shoe;
 /// Everything the window shows and everything it can do, filled in by the program.
 ///
 /// The window only looks: sensing, sound and outputs run on other threads and
-/// go on while it is covered. A sender that hangs up is no fault; what it sent
+/// go on while it is covered. A sender that hangs up is not a fault; what it sent
 /// last stays.
 pub struct PreviewInput {
     /// The floor that is shown.
@@ -116,7 +116,7 @@ pub enum PreviewCommand {
 
 /// What each actuator channel did lately.
 pub trait ScopeFeed {
-    /// Takes in what happened since the last call; called once for each picture.
+    /// Takes in what happened since the last call; called once for each frame.
     fn update(&mut self) {}
 
     /// Lowest and highest sample of short stretches of `channel`, oldest first, in full scales:
@@ -126,7 +126,7 @@ pub trait ScopeFeed {
 
 /// A simulated floor's feet.
 pub trait FootSink {
-    /// Takes the feet that stand on the floor or hover above it; called for each picture.
+    /// Takes the feet that stand on the floor or hover above it; called for each frame.
     fn set(&mut self, feet: &[PreviewFoot]);
 
     /// Where the force of `foot` acts, in floor metres: the window puts that point under the mouse.

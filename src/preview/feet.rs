@@ -34,7 +34,7 @@ const SHORTEST_S: f32 = 0.150;
 /// Force below which a lifted foot is in the air.
 const IN_THE_AIR: f32 = 1.0;
 
-/// What the person at the mouse does, from one picture to the next.
+/// What the person at the mouse does, from one frame to the next.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Hand {
     /// Where the pointer is over the floor, in floor metres; `None` if it is elsewhere.
@@ -51,15 +51,15 @@ pub(super) struct Hand {
     pub(super) on_handle: bool,
     /// How far the standing foot is dragged, in floor metres.
     pub(super) drag: Vec2,
-    /// Seconds since the last picture.
+    /// Seconds since the last frame.
     pub(super) elapsed_s: f32,
 }
 
 /// The mouse's foot and the standing one.
 #[derive(Debug)]
-pub(super) struct Feet {
-    working: Foot,
-    standing: Option<Foot>,
+pub(super) struct MouseFeet {
+    working: MouseFoot,
+    standing: Option<MouseFoot>,
     /// Where the working foot's force acts: under the pointer.
     at: Option<Vec2>,
     /// Whether the button holds it down.
@@ -72,13 +72,13 @@ pub(super) struct Feet {
 
 /// One foot, with the force it is going to.
 #[derive(Debug)]
-struct Foot {
+struct MouseFoot {
     shoe: PreviewFoot,
     /// What it presses with once it is down.
     wanted: Newtons,
 }
 
-impl Foot {
+impl MouseFoot {
     fn new(position: Vec2, wanted: Newtons, roll: f32, left: bool) -> Self {
         let force = Newtons::ZERO;
         Self {
@@ -103,10 +103,10 @@ impl Foot {
     }
 }
 
-impl Feet {
+impl MouseFeet {
     pub(super) fn new() -> Self {
         Self {
-            working: Foot::new(Vec2::ZERO, WORKING, WORKING_ROLL, false),
+            working: MouseFoot::new(Vec2::ZERO, WORKING, WORKING_ROLL, false),
             standing: None,
             at: None,
             held: false,
@@ -175,7 +175,7 @@ impl Feet {
         match &mut self.standing {
             Some(standing) => standing.shoe.position = position,
             None => {
-                let mut foot = Foot::new(position, STANDING, STANDING_ROLL, true);
+                let mut foot = MouseFoot::new(position, STANDING, STANDING_ROLL, true);
                 foot.shoe.heading_rad = self.working.shoe.heading_rad;
                 self.standing = Some(foot);
             }
@@ -232,15 +232,15 @@ mod tests {
         Hand { down: true, ..hand(x, y) }
     }
 
-    fn run(feet: &mut Feet, given: &mut Given, hand: Hand, pictures: usize) {
-        for _ in 0..pictures {
+    fn run(feet: &mut MouseFeet, given: &mut Given, hand: Hand, frames: usize) {
+        for _ in 0..frames {
             feet.step(&hand, given);
         }
     }
 
     #[test]
     fn holding_the_button_brings_the_force_up_and_letting_go_lifts_the_foot() {
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&hand(0.5, 0.6), &mut given);
         assert_eq!(given.0[0].force, Newtons::ZERO, "a foot in the air follows the mouse");
         feet.step(&pressing(0.5, 0.6), &mut given);
@@ -254,7 +254,7 @@ mod tests {
 
     #[test]
     fn the_pressure_is_under_the_pointer_however_the_foot_is_turned() {
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&pressing(0.5, 0.6), &mut given);
         for _ in 0..8 {
             feet.step(&Hand { turn_rad: 0.9, ..holding(0.52, 0.61) }, &mut given);
@@ -266,8 +266,8 @@ mod tests {
 
     #[test]
     fn a_click_is_a_whole_step() {
-        // Pressed and released between two pictures.
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        // Pressed and released between two frames.
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&Hand { down: false, ..pressing(0.5, 0.6) }, &mut given);
         let mut most = 0.0_f32;
         for _ in 0..40 {
@@ -280,7 +280,7 @@ mod tests {
 
     #[test]
     fn the_wheel_presses_harder_within_what_a_person_can_do() {
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&Hand { wheel: 1.0, ..pressing(0.5, 0.6) }, &mut given);
         run(&mut feet, &mut given, holding(0.5, 0.6), 20);
         assert!((given.0[0].force.0 - 168.0).abs() < 1.0, "{}", given.0[0].force.0);
@@ -292,7 +292,7 @@ mod tests {
 
     #[test]
     fn the_standing_foot_stays_where_it_was_left_until_it_is_dragged() {
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.stand(Vec2::new(0.9, 0.3));
         run(&mut feet, &mut given, hand(0.2, 1.5), 30);
         assert_eq!(given.0[0].position, Vec2::new(0.9, 0.3));
@@ -310,7 +310,7 @@ mod tests {
 
     #[test]
     fn a_pointer_that_leaves_lifts_the_foot_where_it_was() {
-        let (mut feet, mut given) = (Feet::new(), Given::default());
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         run(&mut feet, &mut given, pressing(0.5, 0.6), 20);
         let stood = given.0[0].position;
         let gone = Hand { pointer: None, down: true, elapsed_s: PICTURE_S, ..Hand::default() };

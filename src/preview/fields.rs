@@ -4,7 +4,7 @@ use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureO
 #[derive(Default)]
 pub(super) struct Fields {
     shown: Vec<Field>,
-    /// How many of them the picture at hand has needed so far.
+    /// How many of them the frame at hand has needed so far.
     used: usize,
 }
 
@@ -14,17 +14,17 @@ struct Field {
 }
 
 impl Fields {
-    /// Starts a picture.
+    /// Starts a frame.
     pub(super) fn begin(&mut self) {
         self.used = 0;
     }
 
-    /// Ends a picture: fields that it did not have are given up.
+    /// Ends a frame: fields that it did not have are dropped.
     pub(super) fn end(&mut self) {
         self.shown.truncate(self.used);
     }
 
-    /// The next field, `size` dots wide and high; sent to the graphics card if it has changed since the last picture.
+    /// The next field, `size` dots wide and high; sent to the graphics card if it has changed since the last frame.
     pub(super) fn show(
         &mut self,
         ctx: &egui::Context,

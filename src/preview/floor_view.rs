@@ -9,7 +9,7 @@ use eframe::egui::{
 use glam::Vec2;
 
 use super::app::App;
-use super::feet::{Feet, Hand};
+use super::feet::{Hand, MouseFeet};
 use super::painter::{self, color};
 use super::transform::ScreenFromFloor;
 use super::watch::{Banner, Weight};
@@ -65,8 +65,13 @@ impl App {
             show,
             shoes: self.feet.as_ref().map_or(&[], |(feet, _)| feet.shoes()),
             levels: self.scopes.levels(),
-            chosen: self.looked.pinned(),
-            ..View::new(&self.floor.geometry, &self.inbox.layout, self.snapshots.output_buffer(), &self.theme)
+            chosen: self.selection.pinned(),
+            ..View::new(
+                &self.floor.geometry,
+                &self.messages.layout,
+                self.snapshots.output_buffer(),
+                &self.theme,
+            )
         };
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
@@ -81,7 +86,7 @@ impl App {
             && (shift || self.feet.is_none())
             && let Some(tile) = self.floor.geometry.tile_under(map.floor(pointer))
         {
-            self.looked.pin(tile);
+            self.selection.pin(tile);
         }
         if ui.ctx().memory(|memory| memory.focused().is_none()) {
             for (key, east, north) in [
@@ -91,13 +96,13 @@ impl App {
                 (Key::ArrowUp, 0, 1),
             ] {
                 if ui.input(|i| i.key_pressed(key)) {
-                    let tile = self.looked.tile();
+                    let tile = self.selection.tile();
                     let moved = TileId::new(
                         tile.column.saturating_add_signed(east),
                         tile.row.saturating_add_signed(north),
                     );
                     if self.floor.geometry.index(moved).is_some() {
-                        self.looked.pin(moved);
+                        self.selection.pin(moved);
                     }
                 }
             }
@@ -169,7 +174,7 @@ impl App {
     /// Tells screen readers and tests what is on the floor and how it is.
     fn name_controls(&self, ui: &Ui, map: ScreenFromFloor) {
         let snapshot = self.snapshots.output_buffer();
-        for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
+        for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
             let state = snapshot.widgets.get(index).copied().unwrap_or_default();
             if state.hidden {
                 continue;
@@ -196,7 +201,7 @@ fn stand_and_drag(
     ui: &mut Ui,
     canvas: &Response,
     map: ScreenFromFloor,
-    feet: &mut Feet,
+    feet: &mut MouseFeet,
     grip: &mut Grip,
     floor: crate::floor::Rect,
 ) -> (bool, Vec2) {
@@ -261,7 +266,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
 /// How far the wheel was turned, in notches.
 fn notches(events: &[Event]) -> f32 {
     let notches = |event: &Event| match event {
-        // What a touch pad adds after the fingers are gone is nobody's wish to press harder.
+        // What a touch pad adds after the fingers are gone is not meant as a harder press.
         Event::MouseWheel { source: MouseWheelSource::Momentum, .. } => 0.0,
         Event::MouseWheel { unit, delta, .. } => match unit {
             // A notch is about 50 points on a touch pad.

@@ -11,12 +11,12 @@ mod feet;
 mod fields;
 mod fine_line;
 mod floor_view;
-mod inbox;
-mod looked;
+mod messages;
 mod painter;
 mod panel;
 mod rate;
 mod scopes;
+mod selection;
 mod style;
 #[cfg(test)]
 mod tests;
@@ -68,7 +68,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .with_app_id("underfoot")
         .with_inner_size([options.size.0, options.size.1])
         .with_min_inner_size([720.0, 480.0]);
-    // No gradients here that dithering would help, and without a graphics card it costs a tenth of each picture.
+    // No gradients here that dithering would help, and without a graphics card it costs a tenth of each frame.
     let native = eframe::NativeOptions {
         viewport,
         renderer: eframe::Renderer::Glow,
@@ -85,10 +85,10 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
 }
 
-/// Lets freed memory stay with the program, for the next picture.
+/// Lets freed memory stay with the program, for the next frame.
 ///
-/// A graphics driver without a graphics card takes and frees some megabytes for each picture. The C library of
-/// Linux would give them back to the system each time, and the page faults cost a sixth of the picture; once a
+/// A graphics driver without a graphics card takes and frees some megabytes for each frame. The C library of
+/// Linux would give them back to the system each time, and the page faults cost a sixth of the frame; once a
 /// large block was freed it takes this for the custom, and keeps up to twice as much (mallopt(3), "dynamic mmap
 /// threshold", at most 32 MiB). Elsewhere this does nothing.
 fn keep_memory() {

@@ -12,7 +12,7 @@ use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
 
-/// What is kept from picture to picture.
+/// What is kept from frame to frame.
 #[derive(Default)]
 pub(super) struct Palette {
     line: FineLine,

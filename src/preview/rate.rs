@@ -37,8 +37,8 @@ mod tests {
         // A window that opens late on its clock does not count the time before.
         rate.observe(100.0, 5000);
         assert_eq!(rate.per_second(), None);
-        for picture in 1..=60 {
-            rate.observe(100.0 + f64::from(picture) / 60.0, 5000 + picture as u64 * 17);
+        for frame in 1..=60 {
+            rate.observe(100.0 + f64::from(frame) / 60.0, 5000 + frame as u64 * 17);
         }
         let seen = rate.per_second().unwrap();
         assert!((seen - 1020.0).abs() < 20.0, "{seen}");

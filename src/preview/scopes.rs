@@ -12,7 +12,7 @@ const FALL: f32 = 1e-3;
 pub(super) struct Scopes {
     feed: Option<Box<dyn ScopeFeed>>,
     levels: Vec<f32>,
-    /// The tiles whose waveforms are shown, and how long ago a foot was on each, in pictures.
+    /// The tiles whose waveforms are shown, and how long ago a foot was on each, in frames.
     slots: [Option<(TileId, u32)>; SLOTS],
 }
 
@@ -31,8 +31,8 @@ impl Scopes {
         &self.levels
     }
 
-    /// Takes in what the actuators did since the last picture, `elapsed_s` ago.
-    pub(super) fn update(&mut self, floor: &Floor, snapshot: &Snapshot, looked: TileId, elapsed_s: f32) {
+    /// Takes in what the actuators did since the last frame, `elapsed_s` ago.
+    pub(super) fn update(&mut self, floor: &Floor, snapshot: &Snapshot, selected: TileId, elapsed_s: f32) {
         let Some(feed) = &mut self.feed else { return };
         feed.update();
         let fall = FALL.powf(elapsed_s.clamp(0.0, 1.0));
@@ -44,17 +44,17 @@ impl Scopes {
                 *level = 0.0;
             }
         }
-        self.choose(snapshot, looked);
+        self.choose(snapshot, selected);
     }
 
     /// Keeps waveforms in their places: a tile that comes under a foot takes the place unused for longest.
-    fn choose(&mut self, snapshot: &Snapshot, looked: TileId) {
+    fn choose(&mut self, snapshot: &Snapshot, selected: TileId) {
         for (_, age) in self.slots.iter_mut().flatten() {
             *age = age.saturating_add(1);
         }
         let heaviest =
             snapshot.contacts.iter().filter_map(|contact| contact.tiles.first()).map(|load| load.tile);
-        for tile in std::iter::once(looked).chain(heaviest).take(SLOTS) {
+        for tile in std::iter::once(selected).chain(heaviest).take(SLOTS) {
             if let Some((_, age)) = self.slots.iter_mut().flatten().find(|(shown, _)| *shown == tile) {
                 *age = 0;
             } else if let Some(slot) =
@@ -97,9 +97,9 @@ mod tests {
     use super::*;
     use crate::scene::sample::{at_rest, map, step_on};
 
-    struct Beat(Vec<(f32, f32)>);
+    struct Wave(Vec<(f32, f32)>);
 
-    impl ScopeFeed for Beat {
+    impl ScopeFeed for Wave {
         fn scope(&mut self, channel: usize) -> &[(f32, f32)] {
             if channel == 7 { &self.0 } else { &[] }
         }
@@ -110,11 +110,11 @@ mod tests {
         let floor = Floor::default();
         let snapshot = at_rest(&map());
         let wave = vec![(0.0, 0.0), (-0.4, 0.2), (f32::NAN, f32::NAN)];
-        let mut scopes = Scopes::new(Some(Box::new(Beat(wave))), &floor);
+        let mut scopes = Scopes::new(Some(Box::new(Wave(wave))), &floor);
         scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.016);
         assert_eq!(scopes.levels()[7], 0.4);
         assert_eq!(scopes.levels()[8], 0.0);
-        scopes.feed = Some(Box::new(Beat(vec![])));
+        scopes.feed = Some(Box::new(Wave(vec![])));
         scopes.update(&floor, &snapshot, TileId::new(1, 1), 0.1);
         let faded = scopes.levels()[7];
         assert!((0.15..0.3).contains(&faded), "{faded}");
@@ -127,18 +127,18 @@ mod tests {
     #[test]
     fn waveforms_keep_their_places_while_feet_come_and_go() {
         let floor = Floor::default();
-        let mut scopes = Scopes::new(Some(Box::new(Beat(vec![]))), &floor);
+        let mut scopes = Scopes::new(Some(Box::new(Wave(vec![]))), &floor);
         let tiles = |scopes: &Scopes| scopes.slots.map(|slot| slot.map(|(tile, _)| (tile.column, tile.row)));
         let empty = at_rest(&map());
-        let looked = TileId::new(0, 0);
-        scopes.update(&floor, &empty, looked, 0.016);
+        let selected = TileId::new(0, 0);
+        scopes.update(&floor, &empty, selected, 0.016);
         let mut one = empty.clone();
         step_on(&mut one, 1, Vec2::new(1.0, 1.0), 300.0, Vec2::ZERO);
-        scopes.update(&floor, &one, looked, 0.016);
+        scopes.update(&floor, &one, selected, 0.016);
         let before = tiles(&scopes);
         assert!(before.contains(&Some((0, 0))) && before.contains(&Some((3, 3))));
         // The foot is lifted: nothing jumps.
-        scopes.update(&floor, &empty, looked, 0.016);
+        scopes.update(&floor, &empty, selected, 0.016);
         assert_eq!(tiles(&scopes), before);
     }
 }

@@ -99,8 +99,8 @@ impl Room {
         Self { window, snapshots, events, layouts, notices, commands, feet }
     }
 
-    fn run(&mut self, pictures: usize) {
-        self.window.run_steps(pictures);
+    fn run(&mut self, frames: usize) {
+        self.window.run_steps(frames);
     }
 
     fn write(&mut self, snapshot: Snapshot) {
@@ -145,9 +145,9 @@ impl Room {
         self.run(20);
     }
 
-    fn hold_key(&mut self, key: Key, pictures: usize) {
+    fn hold_key(&mut self, key: Key, frames: usize) {
         self.window.key_down(key);
-        self.run(pictures);
+        self.run(frames);
         self.window.key_up(key);
         self.run(1);
     }
@@ -417,21 +417,21 @@ fn the_floor_is_muted_by_button_and_key_and_says_so() {
     room.window.key_press(Key::M);
     room.run(2);
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Mute(false)));
-    // One tile: the one that is looked at.
+    // One tile: the selected one.
     snapshot.muted.all = false;
     room.write(snapshot.clone());
     let tile = Floor::default().geometry.tile_under(middle_of("Home")).unwrap();
     room.window.get_by_label("Mute tile").click();
     room.run(2);
-    let Ok(PreviewCommand::MuteTile { tile: looked, on: true }) = room.commands.try_recv() else {
+    let Ok(PreviewCommand::MuteTile { tile: selected, on: true }) = room.commands.try_recv() else {
         panic!("not muted")
     };
-    snapshot.muted.tiles = vec![looked, tile];
+    snapshot.muted.tiles = vec![selected, tile];
     room.write(snapshot);
     assert!(room.says("2 muted"));
     room.window.get_by_label("Mute tile").click();
     room.run(2);
-    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::MuteTile { tile: looked, on: false }));
+    assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::MuteTile { tile: selected, on: false }));
 }
 
 #[test]
@@ -442,14 +442,14 @@ fn the_panel_counts_what_gave_way_underfoot() {
     let mut snapshot = at_rest(&pond);
     let layout = Arc::new(pond);
     room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name: "pond".into() }).unwrap();
-    let counters = GroundCounters { events: 5, unfelt: 0, crowded_out: 2 };
+    let counters = GroundCounters { events: 5, unfelt: 0, evicted: 2 };
     let cracks = vec![Crack::default(); 3];
     snapshot.grounds = vec![GroundState { cracks, counters, ..GroundState::default() }];
     room.write(snapshot);
-    assert!(!room.says("crowded out"), "one line until it is opened");
+    assert!(!room.says("evicted"), "one line until it is opened");
     room.window.get_by_label("Ice: 3 pieces").click();
     room.run(20);
-    assert!(room.says("crowded out by new pieces: 2") && room.says("seeds: 0"));
+    assert!(room.says("evicted by new pieces: 2") && room.says("seeds: 0"));
 }
 
 #[test]

@@ -6,7 +6,7 @@ use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
 use super::painter::color;
-use crate::feel::{Effect, Gesture, Heard, audition, heard};
+use crate::feel::{Analysis, Effect, Gesture, analyse, audition};
 use crate::scene::Theme;
 
 /// Samples per second that are enough for what actuators move.
@@ -27,29 +27,29 @@ pub(super) struct Trace {
     length_s: f32,
     /// Decibels at every ten hertz.
     spectrum: Vec<f32>,
-    pub(super) heard: Option<Heard>,
+    pub(super) analysis: Option<Analysis>,
     band: (f32, f32),
 }
 
 impl Trace {
     pub(super) fn of(effect: &Arc<Effect>, gesture: &Gesture) -> Self {
         let samples = audition(effect, gesture, RATE);
-        let heard = heard(&samples, RATE as f32, effect.manner.band);
+        let analysis = analyse(&samples, RATE as f32, effect.manner.band);
         let per_column = samples.len().div_ceil(COLUMNS).max(1);
         let wave = samples
             .chunks(per_column)
             .map(|part| part.iter().fold((f32::MAX, f32::MIN), |(low, high), x| (low.min(*x), high.max(*x))))
             .collect();
-        let spectrum = heard.as_ref().map(decibels).unwrap_or_default();
+        let spectrum = analysis.as_ref().map(decibels).unwrap_or_default();
         let band = (effect.manner.band.low_hz, effect.manner.band.high_hz);
-        Self { wave, length_s: samples.len() as f32 / RATE as f32, spectrum, heard, band }
+        Self { wave, length_s: samples.len() as f32 / RATE as f32, spectrum, analysis, band }
     }
 
-    /// The waveform over time; `played` is how much of it has been heard, in seconds.
+    /// The waveform over time; `played` is how much of it has been played, in seconds.
     pub(super) fn wave(&self, painter: &Painter, theme: &Theme, rect: Rect, played: Option<f32>) {
         ground(painter, theme, rect);
         let inner = rect.shrink2(eframe::egui::vec2(8.0, 8.0));
-        let most = self.heard.as_ref().map_or(1.0, |heard| heard.peak).max(0.5);
+        let most = self.analysis.as_ref().map_or(1.0, |analysis| analysis.peak).max(0.5);
         painter.hline(inner.x_range(), inner.center().y, Stroke::new(1.0, color(theme.line)));
         let at = |column: usize, newtons: f32| {
             let share = column as f32 / self.wave.len().max(2) as f32;
@@ -112,7 +112,7 @@ impl Trace {
         }
         let points: Vec<Pos2> =
             self.spectrum.iter().enumerate().map(|(n, db)| pos2(x(10.0 * n as f32), y(*db))).collect();
-        // Filled column by column: the outline is no convex shape.
+        // Filled column by column: the outline is not a convex shape.
         let fill = color(theme.haptic).gamma_multiply(0.25);
         for pair in points.windows(2) {
             let corners =
@@ -128,13 +128,13 @@ fn ground(painter: &Painter, theme: &Theme, rect: Rect) {
 }
 
 /// Power per ten hertz, the greatest at 0 dB.
-fn decibels(heard: &Heard) -> Vec<f32> {
-    let per_bin = (10.0 / heard.bin_hz).max(1.0);
+fn decibels(analysis: &Analysis) -> Vec<f32> {
+    let per_bin = (10.0 / analysis.bin_hz).max(1.0);
     let power: Vec<f32> = (0..=(HERTZ / 10.0) as usize)
         .map(|n| {
             let from = ((n as f32 - 0.5).max(0.0) * per_bin) as usize;
             let to = (((n as f32 + 0.5) * per_bin) as usize).max(from + 1);
-            heard.spectrum.get(from..to.min(heard.spectrum.len())).map_or(0.0, |bins| bins.iter().sum())
+            analysis.spectrum.get(from..to.min(analysis.spectrum.len())).map_or(0.0, |bins| bins.iter().sum())
         })
         .collect();
     let greatest = power.iter().copied().fold(f32::MIN_POSITIVE, f32::max);

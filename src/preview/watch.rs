@@ -36,7 +36,7 @@ pub(super) enum Weight {
 }
 
 impl Watch {
-    /// Takes in a picture's state at `now_s`; `fresh` if the sensing thread wrote it since the last one.
+    /// Takes in a frame's state at `now_s`; `fresh` if the sensing thread wrote it since the last one.
     pub(super) fn observe(&mut self, now_s: f64, snapshot: &Snapshot, fresh: bool) {
         if snapshot.counters.packets != self.packets {
             self.packets = snapshot.counters.packets;

@@ -63,7 +63,7 @@ pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) {
 fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     let theme = view.theme;
     let leads = view.snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
-    // What lies there and is no foot is drawn as what no longer counts.
+    // Objects on the floor are drawn like what no longer counts.
     let is_object =
         view.snapshot.feet.iter().any(|foot| foot.contact == contact.id && foot.role == FootRole::Object);
     let colour = match (is_object, leads) {

@@ -281,7 +281,7 @@ pub(super) fn actuators(scene: &mut Scene, view: &View<'_>) {
     }
 }
 
-/// The outline of the tile that is looked at more closely.
+/// The outline of the selected tile.
 pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
     if let Some(tile) = view.chosen.filter(|tile| view.geometry.index(*tile).is_some()) {
         let stroke = Stroke::new(0.005, Ink::solid(view.theme.accent));

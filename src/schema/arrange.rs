@@ -29,10 +29,10 @@ struct Entry<'r> {
     placing: Placing<'r>,
     /// What others of the list may stand beside.
     name: Option<&'r str>,
-    body: Body<'r>,
+    body: EntryContent<'r>,
 }
 
-enum Body<'r> {
+enum EntryContent<'r> {
     Grid(Grid<'r>),
     /// Controls that have their places within the group, and what those cover.
     Group(Vec<Control>, Option<Area>),
@@ -47,7 +47,7 @@ impl<'r> Entry<'r> {
         *room = room.saturating_sub(grid.controls.len());
         let placing =
             std::mem::replace(&mut grid.placing, Placing { spot: None, at: 0..0, is_relative: false });
-        Some(Self { placing, name: None, body: Body::Grid(grid) })
+        Some(Self { placing, name: None, body: EntryContent::Grid(grid) })
     }
 
     fn group(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
@@ -59,20 +59,20 @@ impl<'r> Entry<'r> {
         let controls = inside.unwrap_or_default();
         let areas = controls.iter().filter_map(|control| Some(control.place.as_ref()?.area));
         let bounds = areas.reduce(|all, one| all.around(&one));
-        Some(Self { placing, name, body: Body::Group(controls, bounds) })
+        Some(Self { placing, name, body: EntryContent::Group(controls, bounds) })
     }
 
     /// What it covers before it has a place; `None` if that can't be known.
     fn extent(&self, neighbour: Option<&Area>) -> Option<Area> {
         match &self.body {
-            Body::Grid(grid) => {
+            EntryContent::Grid(grid) => {
                 let cell = grid.cell_size(neighbour)?;
                 let side = |axis: usize, count: u32| {
                     f64::from(count) * cell[axis] + f64::from(count - 1) * grid.gap[axis]
                 };
                 Some(Area::new([0.0; 2], [side(0, grid.columns), side(1, grid.rows)]))
             }
-            Body::Group(_, bounds) => *bounds,
+            EntryContent::Group(_, bounds) => *bounds,
         }
     }
 
@@ -80,7 +80,7 @@ impl<'r> Entry<'r> {
     fn move_by(&mut self, by: [f64; 2], neighbour: Option<&Area>) {
         let at = self.placing.at.clone();
         match &mut self.body {
-            Body::Grid(grid) => {
+            EntryContent::Grid(grid) => {
                 let Some(size) = grid.cell_size(neighbour) else { return };
                 for (cell, control) in &mut grid.controls {
                     let (column, row) = (f64::from(cell.column), f64::from(grid.rows - 1 - cell.row));
@@ -89,7 +89,7 @@ impl<'r> Entry<'r> {
                     control.place = Some(Placed { area: Area::new(corner, size), at: at.clone() });
                 }
             }
-            Body::Group(controls, bounds) => {
+            EntryContent::Group(controls, bounds) => {
                 for place in controls.iter_mut().filter_map(|control| control.place.as_mut()) {
                     place.area = place.area.moved_by(by);
                 }
@@ -101,26 +101,26 @@ impl<'r> Entry<'r> {
     /// Where the neighbour called `name` is, which is all of this or part of it.
     fn area_of(&self, name: &str) -> Option<Area> {
         match &self.body {
-            Body::Grid(grid) => {
+            EntryContent::Grid(grid) => {
                 let found = grid.controls.iter().find(|(_, control)| control.id.as_deref() == Some(name))?;
                 Some(found.1.place.as_ref()?.area)
             }
-            Body::Group(_, bounds) => *bounds,
+            EntryContent::Group(_, bounds) => *bounds,
         }
     }
 
     fn names(&self) -> impl Iterator<Item = &str> {
         let controls = match &self.body {
-            Body::Grid(grid) => grid.controls.as_slice(),
-            Body::Group(..) => &[],
+            EntryContent::Grid(grid) => grid.controls.as_slice(),
+            EntryContent::Group(..) => &[],
         };
         self.name.into_iter().chain(controls.iter().filter_map(|(_, control)| control.id.as_deref()))
     }
 
     fn into_controls(self) -> Vec<Control> {
         match self.body {
-            Body::Grid(grid) => grid.controls.into_iter().map(|(_, control)| control).collect(),
-            Body::Group(controls, _) => controls,
+            EntryContent::Grid(grid) => grid.controls.into_iter().map(|(_, control)| control).collect(),
+            EntryContent::Group(controls, _) => controls,
         }
     }
 }
@@ -128,7 +128,7 @@ impl<'r> Entry<'r> {
 impl Grid<'_> {
     fn cell_size(&self, neighbour: Option<&Area>) -> Option<[f64; 2]> {
         match self.size? {
-            Size::Written(size) => Some(size),
+            Size::Fixed(size) => Some(size),
             Size::Neighbours => neighbour.map(Area::size),
         }
     }
@@ -152,14 +152,15 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
         };
         if let (Some((by, neighbour)), Some(entry)) = (moved, entries.get_mut(index)) {
             entry.move_by(by, neighbour.as_ref());
-        } else if let Some(Entry { body: Body::Group(controls, bounds), .. }) = entries.get_mut(index) {
+        } else if let Some(Entry { body: EntryContent::Group(controls, bounds), .. }) = entries.get_mut(index)
+        {
             // Places within a group that is nowhere are none.
             controls.iter_mut().for_each(|control| control.place = None);
             *bounds = None;
         }
     }
     for &index in chains.circles.iter().flatten() {
-        if let Some(Entry { body: Body::Group(controls, _), .. }) = entries.get_mut(index) {
+        if let Some(Entry { body: EntryContent::Group(controls, _), .. }) = entries.get_mut(index) {
             controls.iter_mut().for_each(|control| control.place = None);
         }
     }

@@ -38,7 +38,7 @@ fn check_guard(fields: &Fields<'_>, behaviour: &Behaviour) {
             Problem::error(fields.span("guard"), "only what acts while it is held can run on a hold");
         let help = "a control that keeps its state can be guarded by Confirm";
         fields.report(problem.expected("HoldToRun is for Hold, Pedal and Lean").help(help));
-    } else if let Some(span) = fields.written_span("dwell_ms").or_else(|| fields.written_span("guard"))
+    } else if let Some(span) = fields.value_span("dwell_ms").or_else(|| fields.value_span("guard"))
         && at.dwell < STEP
     {
         let problem = Problem::warning(span, "a foot that walks across could run this control");

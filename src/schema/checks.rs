@@ -159,7 +159,7 @@ fn overlapping(
     floor: &Area,
 ) -> Option<Problem> {
     let control = &page.controls[index];
-    let earlier = page.controls[..index].iter().filter(|other| pages::meet(control, other));
+    let earlier = page.controls[..index].iter().filter(|other| pages::can_both_show(control, other));
     let mut overlapped = earlier.filter_map(|other| {
         let there = other.place.as_ref()?;
         Some((other, there, place.area.shared(&there.area)?))

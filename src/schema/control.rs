@@ -24,12 +24,12 @@ pub(super) struct Control {
     pub(super) goto: Option<Goto>,
     /// Its kind with everything that it overrides.
     pub(super) kind: Option<Kind>,
-    pub(super) written: Written,
+    pub(super) written: ControlSpans,
 }
 
 /// Where a control is written.
 #[derive(Clone, Debug)]
-pub(super) struct Written {
+pub(super) struct ControlSpans {
     pub(super) id: Range<usize>,
     /// `at`, or what stands for it.
     pub(super) at: Range<usize>,
@@ -46,7 +46,7 @@ pub(super) struct Written {
 /// How large a control is.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Size {
-    Written([f64; 2]),
+    Fixed([f64; 2]),
     /// As large as the neighbour that it stands beside.
     Neighbours,
 }
@@ -72,7 +72,7 @@ impl<'r> Grid<'r> {
         let placing = Placing::read(&mut fields);
         let size = size(&mut fields, placing.is_relative);
         let goto = Goto::read(&mut fields);
-        let repeat_at = fields.written_span("repeat");
+        let repeat_at = fields.value_span("repeat");
         // A grid that can't be read says nothing of its ids, which may well be patterns.
         let names = match &repeat {
             Some(Some(Some(repeat))) => names_of_grid(&mut fields, repeat, room),
@@ -87,9 +87,9 @@ impl<'r> Grid<'r> {
                 Vec::new()
             }
         };
-        let span_of = |field| fields.written_span(field);
+        let span_of = |field| fields.value_span(field);
         let id_at = span_of("id").or_else(|| span_of("repeat")).unwrap_or_else(|| fields.start());
-        let written = Written {
+        let written = ControlSpans {
             id: id_at,
             at: placing.at.clone(),
             size: span_of("size"),
@@ -102,7 +102,7 @@ impl<'r> Grid<'r> {
         };
         let kind = match base {
             Some(base) => {
-                fields.call(format!("widget of the kind \"{}\"", base.name));
+                fields.set_noun(format!("widget of the kind \"{}\"", base.name));
                 let kind = overridden(&mut fields, base);
                 fields.finish();
                 kind
@@ -126,7 +126,7 @@ impl<'r> Grid<'r> {
 fn size(fields: &mut Fields<'_>, is_relative: bool) -> Option<Size> {
     let (least, most) = (fields.units().shortest(), fields.units().furthest());
     fields.read("size", is_relative.then_some(Size::Neighbours), |node| {
-        node.pair(least..=most).map(Size::Written)
+        node.pair(least..=most).map(Size::Fixed)
     })
 }
 
@@ -159,7 +159,7 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
         fields.report(problem.expected(expected));
         return Names::new();
     }
-    // A pattern that is none is told of first.
+    // A pattern that cannot be read is reported first.
     let first = cells.first().copied();
     let sound = |(node, pattern): (Node<'_>, &str)| {
         first.is_none_or(|cell| fill(node, pattern, cell, Some("")).is_some())
@@ -205,9 +205,9 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
 }
 
 fn twice(node: Node<'_>, list: &str) {
-    let message = format!("`{}` is given twice", node.what);
+    let message = format!("`{}` is given twice", node.name);
     let problem = Problem::error(node.span(), message).expected(format!("`{list}` of `repeat` gives it"));
-    node.report(problem.help(format!("leave out `{}` or `{list}`", node.what)));
+    node.report(problem.help(format!("leave out `{}` or `{list}`", node.name)));
 }
 
 fn fill(node: Node<'_>, pattern: &str, cell: Cell, label: Option<&str>) -> Option<String> {
@@ -234,7 +234,7 @@ fn is_fit(node: Node<'_>, id: &str) -> bool {
 fn overridden(fields: &mut Fields<'_>, base: &Kind) -> Option<Kind> {
     let behaviour = behaviour::read_over(fields, &base.behaviour);
     let look = fields.read("look", Some(base.look), |node| node.record(Some(&base.look)));
-    if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.written_span("look"))
+    if let (Some(behaviour), Some(look), Some(span)) = (&behaviour, &look, fields.value_span("look"))
         && look.icon.is_some()
         && base.look.icon != look.icon
         && !Icon::is_shown_on(behaviour)

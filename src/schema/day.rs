@@ -8,7 +8,7 @@ pub(super) fn read(node: Node<'_>) -> Option<Day> {
     let text = node.text(32)?;
     let day = text.parse().ok();
     if day.is_none() {
-        let message = format!("`{}` is no day", node.what);
+        let message = format!("`{}` is no day", node.name);
         let problem = Problem::error(node.span(), message).expected("expected year-month-day");
         node.report(problem.help("write \"2026-11-20\""));
     }

@@ -14,7 +14,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
-use crate::feel::{Effect, Effects, NamedEffect, Use, written};
+use crate::feel::{Effect, Effects, NamedEffect, Use, effect_at};
 
 /// The shipped ones, read once: balancing each takes a moment.
 static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {
@@ -122,7 +122,7 @@ fn read(node: Node<'_>) -> Option<NamedEffect> {
     fields.read("version", Some(1), version::read);
     let name = fields.read("name", None, |node| node.id());
     let about = fields.read("about", Some(""), |node| node.text(200));
-    let effect = fields.read("plays", None, |node| written(node, None, Use::Once));
+    let effect = fields.read("plays", None, |node| effect_at(node, None, Use::Once));
     fields.finish();
     Some(NamedEffect { name: name?.to_owned(), about: about?.to_owned(), effect: Arc::new(effect?) })
 }
@@ -158,5 +158,5 @@ pub fn write_named_effect(effect: &NamedEffect) -> String {
 /// The effect as it is written where it is played, its lines indented by so many steps.
 #[must_use]
 pub fn write_effect(effect: &Effect, indent: usize) -> String {
-    effect.written().lay_out(indent, 4 * indent + "plays: ".len())
+    effect.to_ron().lay_out(indent, 4 * indent + "plays: ".len())
 }

@@ -112,8 +112,8 @@ impl Grid {
         let most = u32::from(Geometry::MAX_SIDE);
         let (columns, rows) =
             self.known.map_or((most, most), |known| (known.columns().into(), known.rows().into()));
-        let column = Node { what: "column", ..column }.whole(0..=columns - 1);
-        let row = Node { what: "row", ..row }.whole(0..=rows - 1);
+        let column = Node { name: "column", ..column }.whole(0..=columns - 1);
+        let row = Node { name: "row", ..row }.whole(0..=rows - 1);
         Some(TileId::new(column? as u16, row? as u16))
     }
 }
@@ -222,7 +222,7 @@ fn channels_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
         }
         let [column, row, name] = node.tuple("(column, row, corner)")?;
         let tile = grid.tile_of(column, row);
-        let corner = corner(Node { what: "corner", ..name });
+        let corner = corner(Node { name: "corner", ..name });
         Some(Some((SensorId { tile: tile?, corner: corner? }, node.span())))
     }))
 }

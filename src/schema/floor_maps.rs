@@ -52,11 +52,11 @@ fn table<const ROWS: usize, const COLUMNS: usize>(
     most: f32,
 ) -> Option<[[f32; COLUMNS]; ROWS]> {
     let rows: Vec<_> = node
-        .list(node.what, usize::MAX)?
+        .list(node.name, usize::MAX)?
         .into_iter()
         .map(|row| {
             let numbers: Vec<_> = row
-                .list(node.what, usize::MAX)?
+                .list(node.name, usize::MAX)?
                 .into_iter()
                 .map(|number| single(number, -f64::from(most)..=f64::from(most)))
                 .collect();
@@ -69,7 +69,7 @@ fn table<const ROWS: usize, const COLUMNS: usize>(
 /// All of `entries`, if there are as many as there must be and each could be read.
 fn exactly<T, const COUNT: usize>(node: Node<'_>, entries: Vec<Option<T>>) -> Option<[T; COUNT]> {
     if entries.len() != COUNT {
-        let problem = Problem::error(node.span(), format!("`{}` has {} entries", node.what, entries.len()));
+        let problem = Problem::error(node.span(), format!("`{}` has {} entries", node.name, entries.len()));
         node.report(problem.expected(format!("expected {COUNT}")));
         return None;
     }

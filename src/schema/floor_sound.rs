@@ -84,7 +84,7 @@ fn response(fields: &mut Fields<'_>) -> Option<Option<Measured>> {
 fn points(node: Node<'_>, range: std::ops::RangeInclusive<f64>) -> Option<Vec<(f32, f32)>> {
     let nodes = node.list("point", Response::MOST_POINTS)?;
     if nodes.len() < 2 {
-        let problem = Problem::error(node.span(), format!("`{}` has too few points", node.what));
+        let problem = Problem::error(node.span(), format!("`{}` has too few points", node.name));
         node.report(problem.expected("expected 2 or more").help("write [(50, -3.5), (100, 0), (750, -6)]"));
         return None;
     }
@@ -93,8 +93,8 @@ fn points(node: Node<'_>, range: std::ops::RangeInclusive<f64>) -> Option<Vec<(f
         .into_iter()
         .map(|node| {
             let [hz, gain] = node.tuple("(hertz, gain)")?;
-            let hz = single(Node { what: "hertz", ..hz }, 1.0..=20_000.0);
-            let gain = single(Node { what: "gain", ..gain }, range.clone());
+            let hz = single(Node { name: "hertz", ..hz }, 1.0..=20_000.0);
+            let gain = single(Node { name: "gain", ..gain }, range.clone());
             let (hz, gain) = (hz?, gain?);
             if hz <= last {
                 let problem = Problem::error(node.span(), "the hertz of a response must rise");

@@ -28,7 +28,7 @@ const MOST: usize = 16;
 const NAMES: [&str; 5] = ["Ice", "Snow", "Gravel", "Sand", "Wood"];
 
 /// One ground as written. What could not be read is `None` and has been reported.
-pub(super) struct Plot {
+pub(super) struct GroundDefinition {
     /// `None` inside for the whole floor.
     place: Option<Option<Placed>>,
     page: Option<usize>,
@@ -39,24 +39,28 @@ pub(super) struct Plot {
 }
 
 /// The grounds of a layout or of one of its pages.
-pub(super) fn read(fields: &mut Fields<'_>, page: Option<usize>) -> Vec<Plot> {
+pub(super) fn read(fields: &mut Fields<'_>, page: Option<usize>) -> Vec<GroundDefinition> {
     let Some(node) = fields.take("grounds") else { return Vec::new() };
     let Some(nodes) = node.list("ground", MOST) else { return Vec::new() };
-    let plots: Vec<Option<Plot>> = nodes.into_iter().map(|node| Plot::read(node, page)).collect();
-    if plots.iter().any(Option::is_none) {
-        // What is no ground at all has been said; the others don't make a layout either.
-        return plots.into_iter().map(|plot| plot.unwrap_or_else(|| Plot::unreadable(node.span()))).collect();
+    let definitions: Vec<Option<GroundDefinition>> =
+        nodes.into_iter().map(|node| GroundDefinition::read(node, page)).collect();
+    if definitions.iter().any(Option::is_none) {
+        // A ground that could not be read has been reported; the others alone don't make a layout.
+        return definitions
+            .into_iter()
+            .map(|definition| definition.unwrap_or_else(|| GroundDefinition::unreadable(node.span())))
+            .collect();
     }
-    plots.into_iter().flatten().collect()
+    definitions.into_iter().flatten().collect()
 }
 
-impl Plot {
+impl GroundDefinition {
     fn read(node: Node<'_>, page: Option<usize>) -> Option<Self> {
         let (name, mut fields) = node.variant(&NAMES)?;
         let standard = standard(name);
         let (surface, deep) = colours(name);
         let at = node.span();
-        let place = if fields.written_span("at").is_none() && fields.written_span("size").is_none() {
+        let place = if fields.value_span("at").is_none() && fields.value_span("size").is_none() {
             let _ = (fields.take("at"), fields.take("size"));
             Some(None)
         } else {
@@ -96,7 +100,7 @@ impl Plot {
     }
 
     /// Whether both are ever there at the same time.
-    pub(super) fn meets(&self, other: &Self) -> bool {
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.page.is_none() || other.page.is_none() || self.page == other.page
     }
 
@@ -110,21 +114,22 @@ impl Plot {
 
 /// Notes what is wrong between grounds, and between them and the floor.
 pub(super) fn check(page: &page::Page<'_>, floor: &Area, report: impl Fn(Problem)) {
-    for (index, plot) in page.grounds.iter().enumerate() {
-        let Some(area) = plot.area(floor) else { continue };
-        let at = plot.placed().map_or(plot.at.clone(), |place| place.at.clone());
+    for (index, definition) in page.grounds.iter().enumerate() {
+        let Some(area) = definition.area(floor) else { continue };
+        let at = definition.placed().map_or(definition.at.clone(), |place| place.at.clone());
         if !area.within(floor) {
-            let problem = Problem::error(at, format!("this {} reaches beyond the floor", plot.name()));
+            let problem = Problem::error(at, format!("this {} reaches beyond the floor", definition.name()));
             let help = format!("places count in {} from the floor's south-west corner", page.units.name());
             report(problem.expected(format!("it spans {area}, the floor {floor}")).help(help));
             continue;
         }
-        let under = page.grounds[..index].iter().filter(|other| plot.meets(other)).find_map(|other| {
-            let shared = area.shared(&other.area(floor)?)?;
-            Some((other, shared))
-        });
+        let under =
+            page.grounds[..index].iter().filter(|other| definition.overlaps(other)).find_map(|other| {
+                let shared = area.shared(&other.area(floor)?)?;
+                Some((other, shared))
+            });
         if let Some((other, [width, depth])) = under {
-            let message = format!("this {} lies on {}", plot.name(), other.name());
+            let message = format!("this {} lies on {}", definition.name(), other.name());
             let shared = format!("{} x {}{}", plain(width), plain(depth), page.units.suffix());
             report(Problem::warning(at, message).expected(format!("both answer a foot on these {shared}")));
         }

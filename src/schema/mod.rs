@@ -40,7 +40,7 @@ mod write;
 use crate::format::{diagnostic, fields, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
-pub use crate::format::describe::{Description, FieldDescription, Shape};
+pub use crate::format::describe::{Description, FieldDescription, FieldType};
 pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};

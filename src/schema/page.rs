@@ -7,11 +7,11 @@ use super::control::Control;
 use super::diagnostic::Diagnostics;
 use super::effect;
 use super::fields::Fields;
-use super::ground::{self, Plot};
+use super::ground::{self, GroundDefinition};
 use super::inherit::Choice;
 use super::kind::Kinds;
 use super::node::Node;
-use super::pages::{self, Sheet};
+use super::pages::{self, PageDefinition};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
@@ -80,9 +80,9 @@ pub(super) struct Page<'r> {
     pub(super) units: Units,
     pub(super) regions: Vec<Zone<'r>>,
     pub(super) stances: Vec<Zone<'r>>,
-    pub(super) pages: Vec<Sheet<'r>>,
+    pub(super) pages: Vec<PageDefinition<'r>>,
     /// Those of all pages.
-    pub(super) grounds: Vec<Plot>,
+    pub(super) grounds: Vec<GroundDefinition>,
     /// Those of all pages.
     pub(super) controls: Vec<Control>,
     /// Whether all regions could be read.
@@ -166,7 +166,7 @@ impl<'r> Page<'r> {
             title: self.title?.to_owned(),
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
-            pages: self.pages.iter().map(Sheet::checked).collect::<Option<_>>()?,
+            pages: self.pages.iter().map(PageDefinition::checked).collect::<Option<_>>()?,
             grounds: self.grounds.iter().map(|plot| plot.checked(geometry, units)).collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })

@@ -13,7 +13,7 @@ use std::ops::Range;
 use super::arrange;
 use super::control::Control;
 use super::fields::Fields;
-use super::ground::{self, Plot};
+use super::ground::{self, GroundDefinition};
 use super::inherit::Choice;
 use super::node::Node;
 use super::page::{self, Page};
@@ -24,7 +24,7 @@ use crate::layout;
 use crate::widget::{Behaviour, WidgetId};
 
 /// One page as written. What could not be read is `None` and has been reported.
-pub(super) struct Sheet<'r> {
+pub(super) struct PageDefinition<'r> {
     id: Option<&'r str>,
     id_at: Range<usize>,
     title: Option<&'r str>,
@@ -43,43 +43,43 @@ pub(super) fn read<'r>(
     kinds: &Choice<'_>,
     room: &mut usize,
     controls: &mut Vec<Control>,
-    grounds: &mut Vec<Plot>,
-) -> Vec<Sheet<'r>> {
+    grounds: &mut Vec<GroundDefinition>,
+) -> Vec<PageDefinition<'r>> {
     let mut number = 0;
     let (pages, _) = page::list(fields, "pages", "page", |node| {
         number += 1;
-        Sheet::read(node, kinds, room, (number - 1, &mut *grounds))
+        PageDefinition::read(node, kinds, room, (number - 1, &mut *grounds))
     });
-    let mut sheets = Vec::with_capacity(pages.len());
-    for (number, (sheet, own)) in pages.into_iter().enumerate() {
+    let mut pages_read = Vec::with_capacity(pages.len());
+    for (number, (definition, own)) in pages.into_iter().enumerate() {
         controls.extend(own.into_iter().map(|mut control| {
             control.page = Some(number);
             control
         }));
-        sheets.push(sheet);
+        pages_read.push(definition);
     }
-    sheets
+    pages_read
 }
 
 /// Whether two controls are ever there at the same time.
-pub(super) fn meet(one: &Control, other: &Control) -> bool {
+pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
     one.page.is_none() || other.page.is_none() || one.page == other.page
 }
 
 /// Notes what is wrong between pages and the controls that switch them.
 pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
-    for (number, sheet) in page.pages.iter().enumerate() {
-        let same = |other: &&Sheet<'_>| other.id.is_some() && other.id == sheet.id;
+    for (number, definition) in page.pages.iter().enumerate() {
+        let same = |other: &&PageDefinition<'_>| other.id.is_some() && other.id == definition.id;
         if let Some(earlier) = page.pages[..number].iter().find(same) {
-            let message = format!("two pages have the id \"{}\"", sheet.id.unwrap_or_default());
+            let message = format!("two pages have the id \"{}\"", definition.id.unwrap_or_default());
             let expected = format!("the first is on line {}", reader.line(&earlier.id_at));
-            reader.report(Problem::error(sheet.id_at.clone(), message).expected(expected));
+            reader.report(Problem::error(definition.id_at.clone(), message).expected(expected));
         }
     }
     for control in &page.controls {
         let Some(goto) = &control.goto else { continue };
-        if goto.number(&page.pages).is_none() && page.pages.iter().all(|sheet| sheet.id.is_some()) {
-            let ids: Vec<&str> = page.pages.iter().filter_map(|sheet| sheet.id).collect();
+        if goto.number(&page.pages).is_none() && page.pages.iter().all(|definition| definition.id.is_some()) {
+            let ids: Vec<&str> = page.pages.iter().filter_map(|definition| definition.id).collect();
             let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
             let help = did_you_mean(&goto.id, &ids, '"');
             let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
@@ -93,12 +93,12 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
     }
 }
 
-impl<'r> Sheet<'r> {
+impl<'r> PageDefinition<'r> {
     fn read(
         node: Node<'r>,
         kinds: &Choice<'_>,
         room: &mut usize,
-        (number, grounds): (usize, &mut Vec<Plot>),
+        (number, grounds): (usize, &mut Vec<GroundDefinition>),
     ) -> Option<(Self, Vec<Control>)> {
         let mut fields = node.fields("Page")?;
         let id = fields.read("id", None, |node| node.id());
@@ -125,7 +125,7 @@ impl Goto {
     }
 
     /// The number of the page among `pages`.
-    pub(super) fn number(&self, pages: &[Sheet<'_>]) -> Option<usize> {
-        pages.iter().position(|sheet| sheet.id == Some(&self.id))
+    pub(super) fn number(&self, pages: &[PageDefinition<'_>]) -> Option<usize> {
+        pages.iter().position(|definition| definition.id == Some(&self.id))
     }
 }

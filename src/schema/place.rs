@@ -75,7 +75,7 @@ impl<'r> Placing<'r> {
         let gap = fields.read("gap", Some(0.0), |node| node.number(0.0..=far).map(|number| number.value));
         let align = fields.read("align", Some(Align::Middle), |node| node.choice(&ALIGNS));
         let Some(&(name, side, node)) = sides.first() else {
-            for (field, span) in ["gap", "align"].map(|field| (field, fields.written_span(field))) {
+            for (field, span) in ["gap", "align"].map(|field| (field, fields.value_span(field))) {
                 let Some(span) = span else { continue };
                 let problem = Problem::error(span, format!("`{field}` needs a neighbour"));
                 let help = format!("say whose: right_of: \"home\", {field}: ...");

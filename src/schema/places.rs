@@ -1,7 +1,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::control::Written;
+use super::control::ControlSpans;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::pairs::Limits;
 use super::problem::Problem;
@@ -15,7 +15,7 @@ pub struct Places {
     name: Arc<str>,
     text: Arc<str>,
     /// In the order of the layout's widgets.
-    widgets: Vec<Written>,
+    widgets: Vec<ControlSpans>,
 }
 
 impl PartialEq for Places {
@@ -26,7 +26,7 @@ impl PartialEq for Places {
 }
 
 impl Places {
-    pub(super) fn new(name: &str, text: &str, widgets: Vec<Written>) -> Self {
+    pub(super) fn new(name: &str, text: &str, widgets: Vec<ControlSpans>) -> Self {
         Self { name: name.into(), text: text.into(), widgets }
     }
 

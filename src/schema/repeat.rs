@@ -36,7 +36,7 @@ impl<'r> Repeat<'r> {
         let far = fields.units().furthest();
         let rows = fields.read("rows", Some(1), |node| node.whole(1..=MOST));
         // One of the two must be written, or nothing is repeated.
-        let alone = fields.written_span("rows").map(|_| 1);
+        let alone = fields.value_span("rows").map(|_| 1);
         let columns = fields.read("columns", alone, |node| node.whole(1..=MOST));
         let gap = fields.read("gap", Some([0.0; 2]), |node| node.one_or_two(0.0..=far));
         let count = columns.zip(rows).map(|(columns, rows)| columns * rows);
@@ -92,7 +92,7 @@ fn words<'r>(node: Node<'r>, entry: &'static str, count: Option<u32>) -> Option<
     if let Some(count) = count
         && nodes.len() != count as usize
     {
-        let message = format!("`{}` doesn't fit the grid", node.what);
+        let message = format!("`{}` doesn't fit the grid", node.name);
         let expected = format!("expected {count} entries, found {}", nodes.len());
         let problem = Problem::error(node.span(), message).expected(expected);
         node.report(

@@ -20,10 +20,10 @@ use crate::floor::{Floor, SensorId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, SensorPacket};
 
-/// A slot is given up for complete when a board has delivered one this much later.
+/// A slot is taken for complete when a board has delivered one this much later.
 const AHEAD: i64 = 2;
 
-/// A slot still incomplete this long after its last packet is given up when time passes without packets.
+/// A slot still incomplete this long after its last packet is passed on when time passes without packets.
 const PATIENCE_NS: i64 = 3 * SLOT_NS;
 
 /// How often the boards' slots and the clock are compared with the receive clock.
@@ -81,7 +81,7 @@ pub struct Assembler {
     clock: Option<SampleClock>,
     now_ns: i64,
     /// When the first packet came.
-    heard_ns: Option<i64>,
+    first_packet_ns: Option<i64>,
     swept_ns: i64,
     aligned_ns: i64,
     /// Slots that wait for boards, earliest first.
@@ -90,7 +90,7 @@ pub struct Assembler {
     awaited: usize,
     /// The last slot made into a frame.
     done: i64,
-    /// Whether the waiting slots are given up for complete.
+    /// Whether the waiting slots are taken for complete.
     flush: bool,
     /// Whether frames are passed on: not before the tare is known.
     started: bool,
@@ -149,7 +149,7 @@ impl Assembler {
             boards,
             clock: None,
             now_ns: 0,
-            heard_ns: None,
+            first_packet_ns: None,
             swept_ns: 0,
             aligned_ns: 0,
             waiting: ArrayVec::new(),
@@ -174,7 +174,7 @@ impl Assembler {
             Some(board) if board.channel_count() != packet.readings.len() => self.counters.wrong_shape += 1,
             Some(_) => {
                 self.pass_time(nanos(packet.received));
-                self.heard_ns.get_or_insert(self.now_ns);
+                self.first_packet_ns.get_or_insert(self.now_ns);
                 self.sort_in(number, packet);
             }
         }
@@ -223,8 +223,8 @@ impl Assembler {
     #[must_use]
     pub fn link_state(&self) -> LinkState {
         let presences = || self.boards.iter().map(|board| &board.stream.presence);
-        let is_new = self.heard_ns.is_none_or(|heard| self.now_ns - heard < GATHERING_NS);
-        if is_new && presences().any(|presence| !presence.was_heard()) {
+        let is_new = self.first_packet_ns.is_none_or(|first| self.now_ns - first < GATHERING_NS);
+        if is_new && presences().any(|presence| !presence.has_reported()) {
             LinkState::Waiting
         } else if presences().all(presence::Presence::is_live) {
             LinkState::Live
@@ -257,8 +257,8 @@ impl Assembler {
             TareOutcome::Taken => 1,
             TareOutcome::FromFloor => 0,
         };
-        let heard = self.boards.iter().filter(|board| board.stream.presence.was_heard());
-        let outcomes = heard.map(BoardTrack::tare_outcome);
+        let reporting = self.boards.iter().filter(|board| board.stream.presence.has_reported());
+        let outcomes = reporting.map(BoardTrack::tare_outcome);
         let unheard = self.boards.first().map_or(TareOutcome::FromFloor, BoardTrack::tare_outcome);
         outcomes.max_by_key(urgency).unwrap_or(unheard)
     }
@@ -338,17 +338,17 @@ impl Assembler {
             return;
         }
         self.swept_ns = self.now_ns;
-        let mut given_up = false;
+        let mut gave_out = false;
         for board in &mut self.boards {
             if board.stream.presence.pass(self.now_ns) {
                 board.interrupt_tare();
             }
             if board.stream.is_overdue(self.now_ns) {
                 board.stream.awaited = false;
-                given_up = true;
+                gave_out = true;
             }
         }
-        if given_up {
+        if gave_out {
             self.count_awaited();
         }
     }
@@ -393,7 +393,7 @@ impl Assembler {
         self.align();
     }
 
-    /// Waits for every board a while, as if all had just been heard.
+    /// Waits for every board a while, as if all had just reported.
     fn expect_all(&mut self) {
         self.boards.iter_mut().for_each(|board| board.stream.expect(self.now_ns));
         self.awaited = self.boards.len();

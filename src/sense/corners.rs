@@ -148,7 +148,7 @@ fn lacking(forces: [f32; 4], at_end: [bool; 4], corner: usize) -> f32 {
 
 /// The standard deviation of each of `forces` beyond what is unknown of any sensor, in newtons, by the quality of
 /// the sensors; `may_start` as in [`super::ForceFrame::may_start`].
-pub(super) fn vague(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
+pub(super) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bool) -> [f32; 4] {
     let whole: f32 = forces.iter().sum();
     let at_end = quality.iter().filter(|&&quality| quality == Quality::Degraded).count() as f32;
     let lifted = forces.map(has_lifted);
@@ -288,9 +288,9 @@ mod tests {
         let over_sw = [685.0, 335.0, 245.0, -11.0];
         let south = [END, END, Quality::Live, Quality::Live];
         assert_eq!(mended(over_sw, south), [753.5, 368.5, 245.0, -11.0]);
-        assert_eq!(vague(over_sw, south, false)[1], 0.5 * 335.0);
+        assert_eq!(extra_sigma(over_sw, south, false)[1], 0.5 * 335.0);
         // With all on their supports the plate tells it six times as well.
-        let flat = vague(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
+        let flat = extra_sigma(FOOT, [END, Quality::Live, Quality::Live, Quality::Live], false);
         assert_eq!(flat, [21.6, 0.0, 0.0, 0.0]);
     }
 

@@ -2,17 +2,17 @@ use glam::Vec2;
 
 use super::cluster::Clusters;
 use super::contact::{Contact, ContactId, Covariance, TileLoad};
-use super::doubt::SensorDoubt;
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
 use super::tile::LoadedTile;
+use super::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
 /// Marks a tile that no contact owned in the last frame.
 const NOBODY: u32 = u32::MAX;
 
 /// How far a contact may have come in one frame without sharing a tile with its old self, in metres.
-const LEAP_M: f32 = 0.1;
+const JUMP_M: f32 = 0.1;
 
 /// The paper's own method: one contact per group of connected tiles, named by continuity.
 ///
@@ -25,13 +25,13 @@ const LEAP_M: f32 = 0.1;
 /// with [`LoadedTile::weight`] for F_k.
 #[derive(Clone, Debug)]
 pub(super) struct Eq4 {
-    doubt: SensorDoubt,
+    uncertainty: SensorUncertainty,
     next: u32,
     /// Per tile of the floor, which entry of `last` it carried.
     owner: Vec<u32>,
     /// The contacts of the last frame.
-    last: Vec<Past>,
-    now: Vec<Past>,
+    last: Vec<PreviousContact>,
+    now: Vec<PreviousContact>,
     /// The clusters of this frame, heaviest first.
     found: Vec<Found>,
     owned: Vec<u32>,
@@ -40,7 +40,7 @@ pub(super) struct Eq4 {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Past {
+struct PreviousContact {
     id: ContactId,
     centroid: Vec2,
     velocity: Vec2,
@@ -57,10 +57,10 @@ struct Found {
 }
 
 impl Eq4 {
-    pub(super) fn new(tiles: usize, doubt: SensorDoubt) -> Self {
+    pub(super) fn new(tiles: usize, uncertainty: SensorUncertainty) -> Self {
         let room = tiles.min(1024);
         Self {
-            doubt,
+            uncertainty,
             next: 1,
             owner: vec![NOBODY; tiles],
             last: Vec::with_capacity(room),
@@ -97,7 +97,13 @@ impl Eq4 {
                 }
                 None => (self.name(), Vec2::ZERO),
             };
-            self.now.push(Past { id, centroid: found.centroid, velocity, taken: false, claim: 0.0 });
+            self.now.push(PreviousContact {
+                id,
+                centroid: found.centroid,
+                velocity,
+                taken: false,
+                claim: 0.0,
+            });
             self.describe(tiles, members, &found, pool.add(id), velocity);
         }
         self.remember(tiles.list(), clusters);
@@ -129,7 +135,7 @@ impl Eq4 {
     }
 
     /// The contact of the last frame that goes on as this cluster.
-    fn recognise(&mut self, list: &[LoadedTile], members: &[u32], found: &Found) -> Option<Past> {
+    fn recognise(&mut self, list: &[LoadedTile], members: &[u32], found: &Found) -> Option<PreviousContact> {
         let mut best: Option<usize> = None;
         for &member in members {
             let tile = &list[member as usize];
@@ -149,7 +155,7 @@ impl Eq4 {
             best = (0..self.last.len())
                 .filter(|&past| !self.last[past].taken)
                 .map(|past| (past, self.last[past].centroid.distance(found.centroid)))
-                .filter(|&(_, distance)| distance <= LEAP_M)
+                .filter(|&(_, distance)| distance <= JUMP_M)
                 .min_by(|a, b| a.1.total_cmp(&b.1))
                 .map(|(past, _)| past);
         }
@@ -185,7 +191,8 @@ impl Eq4 {
                 centroid: tile.centroid,
             });
             contact.quality = contact.quality.max(tile.quality);
-            covariance += self.doubt.covariance(tiles.geometry(), tile, 1.0, found.centroid, found.force);
+            covariance +=
+                self.uncertainty.covariance(tiles.geometry(), tile, 1.0, found.centroid, found.force);
         }
         contact.covariance = covariance;
         contact.finish();

@@ -8,7 +8,7 @@ use crate::units::Instant;
 
 const HEADER: &str = "t_s,col,row,f_sw,f_se,f_nw,f_ne";
 
-/// No honest line is longer; what is longer is no force table.
+/// No line of a force table is longer.
 const LINE_LIMIT: u64 = 1024;
 
 /// Why a force table could not be read on.

@@ -31,10 +31,10 @@ use self::plate::Twist;
 use self::slow::{GAP_S, SHARES, Slow};
 use self::trouble::Sensor;
 
-/// Force beside zero from which on a tile is looked at in every frame: the least that counts as load.
+/// Force beside zero from which on a tile is examined in every frame: the least that counts as load.
 const LOUD_N: f32 = 6.0;
 
-/// A sensor's load that grows by more in a millisecond is no foot's: the hardest heel strike takes five to
+/// A sensor's load that grows by more in a millisecond is not a foot's: the hardest heel strike takes five to
 /// put its weight on (our choice).
 const SUDDEN_N: f32 = 30.0;
 
@@ -91,14 +91,14 @@ pub(super) struct Health {
     guessed: Vec<bool>,
     sensors: Vec<[Sensor; 4]>,
     slow: Vec<Slow>,
-    /// Tiles with a reading to be looked at in this frame.
+    /// Tiles with a reading to be examined in this frame.
     loud: Vec<u32>,
     /// Tiles with a sensor in trouble, or that may start nothing.
     watched: Vec<u32>,
     /// For building the next `watched`.
     spare: Vec<u32>,
-    /// Number of the frame in which each tile was last looked at, and what its sensors read then.
-    looked: Vec<u32>,
+    /// Number of the frame in which each tile was last checked, and what its sensors read then.
+    checked: Vec<u32>,
     read: Vec<[f32; 4]>,
     number: u32,
     changes: u64,
@@ -157,7 +157,7 @@ impl Health {
             loud: Vec::with_capacity(4 * tiles),
             watched: Vec::with_capacity(tiles),
             spare: Vec::with_capacity(tiles),
-            looked: vec![0; tiles],
+            checked: vec![0; tiles],
             read: vec![[0.0; 4]; tiles],
             number: 0,
             changes: 0,
@@ -195,7 +195,7 @@ impl Health {
         let mut watched = std::mem::take(&mut self.watched);
         self.spare.clear();
         for tile in loud.drain(..).chain(watched.drain(..)) {
-            let before = std::mem::replace(&mut self.looked[tile as usize], self.number);
+            let before = std::mem::replace(&mut self.checked[tile as usize], self.number);
             if before == self.number {
                 continue;
             }
@@ -213,13 +213,13 @@ impl Health {
         self.visit_share(frame);
     }
 
-    /// Looks at one tile; true if it must be looked at again in the next frame.
+    /// Looks at one tile; true if it must be examined again in the next frame.
     fn look(&mut self, tile: usize, frame: &mut ForceFrame) -> bool {
         let foreign = self.is_foreign();
         let (forces, ends, sensors) = (frame.forces[tile], self.ends[tile], &mut self.sensors[tile]);
         let quality = &mut frame.quality[tile];
         let mut may_start = true;
-        if is_heard(quality, sensors) {
+        if is_connected(quality, sensors) {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
             let measured = !self.guessed[tile] && !foreign;
@@ -281,11 +281,11 @@ impl Health {
         let parts = Parts::of(dt);
         self.creep.ease(dt / SHARES as f32);
         for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
-            let heard = is_heard(&frame.quality[tile], &self.sensors[tile]);
-            if self.slow[tile].add(frame.forces[tile], self.ends[tile], heard) {
+            let connected = is_connected(&frame.quality[tile], &self.sensors[tile]);
+            if self.slow[tile].add(frame.forces[tile], self.ends[tile], connected) {
                 self.finish_block(tile, frame.at);
             }
-            if heard && self.memories[tile].follow(frame.forces[tile], &parts) {
+            if connected && self.memories[tile].follow(frame.forces[tile], &parts) {
                 self.crept[tile] = self.creep.of(&self.memories[tile]);
             }
         }
@@ -386,6 +386,6 @@ impl Health {
 }
 
 /// Whether all four sensors deliver, those known to be broken apart.
-fn is_heard(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
+fn is_connected(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
     quality.iter().zip(sensors).all(|(quality, sensor)| *quality < Quality::Stale || sensor.is_out())
 }

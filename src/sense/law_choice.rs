@@ -58,7 +58,7 @@ impl Comparison {
     /// errors are taken as normal with one of two spreads, whichever gives the law the lower value: the same in newtons
     /// at every load, or in proportion to the load. Every law has two parameters and a spread, so the criterion's terms
     /// for their number, and its correction for few measurements, are the same for all. Errors that
-    /// resemble their neighbour's (hysteresis, a wave that no law follows) are no independent evidence: the
+    /// resemble their neighbour's (hysteresis, a wave that no law follows) are not independent evidence: the
     /// difference is scaled by the share of measurements that count as independent. Readings of next to nothing are left
     /// out of the comparison, as saturated ones are.
     ///

@@ -28,7 +28,7 @@ const LIGHT: u8 = 4;
 pub(super) const AROUND: [(i32, i32); 8] =
     [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
-/// Tiles looked at together.
+/// Tiles examined together.
 const BLOCK: usize = 16;
 
 /// From which force on a tile counts as loaded.
@@ -133,7 +133,7 @@ impl LoadedTiles {
         }
     }
 
-    /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not looked at.
+    /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not examined.
     pub(super) fn update(&mut self, frame: &ForceFrame) {
         let is_first = self.at.is_none();
         self.dt = self.at.map_or(Duration::ZERO, |last| frame.at.since(last));
@@ -200,7 +200,7 @@ impl LoadedTiles {
                 continue;
             }
             let may_start = frame.may_start.get(index) == Some(&true);
-            let (carried, tile) = LoadedTile::in_doubt(
+            let (carried, tile) = LoadedTile::of_any_quality(
                 self.places[index],
                 &self.geometry,
                 (*forces, *quality, may_start),
@@ -210,7 +210,7 @@ impl LoadedTiles {
                 dt,
             );
             if let Some(carried) = carried {
-                // What a lost sensor reads is no load.
+                // What a lost sensor reads is not a load.
                 self.sums[index] = carried;
             }
             self.list.extend(tile);
@@ -265,8 +265,8 @@ fn survey_block<const TILES: usize>(
     }
     let loaded = sums.iter().fold(0, |loaded, sum| loaded | u8::from(*sum >= off));
     let light = sums.iter().fold(0, |light, sum| light | u8::from((*sum > NO_WEIGHT) & (*sum < off)));
-    let doubt = quality.as_flattened().iter().fold(0, |worst, &quality| worst | quality as u8);
-    (loaded * LOADED) | (doubt & LOST) | (light * LIGHT)
+    let worst = quality.as_flattened().iter().fold(0, |seen, &quality| seen | quality as u8);
+    (loaded * LOADED) | (worst & LOST) | (light * LIGHT)
 }
 
 #[cfg(test)]

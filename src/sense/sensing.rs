@@ -1,10 +1,10 @@
 use super::cluster::Clusters;
-use super::doubt::SensorDoubt;
 use super::eq4::Eq4;
 use super::loaded::{LoadThreshold, LoadedTiles};
 use super::pool::ContactPool;
 use super::tile::TileReading;
 use super::track::Tracker;
+use super::uncertainty::SensorUncertainty;
 use super::{Contact, ForceFrame};
 use crate::floor::{Geometry, PositionMap};
 use crate::units::Instant;
@@ -25,7 +25,7 @@ pub struct SensingConfig {
     /// From which force on a tile counts as loaded.
     pub threshold: LoadThreshold,
     /// What is not known about the sensors.
-    pub doubt: SensorDoubt,
+    pub uncertainty: SensorUncertainty,
 }
 
 /// From force frames to contacts, one frame at a time.
@@ -60,8 +60,10 @@ impl Sensing {
         Self {
             tiles: LoadedTiles::new(geometry, config.threshold),
             maker: match method {
-                Method::Eq4 => Maker::Eq4(Clusters::with_capacity(tiles), Eq4::new(tiles, config.doubt)),
-                Method::Tracker => Maker::Tracker(Tracker::new(&geometry, config.doubt)),
+                Method::Eq4 => {
+                    Maker::Eq4(Clusters::with_capacity(tiles), Eq4::new(tiles, config.uncertainty))
+                }
+                Method::Tracker => Maker::Tracker(Tracker::new(&geometry, config.uncertainty)),
             },
             pool: ContactPool::with_capacity(64),
             last: None,
@@ -178,7 +180,7 @@ mod tests {
     fn a_light_contact_is_less_certain_than_a_heavy_one() {
         let geometry = Geometry::default();
         // Of load cells with maps: otherwise each part's law and memory outweigh its zero.
-        let config = SensingConfig { doubt: SensorDoubt::without_memory(), ..SensingConfig::default() };
+        let config = SensingConfig { uncertainty: SensorUncertainty::without_memory(), ..SensingConfig::default() };
         let mut sensing =
             Sensing::with_config(geometry, Method::Eq4, config)
                 .with_maps(&vec![Some(PositionMap::NONE); geometry.tile_count()]);

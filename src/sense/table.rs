@@ -128,7 +128,7 @@ impl<'t> Table<'t> {
         self.problems.add(row.line, row.columns.get(field).copied().unwrap_or_default(), problem);
     }
 
-    /// The number in one field of `row`; what is no finite number in the range is noted.
+    /// The number in one field of `row`; anything but a finite number in the range is noted.
     pub(super) fn number(&mut self, row: &Row<'_>, field: usize, range: RangeInclusive<f64>) -> Option<f64> {
         let written = row.fields.get(field).copied().unwrap_or_default();
         let number = written.parse::<f64>().ok().filter(|number| range.contains(number));

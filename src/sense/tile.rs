@@ -75,7 +75,7 @@ pub struct LoadedTile {
     pub wrench: Wrench,
     /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
     /// zero but for one that is estimated from the others, at the end of its range, or contradicted by the others.
-    pub vague: [f32; 4],
+    pub extra_sigma: [f32; 4],
     /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
     /// zero on a floor on which it is too small to matter.
     pub noise_n: f32,
@@ -84,7 +84,7 @@ pub struct LoadedTile {
     /// Where the load acts, in floor metres: on the tile's plate, or up to a few centimetres beside it
     /// if part of the load lies on tiles around it that are too light to count themselves.
     pub centroid: Vec2,
-    /// [`Quality::Live`], or [`Quality::Degraded`] with a sensor estimated or doubtful.
+    /// [`Quality::Live`], or [`Quality::Degraded`] with a sensor estimated or suspect.
     pub quality: Quality,
     /// What the force counts for in a centroid over several tiles.
     weight: f32,
@@ -116,7 +116,7 @@ pub(super) fn counted(force: f32) -> f32 {
 /// The 95th percentile of a distance in the plane over its standard deviation along each axis.
 const P95_PER_DEVIATION: f32 = 2.4477;
 
-/// How a tile gets from what a sensor read to what the others say of it, or back, without a leap of its
+/// How a tile gets from what a sensor read to what the others say of it, or back, without a jump of its
 /// centroid that could be taken for another foot.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Lag {
@@ -194,10 +194,10 @@ impl LoadedTile {
         self.wrench.moment = (self.centroid - self.centre) * self.wrench.force;
     }
 
-    /// Judges its vagueness by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
+    /// Widens the standard deviations of its corners by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
     pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
-        let vague = corners::vague(self.corners, sensors, may_start);
-        self.vague = std::array::from_fn(|corner| vague[corner].max(self.vague[corner]));
+        let extra = corners::extra_sigma(self.corners, sensors, may_start);
+        self.extra_sigma = std::array::from_fn(|corner| extra[corner].max(self.extra_sigma[corner]));
     }
 
     /// Whether nothing of its past has to be remembered: every sensor was live, and none has just been found or lost.
@@ -228,7 +228,7 @@ impl LoadedTile {
     /// what the tile carries, if some of what its sensors read is not to be counted.
     #[cold]
     #[inline(never)]
-    pub(super) fn in_doubt(
+    pub(super) fn of_any_quality(
         place: Place,
         geometry: &Geometry,
         (forces, quality, may_start): ([f32; 4], [Quality; 4], bool),
@@ -278,7 +278,7 @@ impl LoadedTile {
             centre,
             corners,
             wrench,
-            vague: corners::contradicted(corners),
+            extra_sigma: corners::contradicted(corners),
             noise_n: 0.0,
             left_n: 0.0,
             centroid: centre + arm,
@@ -339,8 +339,8 @@ mod tests {
             quality[corner] = Quality::Faulty;
             let mut forces = springs(400.0, at);
             forces[corner] = 9999.0;
-            let (known, doubt) = known_corners(forces, quality).unwrap();
-            assert_eq!(doubt, Quality::Degraded);
+            let (known, quality) = known_corners(forces, quality).unwrap();
+            assert_eq!(quality, Quality::Degraded);
             let wrench = Wrench::of_corners(known, REACH);
             assert!(wrench.arm(0.152).distance(at) < 1e-5, "corner {corner}: {wrench:?}");
         }

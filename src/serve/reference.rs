@@ -6,7 +6,7 @@ use crate::floor::{Floor, Geometry};
 use crate::ground::Material;
 use crate::layout::{Layout, Widget};
 use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
-use crate::wire::{COMMANDS, Command, Prefix, Takes};
+use crate::wire::{ArgumentKind, COMMANDS, Command, Prefix};
 
 /// Which way a message goes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -95,7 +95,7 @@ impl Maker<'_> {
         }
         for command in COMMANDS.iter().filter(|command| !command.is_of_a_control()) {
             // Without pages there is none to show.
-            if command.takes != Takes::Page || !layout.pages.is_empty() {
+            if command.argument != ArgumentKind::Page || !layout.pages.is_empty() {
                 let arguments = taken(command, None, layout, &floor.geometry);
                 self.add(Direction::In, command.path, arguments, command.says);
             }
@@ -161,7 +161,7 @@ impl Maker<'_> {
         for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
             // What only a foot can hold, no app can set.
             let settable = control.value().is_some_and(|value| control.clone().set_value(value).is_ok());
-            if command.takes != Takes::Value || settable {
+            if command.argument != ArgumentKind::Value || settable {
                 let arguments = taken(command, Some(widget), layout, &floor.geometry);
                 self.add(Direction::In, &command.path_of(id), arguments, command.says);
             }
@@ -202,18 +202,18 @@ fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
 
 /// What a command takes; of a value, what the control holds.
 fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: &Geometry) -> Vec<Argument> {
-    match command.takes {
-        Takes::Nothing => Vec::new(),
-        Takes::Label => vec![argument("label", "s", "64 characters at most")],
-        Takes::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
-        Takes::Page => vec![argument("page", "s", &pages(layout))],
-        Takes::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
-        Takes::TileFlag => vec![
+    match command.argument {
+        ArgumentKind::Nothing => Vec::new(),
+        ArgumentKind::Label => vec![argument("label", "s", "64 characters at most")],
+        ArgumentKind::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
+        ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],
+        ArgumentKind::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
+        ArgumentKind::TileFlag => vec![
             argument("column", "i", &format!("0 to {}", geometry.columns().saturating_sub(1))),
             argument("row", "i", &format!("0 to {}", geometry.rows().saturating_sub(1))),
             argument("on", "i|f|T|F", "0 or 1"),
         ],
-        Takes::Value => {
+        ArgumentKind::Value => {
             let Some(widget) = widget else { return Vec::new() };
             let held = Control::new(&widget.behaviour, widget.area.size()).value();
             let mut arguments = held.map(|value| values(&widget.behaviour, value)).unwrap_or_default();

@@ -8,7 +8,7 @@ use crate::wire::{ControlMessage, Prefix, Readback, write_page, write_readback};
 ///
 /// # Errors
 /// [`SetError`] if it can't be done; nothing has changed then.
-pub(super) fn meet(
+pub(super) fn answer(
     engine: &mut Engine,
     prefix: &Prefix,
     message: &ControlMessage,

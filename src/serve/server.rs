@@ -95,8 +95,8 @@ pub struct Server {
     device_told: Option<(Instant, DeviceStatus)>,
     /// Measures latency, if wanted, and when the last packet was taken.
     latency: Option<(LatencyStages, Instant)>,
-    /// Until when nothing new is looked for.
-    looked: Instant,
+    /// Until when nothing new is reported.
+    next_check: Instant,
     /// Whether it has been said that this seems to be another floor.
     said_foreign: bool,
     shown: Instant,
@@ -136,7 +136,7 @@ impl Server {
             device: None,
             device_told: None,
             latency: None,
-            looked: Instant::START,
+            next_check: Instant::START,
             said_foreign: false,
             shown: Instant::START,
             prefix: Prefix::default(),
@@ -241,10 +241,10 @@ impl Server {
     /// Takes one packet, or notices that none came, and does everything that follows from it.
     ///
     /// # Errors
-    /// [`SourceError`] if the source fails. A sink that fails is given up with a
+    /// [`SourceError`] if the source fails. A sink that fails is dropped with a
     /// warning, for the controls go on working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
-        self.obey();
+        self.process_commands();
         match self.source.next(PATIENCE) {
             Ok(Some(packet)) => {
                 if let Some((_, taken)) = &mut self.latency {
@@ -290,11 +290,11 @@ impl Server {
             }
             match &mut self.trial {
                 Some(trial) => {
-                    if !trial.step(at, step.rubs, feel) {
+                    if !trial.step(at, step.sustained, feel) {
                         self.trial = None;
                     }
                 }
-                None => feel.rubs(step.rubs),
+                None => feel.sustain(step.sustained),
             }
         }
         if let Some(events) = &mut self.events {
@@ -316,7 +316,7 @@ impl Server {
         if let Some(actuators) = &mut self.actuators
             && let Err(error) = actuators.advance(now)
         {
-            warn!("the actuators are given up: {error}");
+            warn!("the actuators are dropped: {error}");
             self.actuators = None;
         }
     }
@@ -334,14 +334,14 @@ impl Server {
         self.snapshots = snapshots;
     }
 
-    fn obey(&mut self) {
+    fn process_commands(&mut self) {
         while let Some(request) = self.source.take_request() {
-            self.meet(&request);
+            self.handle_request(&request);
         }
         while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
             match command {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
-                Command::Control(message) => self.meet(&message.into()),
+                Command::Control(message) => self.handle_request(&message.into()),
                 Command::Audition { effect, gesture, tile } => {
                     self.trial = Some(Trial::new(effect, *gesture, tile));
                 }
@@ -350,7 +350,7 @@ impl Server {
     }
 
     /// Does what an app asks, and tells it what it wants to know or why it can't be done.
-    fn meet(&mut self, request: &Request) {
+    fn handle_request(&mut self, request: &Request) {
         let met = match &request.message {
             ControlMessage::Mute { on } => self.mute(*on).map(|()| false).map_err(|error| error.to_string()),
             ControlMessage::MuteTile { tile, on } => {
@@ -360,7 +360,7 @@ impl Server {
                 write_mute(&self.prefix, &self.muted, &mut self.answer);
                 Ok(true)
             }
-            message => request::meet(&mut self.engine, &self.prefix, message, &mut self.answer)
+            message => request::answer(&mut self.engine, &self.prefix, message, &mut self.answer)
                 .map_err(|error| error.to_string()),
         };
         let told = met.unwrap_or_else(|why| {

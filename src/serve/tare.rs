@@ -76,7 +76,7 @@ const GRACE: Duration = Duration::from_millis(200);
 /// 15 N more or less than then, unless `accept_change`.
 ///
 /// # Errors
-/// [`TareFailure`] names the board, tile or sensor that is to blame.
+/// [`TareFailure`] names the board, tile or sensor that caused it.
 pub fn take_tare(
     source: &mut dyn SensorSource,
     floor: &Floor,

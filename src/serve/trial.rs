@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use crate::feel::{Audition, Cue, CueSender, Effect, Gesture, Rubs, Spot, Spots};
+use crate::feel::{Audition, Cue, CueSender, Effect, Gesture, Spot, Spots, SustainedCues};
 use crate::units::Instant;
 
 /// An effect that somebody tries on one tile.
@@ -12,28 +12,28 @@ pub(super) struct Trial {
     /// Begun with the first frame.
     audition: Option<Audition>,
     cues: Vec<Cue>,
-    rubs: Rubs,
+    sustained: SustainedCues,
 }
 
 impl Trial {
     pub(super) fn new(effect: Arc<Effect>, gesture: Gesture, tile: u16) -> Self {
         let spots = [Spot { tile, weight: 1.0 }].into_iter().collect();
-        Self { effect, gesture, spots, audition: None, cues: Vec::new(), rubs: Rubs::new() }
+        Self { effect, gesture, spots, audition: None, cues: Vec::new(), sustained: SustainedCues::new() }
     }
 
     /// Sends what happens at `now`, with what lasts on the floor besides; whether there is more to come.
-    pub(super) fn step(&mut self, now: Instant, floor: &Rubs, feel: &mut CueSender) -> bool {
-        let Self { effect, gesture, spots, audition, cues, rubs } = self;
+    pub(super) fn step(&mut self, now: Instant, floor: &SustainedCues, feel: &mut CueSender) -> bool {
+        let Self { effect, gesture, spots, audition, cues, sustained } = self;
         let audition =
             audition.get_or_insert_with(|| Audition::new(Arc::clone(effect), gesture.clone(), now));
         cues.clear();
-        rubs.clone_from(floor);
-        let goes_on = audition.step(now, spots, cues, rubs);
+        sustained.clone_from(floor);
+        let goes_on = audition.step(now, spots, cues, sustained);
         for cue in cues.iter() {
             // What could not be sent is counted by the sender.
             feel.send(cue);
         }
-        feel.rubs(rubs);
+        feel.sustain(sustained);
         goes_on
     }
 }

@@ -20,7 +20,7 @@ use crate::wire::{MAX_CHANNELS, Readings};
 pub struct SimConfig {
     /// The plates and how they are mounted.
     pub plate: PlateConfig,
-    /// How they meet.
+    /// How they adjoin.
     pub seam: SeamConfig,
     /// What the boards measure and send.
     pub sensing: Sensing,

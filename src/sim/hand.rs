@@ -132,7 +132,7 @@ impl Follower {
     }
 
     fn foot(&self) -> Foot {
-        // A lifted foot's force only fades out; the last trace of it is no contact.
+        // A lifted foot's force only fades out; the last trace of it is not a contact.
         let force = if self.force.value < 0.01 { 0.0 } else { self.force.value };
         Foot {
             position: Vec2::new(self.x.value, self.y.value),

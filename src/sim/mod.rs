@@ -34,7 +34,7 @@
 //! ```
 
 mod curve;
-mod encore;
+mod definition;
 mod floor;
 mod foot;
 mod footprint;
@@ -42,6 +42,7 @@ mod footwear;
 mod gait;
 mod hand;
 mod loadcell;
+mod looping_script;
 mod mapping;
 mod performance;
 mod person;
@@ -57,9 +58,7 @@ mod sensor;
 mod sway;
 mod track;
 mod way;
-mod written;
 
-pub use encore::Encore;
 pub use floor::{Sensing, SimConfig, SimFloor};
 pub use foot::{Foot, FootDriver, Load};
 pub use footprint::{Cell, Print, shoe_size};
@@ -67,6 +66,7 @@ pub use footwear::Footwear;
 pub use gait::{Gait, PREFERRED_M_S};
 pub use hand::{FootHandle, HandDriver, feet_by_hand};
 pub use loadcell::{CalibrationError, calibrated, load_table};
+pub use looping_script::LoopingScript;
 pub use mapping::{MappingError, mapped, press_table};
 pub use performance::Performance;
 pub use person::{MoveError, Person};

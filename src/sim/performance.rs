@@ -119,7 +119,7 @@ impl Performance {
 
     /// Walks along straight lines to each of `points` and stops on the last with the feet side by side.
     ///
-    /// Turns on the spot where the way bends sharply. A way of less than 2 cm is no way.
+    /// Turns on the spot where the way bends sharply. Less than 2 cm is not walked.
     ///
     /// # Errors
     /// [`MoveError::NotThere`], [`MoveError::NotFinite`].

@@ -12,7 +12,7 @@ use super::plate::GRAVITY;
 use super::track::{Pose, forward};
 use crate::units::Newtons;
 
-/// A body and its habits.
+/// A body and how it moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Person {
     /// Body mass, in kilograms.

@@ -10,8 +10,8 @@
 //! shares of the contact, weighted threefold) make one vector per step. A quadratic in the walking
 //! speed less 1.4 m/s is taken off by least squares, and of what is left the first six principal
 //! components are kept (74 % of the variance). Dwell times rather than places, because the centre
-//! of pressure stands still on the ball and leaps where the heel comes off: averaged over time,
-//! the leaps vanish. Sideways places and both root mean square radii are fitted the same way as
+//! of pressure stands still on the ball and jumps where the heel comes off: averaged over time,
+//! the jumps vanish. Sideways places and both root mean square radii are fitted the same way as
 //! functions of how far the centre has run (86, 92 and 50 % of the variance).
 //!
 //! A mode is scaled to one standard deviation. Next to each set of modes stands the part of that

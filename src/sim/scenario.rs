@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use glam::Vec2;
 
+use super::definition::{PersonFields, Places, ScenarioDefinition, Side, Step, read};
 use super::performance::Performance;
 use super::person::{MoveError, Person};
 use super::script::Script;
-use super::written::{Body, Places, Side, Step, Written, read};
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
@@ -59,7 +59,7 @@ pub struct Scenario {
 
 #[derive(Clone, Debug)]
 struct Performer {
-    body: Body,
+    body: PersonFields,
     steps: Vec<(Step, Places)>,
 }
 
@@ -116,9 +116,9 @@ impl Scenario {
     /// # Errors
     /// [`ScenarioError`] with the place of what is not RON, not a field, or out of range.
     pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
-        let (written, places) =
+        let (definition, places) =
             read(text).map_err(|problems| ScenarioError { file: file.into(), problems })?;
-        let Written { title, person, steps, others } = written;
+        let ScenarioDefinition { title, person, steps, others } = definition;
         let cast = std::iter::once((person, steps))
             .chain(others.into_iter().map(|other| (other.person, other.steps)));
         let cast = cast
@@ -166,7 +166,7 @@ struct Stage<'a> {
 
 impl Stage<'_> {
     fn perform(&self, performer: &Performer, number: u64) -> Result<Performance, Vec<ScenarioProblem>> {
-        let Body { mass_kg, foot_m, speed_m_s } = performer.body;
+        let PersonFields { mass_kg, foot_m, speed_m_s } = performer.body;
         let person = Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() };
         let mut performance = Performance::new(person, number);
         let mut problems = Vec::new();

@@ -28,7 +28,7 @@ pub use self::cards::{DeviceEntry, output_devices};
 use self::choice::Choice;
 use self::player::Player;
 use self::priority::Ask;
-use self::supervisor::{Charge, Supervisor};
+use self::supervisor::{Supervisor, SupervisorConfig};
 use super::{ActuatorSink, LatencyProbe, SinkError};
 use crate::feel::{DeviceStatus, Renderer};
 use crate::floor::Floor;
@@ -117,7 +117,7 @@ impl OutputDevice {
             None => cards.chosen_by_system(),
             Some(name) => cards.by_id(name).or_else(|| cards.by_name(name)),
         };
-        let Some(card) = card else { return Err(missing(options.name.as_deref(), &cards.names())) };
+        let Some(card) = card else { return Err(no_such_device(options.name.as_deref(), &cards.names())) };
         let block_is_asked = options.block.is_some();
         if matches!(card, Card::Paced) {
             options.block.get_or_insert(paced::BLOCK);
@@ -181,7 +181,10 @@ impl OutputDevice {
         self.options.sample_rate = Some(renderer.sample_rate());
         let player = Player::new(renderer, &self.floor, &self.options, self.choice);
         let Self { cards, card, choice, floor, options, block_is_asked, ask, .. } = self;
-        Supervisor::begin(Charge { cards, card, choice, floor, options, block_is_asked, ask }, player)
+        Supervisor::begin(
+            SupervisorConfig { cards, card, choice, floor, options, block_is_asked, ask },
+            player,
+        )
     }
 }
 
@@ -189,7 +192,7 @@ impl OutputDevice {
 const TICK: Duration = Duration::from_millis(20);
 
 /// How long the end of the program waits for a device to be closed.
-const FAREWELL: Duration = Duration::from_secs(1);
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(1);
 
 /// A floor's actuators, or a designer's loudspeakers, on a sound card.
 ///
@@ -213,7 +216,7 @@ impl DeviceSink {
                 supervisor.tick(begun.elapsed());
             }
             drop(supervisor);
-            // Whoever waits may have given up.
+            // Whoever waits may be gone.
             let _ = stopping.send(());
         };
         let spawned = thread::Builder::new().name("sound card".into()).spawn(work);
@@ -230,7 +233,7 @@ impl Drop for DeviceSink {
     /// Closes the device, but does not wait for ever for one that hangs.
     fn drop(&mut self) {
         self.stop = None;
-        if self.stopped.recv_timeout(FAREWELL).is_err() {
+        if self.stopped.recv_timeout(SHUTDOWN_TIMEOUT).is_err() {
             tracing::warn!("the sound card does not let itself be closed");
         }
     }
@@ -248,7 +251,7 @@ impl ActuatorSink for DeviceSink {
     }
 }
 
-fn missing(name: Option<&str>, names: &[String]) -> SinkError {
+fn no_such_device(name: Option<&str>, names: &[String]) -> SinkError {
     let message = match name {
         Some(name) if cfg!(not(feature = "jack")) && name.to_lowercase().starts_with("jack") => {
             "this program was built without JACK: build it with `--features jack`, which needs JACK's headers \

@@ -3,7 +3,7 @@ use std::sync::mpsc::Receiver;
 
 use serde::Serialize;
 
-use super::crackle::{CrackNews, Crackle};
+use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::engine::{LinkState, PageShown};
@@ -28,13 +28,13 @@ use crate::wire::link_name;
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
-/// in a list, the direction of a swipe, or null for what is no change of value;
+/// in a list, the direction of a swipe, or null for events without a value;
 /// `contact` is null if no foot did it. A number that JSON cannot express
 /// (which the engine never gives) is null. Contacts are not written.
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
-    crackle: Crackle,
+    cracks: CrackRateLimiter,
 }
 
 #[derive(Debug)]
@@ -63,7 +63,7 @@ impl JsonSink {
             }
         })
         .map_err(failed)?;
-        Ok(Self { worker, crackle: Crackle::default() })
+        Ok(Self { worker, cracks: CrackRateLimiter::default() })
     }
 }
 
@@ -82,7 +82,7 @@ impl EventSink for JsonSink {
 
     fn ground(&mut self, events: &[GroundEvent]) {
         for event in events {
-            if let Some(news) = self.crackle.news(event) {
+            if let Some(news) = self.cracks.news(event) {
                 self.worker.offer(Job::Crack(news));
             }
         }

@@ -1,8 +1,7 @@
 //! Where samples and events go: sound cards, files, other programs.
 
-mod beat;
 mod channel_map;
-mod crackle;
+mod crack_rate;
 #[cfg(feature = "audio")]
 mod device;
 mod fanout;
@@ -12,6 +11,7 @@ mod lockstep;
 mod manual;
 mod mono;
 mod osc;
+mod periodic;
 mod priority;
 mod silent;
 mod tuio;
@@ -29,7 +29,7 @@ use crate::units::Instant;
 use crate::widget::WidgetEvent;
 
 pub use channel_map::ChannelMap;
-pub use crackle::CrackNews;
+pub use crack_rate::CrackNews;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
@@ -68,7 +68,7 @@ pub trait EventSink: Send {
     /// Takes news of the page that has taken the place of another.
     fn page(&mut self, _page: &PageShown) {}
 
-    /// Takes what gave way underfoot in one frame, in order; called for frames in which something did.
+    /// Takes the ground events of one frame, in order; called for frames that have some.
     fn ground(&mut self, _events: &[GroundEvent]) {}
 
     /// Takes news of the floor's link; called when its state changes.

@@ -3,8 +3,8 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 
-use super::beat::{Beat, Latest};
-use super::crackle::{CrackNews, Crackle};
+use super::crack_rate::{CrackNews, CrackRateLimiter};
+use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
@@ -30,8 +30,8 @@ pub struct OscSink {
     worker: Worker<Job>,
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
-    beat: Beat,
-    crackle: Crackle,
+    periodic: PeriodicSender,
+    cracks: CrackRateLimiter,
     /// What was last heard of link and sensors: each message tells of both.
     link: LinkState,
     health: SensorHealth,
@@ -80,8 +80,8 @@ impl OscSink {
             worker,
             latest,
             undelivered,
-            beat: Beat::new(None),
-            crackle: Crackle::default(),
+            periodic: PeriodicSender::new(None),
+            cracks: CrackRateLimiter::default(),
             link,
             health,
         })
@@ -97,8 +97,8 @@ impl EventSink for OscSink {
 
     fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
         let queue = || self.worker.try_offer(Job::Contacts);
-        if self.beat.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
-            self.beat.reported(at, contacts);
+        if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+            self.periodic.reported(at, contacts);
         }
     }
 
@@ -108,7 +108,7 @@ impl EventSink for OscSink {
 
     fn ground(&mut self, events: &[GroundEvent]) {
         for event in events {
-            if let Some(news) = self.crackle.news(event) {
+            if let Some(news) = self.cracks.news(event) {
                 self.worker.offer(Job::Crack(news));
             }
         }
@@ -140,7 +140,7 @@ impl EventSink for OscSink {
 impl Drop for OscSink {
     /// Says that nobody is on the floor any more, as far as this program can tell.
     fn drop(&mut self) {
-        if self.beat.is_somebody_there() {
+        if self.periodic.is_somebody_there() {
             // The worker holds the last ones for as long as it takes to copy them.
             while !self.latest.store(Instant::START, &[], || self.worker.try_offer(Job::Contacts)) {
                 std::thread::yield_now();

@@ -6,7 +6,7 @@ use std::time::{Duration, SystemTime};
 
 use rosc::OscTime;
 
-use super::beat::{Beat, Latest};
+use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
@@ -43,7 +43,7 @@ pub struct TuioSink {
     worker: Worker<Job>,
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
-    beat: Beat,
+    periodic: PeriodicSender,
 }
 
 #[derive(Debug)]
@@ -72,7 +72,7 @@ impl TuioSink {
             message: format!("cannot send TUIO to {target}: {source}"),
             source,
         })?;
-        Ok(Self { worker, latest, undelivered, beat: Beat::new(Some(IDLE)) })
+        Ok(Self { worker, latest, undelivered, periodic: PeriodicSender::new(Some(IDLE)) })
     }
 }
 
@@ -81,15 +81,15 @@ impl EventSink for TuioSink {
 
     fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
         let queue = || self.worker.try_offer(Job::Contacts);
-        if self.beat.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
-            self.beat.reported(at, contacts);
+        if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+            self.periodic.reported(at, contacts);
         }
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {
         if state == LinkState::Lost {
             self.worker.offer(Job::Lost(at));
-            self.beat.reported(at, &[]);
+            self.periodic.reported(at, &[]);
         }
     }
 

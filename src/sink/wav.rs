@@ -180,7 +180,7 @@ impl ActuatorSink for WavSink {
         });
         match passed_on {
             Ok(()) => Ok(()),
-            // The writer has given up: its answer says why.
+            // The writer has stopped: its answer says why.
             Err(()) => Err(match self.close() {
                 Err(error) => error,
                 Ok(_) => SinkError::File {

@@ -9,7 +9,7 @@ use std::time::Duration;
 const QUEUE: usize = 1024;
 
 /// How long the end of the program waits for the last jobs; a reader that has stopped must not hold it.
-const FAREWELL: Duration = Duration::from_secs(2);
+const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A thread that does what may block, so that its owner never does.
 #[derive(Debug)]
@@ -61,7 +61,7 @@ impl<T> Drop for Worker<T> {
     /// Lets the thread finish what was offered, but not for ever.
     fn drop(&mut self) {
         self.jobs = None;
-        if self.finished.recv_timeout(FAREWELL).is_ok()
+        if self.finished.recv_timeout(SHUTDOWN_TIMEOUT).is_ok()
             && let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {

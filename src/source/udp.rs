@@ -230,7 +230,7 @@ impl SensorSource for UdpSource {
         self.requests.pop_front()
     }
 
-    /// Whoever asked and went away hears nothing; that is no error of this end.
+    /// Whoever asked and went away hears nothing; that is not an error of this end.
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         if let Err(error) = self.socket.send_to(datagram, to) {
             tracing::debug!(%to, "an answer could not be sent: {error}");

@@ -31,7 +31,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::moment::{Foot, Machine, Moment};
+use super::moment::{FootInput, Machine, Moment};
 use super::press::Outcome;
 use super::stage::Stage;
 use super::{Direction, Emitted, EventKind, Guard, Thresholds};
@@ -169,7 +169,7 @@ struct Down {
     /// Whether a first tap came just before.
     second: bool,
     hard: bool,
-    /// Whether it has been long or hard: its release is no click.
+    /// Whether it has been long or hard: its release is not a click.
     spent: bool,
 }
 
@@ -187,7 +187,7 @@ impl Button {
         }
     }
 
-    fn held(&mut self, moment: &Moment, foot: Foot, emitted: &mut Emitted) {
+    fn held(&mut self, moment: &Moment, foot: FootInput, emitted: &mut Emitted) {
         let Some(down) = &mut self.down else { return };
         if let Some(at) = moment.offset() {
             down.path = Some((down.path.map_or(at, |(from, _)| from), at));
@@ -255,7 +255,7 @@ impl Button {
     }
 }
 
-/// The press is no tap, nor the second of two.
+/// The press is not a tap, nor the second of two.
 fn become_other(down: &mut Down, kind: EventKind, emitted: &mut Emitted) {
     if std::mem::take(&mut down.second) {
         emitted.push(EventKind::Clicked);

@@ -121,7 +121,7 @@ impl Control {
             return refusal(outcome);
         }
         let mut emitted = Emitted::new();
-        let outcome = self.guard.doubt(now, input, &mut self.press, outcome, &mut emitted);
+        let outcome = self.guard.end_untrusted(now, input, &mut self.press, outcome, &mut emitted);
         self.react(now.since(last), input, outcome, &mut emitted);
         emitted
     }

@@ -98,13 +98,13 @@ pub enum EventKind {
     Clicked,
     /// A button was tapped twice.
     DoubleTapped,
-    /// A button has been held for long; its release is no click.
+    /// A button has been held for long; its release is not a click.
     LongPressed,
     /// A button was pressed, the foot went this way and let go.
     Swiped(Direction),
     /// The press of a button with two stages reached the second.
     HardPressed,
-    /// The press came back from the second stage; its release is no click.
+    /// The press came back from the second stage; its release is not a click.
     HardReleased,
     /// The press ended without counting: the foot slid off or took a step, sensing was lost, or an app stopped it.
     Cancelled,

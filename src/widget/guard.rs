@@ -11,7 +11,7 @@
 //!  6  armed, sensing is lost, a foot steps or slides on, an app stops it
 //!                                                  -> Disarmed
 //!
-//! HoldToRun (off on any doubt)
+//! HoldToRun (off as soon as the contact is uncertain)
 //!  7  a press                                      -> acts for as long as it is held
 //!  8  the foot lets go                             -> Released
 //!  9  the force can't be believed for one frame, the foot slides off, sensing is lost
@@ -34,7 +34,7 @@ choices! {
     Free,
     /// A first press, which only arms it, then a second one.
     Confirm(Confirm),
-    /// It acts only while a foot holds it, and never longer than a while: off on any doubt.
+    /// It acts only while a foot holds it, and never longer than a while: off as soon as the contact is uncertain.
     HoldToRun(HoldToRun),
 }
 
@@ -46,7 +46,7 @@ record! {
 }
 
 record! {
-    /// It acts only while a foot holds it, and never longer than a while: off on any doubt.
+    /// It acts only while a foot holds it, and never longer than a while: off as soon as the contact is uncertain.
     pub struct HoldToRun = "HoldToRun", Copy, Eq => |it, faults| {
         if it.warn.is_some_and(|warn| warn > it.max) {
             let message = "`warn_s` is longer than `max_s`";
@@ -113,8 +113,8 @@ impl Guarding {
         self.state == State::Idle
     }
 
-    /// Ends what is doubtful or has lasted too long; gives back what the press came to then.
-    pub(super) fn doubt(
+    /// Ends what is not trusted or has lasted too long; gives back what the press came to then.
+    pub(super) fn end_untrusted(
         &mut self,
         now: Instant,
         input: Input,
@@ -125,8 +125,8 @@ impl Guarding {
         let (Guard::HoldToRun(run), State::Acting { since, warned }) = (self.guard, self.state) else {
             return outcome;
         };
-        let doubtful = matches!(input, Input::Foot { trusted: false, .. });
-        if outcome == Some(Outcome::Cancelled) || (doubtful && outcome.is_none()) {
+        let untrusted = matches!(input, Input::Foot { trusted: false, .. });
+        if outcome == Some(Outcome::Cancelled) || (untrusted && outcome.is_none()) {
             press.cancel();
             return Some(Outcome::Cancelled);
         }

@@ -7,7 +7,7 @@
 //!  4  an app sets it                         -> refused: only a foot can hold it
 //! ```
 //!
-//! With the guard `HoldToRun` it is off on any doubt as well, and after a time.
+//! With the guard `HoldToRun` it is off as soon as the contact is uncertain as well, and after a time.
 
 use super::moment::{Machine, Moment};
 use super::press::Outcome;

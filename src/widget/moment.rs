@@ -15,7 +15,7 @@ pub(super) struct Moment {
     /// What became of the press in this frame.
     pub(super) outcome: Option<Outcome>,
     /// The foot that presses, if it can be believed.
-    pub(super) foot: Option<Foot>,
+    pub(super) foot: Option<FootInput>,
     /// Whether that foot means to stay: a lifting foot rolls, and its place means nothing.
     pub(super) firm: bool,
     /// Whether what waits to be done must be forgotten: sensing was lost, the foot steps, an app stopped the control.
@@ -28,7 +28,7 @@ pub(super) struct Moment {
 
 /// A foot on a control.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
+pub(super) struct FootInput {
     pub(super) force: Newtons,
     /// 0 to 1 across the control, beyond that outside.
     pub(super) place: Vec2,
@@ -46,7 +46,7 @@ impl Moment {
     ) -> Self {
         let foot = match input {
             Input::Foot { force, trusted: true, place, .. } if press.is_engaged() && place.is_finite() => {
-                Some(Foot { force, place })
+                Some(FootInput { force, place })
             }
             _ => None,
         };
@@ -55,7 +55,7 @@ impl Moment {
     }
 
     /// The foot, if it means to stay: only it may change a value by its place.
-    pub(super) fn firm_foot(&self) -> Option<Foot> {
+    pub(super) fn firm_foot(&self) -> Option<FootInput> {
         self.foot.filter(|_| self.firm)
     }
 

@@ -40,7 +40,7 @@ record! {
     /// Distances between values that draw the numbers to them, counted from `min`; 0 for none.
     pub detent: Vec2 = "detent", pair(WIDTHS) => Vec2::ZERO;
     /// Values to begin with.
-    pub initial: Vec2 = "initial", Follow { written: pair(VALUES), otherwise: "the least" };
+    pub initial: Vec2 = "initial", Follow { explicit: pair(VALUES), otherwise: "the least" };
 }
 
 impl PadSpec {

@@ -8,14 +8,14 @@
 //!  2  below release before `dwell` is over         -> nothing
 //!  3  between the two while down                   -> stays down
 //!  4  below release for LIFT_TIME while down       -> Released
-//!  5  below release for less than that while down  -> nothing (one bad sample is no lift)
+//!  5  below release for less than that while down  -> nothing (one bad sample is not a lift)
 //!  6  off the control while down                   -> Cancelled
 //!  7  sensing lost while down                      -> Cancelled
 //!  8  above press within `lockout` of a release    -> waits until the lockout is over
 //!  9  already loaded at start, after a loss, or by a foot that slid on
 //!                                                  -> nothing until below release for UNLOAD_TIME
 //! 10  untrusted force while up                     -> nothing; while down it holds
-//! 11  below release while down, but untrusted      -> Cancelled: a doubtful lift commits nothing
+//! 11  below release while down, but untrusted      -> Cancelled: an untrusted lift commits nothing
 //! 12  the foot on it takes a step                  -> like 9, while down -> Cancelled
 //! ```
 
@@ -114,7 +114,7 @@ impl Press {
         // A foot that is not there presses with nothing.
         let (force, trusted) = match input {
             Input::Foot { force, trusted, weight, .. } => {
-                // While it is pressed the thresholds stay: a better idea of the weight is no release.
+                // While it is pressed the thresholds stay: a better idea of the weight is not a release.
                 if !self.is_engaged() {
                     self.at = self.written.for_weight(weight);
                 }
@@ -289,16 +289,16 @@ mod tests {
 
     #[test]
     fn lines_10_and_11_untrusted_force_starts_nothing_and_commits_nothing() {
-        let doubtful =
+        let untrusted =
             |force| Input::Foot { force: Newtons(force), trusted: false, place: Vec2::ZERO, weight: None };
         let mut bench = Bench::ready();
-        bench.give(doubtful(200.0), 100);
+        bench.give(untrusted(200.0), 100);
         assert_eq!(bench.outcomes, []);
         bench.force(80.0, 30);
-        bench.give(doubtful(80.0), 100);
+        bench.give(untrusted(80.0), 100);
         bench.force(80.0, 10);
-        assert_eq!(bench.outcomes.len(), 1, "held through the doubt");
-        bench.give(doubtful(0.0), 10);
+        assert_eq!(bench.outcomes.len(), 1, "held while untrusted");
+        bench.give(untrusted(0.0), 10);
         let kinds: Vec<_> = bench.outcomes.iter().map(|(_, outcome)| *outcome).collect();
         assert_eq!(kinds, [Outcome::Pressed, Outcome::Cancelled]);
     }

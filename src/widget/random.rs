@@ -163,7 +163,7 @@ impl Watch<'_> {
                     assert!(self.down.take().is_some() && !(self.hard && *event == EventKind::Released));
                     released = *event == EventKind::Released;
                     self.hard = false;
-                    assert!(clean || !released, "released on doubt");
+                    assert!(clean || !released, "released while untrusted");
                     if !released && !self.is_momentary() {
                         assert_eq!(self.value, self.before, "a cancel takes everything back");
                     }
@@ -275,7 +275,7 @@ fn work(behaviour: &Behaviour, seed: u64) -> u32 {
                         watch.take(now, &emitted, is_clean(input));
                     }
                     let running = matches!(watch.guard(), Guard::HoldToRun { .. });
-                    assert!(!running || is_clean(input) || !control.is_engaged(), "off on any doubt");
+                    assert!(!running || is_clean(input) || !control.is_engaged(), "off while untrusted");
                     watch.check(now, &control);
                 }
             }
@@ -306,7 +306,7 @@ fn work(behaviour: &Behaviour, seed: u64) -> u32 {
 }
 
 #[test]
-fn whatever_feet_and_apps_do_each_press_ends_once_and_nothing_commits_in_doubt() {
+fn whatever_feet_and_apps_do_each_press_ends_once_and_nothing_commits_while_untrusted() {
     let all = all();
     assert!(all.len() as u32 * OPERATIONS >= 100_000);
     for (seed, behaviour) in (0..).zip(&all) {

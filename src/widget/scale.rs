@@ -6,7 +6,7 @@ use crate::format::{Follow, Num, num, record};
 pub(super) const VALUES: Num = num(-1e6..=1e6);
 
 /// A value to begin with.
-pub(super) const INITIAL: Follow<Num> = Follow { written: VALUES, otherwise: "the least" };
+pub(super) const INITIAL: Follow<Num> = Follow { explicit: VALUES, otherwise: "the least" };
 
 /// Distances between values.
 pub(super) const WIDTHS: Num = num(0.0..=1e6);

@@ -12,7 +12,7 @@
 
 use std::sync::Arc;
 
-use super::moment::{Foot, Machine, Moment};
+use super::moment::{FootInput, Machine, Moment};
 use super::press::Outcome;
 use super::{Axis, Emitted, EventKind, SetError, Thresholds, Value};
 use crate::format::{Flat, Follow, Name, Text, list, num, record};
@@ -38,7 +38,7 @@ record! {
     pub options: Arc<[Arc<str>]> = "options", list("option", MOST, Text(32))
         .at_least(2, "a selector needs options to choose from");
     /// The option to begin with, from 0.
-    pub initial: u16 = "initial", Follow { written: num(0.0..=MOST as f64 - 1.0), otherwise: "0" };
+    pub initial: u16 = "initial", Follow { explicit: num(0.0..=MOST as f64 - 1.0), otherwise: "0" };
 }
 
 /// How far beyond the border between two options the foot must be, in widths of one (our choice).
@@ -59,7 +59,7 @@ impl Selector {
         Self { axis: spec.axis, count, choice: spec.initial.min(count - 1), question: None }
     }
 
-    fn under(&self, foot: Foot) -> u16 {
+    fn under(&self, foot: FootInput) -> u16 {
         let along = match self.axis {
             Axis::East => foot.place.x,
             Axis::North => 1.0 - foot.place.y,

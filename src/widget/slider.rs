@@ -23,7 +23,7 @@ use super::number::Number;
 use super::press::Outcome;
 use super::scale::INITIAL;
 use super::scale::QUANTUM;
-use super::track::WrittenTrack;
+use super::track::TrackFields;
 use super::{Emitted, Scale, SetError, Thresholds, Track, Value};
 use crate::format::{Flat, OneOf, choices, num, record};
 
@@ -33,7 +33,7 @@ record! {
     /// When it engages.
     pub thresholds: Thresholds = "", Flat;
     /// Where its value grows.
-    pub track: Track = "axis", WrittenTrack => Track::EAST;
+    pub track: Track = "axis", TrackFields => Track::EAST;
     /// What the foot's place does to its value.
     pub mapping: Mapping = "mapping", OneOf => Mapping::Absolute;
     /// Its values.
@@ -122,7 +122,7 @@ impl Machine for Slider {
         let share = moment.firm_foot().and_then(|foot| self.spec.track.share_at(foot.place, moment.size));
         match share {
             Some(share) => self.slide(share, moment.elapsed, emitted),
-            // What happened meanwhile is no way.
+            // What happened meanwhile does not count as travel.
             None if matches!(self.spec.mapping, Mapping::Relative { .. }) => self.anchor = None,
             None => {}
         }

@@ -1,4 +1,4 @@
-use crate::format::describe::{FieldDescription, Shape, first_paragraph};
+use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
 use crate::format::fields::Fields;
 use crate::format::node::Node;
 use crate::format::problem::Problem;
@@ -32,8 +32,8 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
         value.map_or(Text::Plain("None".to_owned()), |value| self.press.write(&value.into()[0]))
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Optional(Box::new(Codec::<f32>::shape(&self.press)))
+    fn shape(&self) -> FieldType {
+        FieldType::Optional(Box::new(Codec::<f32>::shape(&self.press)))
     }
 
     fn stand_in(&self) -> Option<T> {
@@ -67,7 +67,7 @@ impl<T: Copy + PartialEq + From<[f32; 2]> + Into<[f32; 2]>> Codec<Option<T>> for
             return base.map(T::from);
         }
         let Some(press) = press.unwrap_or(base.map(|[press, _]| press)) else {
-            if let Some(span) = fields.written_span(release_name) {
+            if let Some(span) = fields.value_span(release_name) {
                 let message = format!("`{release_name}` needs `{name}`");
                 fields.report(Problem::error(span, message).expected(self.lonely));
             }

@@ -14,7 +14,7 @@
 
 use std::time::Duration;
 
-use super::moment::{Foot, Machine, Moment};
+use super::moment::{FootInput, Machine, Moment};
 use super::number::Number;
 use super::press::Outcome;
 use super::scale::INITIAL;
@@ -94,7 +94,7 @@ impl Stepper {
         Self { number: Number::new(spec.scale, spec.initial), spec, held: None }
     }
 
-    fn is_up(&self, foot: Foot) -> bool {
+    fn is_up(&self, foot: FootInput) -> bool {
         match self.spec.axis {
             Axis::East => foot.place.x >= 0.5,
             Axis::North => foot.place.y >= 0.5,

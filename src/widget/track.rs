@@ -2,7 +2,7 @@ use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec2;
 
-use crate::format::describe::{FieldDescription, Shape};
+use crate::format::describe::{FieldDescription, FieldType};
 use crate::format::fields::Fields;
 use crate::format::node::Node;
 use crate::format::problem::Problem;
@@ -29,7 +29,7 @@ pub enum Track {
 }
 
 /// A track as files write it: `axis`, `angle_deg` or `arc_deg`.
-pub(super) struct WrittenTrack;
+pub(super) struct TrackFields;
 
 /// Angles, in degrees from east, counter-clockwise.
 const ANGLE: Num = num(-360.0..=360.0);
@@ -45,9 +45,9 @@ const FIELDS: [(&str, &str); 3] = [
     ("arc_deg", "Part of a circle: where it begins and ends, counter-clockwise from east."),
 ];
 
-impl Codec<Track> for WrittenTrack {
+impl Codec<Track> for TrackFields {
     fn read(&self, node: Node<'_>, _: Option<&Track>) -> Option<Track> {
-        match node.what {
+        match node.name {
             "angle_deg" => ANGLE.read(node, None).map(|degrees| Track::Line { degrees }),
             "arc_deg" => {
                 let [from_degrees, to_degrees]: [f32; 2] = ARC.read(node, None)?;
@@ -71,8 +71,8 @@ impl Codec<Track> for WrittenTrack {
         }
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Names(vec!["East", "North"])
+    fn shape(&self) -> FieldType {
+        FieldType::Names(vec!["East", "North"])
     }
 
     fn stand_in(&self) -> Track {
@@ -96,7 +96,7 @@ impl Codec<Track> for WrittenTrack {
             written.push((node, track));
         }
         if let [(first, _), (second, _), ..] = written.as_slice() {
-            let message = format!("`{}` contradicts `{}`", second.what, first.what);
+            let message = format!("`{}` contradicts `{}`", second.name, first.name);
             fields.report(Problem::error(second.span(), message).expected("a slider has one track"));
         }
         let known = || base.copied().or(default).unwrap_or(Track::EAST);

@@ -128,7 +128,7 @@ impl From<ControlMessage> for Request {
 
 /// What a command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Takes {
+pub enum ArgumentKind {
     /// No argument.
     Nothing,
     /// What the control holds: one number (or OSC true or false), two for a pair.
@@ -151,7 +151,7 @@ pub struct Command {
     /// The address behind the prefix; `<id>` stands for a control's id.
     pub path: &'static str,
     /// Its arguments.
-    pub takes: Takes,
+    pub argument: ArgumentKind,
     /// What it does, in a sentence.
     pub says: &'static str,
     make: fn(WidgetId, Argument) -> Option<ControlMessage>,
@@ -171,7 +171,7 @@ enum Argument {
 pub const COMMANDS: [Command; 13] = [
     Command {
         path: "widget/<id>/set",
-        takes: Takes::Value,
+        argument: ArgumentKind::Value,
         says: "Hold this value; refused while a foot uses the control, while it is locked, and for what only a foot holds.",
         make: |id, argument| match argument {
             Argument::Value(value) => Some(ControlMessage::Set { id, value }),
@@ -180,37 +180,37 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "widget/<id>/get",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "Answer with value and state.",
         make: |id, _| Some(ControlMessage::Get { id }),
     },
     Command {
         path: "widget/<id>/enable",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "React to feet again.",
         make: |id, _| Some(ControlMessage::Enable { id }),
     },
     Command {
         path: "widget/<id>/disable",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "React to feet no more; a press under way is cancelled.",
         make: |id, _| Some(ControlMessage::Disable { id }),
     },
     Command {
         path: "widget/<id>/lock",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "Keep the value, whatever feet and apps do; a press under way is cancelled.",
         make: |id, _| Some(ControlMessage::Lock { id }),
     },
     Command {
         path: "widget/<id>/unlock",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "Change the value again.",
         make: |id, _| Some(ControlMessage::Unlock { id }),
     },
     Command {
         path: "widget/<id>/label",
-        takes: Takes::Label,
+        argument: ArgumentKind::Label,
         says: "Carry this label.",
         make: |id, argument| match argument {
             Argument::Text(text) => Some(ControlMessage::Label { id, text }),
@@ -219,7 +219,7 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "widget/<id>/indicator",
-        takes: Takes::Indicator,
+        argument: ArgumentKind::Indicator,
         says: "Switch the lamp.",
         make: |id, argument| match argument {
             Argument::Indicator(indicator) => Some(ControlMessage::Indicate { id, indicator }),
@@ -228,7 +228,7 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "page/set",
-        takes: Takes::Page,
+        argument: ArgumentKind::Page,
         says: "Show this page, as soon as no foot is engaged.",
         make: |_, argument| match argument {
             Argument::Text(text) => Some(ControlMessage::ShowPage { page: WidgetId::new(&text) }),
@@ -237,13 +237,13 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "page/get",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "Answer with the page that is shown.",
         make: |_, _| Some(ControlMessage::GetPage),
     },
     Command {
         path: "mute/set",
-        takes: Takes::Flag,
+        argument: ArgumentKind::Flag,
         says: "Let nothing be felt or heard (1), or everything again but single tiles that are muted (0).",
         make: |_, argument| match argument {
             Argument::Flag(on) => Some(ControlMessage::Mute { on }),
@@ -252,7 +252,7 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "mute/tile",
-        takes: Takes::TileFlag,
+        argument: ArgumentKind::TileFlag,
         says: "Let the actuator of one tile not be felt (1), or again (0); loudspeakers go on.",
         make: |_, argument| match argument {
             Argument::TileFlag(tile, on) => Some(ControlMessage::MuteTile { tile, on }),
@@ -261,18 +261,18 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "mute/get",
-        takes: Takes::Nothing,
+        argument: ArgumentKind::Nothing,
         says: "Answer with what is muted.",
         make: |_, _| Some(ControlMessage::GetMute),
     },
 ];
 
-/// Why a message is no command.
+/// Why a message is not a command.
 pub(super) enum NoCommand {
     /// No command has such an address.
     Unknown,
     /// The command takes something else: this.
-    Takes(&'static str),
+    Expected(&'static str),
 }
 
 impl Command {
@@ -304,12 +304,12 @@ impl Command {
 pub(super) fn read(path: &str, args: &[OscType]) -> Result<ControlMessage, NoCommand> {
     let found = COMMANDS.iter().find_map(|command| Some((command, command.id_in(path)?)));
     let (command, id) = found.ok_or(NoCommand::Unknown)?;
-    let argument = command.takes.read(args);
+    let argument = command.argument.read(args);
     let made = argument.and_then(|argument| (command.make)(WidgetId::new(id), argument));
-    made.ok_or(NoCommand::Takes(command.takes.expected()))
+    made.ok_or(NoCommand::Expected(command.argument.expected()))
 }
 
-impl Takes {
+impl ArgumentKind {
     fn read(self, args: &[OscType]) -> Option<Argument> {
         match (self, args) {
             (Self::Nothing, []) => Some(Argument::Nothing),

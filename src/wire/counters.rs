@@ -23,7 +23,7 @@ pub struct LinkCounters {
     /// Packets that came again and were dropped.
     pub duplicate: u64,
     /// Packets whose sequence number fits nothing seen so far; dropped unless the next two confirm it.
-    pub doubtful: u64,
+    pub out_of_order: u64,
     /// Times a board's sequence number started anew (reboot or reconnection).
     pub restarts: u64,
     /// Samples left out or repeated because a board's crystal runs faster or slower than the others'.
@@ -67,7 +67,7 @@ impl Add for LinkCounters {
             lost: self.lost + other.lost,
             late: self.late + other.late,
             duplicate: self.duplicate + other.duplicate,
-            doubtful: self.doubtful + other.doubtful,
+            out_of_order: self.out_of_order + other.out_of_order,
             restarts: self.restarts + other.restarts,
             slips: self.slips + other.slips,
             malformed: self.malformed + other.malformed,

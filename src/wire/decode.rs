@@ -65,7 +65,7 @@ impl Batch {
 /// Turns the datagrams of one floor into sensor packets and control messages.
 ///
 /// Addresses are compared letter by letter: OSC's patterns (`*`, `?`, `[]`) mean
-/// nothing here, so a hostile address can match nothing. Time tags are not looked at.
+/// nothing here, so a hostile address can match nothing. Time tags are not examined.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     boards: HashMap<String, BoardShape>,
@@ -170,7 +170,7 @@ impl Decoder {
         let path = path.ok_or_else(|| WireError::UnknownAddress { address: address() })?;
         command::read(path, &message.args).map_err(|error| match error {
             NoCommand::Unknown => WireError::UnknownAddress { address: address() },
-            NoCommand::Takes(expected) => WireError::WrongShape {
+            NoCommand::Expected(expected) => WireError::WrongShape {
                 address: address(),
                 expected: expected.into(),
                 found: type_tags(&message.args),

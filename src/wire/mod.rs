@@ -6,11 +6,11 @@
 //! programs.
 
 mod command;
+pub mod corrupt;
 mod counters;
 mod decode;
 mod encode;
 mod event;
-pub mod garble;
 mod guard;
 mod packet;
 mod prefix;
@@ -18,7 +18,7 @@ mod tuio;
 mod tuio1;
 mod tuio2;
 
-pub use command::{COMMANDS, Command, ControlMessage, MAX_LABEL, Request, Takes};
+pub use command::{ArgumentKind, COMMANDS, Command, ControlMessage, MAX_LABEL, Request};
 pub use counters::LinkCounters;
 pub use decode::{Batch, Decoder, WireError};
 pub use encode::{EncodeError, SensorEncoder, SensorFormat};

@@ -10,7 +10,7 @@ use thiserror::Error;
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Prefix(Arc<str>);
 
-/// Why a text is no prefix.
+/// Why a text is not a prefix.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[error(
     "a prefix is made of parts like /lab/floor_2: a slash, then letters, digits, `_` and `-`; 200 in all"

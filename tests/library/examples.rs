@@ -50,11 +50,11 @@ fn the_osc_listener_hears_controls_and_answers() {
         event("home", EventKind::Clicked),
     ]);
     let answer_to = floor.local_addr().unwrap().to_string();
-    let mut heard = Vec::new();
-    while heard.len() < 3 {
-        heard.extend(osc_listener::listen(&app, &answer_to).unwrap());
+    let mut received = Vec::new();
+    while received.len() < 3 {
+        received.extend(osc_listener::listen(&app, &answer_to).unwrap());
     }
-    assert_eq!(heard, ["zoom/changed to 0.50", "satellite/changed to on", "home/clicked"]);
+    assert_eq!(received, ["zoom/changed to 0.50", "satellite/changed to on", "home/clicked"]);
     let mut answer = [0; 256];
     let length = floor.recv(&mut answer).unwrap();
     let text = String::from_utf8_lossy(&answer[..length]);

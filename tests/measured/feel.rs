@@ -2,14 +2,15 @@
 
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::feel::{
-    Click, Cue, Hum, Impulse, Lasting, Manner, Mode, RendererConfig, Rub, Rubs, Spot, Tone, renderer,
+    Click, Cue, Hum, Impulse, Lasting, Manner, Mode, RendererConfig, Spot, SustainedCue, SustainedCues, Tone,
+    renderer,
 };
 use underfoot::floor::{Floor, Loudspeaker, Response};
 use underfoot::glam::Vec2;
 use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
 
-/// Ten seconds of forty rubs of every model, of clicks of eight modes struck by soft pushes and of tones, a new one
+/// Ten seconds of forty sustained cues of every model, of clicks of eight modes struck by soft pushes and of tones, a new one
 /// every 2 ms, on four tiles each and most of them on loudspeakers.
 #[test]
 fn the_busiest_ten_seconds_do_not_allocate() {
@@ -21,10 +22,10 @@ fn the_busiest_ten_seconds_do_not_allocate() {
     let mut moved = 0_usize;
     for n in 0..10_000_u64 {
         let now = Instant::from_millis(n);
-        let rubs: Rubs = (0..40).map(|foot| rub(&effects, foot, n)).collect();
+        let sustained: SustainedCues = (0..40).map(|foot| sustained_cue(&effects, foot, n)).collect();
         let cue = cue(n, now);
         assert_no_alloc(|| {
-            sender.rubs(&rubs);
+            sender.sustain(&sustained);
             if n % 2 == 0 {
                 sender.send(&cue);
             }
@@ -83,7 +84,7 @@ fn cue(n: u64, at: Instant) -> Cue {
             ..Tone::default()
         }),
         manner: Manner { duck_db: 6.0, ..Manner::PLAIN },
-        to_air: 0.5,
+        audio_gain: 0.5,
     }
 }
 
@@ -95,8 +96,8 @@ fn lasting(effects: &Effects, n: u64) -> Lasting {
     if n % 6 == 5 { Lasting::Hum(hum) } else { named.effect.kind.lasting().unwrap() }
 }
 
-fn rub(effects: &Effects, foot: u32, n: u64) -> Rub {
-    Rub {
+fn sustained_cue(effects: &Effects, foot: u32, n: u64) -> SustainedCue {
+    SustainedCue {
         // Now and then a foot lifts and another lands.
         key: foot + 40 * (n / 100 % 3) as u32,
         spots: spots(u64::from(foot) + n / 50).collect(),
@@ -104,6 +105,6 @@ fn rub(effects: &Effects, foot: u32, n: u64) -> Rub {
         manner: Manner { duck_db: (n % 7) as f32, priority: (foot % 10) as u8, ..Manner::PLAIN },
         speed_m_s: (n % 100) as f32 * 0.01,
         force: Newtons(300.0),
-        to_air: (n % 3) as f32 * 0.4,
+        audio_gain: (n % 3) as f32 * 0.4,
     }
 }

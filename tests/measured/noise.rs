@@ -12,7 +12,7 @@ use underfoot::sense::{Assembler, Method};
 use underfoot::sim::{self, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
-use underfoot::wire::garble::Garbler;
+use underfoot::wire::corrupt::Corruptor;
 use underfoot::wire::{Batch, Decoder, LinkCounters, SensorEncoder, SensorFormat, SensorPacket};
 
 /// Ten simulated minutes.
@@ -80,7 +80,7 @@ fn ten_minutes_with_rubbish_on_the_network_give_the_same_events() {
     let mut clean = Listener::new(&floor, page.clone());
     let mut noisy = Listener::new(&floor, page);
     let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
-    let mut garbler = Garbler::new(11);
+    let mut corruptor = Corruptor::new(11);
     let mut dice = Pcg64Mcg::seed_from_u64(12);
     let mut before: Vec<Vec<u8>> = Vec::new();
     let mut sent: Vec<Vec<u8>> = Vec::new();
@@ -102,7 +102,7 @@ fn ten_minutes_with_rubbish_on_the_network_give_the_same_events() {
                 && let Some(model) = before.get(usize::from(board))
             {
                 rubbish += 1;
-                noisy.hear(&garbler.garble(model), now);
+                noisy.hear(&corruptor.corrupt(model), now);
             }
             sent.push(datagram);
         }

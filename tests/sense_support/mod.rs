@@ -13,7 +13,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
 use underfoot::floor::{Corner, Geometry};
 use underfoot::glam::Vec2;
-use underfoot::sense::{Contact, ForceFrame, Method, Sensing, SensingConfig, SensorDoubt};
+use underfoot::sense::{Contact, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty};
 use underfoot::units::Instant;
 
 /// Where one foot truly is at one instant.
@@ -178,8 +178,8 @@ pub fn walk(seed: u64, sensors: Sensors) -> Scene {
     let weight = rng.random_range(45.0..120.0_f32) * 9.81;
     let length = rng.random_range(0.22..0.30_f32);
     let stride = 0.30 + 0.28 * speed + rng.random_range(-0.04..0.04_f32);
-    let beat = stride / speed;
-    let stance = 2.0 * beat * rng.random_range(0.58..0.64_f32);
+    let step_s = stride / speed;
+    let stance = 2.0 * step_s * rng.random_range(0.58..0.64_f32);
     let apart = rng.random_range(0.07..0.15_f32);
     let toe_out = rng.random_range(0.0..0.2_f32);
     let mut heading = rng.random_range(0.0..TAU);
@@ -189,7 +189,7 @@ pub fn walk(seed: u64, sensors: Sensors) -> Scene {
     let mut steps = Vec::new();
     for count in 0..8_u8 {
         let side = if count.is_multiple_of(2) { 1.0 } else { -1.0 };
-        let from_s = 0.05 + f32::from(count) * beat;
+        let from_s = 0.05 + f32::from(count) * step_s;
         steps.push(Step {
             from_s,
             to_s: from_s + stance,
@@ -203,7 +203,7 @@ pub fn walk(seed: u64, sensors: Sensors) -> Scene {
         body += Vec2::from_angle(heading) * (stride + rng.random_range(-0.03..0.03_f32));
     }
     let geometry = Geometry::of_paper_tiles(40, 40).expect("a floor of 40 x 40 tiles");
-    let length_s = 0.2 + 7.0 * beat + stance;
+    let length_s = 0.2 + 7.0 * step_s + stance;
     play(format!("walk {seed} at {speed:.1} m/s"), geometry, length_s, &steps, sensors, seed)
 }
 
@@ -317,8 +317,8 @@ impl Score {
     /// Runs `method` over `scene` and adds what comes out.
     pub fn add(&mut self, scene: &Scene, method: Method) {
         // What is known of these sensors is how they were made.
-        let doubt = SensorDoubt { offset_n: 0.5, gain: 0.05, memory: 0.0 };
-        let config = SensingConfig { doubt, ..SensingConfig::default() };
+        let uncertainty = SensorUncertainty { offset_n: 0.5, gain: 0.05, memory: 0.0 };
+        let config = SensingConfig { uncertainty, ..SensingConfig::default() };
         let mut sensing = Sensing::with_config(scene.geometry, method, config);
         let mut last: HashMap<usize, u32> = HashMap::new();
         for (ms, (frame, truth)) in scene.frames.iter().zip(&scene.truth).enumerate() {

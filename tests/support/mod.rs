@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 use underfoot::engine::{Engine, Snapshot};
-use underfoot::feel::{Cue, Rub, Rubs};
+use underfoot::feel::{Cue, SustainedCue, SustainedCues};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam;
 use underfoot::layout::Layout;
@@ -49,7 +49,7 @@ pub struct Walker {
     /// Whether boards are heard.
     pub connected: bool,
     /// Whether no tile's forces may be believed.
-    pub doubtful: bool,
+    pub untrusted: bool,
     /// Whether what boards send is kept back on its way, until it is released.
     pub hold_back: bool,
     held_back: Vec<SensorPacket>,
@@ -57,7 +57,7 @@ pub struct Walker {
     pub watched: bool,
     events: Vec<WidgetEvent>,
     cues: Vec<Cue>,
-    rubs: Vec<Rub>,
+    sustained: Vec<SustainedCue>,
     cursors: Vec<Option<Cursor>>,
 }
 
@@ -89,13 +89,13 @@ impl Walker {
             stance: None,
             foot: None,
             connected: true,
-            doubtful: false,
+            untrusted: false,
             hold_back: false,
             held_back: Vec::new(),
             watched: true,
             events: Vec::new(),
             cues: Vec::new(),
-            rubs: Vec::new(),
+            sustained: Vec::new(),
             cursors: Vec::new(),
         };
         walker.wait(100);
@@ -142,7 +142,7 @@ impl Walker {
         for packet in std::mem::take(&mut self.held_back) {
             self.assembler.take(&SensorPacket { received: self.now, ..packet });
             while let Some(frame) = self.assembler.ready() {
-                self.rubs.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
+                self.sustained.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
             }
         }
     }
@@ -208,8 +208,8 @@ impl Walker {
     }
 
     /// What lasted in each frame since the last call, while somebody looked.
-    pub fn take_rubs(&mut self) -> Vec<Rub> {
-        std::mem::take(&mut self.rubs)
+    pub fn take_sustained(&mut self) -> Vec<SustainedCue> {
+        std::mem::take(&mut self.sustained)
     }
 
     /// The first region's cursor, frame by frame since the last call.
@@ -268,16 +268,16 @@ impl Walker {
             self.assembler.poll(self.now);
         }
         while let Some(frame) = self.assembler.ready() {
-            if self.doubtful {
+            if self.untrusted {
                 let mut frame = frame.clone();
                 frame.may_start.fill(false);
-                self.rubs.extend(take(&mut self.engine, &frame, &mut self.events, &mut self.cues));
+                self.sustained.extend(take(&mut self.engine, &frame, &mut self.events, &mut self.cues));
             } else {
-                self.rubs.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
+                self.sustained.extend(take(&mut self.engine, frame, &mut self.events, &mut self.cues));
             }
         }
         if !self.watched {
-            self.rubs.clear();
+            self.sustained.clear();
             return;
         }
         let mut snapshot = Snapshot::default();
@@ -286,11 +286,16 @@ impl Walker {
     }
 }
 
-fn take(engine: &mut Engine, frame: &ForceFrame, events: &mut Vec<WidgetEvent>, cues: &mut Vec<Cue>) -> Rubs {
+fn take(
+    engine: &mut Engine,
+    frame: &ForceFrame,
+    events: &mut Vec<WidgetEvent>,
+    cues: &mut Vec<Cue>,
+) -> SustainedCues {
     let step = engine.step(frame);
     events.extend_from_slice(step.events);
     cues.extend_from_slice(step.cues);
-    step.rubs.clone()
+    step.sustained.clone()
 }
 
 /// A foot in the air whose centre of pressure is at `point`, toes pointing north.

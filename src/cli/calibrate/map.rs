@@ -114,7 +114,7 @@ fn outcome(fits: &Fits) -> Result<(), Failure> {
     let lines: Vec<_> = fits
         .iter()
         .filter_map(|(tile, fit)| match fit {
-            // A tile that is as good as it gets is no failure.
+            // A tile that is as good as it gets is not a failure.
             Ok(_) | Err(MapError::NoBetter { .. }) => None,
             Err(error) => Some(format!("tile {tile}: {error}; it keeps what it had")),
         })

@@ -4,7 +4,7 @@ use arrayvec::ArrayVec;
 use glam::Vec2;
 
 use super::{Now, PUSH, push, spots};
-use crate::feel::{Detents, EffectKind, Lasting, Rub, Rubs, key};
+use crate::feel::{Detents, EffectKind, Lasting, SustainedCue, SustainedCues, key};
 use crate::layout::{Layout, Widget};
 use crate::sense::ContactId;
 use crate::units::Instant;
@@ -46,7 +46,7 @@ impl Shares {
         }));
     }
 
-    /// Takes note of the new value of control number `widget`; `None` if it is no number.
+    /// Takes note of the new value of control number `widget`; `None` if it is not a number.
     pub(super) fn go(&mut self, widget: usize, behaviour: &Behaviour, value: Value) -> Option<Way> {
         let share = self.0.get_mut(widget)?;
         let to = shares(behaviour, value);
@@ -142,7 +142,7 @@ struct Pushing {
 /// by less within a second).
 const PUSHES_M: f32 = 0.004;
 
-/// How long pushing is felt once the foot is at rest again, in seconds (our choice: a wall is no alarm).
+/// How long pushing is felt once the foot is at rest again, in seconds (our choice: a wall is not an alarm).
 const FADES_S: f32 = 1.2;
 
 impl Ends {
@@ -168,7 +168,7 @@ impl Ends {
     }
 
     /// Says what feet feel that push on against an end.
-    pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, rubs: &mut Rubs) {
+    pub(super) fn push(&mut self, shares: &Shares, now: Now<'_>, sustained: &mut SustainedCues) {
         self.0.retain(|pushing| {
             let Some(contact) = now.contact(pushing.contact) else { return false };
             let Some(feel) = now.layout.widgets.get(pushing.widget).map(|widget| &widget.feel) else {
@@ -192,16 +192,16 @@ impl Ends {
             if beyond > 0.0 && fresh > 0.0 {
                 let mut hum = felt.hum_at(beyond);
                 hum.level = hum.level * fresh;
-                let rub = Rub {
+                let sustained_cue = SustainedCue {
                     key: key(contact.id.0, PUSH),
                     spots: spots(contact),
                     effect: Lasting::Hum(hum),
                     manner: effect.manner,
                     speed_m_s: contact.velocity.length(),
                     force: contact.force,
-                    to_air: feel.sound,
+                    audio_gain: feel.sound,
                 };
-                push(rubs, Some(rub));
+                push(sustained, Some(sustained_cue));
             }
             true
         });

@@ -1,6 +1,6 @@
 use std::sync::Arc;
 
-use super::written::Played;
+use super::reading::Played;
 use super::{Effect, Use};
 use crate::feel::cue::SHARE;
 use crate::format::{Opt, record};

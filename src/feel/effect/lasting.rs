@@ -1,7 +1,7 @@
 use arrayvec::ArrayVec;
 
 use crate::feel::cue::{HZ, LEVEL, SHARE};
-use crate::format::describe::Shape;
+use crate::format::describe::FieldType;
 use crate::format::hand::Hand;
 use crate::format::node::Node;
 use crate::format::text::Text;
@@ -135,7 +135,7 @@ impl Codec<[Resonance; 2]> for Resonances {
             .write_all([Some(first), Some(second).filter(|one| one.amplitude > 0.0)].into_iter().flatten())
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FieldType {
         RESONANCES.described::<Resonance>()
     }
 

@@ -10,20 +10,20 @@ mod feel;
 mod knobs;
 mod lasting;
 mod parts;
+mod reading;
 mod sequence;
 mod stops;
 mod tone;
-mod written;
 
 pub use feel::Feel;
 pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip, Texture};
-pub use sequence::{Beat, CurvePoint, MAX_PARTS, Part, Sequence};
+pub use reading::{Effects, NamedEffect};
+pub use sequence::{CurvePoint, MAX_PARTS, Part, PartKind, Sequence};
 pub use stops::{Detents, EndStop, MAX_MARKS, Push};
 pub use tone::{MAX_POINTS, Tone, TonePoint};
-pub use written::{Effects, NamedEffect};
 
-use self::written::WrittenBand;
-pub(crate) use self::written::written;
+use self::reading::BandFields;
+pub(crate) use self::reading::effect_at;
 use super::Click;
 pub use crate::format::hand::Knob;
 use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
@@ -134,7 +134,7 @@ record! {
     /// How an effect gets along with what else is felt on the same tiles.
     pub struct Manner = "Manner", Copy;
     /// What it may move, in hertz.
-    pub band: Band = "band_hz", WrittenBand => Band::USEFUL;
+    pub band: Band = "band_hz", BandFields => Band::USEFUL;
     /// How far everything that lasts and is no more important goes down while it plays, in decibels; 0 to 60.
     pub duck_db: f32 = "duck_db", num(0.0..=60.0).hand(0.0..=40.0) => 0.0;
     /// How important it is, 0 to 9: when there are too many voices, the least important one makes room.

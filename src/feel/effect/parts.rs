@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
-use super::written::Played;
-use super::{Beat, Clicks, Effect, EffectKind, MAX_PARTS, Manner, Part, Tone, TonePoint, Use};
+use super::reading::Played;
+use super::{Clicks, Effect, EffectKind, MAX_PARTS, Manner, Part, PartKind, Tone, TonePoint, Use};
 use crate::feel::MODE_HZ;
-use crate::format::describe::Shape;
+use crate::format::describe::FieldType;
 use crate::format::hand::Hand;
 use crate::format::node::{Node, Within};
 use crate::format::problem::Problem;
@@ -14,7 +14,7 @@ use crate::format::{Codec, List, Rec, list, num, record};
 
 record! {
     /// One part of a sequence.
-    struct WrittenPart = "Part";
+    struct PartRecord = "Part";
     /// When it begins, from the sequence's start.
     at_s: f32 = "at_ms", super::tone::TIME;
     /// What its level is multiplied with.
@@ -33,7 +33,7 @@ pub(super) struct Parts;
 impl Codec<Arc<[Part]>> for Parts {
     fn read(&self, node: Node<'_>, _: Option<&Arc<[Part]>>) -> Option<Arc<[Part]>> {
         let within = node.reader.within();
-        let written: Vec<WrittenPart> = PARTS.read_all(node)?;
+        let written: Vec<PartRecord> = PARTS.read_all(node)?;
         let mut parts: Vec<Part> = written.into_iter().flat_map(|part| part.into_parts(within)).collect();
         if parts.len() > MAX_PARTS {
             let problem = Problem::error(node.span(), "this sequence has too many parts");
@@ -47,18 +47,18 @@ impl Codec<Arc<[Part]>> for Parts {
 
     fn write(&self, parts: &Arc<[Part]>) -> Text {
         let written = parts.iter().map(|part| {
-            let kind = match part.beat.clone() {
-                Beat::Click(press) => EffectKind::Click(Clicks { press, release: None }),
-                Beat::Tone(tone) => EffectKind::Continuous(tone),
+            let kind = match part.kind.clone() {
+                PartKind::Click(press) => EffectKind::Click(Clicks { press, release: None }),
+                PartKind::Tone(tone) => EffectKind::Continuous(tone),
             };
             let plays = Arc::new(Effect { kind, manner: Manner::PLAIN });
-            WrittenPart { at_s: part.at_s, level: 1.0, pitch: 1.0, plays }
+            PartRecord { at_s: part.at_s, level: 1.0, pitch: 1.0, plays }
         });
         PARTS.write_all(&written.collect::<Vec<_>>())
     }
 
-    fn shape(&self) -> Shape {
-        PARTS.described::<WrittenPart>()
+    fn shape(&self) -> FieldType {
+        PARTS.described::<PartRecord>()
     }
 
     fn stand_in(&self) -> Arc<[Part]> {
@@ -69,16 +69,16 @@ impl Codec<Arc<[Part]>> for Parts {
         for (index, part) in Arc::make_mut(parts).iter_mut().enumerate() {
             hand.part(&format!("part {}", index + 1), |hand| {
                 super::tone::TIME.hand(0.0..=3000.0).turn(&mut part.at_s, "at_ms", hand);
-                match &mut part.beat {
-                    Beat::Click(click) => Rec.turn(click, "", hand),
-                    Beat::Tone(tone) => Rec.turn(tone, "", hand),
+                match &mut part.kind {
+                    PartKind::Click(click) => Rec.turn(click, "", hand),
+                    PartKind::Tone(tone) => Rec.turn(tone, "", hand),
                 }
             });
         }
     }
 }
 
-impl WrittenPart {
+impl PartRecord {
     /// What it plays, one by one: several if it is a sequence itself.
     fn into_parts(self, within: Option<Within>) -> Vec<Part> {
         let Self { at_s, level, pitch, plays } = self;
@@ -86,21 +86,21 @@ impl WrittenPart {
             let hz = (hz * pitch).clamp(*MODE_HZ.start(), *MODE_HZ.end());
             within.map_or(hz, |within| hz.max(within.low as f32).min(within.high as f32))
         };
-        let changed = |beat: Beat| match beat {
-            Beat::Click(click) => Beat::Click(click.scaled(level, pitch)),
-            Beat::Tone(tone) => {
+        let changed = |kind: PartKind| match kind {
+            PartKind::Click(click) => PartKind::Click(click.scaled(level, pitch)),
+            PartKind::Tone(tone) => {
                 let point = |point: TonePoint| TonePoint { hz: point.hz.map(turned), ..point };
                 let curve = tone.curve.iter().copied().map(point).collect();
-                Beat::Tone(Tone { level: tone.level * level, hz: turned(tone.hz), curve, ..tone })
+                PartKind::Tone(Tone { level: tone.level * level, hz: turned(tone.hz), curve, ..tone })
             }
         };
-        let part = |at_s, beat| Part { at_s, beat: changed(beat) };
+        let part = |at_s, kind| Part { at_s, kind: changed(kind) };
         match plays.kind.clone() {
-            EffectKind::Click(Clicks { press, .. }) => vec![part(at_s, Beat::Click(press))],
-            EffectKind::Continuous(tone) => vec![part(at_s, Beat::Tone(tone))],
+            EffectKind::Click(Clicks { press, .. }) => vec![part(at_s, PartKind::Click(press))],
+            EffectKind::Continuous(tone) => vec![part(at_s, PartKind::Tone(tone))],
             EffectKind::Sequence(inner) => (0..inner.parts.len())
                 .filter_map(|index| inner.part(index))
-                .map(|inner| part(at_s + inner.at_s, inner.beat))
+                .map(|inner| part(at_s + inner.at_s, inner.kind))
                 .collect(),
             _ => Vec::new(),
         }

@@ -28,12 +28,12 @@ pub struct Part {
     /// When it begins, in seconds from the sequence's start.
     pub at_s: f32,
     /// What is played.
-    pub beat: Beat,
+    pub kind: PartKind,
 }
 
 /// What one part of a sequence plays.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Beat {
+pub enum PartKind {
     /// A click.
     Click(Click),
     /// A tone or noise.
@@ -57,19 +57,19 @@ impl Sequence {
     #[must_use]
     pub fn part(&self, index: usize) -> Option<Part> {
         let part = self.parts.get(index)?;
-        let beat = match &part.beat {
-            Beat::Click(click) => Beat::Click(click.scaled(self.share_at(part.at_s), 1.0)),
-            Beat::Tone(tone) => Beat::Tone(self.curved(tone, part.at_s)),
+        let kind = match &part.kind {
+            PartKind::Click(click) => PartKind::Click(click.scaled(self.share_at(part.at_s), 1.0)),
+            PartKind::Tone(tone) => PartKind::Tone(self.curved(tone, part.at_s)),
         };
-        Some(Part { at_s: part.at_s, beat })
+        Some(Part { at_s: part.at_s, kind })
     }
 
     /// When the last part has ended, in seconds from the start.
     #[must_use]
     pub fn length_s(&self) -> f32 {
-        let end = |part: &Part| match &part.beat {
-            Beat::Click(click) => part.at_s + click.length_s(),
-            Beat::Tone(tone) => part.at_s + tone.whole_s(),
+        let end = |part: &Part| match &part.kind {
+            PartKind::Click(click) => part.at_s + click.length_s(),
+            PartKind::Tone(tone) => part.at_s + tone.whole_s(),
         };
         self.parts.iter().map(end).fold(0.0, f32::max)
     }
@@ -123,15 +123,18 @@ mod tests {
         let click = Click { modes, level: Newtons(8.0), impulse: Impulse::default() };
         let tone = Tone { level: Newtons(2.0), hz: 90.0, length_s: 1.0, ..Tone::default() };
         let sequence = Sequence {
-            parts: [Part { at_s: 0.5, beat: Beat::Click(click) }, Part { at_s: 0.5, beat: Beat::Tone(tone) }]
-                .into(),
+            parts: [
+                Part { at_s: 0.5, kind: PartKind::Click(click) },
+                Part { at_s: 0.5, kind: PartKind::Tone(tone) },
+            ]
+            .into(),
             curve: [CurvePoint { at_s: 0.0, level: 0.0 }, CurvePoint { at_s: 1.0, level: 1.0 }]
                 .into_iter()
                 .collect(),
         };
-        let Some(Part { beat: Beat::Click(click), .. }) = sequence.part(0) else { panic!("a click") };
+        let Some(Part { kind: PartKind::Click(click), .. }) = sequence.part(0) else { panic!("a click") };
         assert_eq!(click.level, Newtons(4.0));
-        let Some(Part { beat: Beat::Tone(tone), .. }) = sequence.part(1) else { panic!("a tone") };
+        let Some(Part { kind: PartKind::Tone(tone), .. }) = sequence.part(1) else { panic!("a tone") };
         for (t, level) in [(0.0, 0.5), (0.25, 0.75), (0.5, 1.0), (0.9, 1.0)] {
             assert!((tone.at(t).0 - level).abs() < 1e-5, "{t} s: {:?}", tone.at(t));
         }

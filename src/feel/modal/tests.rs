@@ -137,7 +137,7 @@ fn a_bank_that_has_decayed_for_minutes_is_all_exact_zeros() {
         for eight in &bank.eights {
             let states = eight.state.re.iter().chain(&eight.state.im);
             assert!(states.copied().all(|state| state == 0.0 || state.is_normal()));
-            let tables = eight.shapes.iter().flat_map(|shape| shape.re.iter().chain(&shape.im));
+            let tables = eight.power_terms.iter().flat_map(|shape| shape.re.iter().chain(&shape.im));
             assert!(tables.copied().all(|number| number == 0.0 || number.is_normal()));
         }
     }
@@ -178,7 +178,7 @@ fn equal_modes_share_a_slot_and_add_up() {
     twice.strike(120.0, 0.05, 0.25);
     twice.strike(120.0, 0.05, 0.25);
     once.strike(120.0, 0.05, 0.5);
-    assert_eq!(twice.ringing(), 1);
+    assert_eq!(twice.active_modes(), 1);
     twice.render(&mut out[0]);
     once.render(&mut out[1]);
     assert_eq!(out[0], out[1]);
@@ -193,7 +193,7 @@ fn a_mode_that_has_rung_out_frees_its_slot_and_leaves_the_others_alone() {
     let wanted = reference(&[(60.0, 1.0, 0.2), (80.0, 1.0, 0.2), (90.0, 1.0, 0.2)], 19_200);
     let mut out = vec![0.0; 19_200];
     out.chunks_mut(96).for_each(|block| bank.render(block));
-    assert_eq!(bank.ringing(), 3);
+    assert_eq!(bank.active_modes(), 3);
     // The short ones are gone after 0.05 s; what is left is the three long ones.
     assert!(error_db(&out[9600..], &wanted[9600..]) < -100.0);
 }
@@ -206,7 +206,7 @@ fn a_full_bank_gives_up_its_weakest_mode() {
         assert!(!bank.strike(100.0 * f32::from(number), 1.0, amplitude));
     }
     assert!(bank.strike(900.0, 1.0, 0.5));
-    assert_eq!(bank.ringing(), 8);
+    assert_eq!(bank.active_modes(), 8);
     assert!(!bank.keys.iter().any(|key| key.frequency_hz == 200.0));
 }
 

@@ -1,7 +1,7 @@
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 
-use super::section::Shape;
+use super::section::Filter;
 use crate::floor::Response;
 
 /// Band in which a plate is worth moving, in hertz (paper, section 2: plates measured from 50 to 750 Hz).
@@ -35,10 +35,10 @@ const POINTS: usize = 64;
 ///
 /// # Source
 /// Levenberg-Marquardt on the error in decibels.
-pub(super) fn filters(response: &Response, sample_rate: f64) -> Vec<Shape> {
-    let mut shapes: Vec<Shape> =
-        BUTTERWORTH.iter().map(|q| Shape::high_pass(LOW_CORNER_HZ, *q, sample_rate)).collect();
-    shapes.extend(BUTTERWORTH.iter().map(|q| Shape::low_pass(HIGH_CORNER_HZ, *q, sample_rate)));
+pub(super) fn filters(response: &Response, sample_rate: f64) -> Vec<Filter> {
+    let mut shapes: Vec<Filter> =
+        BUTTERWORTH.iter().map(|q| Filter::high_pass(LOW_CORNER_HZ, *q, sample_rate)).collect();
+    shapes.extend(BUTTERWORTH.iter().map(|q| Filter::low_pass(HIGH_CORNER_HZ, *q, sample_rate)));
 
     let octaves = (BAND_HZ[1] / BAND_HZ[0]).log2();
     let hertz: Vec<f64> =
@@ -84,9 +84,9 @@ impl Fit {
         self.parameters.len() / 3
     }
 
-    fn bell(&self, number: usize) -> Shape {
+    fn bell(&self, number: usize) -> Filter {
         let [hz, sharpness, db] = [1, 2, 3].map(|part| self.parameters[3 * number + part]);
-        Shape::bell(
+        Filter::bell(
             hz.exp().clamp(30.0, 1200.0),
             sharpness.exp().clamp(0.3, 12.0),
             db.clamp(-1.5 * MOST_DB, 1.5 * MOST_DB),
@@ -95,7 +95,7 @@ impl Fit {
     }
 
     fn errors(&self) -> DVector<f64> {
-        let bells: Vec<Shape> = (0..self.bells()).map(|bell| self.bell(bell)).collect();
+        let bells: Vec<Filter> = (0..self.bells()).map(|bell| self.bell(bell)).collect();
         let errors = self.hertz.iter().zip(&self.wanted).map(|(hz, wanted)| {
             let got: f64 = bells.iter().map(|bell| bell.gain_db(*hz, self.sample_rate)).sum();
             self.parameters[0] + got - wanted
@@ -150,17 +150,17 @@ impl LeastSquaresProblem<f64, Dyn, Dyn> for Fit {
 
     fn jacobian(&self) -> Option<DMatrix<f64>> {
         const STEP: f64 = 1e-5;
-        let mut slopes = DMatrix::zeros(self.hertz.len(), self.parameters.len());
+        let mut jacobian = DMatrix::zeros(self.hertz.len(), self.parameters.len());
         let mut moved = self.clone();
         for parameter in 0..self.parameters.len() {
             let here = self.parameters[parameter];
             moved.parameters[parameter] = here + STEP;
             let above = moved.errors();
             moved.parameters[parameter] = here - STEP;
-            slopes.set_column(parameter, &((above - moved.errors()) / (2.0 * STEP)));
+            jacobian.set_column(parameter, &((above - moved.errors()) / (2.0 * STEP)));
             moved.parameters[parameter] = here;
         }
-        Some(slopes)
+        Some(jacobian)
     }
 }
 
@@ -173,7 +173,7 @@ mod tests {
     /// A plate on springs: two resonances, one of them sharp, over a gentle slope.
     fn plate(hz: f64) -> f64 {
         let resonance =
-            |centre, sharpness, db| Shape::bell(centre, sharpness, db, 192_000.0).gain_db(hz, 192_000.0);
+            |centre, sharpness, db| Filter::bell(centre, sharpness, db, 192_000.0).gain_db(hz, 192_000.0);
         resonance(68.0, 2.5, 9.0) + resonance(310.0, 4.0, -7.0) + resonance(520.0, 3.0, 5.0)
             - 1.5 * (hz / 200.0).log2()
     }

@@ -1,7 +1,7 @@
 //! What stands between the mix and the amplifiers, channel by channel.
 //!
 //! ```text
-//! banks, voices -> what is no sound becomes silence -> filters (band, inverse equaliser) -> peak limiter
+//! banks, voices -> non-finite samples become silence -> filters (band, inverse equaliser) -> peak limiter
 //!               -> power limiter -> direct-current block -> clamp -> mutes and ramps -> samples
 //! ```
 //!
@@ -19,14 +19,14 @@ mod section;
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
+use super::active_modes::ActiveModes;
 use super::limiter::Limiter;
 use super::mix::{LANES, Mix};
 use super::modal::SPAN;
-use super::ringing::Ringing;
 use crate::floor::{Drive, Response};
 use gate::Gate;
 use heat::Heat;
-use section::{Section, Shape};
+use section::{Filter, Section};
 
 /// Samples beyond this many full scales are a fault, not a loud cue.
 const OVERLOAD: f32 = 8.0;
@@ -40,7 +40,7 @@ const SILENCE: f32 = 1e-7;
 /// What was not sound, and what was done about it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Faults {
-    /// Samples that were no numbers or infinite: silence now.
+    /// Samples that were not numbers or infinite: silence now.
     pub(super) not_finite: u32,
     /// Samples beyond [`OVERLOAD`]: cut off there.
     pub(super) overloaded: u32,
@@ -59,7 +59,7 @@ pub(super) struct Rack {
     /// The samples at hand.
     columns: Box<[[f32; LANES]; SPAN]>,
     /// The response that filters were fitted to last.
-    fitted: Option<(Response, Vec<Shape>)>,
+    fitted: Option<(Response, Vec<Filter>)>,
 }
 
 /// Sixteen channels.
@@ -101,7 +101,7 @@ impl Rack {
     /// Takes memory and time, so it belongs before the start. A channel that the rack hasn't got is ignored.
     pub(super) fn add_actuator(&mut self, channel: usize, drive: &Drive, response: Option<&Response>) {
         let shapes = match response {
-            Some(response) => self.shapes_for(response),
+            Some(response) => self.filters_for(response),
             None => Vec::new(),
         };
         let Some(group) = self.groups.get_mut(channel / LANES) else { return };
@@ -116,7 +116,7 @@ impl Rack {
     }
 
     /// The filters for a response; those of the last are kept, since most floors have one for all.
-    fn shapes_for(&mut self, response: &Response) -> Vec<Shape> {
+    fn filters_for(&mut self, response: &Response) -> Vec<Filter> {
         if let Some((known, shapes)) = &self.fitted
             && known == response
         {
@@ -145,21 +145,21 @@ impl Rack {
     /// No allocation.
     pub(super) fn process(
         &mut self,
-        ringing: &mut Ringing,
+        modes: &mut ActiveModes,
         mix: &Mix,
         gains: &[f32],
         out: &mut [f32],
     ) -> Faults {
         let mut faults = Faults::default();
-        let is_fed = |group: usize, ringing: &Ringing| mix.is_open(group) || ringing.has_more(group);
-        if self.groups.iter().enumerate().any(|(number, group)| group.idle && !is_fed(number, ringing)) {
+        let is_fed = |group: usize, modes: &ActiveModes| mix.is_open(group) || modes.has_more(group);
+        if self.groups.iter().enumerate().any(|(number, group)| group.idle && !is_fed(number, modes)) {
             out.fill(0.0);
         }
         let columns = &mut *self.columns;
         for (number, group) in self.groups.iter_mut().enumerate() {
             let first = number * LANES;
             let in_rows = mix.is_open(number);
-            let fed = is_fed(number, ringing);
+            let fed = is_fed(number, modes);
             if !fed && group.idle {
                 group.rest(gains.len());
                 continue;
@@ -167,7 +167,7 @@ impl Rack {
             let widths = Widths { channels: self.channels, width: LANES.min(self.channels - first) };
             for from in (0..gains.len()).step_by(SPAN) {
                 let gains = &gains[from..gains.len().min(from + SPAN)];
-                if !ringing.draw(number, gains.len(), columns) {
+                if !modes.draw(number, gains.len(), columns) {
                     *columns = [[0.0; LANES]; SPAN];
                 }
                 let rows = in_rows.then_some(Rows { mix, group: number, from });
@@ -177,7 +177,7 @@ impl Rack {
             group.settle(fed);
             for (channel, spent) in (first..).zip(group.gate.reset()) {
                 if spent {
-                    ringing.clear_channel(channel);
+                    modes.clear_channel(channel);
                 }
             }
         }
@@ -245,7 +245,7 @@ impl Group {
         let mut faults = Faults::default();
         if let Some(Rows { mix, group, from }) = rows {
             mix.add_to(group, from, gains.len(), columns);
-            // Before it is too late: a filter never gets rid of what is no number. Banks don't give any.
+            // Before it is too late: a filter never recovers from NaN. Banks don't give any.
             let columns = &mut columns[..gains.len()];
             if !survey(columns).is_calm() {
                 faults = self.mend(columns);

@@ -13,7 +13,7 @@ use crate::feel::modal::multiply_add;
 /// State Variable Filter", 2013. In single precision it keeps a corner of 40 Hz at 96 kHz, where the
 /// coefficients of a direct form don't.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Shape {
+pub(super) struct Filter {
     /// Corner or centre, as the tangent of half its angle per sample.
     g: f64,
     /// Damping, 1 over the sharpness.
@@ -22,7 +22,7 @@ pub(super) struct Shape {
     mix: [f64; 3],
 }
 
-impl Shape {
+impl Filter {
     /// Lets through what is above `hz`.
     pub(super) fn high_pass(hz: f64, sharpness: f64, sample_rate: f64) -> Self {
         let k = sharpness.recip();
@@ -79,8 +79,8 @@ impl Section {
     }
 
     /// Gives one channel its filter.
-    pub(super) fn set(&mut self, lane: usize, shape: &Shape) {
-        let Shape { g, k, mix: [m0, m1, m2] } = *shape;
+    pub(super) fn set(&mut self, lane: usize, filter: &Filter) {
+        let Filter { g, k, mix: [m0, m1, m2] } = *filter;
         let a1 = (1.0 + g * (g + k)).recip();
         let a2 = g * a1;
         let a3 = g * a2;
@@ -146,9 +146,9 @@ mod tests {
     const RATE: f64 = 96_000.0;
 
     /// What a filter does to a sine once it has settled, measured.
-    fn measured_db(shape: &Shape, hz: f64) -> f64 {
+    fn measured_db(filter: &Filter, hz: f64) -> f64 {
         let mut section = Section::straight();
-        section.set(3, shape);
+        section.set(3, filter);
         let mut columns = vec![[0.0; LANES]; 96_000];
         for (n, column) in columns.iter_mut().enumerate() {
             column[3] = (TAU * hz * n as f64 / RATE).sin() as f32;
@@ -165,19 +165,19 @@ mod tests {
 
     #[test]
     fn a_filter_does_what_its_shape_says() {
-        for shape in [
-            Shape::high_pass(40.0, 1.307, RATE),
-            Shape::low_pass(950.0, 0.541, RATE),
-            Shape::bell(120.0, 2.0, 9.0, RATE),
-            Shape::bell(300.0, 4.0, -12.0, RATE).louder(2.0),
+        for filter in [
+            Filter::high_pass(40.0, 1.307, RATE),
+            Filter::low_pass(950.0, 0.541, RATE),
+            Filter::bell(120.0, 2.0, 9.0, RATE),
+            Filter::bell(300.0, 4.0, -12.0, RATE).louder(2.0),
         ] {
             for hz in [30.0, 60.0, 120.0, 300.0, 750.0, 2000.0] {
-                let (wanted, got) = (shape.gain_db(hz, RATE), measured_db(&shape, hz));
-                assert!((wanted - got).abs() < 0.02, "{shape:?} at {hz} Hz: {got} instead of {wanted} dB");
+                let (wanted, got) = (filter.gain_db(hz, RATE), measured_db(&filter, hz));
+                assert!((wanted - got).abs() < 0.02, "{filter:?} at {hz} Hz: {got} instead of {wanted} dB");
             }
         }
-        assert!((Shape::bell(120.0, 2.0, 9.0, RATE).gain_db(120.0, RATE) - 9.0).abs() < 1e-9);
-        assert!((Shape::high_pass(40.0, 0.5_f64.sqrt(), RATE).gain_db(40.0, RATE) + 3.01).abs() < 0.01);
+        assert!((Filter::bell(120.0, 2.0, 9.0, RATE).gain_db(120.0, RATE) - 9.0).abs() < 1e-9);
+        assert!((Filter::high_pass(40.0, 0.5_f64.sqrt(), RATE).gain_db(40.0, RATE) + 3.01).abs() < 0.01);
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! model are computed side by side.
 //!
 //! ```text
-//! Rubs, tones -> Voices -> Group of eight: Hiss | Impacts | Stick -> Chain (resonances, band) -> mix
+//! SustainedCues, tones -> Voices -> Group of eight: Hiss | Impacts | Stick -> Chain (resonances, band) -> mix
 //! ```
 
 mod chain;

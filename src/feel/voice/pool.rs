@@ -4,12 +4,12 @@ use super::single::{STEP, Span, State, Voice};
 use super::{LANES, LowRate};
 use crate::feel::loudspeakers::Loudspeakers;
 use crate::feel::mix::{Mix, Wiring};
-use crate::feel::{Cue, MAX_RUBS, Manner, Rub, Rubs, Tone};
+use crate::feel::{Cue, MAX_SUSTAINED, Manner, SustainedCue, SustainedCues, Tone};
 
-/// Enough for [`MAX_RUBS`] voices however they fall on the models.
-const GROUPS: usize = MAX_RUBS / LANES + 5;
+/// Enough for [`MAX_SUSTAINED`] voices however they fall on the models.
+const GROUPS: usize = MAX_SUSTAINED / LANES + 5;
 
-/// A rub that was not renewed for this long is over: whoever sends them may have died.
+/// A sustained cue that was not renewed for this long is over: whoever sends them may have died.
 const STALE_S: f32 = 0.05;
 
 /// All voices of what lasts.
@@ -46,7 +46,7 @@ impl Voices {
         Self {
             rate,
             sample_rate,
-            voices: vec![Voice::default(); MAX_RUBS],
+            voices: vec![Voice::default(); MAX_SUSTAINED],
             groups: (0..GROUPS).map(Group::new).collect(),
             ducks: Ducks::new(channels),
             phase: 0,
@@ -64,18 +64,29 @@ impl Voices {
         self.ducks.clear();
     }
 
-    /// Takes the rubs as they are now; a rub that is no longer among them fades out.
-    pub(in crate::feel) fn follow(&mut self, rubs: &Rubs, wiring: &Wiring, air: &Loudspeakers) -> Started {
+    /// Takes the sustained cues as they are now; a sustained cue that is no longer among them fades out.
+    pub(in crate::feel) fn follow(
+        &mut self,
+        sustained: &SustainedCues,
+        wiring: &Wiring,
+        air: &Loudspeakers,
+    ) -> Started {
         self.age = 0;
         for voice in &mut self.voices {
-            if voice.state == State::Rubbing && !rubs.iter().any(|rub| rub.key == voice.key) {
+            if voice.state == State::Sustained
+                && !sustained.iter().any(|sustained_cue| sustained_cue.key == voice.key)
+            {
                 voice.state = State::Fading;
             }
         }
         let mut started = Started::default();
-        for rub in rubs {
-            let Some(number) = self.voice_for(rub, &mut started) else { continue };
-            started.unfelt += self.voices[number].follow(rub, wiring, &air.heard(&rub.spots, rub.to_air));
+        for sustained_cue in sustained {
+            let Some(number) = self.voice_for(sustained_cue, &mut started) else { continue };
+            started.unfelt += self.voices[number].follow(
+                sustained_cue,
+                wiring,
+                &air.pan(&sustained_cue.spots, sustained_cue.audio_gain),
+            );
         }
         started
     }
@@ -88,7 +99,7 @@ impl Voices {
         wiring: &Wiring,
         air: &Loudspeakers,
     ) -> Started {
-        let heard = air.heard(&cue.spots, cue.to_air);
+        let heard = air.pan(&cue.spots, cue.audio_gain);
         let (voice, unfelt) = Voice::sounding(tone, cue.manner, &cue.spots, wiring, &heard);
         let mut started = Started { unfelt, stolen: 0 };
         if let Some(number) = self.claim(Model::Hiss, cue.manner, tone.level.0, &mut started) {
@@ -103,28 +114,39 @@ impl Voices {
         self.ducks.press(channel, manner, seconds, None);
     }
 
-    /// The voice that plays `rub` already, or one for it.
-    fn voice_for(&mut self, rub: &Rub, started: &mut Started) -> Option<usize> {
-        let model = Model::of(&rub.effect);
-        let plays =
-            |voice: &Voice| matches!(voice.state, State::Rubbing | State::Fading) && voice.key == rub.key;
+    /// The voice that plays `sustained_cue` already, or one for it.
+    fn voice_for(&mut self, sustained_cue: &SustainedCue, started: &mut Started) -> Option<usize> {
+        let model = Model::of(&sustained_cue.effect);
+        let plays = |voice: &Voice| {
+            matches!(voice.state, State::Sustained | State::Fading) && voice.key == sustained_cue.key
+        };
         let held = self.voices.iter().position(plays);
         if let Some(number) = held {
-            let is_same =
-                self.voices[number].effect == rub.effect && self.voices[number].manner == rub.manner;
+            let is_same = self.voices[number].effect == sustained_cue.effect
+                && self.voices[number].manner == sustained_cue.manner;
             if Model::of(&self.voices[number].effect) == model {
                 if !is_same {
                     let (group, lane) = (self.voices[number].group, self.voices[number].lane);
-                    self.groups[group].prepare(lane, &rub.effect, rub.manner.band.sound(), self.rate.hz);
+                    self.groups[group].prepare(
+                        lane,
+                        &sustained_cue.effect,
+                        sustained_cue.manner.band.sound(),
+                        self.rate.hz,
+                    );
                 }
                 return Some(number);
             }
             self.free(number);
         }
-        let number = self.claim(model, rub.manner, 0.0, started)?;
+        let number = self.claim(model, sustained_cue.manner, 0.0, started)?;
         let (group, lane) = (self.voices[number].group, self.voices[number].lane);
-        self.groups[group].prepare(lane, &rub.effect, rub.manner.band.sound(), self.rate.hz);
-        self.voices[number] = Voice::of(rub.key).in_lane(group, lane);
+        self.groups[group].prepare(
+            lane,
+            &sustained_cue.effect,
+            sustained_cue.manner.band.sound(),
+            self.rate.hz,
+        );
+        self.voices[number] = Voice::of(sustained_cue.key).in_lane(group, lane);
         Some(number)
     }
 
@@ -188,7 +210,7 @@ impl Voices {
         self.age = self.age.saturating_add(end.saturating_sub(start));
         if self.age as f32 > STALE_S * self.sample_rate {
             for voice in &mut self.voices {
-                if voice.state == State::Rubbing {
+                if voice.state == State::Sustained {
                     voice.state = State::Fading;
                 }
             }

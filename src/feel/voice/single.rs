@@ -5,12 +5,12 @@ use super::group::Drive;
 use super::{Row, within};
 use crate::feel::loudspeakers::{PER_NEWTON, Panned};
 use crate::feel::mix::{FAINT, Mix, Output, Wiring};
-use crate::feel::{Friction, Hum, Lasting, Manner, Rub, Spots, Tone};
+use crate::feel::{Friction, Hum, Lasting, Manner, Spots, SustainedCue, Tone};
 
 /// Time in which level, speed and pitch follow the foot to 1/e.
 const FOLLOW_S: f32 = 0.004;
 
-/// Time in which a new rub fades in, and one that is over fades out.
+/// Time in which a new sustained cue fades in, and one that is over fades out.
 const FADE_S: f32 = 0.015;
 
 /// Strongest that one voice plays, in newtons: far above anything an actuator gives.
@@ -31,7 +31,7 @@ pub(super) struct Voice {
     /// The tone being played, and the time since its start.
     tone: Option<Tone>,
     clock_s: f32,
-    /// Rises to 1 in [`FADE_S`] and falls to 0 in the same time when the rub is over.
+    /// Rises to 1 in [`FADE_S`] and falls to 0 in the same time when the sustained cue is over.
     fade: f32,
     reaches: ArrayVec<Reach, MAX_REACHES>,
     /// The two samples of the low rate between which the voice is.
@@ -42,8 +42,8 @@ pub(super) struct Voice {
 pub(super) enum State {
     #[default]
     Free,
-    /// A rub that is renewed again and again.
-    Rubbing,
+    /// A sustained cue that is renewed again and again.
+    Sustained,
     /// A tone that ends by itself.
     Sounding,
     Fading,
@@ -83,7 +83,7 @@ pub(super) struct Span<'a> {
 pub(super) const STEP: usize = 64;
 
 impl Voice {
-    /// A voice for the rub of this key, silent until it follows.
+    /// A voice for the sustained cue of this key, silent until it follows.
     pub(super) fn of(key: u32) -> Self {
         Self { key, ..Self::default() }
     }
@@ -117,18 +117,18 @@ impl Voice {
         (voice, unfelt)
     }
 
-    /// Heads for what the rub is now; the answer is how many spots of a new rub no actuator can play.
-    pub(super) fn follow(&mut self, rub: &Rub, wiring: &Wiring, heard: &Panned) -> u32 {
+    /// Heads for what the sustained cue is now; the answer is how many spots of a new sustained cue no actuator can play.
+    pub(super) fn follow(&mut self, sustained_cue: &SustainedCue, wiring: &Wiring, heard: &Panned) -> u32 {
         let new = self.state == State::Free;
-        self.wanted = wish(rub);
+        self.wanted = wish(sustained_cue);
         if new {
-            // A new rub starts at its own pitch; its fade makes it start from silence.
+            // A new sustained cue starts at its own pitch; its fade makes it start from silence.
             self.now = self.wanted;
         }
-        self.effect = rub.effect;
-        self.manner = rub.manner;
-        self.state = State::Rubbing;
-        let unfelt = self.reach(&rub.spots, wiring, new);
+        self.effect = sustained_cue.effect;
+        self.manner = sustained_cue.manner;
+        self.state = State::Sustained;
+        let unfelt = self.reach(&sustained_cue.spots, wiring, new);
         self.sound(heard);
         unfelt
     }
@@ -213,7 +213,7 @@ impl Voice {
         match self.state {
             State::Fading => self.fade == 0.0,
             State::Sounding => !self.tone.as_ref().is_some_and(|tone| self.clock_s < tone.whole_s()),
-            State::Free | State::Rubbing => false,
+            State::Free | State::Sustained => false,
         }
     }
 
@@ -259,28 +259,28 @@ impl Voice {
     }
 }
 
-/// What a rub wants of its voice.
-fn wish(rub: &Rub) -> Wish {
+/// What a sustained cue wants of its voice.
+fn wish(sustained_cue: &SustainedCue) -> Wish {
     let level = |level: f32| within(level, 0.0, STRONGEST_N);
-    let speed_m_s = within(rub.speed_m_s, 0.0, 20.0);
-    match &rub.effect {
+    let speed_m_s = within(sustained_cue.speed_m_s, 0.0, 20.0);
+    match &sustained_cue.effect {
         Lasting::Hum(hum) => Wish { level_n: felt(level(hum.level.0)), speed: 0.0, force: 0.0, hz: hum.hz },
         Lasting::Friction(friction) => {
             let Friction { low_hz, high_hz, .. } = friction;
             let speed = share(speed_m_s, friction.full_speed_m_s);
-            let force = share(rub.force.0, friction.full_force.0);
+            let force = share(sustained_cue.force.0, friction.full_force.0);
             let level_n = felt(level(friction.level.0) * speed * force);
             Wish { level_n, speed: speed_m_s, force, hz: low_hz + (high_hz - low_hz) * speed }
         }
         Lasting::StickSlip(stick) => {
             let material = &stick.material;
-            let force = share(rub.force.0, material.full_force.0);
+            let force = share(sustained_cue.force.0, material.full_force.0);
             let level_n = felt(level(material.level.0 * material.trim) * force);
             Wish { level_n, speed: speed_m_s, force, hz: 0.0 }
         }
         Lasting::Texture(_) | Lasting::Grains(_) => {
-            let Some(material) = rub.effect.material() else { return Wish::default() };
-            let force = share(rub.force.0, material.full_force.0);
+            let Some(material) = sustained_cue.effect.material() else { return Wish::default() };
+            let force = share(sustained_cue.force.0, material.full_force.0);
             // Impacts grow with the root of the speed and come with the speed: their power is as that of a level
             // that is linear in it.
             let hit = share(speed_m_s, material.full_speed_m_s).sqrt();

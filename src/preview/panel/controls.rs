@@ -15,7 +15,7 @@ impl App {
         let header = CollapsingHeader::new("Controls, as an app sets them").id_salt("controls");
         header.show_unindented(ui, |ui| {
             let snapshot = self.snapshots.output_buffer();
-            for (index, widget) in self.inbox.layout.widgets.iter().enumerate() {
+            for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
                 let Some(state) = snapshot.widgets.get(index) else { break };
                 let id = &widget.id;
                 ui.horizontal(|ui| {

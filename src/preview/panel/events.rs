@@ -16,11 +16,11 @@ impl App {
         let theme = &self.theme;
         let top = ui.cursor().top();
         section(ui, theme, "Events", |ui| {
-            ui.label(quiet(theme, format!("{} so far", self.inbox.event_count)).size(12.0));
+            ui.label(quiet(theme, format!("{} so far", self.messages.event_count)).size(12.0));
         });
         let left = height - (ui.cursor().top() - top) - 8.0;
         ui.spacing_mut().item_spacing.y = 0.0;
-        let recent = &self.inbox.recent;
+        let recent = &self.messages.recent;
         let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
         area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
             if recent.is_empty() {

@@ -11,7 +11,9 @@ impl App {
     pub(super) fn grounds_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
         let snapshot = self.snapshots.output_buffer();
-        for (number, (ground, state)) in self.inbox.layout.grounds.iter().zip(&snapshot.grounds).enumerate() {
+        for (number, (ground, state)) in
+            self.messages.layout.grounds.iter().zip(&snapshot.grounds).enumerate()
+        {
             if !ground.is_on(snapshot.page) {
                 continue;
             }
@@ -46,10 +48,10 @@ fn lines(material: &Material, state: &GroundState) -> Vec<(&'static str, u64)> {
             ("pieces of crack", state.cracks.len() as u64),
             ("at most", spec.cracks.most as u64),
             ("seeds", state.seeds.len() as u64),
-            ("crowded out by new pieces", counters.crowded_out),
+            ("evicted by new pieces", counters.evicted),
             ("events", counters.events),
         ],
-        Material::Grain(_) => vec![("grains that gave way", counters.events)],
+        Material::Grain(_) => vec![("grain events", counters.events)],
         Material::Wood(_) => vec![("creaks", counters.events)],
     };
     lines.push(("too thick to be felt one by one", counters.unfelt));
@@ -72,12 +74,12 @@ mod tests {
     #[test]
     fn ice_tells_its_pieces_and_loose_ground_its_grains() {
         let crack = Crack { ..Crack::default() };
-        let counters = GroundCounters { events: 1500, unfelt: 7, crowded_out: 296 };
+        let counters = GroundCounters { events: 1500, unfelt: 7, evicted: 296 };
         let state = GroundState { cracks: vec![crack; 1204], counters, ..GroundState::default() };
         let ice = materials("pond")[0];
         assert_eq!(headline(&ice, &state), "Ice: 1\u{a0}204 pieces");
         let lines = lines(&ice, &state);
-        assert!(lines.contains(&("crowded out by new pieces", 296)) && lines.contains(&("events", 1500)));
+        assert!(lines.contains(&("evicted by new pieces", 296)) && lines.contains(&("events", 1500)));
         let loose = materials("winter_walk");
         let loose = loose.iter().find(|material| matches!(material, Material::Grain(_))).unwrap();
         assert!(headline(loose, &state).ends_with(": 1\u{a0}500 grains"));

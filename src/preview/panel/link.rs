@@ -103,7 +103,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 17] {
         ("lost packets", counters.lost, true),
         ("late packets", counters.late, true),
         ("repeated packets", counters.duplicate, true),
-        ("packets out of line", counters.doubtful, true),
+        ("packets out of line", counters.out_of_order, true),
         ("boards restarted", counters.restarts, true),
         ("clock slips", counters.slips, false),
         ("refused: malformed", counters.malformed, true),

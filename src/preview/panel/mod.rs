@@ -31,7 +31,7 @@ impl App {
                 let top = ui.cursor().top();
                 self.tile_part(ui);
                 self.contacts_part(ui);
-                // The list takes what the other parts leave, as they were at the last picture.
+                // The list takes what the other parts leave, as they were at the last frame.
                 let events = (height - self.other_parts).max(EVENTS);
                 self.events_part(ui, events);
                 self.scopes_part(ui);

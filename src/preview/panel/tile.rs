@@ -16,11 +16,11 @@ use crate::sense::Quality;
 const FULL: f32 = 400.0;
 
 impl App {
-    /// The four sensors of the tile that is looked at, where they are on it.
+    /// The four sensors of the selected tile, where they are on it.
     pub(super) fn tile_part(&mut self, ui: &mut Ui) {
         let theme = self.theme;
-        let tile = self.looked.tile();
-        let pinned = self.looked.pinned().is_some();
+        let tile = self.selection.tile();
+        let pinned = self.selection.pinned().is_some();
         let muted = self.snapshots.output_buffer().muted.tiles.contains(&tile);
         let is_moved = self.scopes.is_fed() && self.is_moved(tile);
         let (mut unpin, mut mute) = (false, false);
@@ -40,7 +40,7 @@ impl App {
             self.command(PreviewCommand::MuteTile { tile, on: !muted });
         }
         if unpin {
-            self.looked.unpin();
+            self.selection.unpin();
         }
         let state = self
             .floor

@@ -46,7 +46,7 @@ struct Place {
     full_scale: f32,
 }
 
-/// What a picture of the tuner asks for.
+/// What a frame of the tuner asks for.
 #[derive(Default)]
 struct Wishes {
     play: bool,
@@ -144,10 +144,13 @@ impl Tuner {
         let effect = &self.effect;
         let trace = self.trace.get_or_insert_with(|| Trace::of(effect, &Gesture::usual(effect)));
         let width = ui.available_width();
-        let figures = match &trace.heard {
-            Some(heard) => {
-                let within = 100.0 * heard.within;
-                format!("{:.1} N peak,  {within:.1} % in band,  {:.0} Hz", heard.peak, heard.centroid_hz)
+        let figures = match &trace.analysis {
+            Some(analysis) => {
+                let within = 100.0 * analysis.within;
+                format!(
+                    "{:.1} N peak,  {within:.1} % in band,  {:.0} Hz",
+                    analysis.peak, analysis.centroid_hz
+                )
             }
             None => "silence".to_owned(),
         };
@@ -158,8 +161,8 @@ impl Tuner {
         let (rect, response) = ui.allocate_exact_size(vec2(width, 92.0), Sense::hover());
         response.widget_info(|| WidgetInfo::labeled(Role::Image, true, "Spectrum"));
         trace.spectrum(&ui.painter_at(rect), theme, rect);
-        let outside = trace.heard.as_ref().is_some_and(|heard| heard.within < 0.95);
-        let beyond = trace.heard.as_ref().is_some_and(|heard| heard.peak > full_scale);
+        let outside = trace.analysis.as_ref().is_some_and(|analysis| analysis.within < 0.95);
+        let beyond = trace.analysis.as_ref().is_some_and(|analysis| analysis.peak > full_scale);
         let ink = if outside || beyond { theme.warning } else { theme.ink };
         let label = ui.label(RichText::new(figures).size(12.5).color(color(ink)));
         if beyond {
@@ -175,12 +178,11 @@ impl Tuner {
             let play = Button::new(RichText::new("Play").strong()).min_size(vec2(82.0, 28.0));
             let play = ui.add(play.fill(color(theme.accent.mix(theme.plate, 0.72))));
             play.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Play"));
-            wishes.play |= play.on_hover_text("Plays it on the tile that is looked at").clicked();
+            wishes.play |= play.on_hover_text("Plays it on the selected tile").clicked();
             ui.checkbox(&mut self.by_itself, "at each change");
             ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                 let text = quiet(theme, format!("on tile {}", place.name)).size(12.0);
-                ui.label(text)
-                    .on_hover_text("The tile that is looked at: shift-click another one on the floor");
+                ui.label(text).on_hover_text("The selected tile: shift-click another one on the floor");
             });
         });
         ui.horizontal(|ui| {
@@ -210,7 +212,7 @@ impl Tuner {
             }
             changed |= slider(ui, knob, value);
         });
-        // Even what was only looked at has been balanced anew: the same numbers.
+        // Even what was only examined has been balanced anew: the same numbers.
         if changed {
             self.effect = Arc::new(turned);
             self.trace = None;
@@ -267,10 +269,10 @@ impl App {
         let (theme, now_s) = (self.theme, self.now_s);
         let frame = panel_frame(&theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::left("tuner").frame(frame).resizable(true);
-        let index = self.floor.geometry.index(self.looked.tile()).unwrap_or(0);
+        let index = self.floor.geometry.index(self.selection.tile()).unwrap_or(0);
         let actuator = self.floor.actuators.get(index).copied().flatten();
         let place = Place {
-            name: format!("{}, {}", self.looked.tile().column, self.looked.tile().row),
+            name: format!("{}, {}", self.selection.tile().column, self.selection.tile().row),
             full_scale: actuator.map_or(f32::INFINITY, |actuator| actuator.full_scale.0),
         };
         let wishes = panel

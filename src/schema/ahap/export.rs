@@ -9,7 +9,7 @@ use super::{
     AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
     sharpness_of,
 };
-use crate::feel::{Beat, Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part, Tone};
+use crate::feel::{Click, Clicks, Effect, EffectKind, Impulse, Manner, Mode, Part, PartKind, Tone};
 
 /// The AHAP file of an effect that is played once, and what of it has no counterpart there.
 ///
@@ -22,9 +22,9 @@ pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), 
     let parts: Vec<Part> = match &effect.kind {
         EffectKind::Click(Clicks { press, release }) => {
             lost.note(release.is_some(), "what is felt for a release");
-            vec![Part { at_s: 0.0, beat: Beat::Click(press.clone()) }]
+            vec![Part { at_s: 0.0, kind: PartKind::Click(press.clone()) }]
         }
-        EffectKind::Continuous(tone) => vec![Part { at_s: 0.0, beat: Beat::Tone(tone.clone()) }],
+        EffectKind::Continuous(tone) => vec![Part { at_s: 0.0, kind: PartKind::Tone(tone.clone()) }],
         EffectKind::Sequence(sequence) => {
             (0..sequence.parts.len()).filter_map(|index| sequence.part(index)).collect()
         }
@@ -36,15 +36,15 @@ pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), 
     lost.note(priority != Manner::PLAIN.priority, "the priority");
     let mut pattern = Vec::new();
     for (number, part) in parts.iter().enumerate() {
-        match &part.beat {
-            Beat::Click(click) => pattern.push(transient(part.at_s, click, &mut lost)),
-            Beat::Tone(tone) => {
+        match &part.kind {
+            PartKind::Click(click) => pattern.push(transient(part.at_s, click, &mut lost)),
+            PartKind::Tone(tone) => {
                 let end = part.at_s + tone.whole_s();
-                let meets = |other: &Part| other.at_s < end && ends(other) > part.at_s;
+                let overlaps = |other: &Part| other.at_s < end && ends(other) > part.at_s;
                 let others = parts.iter().enumerate().filter(|(other, _)| *other != number);
-                let meets_other = others.clone().any(|(_, other)| meets(other));
+                let overlaps_other = others.clone().any(|(_, other)| overlaps(other));
                 lost.note(
-                    meets_other && !tone.curve.is_empty(),
+                    overlaps_other && !tone.curve.is_empty(),
                     "that a curve concerns one of several at a time",
                 );
                 let follows = others.clone().any(|(_, other)| other.at_s >= end);
@@ -65,9 +65,9 @@ pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), 
 }
 
 fn ends(part: &Part) -> f32 {
-    match &part.beat {
-        Beat::Click(_) => part.at_s,
-        Beat::Tone(tone) => part.at_s + tone.whole_s(),
+    match &part.kind {
+        PartKind::Click(_) => part.at_s,
+        PartKind::Tone(tone) => part.at_s + tone.whole_s(),
     }
 }
 

@@ -9,8 +9,8 @@ use super::{
     AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
 };
 use crate::feel::{
-    Beat, Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, MAX_POINTS, Manner, Mode, Part, Sequence,
-    Tone, TonePoint,
+    Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, MAX_POINTS, Manner, Mode, Part, PartKind,
+    Sequence, Tone, TonePoint,
 };
 use crate::units::Newtons;
 
@@ -23,7 +23,7 @@ const LONGEST_S: f64 = 60.0;
 /// becomes that, any other a sequence.
 ///
 /// # Errors
-/// [`AhapError`]: it is no pattern, or nothing of it can be felt.
+/// [`AhapError`]: it is not a pattern, or nothing of it can be felt.
 pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapError> {
     if text.len() > 4_000_000 {
         return Err(AhapError::TooLarge(name.to_owned()));
@@ -57,10 +57,10 @@ pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapEr
     parts.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
     let kind = match parts.as_slice() {
         [] => return Err(AhapError::Empty(name.to_owned())),
-        [Part { at_s, beat: Beat::Click(click) }] if *at_s == 0.0 => {
+        [Part { at_s, kind: PartKind::Click(click) }] if *at_s == 0.0 => {
             EffectKind::Click(Clicks { press: click.clone(), release: None })
         }
-        [Part { at_s, beat: Beat::Tone(tone) }] if *at_s == 0.0 => EffectKind::Continuous(tone.clone()),
+        [Part { at_s, kind: PartKind::Tone(tone) }] if *at_s == 0.0 => EffectKind::Continuous(tone.clone()),
         _ => EffectKind::Sequence(Sequence { parts: Arc::from(parts), curve: ArrayVec::new() }),
     };
     Ok((Effect { kind, manner: Manner::PLAIN }, warnings.told()))
@@ -135,14 +135,14 @@ fn part(event: &Event, intensity: &Control, sharpness: &Control, warnings: &mut 
         }
     };
     let sharp = |t: f32| (parameters.sharpness + sharpness.at(t)).clamp(0.0, 1.0);
-    let beat = if event.event_type == "HapticTransient" {
+    let kind = if event.event_type == "HapticTransient" {
         let sharpness = sharp(at_s);
         let mode = Mode {
             frequency_hz: at_sharpness(TRANSIENT_HZ, sharpness),
             decay_s: at_sharpness(TRANSIENT_DECAY_S, sharpness),
             amplitude: 1.0,
         };
-        Beat::Click(Click {
+        PartKind::Click(Click {
             modes: [mode].into_iter().collect(),
             level: Newtons(TRANSIENT_N * parameters.intensity * intensity.at(at_s)),
             impulse: Impulse::default(),
@@ -174,7 +174,7 @@ fn part(event: &Event, intensity: &Control, sharpness: &Control, warnings: &mut 
         }
         // Without bends the controls are the same all along.
         let steady = if curve.is_empty() { intensity.at(at_s) } else { 1.0 };
-        Beat::Tone(Tone {
+        PartKind::Tone(Tone {
             level: Newtons(CONTINUOUS_N * parameters.intensity * steady),
             hz: at_sharpness(
                 CONTINUOUS_HZ,
@@ -194,5 +194,5 @@ fn part(event: &Event, intensity: &Control, sharpness: &Control, warnings: &mut 
             curve,
         })
     };
-    Some(Part { at_s, beat })
+    Some(Part { at_s, kind })
 }

@@ -33,7 +33,7 @@ pub enum AhapError {
     /// The file is larger than any pattern.
     #[error("{0}: larger than 4 MB: is it a pattern?")]
     TooLarge(String),
-    /// The text is no JSON, or its fields are of other types than a pattern's.
+    /// The text is not JSON, or its fields are of other types than a pattern's.
     #[error("{name}:{line}:{column}: {reason}")]
     Json {
         /// What messages call the text.

@@ -52,7 +52,7 @@ impl Presence {
     }
 
     /// Whether anything usable has ever come.
-    pub(super) const fn was_heard(&self) -> bool {
+    pub(super) const fn has_reported(&self) -> bool {
         !matches!(self.state, State::Unheard)
     }
 
@@ -161,7 +161,7 @@ impl LossMeter {
         }
     }
 
-    /// Notes that a packet given up came in time after all.
+    /// Notes that a packet counted as lost came in time after all.
     pub(super) fn found(&mut self) {
         self.buckets[0].1 = self.buckets[0].1.saturating_sub(1);
     }

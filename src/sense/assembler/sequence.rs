@@ -26,7 +26,7 @@ pub(super) enum Verdict {
     /// Came before.
     Duplicate,
     /// Fits nothing: a damaged number, or the first sign of a reboot.
-    Doubtful,
+    OutOfOrder,
     /// Third in a row that agree on a new beginning; the stream starts anew at `position`.
     Restart {
         /// Its place in the new stream.
@@ -39,11 +39,11 @@ pub(super) enum Verdict {
 /// ```text
 /// number - latest   looks early   verdict
 /// 1 or more         no            Next
-/// 1 to 100          yes           Doubtful, at the third in a row Next
-/// 101 or more       yes           Doubtful, at the third in a row Restart
+/// 1 to 100          yes           OutOfOrder, at the third in a row Next
+/// 101 or more       yes           OutOfOrder, at the third in a row Restart
 /// 0                               Duplicate
 /// -1 to -100                      Straggler or Duplicate
-/// below -100                      Doubtful, at the third in a row Restart
+/// below -100                      OutOfOrder, at the third in a row Restart
 /// ```
 ///
 /// A packet cannot arrive before it was sampled, so a number too large for the
@@ -51,7 +51,7 @@ pub(super) enum Verdict {
 #[derive(Clone, Debug, Default)]
 pub(super) struct Sequence {
     latest: Option<Latest>,
-    doubt: Option<Doubt>,
+    jump: Option<Jump>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -65,7 +65,7 @@ struct Latest {
 }
 
 #[derive(Clone, Copy, Debug)]
-struct Doubt {
+struct Jump {
     number: u32,
     agreeing: u8,
 }
@@ -84,10 +84,10 @@ impl Sequence {
         let position = latest.position + i64::from(step);
         match step {
             0 => Verdict::Duplicate,
-            1.. if early(position) => self.doubt(number, step),
+            1.. if early(position) => self.jump(number, step),
             1.. => self.advance(number, step.unsigned_abs()),
             ..0 if step.unsigned_abs() <= WINDOW => {
-                self.doubt = None;
+                self.jump = None;
                 let bit = 1 << step.unsigned_abs();
                 if latest.came & bit != 0 {
                     return Verdict::Duplicate;
@@ -95,19 +95,19 @@ impl Sequence {
                 latest.came |= bit;
                 Verdict::Straggler { position, missed: step.unsigned_abs() <= latest.known }
             }
-            ..0 => self.doubt(number, step),
+            ..0 => self.jump(number, step),
         }
     }
 
     fn begin(&mut self, number: u32) -> Verdict {
         let position = 0;
         self.latest = Some(Latest { number, position, came: 1, known: 0 });
-        self.doubt = None;
+        self.jump = None;
         Verdict::Next { position, skipped: 0 }
     }
 
     fn advance(&mut self, number: u32, step: u32) -> Verdict {
-        self.doubt = None;
+        self.jump = None;
         let Some(latest) = &mut self.latest else { return self.begin(number) };
         latest.number = number;
         latest.position += i64::from(step);
@@ -116,15 +116,15 @@ impl Sequence {
         Verdict::Next { position: latest.position, skipped: step - 1 }
     }
 
-    fn doubt(&mut self, number: u32, step: i32) -> Verdict {
-        let agreeing = match self.doubt {
-            Some(doubt) if number == doubt.number => return Verdict::Duplicate,
-            Some(doubt) if number == doubt.number.wrapping_add(1) => doubt.agreeing + 1,
+    fn jump(&mut self, number: u32, step: i32) -> Verdict {
+        let agreeing = match self.jump {
+            Some(jump) if number == jump.number => return Verdict::Duplicate,
+            Some(jump) if number == jump.number.wrapping_add(1) => jump.agreeing + 1,
             _ => 1,
         };
-        self.doubt = Some(Doubt { number, agreeing });
+        self.jump = Some(Jump { number, agreeing });
         if agreeing < CONFIRMED {
-            Verdict::Doubtful
+            Verdict::OutOfOrder
         } else if (0..=WINDOW).contains(&step.cast_unsigned()) {
             // A little ahead of time: the way has become shorter.
             self.advance(number, step.unsigned_abs())
@@ -171,9 +171,9 @@ mod tests {
         let mut sequence = Sequence::default();
         judge(&mut sequence, 5000..5010);
         let verdicts = judge(&mut sequence, [0, 0, 1, 1, 2, 2, 3]);
-        let [doubtful, duplicate] = [Verdict::Doubtful, Verdict::Duplicate];
+        let [out_of_order, duplicate] = [Verdict::OutOfOrder, Verdict::Duplicate];
         let restart = Verdict::Restart { position: 0 };
-        assert_eq!(verdicts, [doubtful, duplicate, doubtful, duplicate, restart, duplicate, next(1)]);
+        assert_eq!(verdicts, [out_of_order, duplicate, out_of_order, duplicate, restart, duplicate, next(1)]);
     }
 
     #[test]
@@ -202,7 +202,7 @@ mod tests {
         judge(&mut sequence, [100]);
         let verdicts: Vec<_> = [110, 111, 112].map(|number| sequence.judge(number, |_| true)).into();
         let ahead = Verdict::Next { position: 12, skipped: 11 };
-        assert_eq!(verdicts, [Verdict::Doubtful, Verdict::Doubtful, ahead]);
+        assert_eq!(verdicts, [Verdict::OutOfOrder, Verdict::OutOfOrder, ahead]);
         let far: Vec<_> = [9110, 9111, 9112].map(|number| sequence.judge(number, |_| true)).into();
         assert_eq!(far[2], Verdict::Restart { position: 0 });
     }

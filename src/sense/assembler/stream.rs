@@ -7,7 +7,7 @@ use crate::wire::LinkCounters;
 /// foot now: it was held up on the way, and newer ones follow.
 const TOO_OLD_NS: i64 = 20 * SLOT_NS;
 
-/// A packet this much earlier than any other of its board lately is doubtful: a slot too early.
+/// A packet this much earlier than any other of its board lately is out of order: a slot too early.
 const EARLY_NS: i64 = 3 * SLOT_NS / 4;
 
 /// How far a board's samples may lie from their slots before it slips: more than half a slot, so
@@ -27,8 +27,8 @@ pub(super) struct Stream {
     offset: i64,
     /// Slots by which `offset` has been moved since the stream began.
     slips: i64,
-    /// When any packet last came from it, usable or not; frames wait for boards heard lately.
-    heard_ns: i64,
+    /// When any packet last came from it, usable or not; frames wait for boards that reported lately.
+    last_packet_ns: i64,
 }
 
 /// Where a packet belongs.
@@ -43,15 +43,15 @@ pub(super) struct Place {
 }
 
 impl Stream {
-    /// Waits for the board as if it had been heard at `now_ns`.
+    /// Waits for the board as if it had reported at `now_ns`.
     pub(super) const fn expect(&mut self, now_ns: i64) {
-        self.heard_ns = now_ns;
+        self.last_packet_ns = now_ns;
         self.awaited = true;
     }
 
     /// Whether the board has been silent for too long to wait for it.
     pub(super) const fn is_overdue(&self, now_ns: i64) -> bool {
-        self.awaited && now_ns - self.heard_ns >= SILENT_NS
+        self.awaited && now_ns - self.last_packet_ns >= SILENT_NS
     }
 
     /// The furthest slot its packets have reached.
@@ -107,8 +107,8 @@ impl Stream {
                 counters.duplicate += 1;
                 return None;
             }
-            Verdict::Doubtful => {
-                counters.doubtful += 1;
+            Verdict::OutOfOrder => {
+                counters.out_of_order += 1;
                 return None;
             }
         };
@@ -131,11 +131,11 @@ impl Stream {
     }
 
     fn is_usable(&mut self, slot: i64, now_ns: i64, clock: &SampleClock, done: i64) -> bool {
-        self.heard_ns = now_ns;
+        self.last_packet_ns = now_ns;
         let delay = now_ns - clock.at_ns(slot);
         self.arrivals.note(now_ns, delay);
         let usual = self.arrivals.least_ns().unwrap_or(0).max(0);
-        let returning = self.presence.was_heard() && !self.presence.is_live();
+        let returning = self.presence.has_reported() && !self.presence.is_live();
         slot > done && !(returning && delay - usual > TOO_OLD_NS)
     }
 

@@ -5,7 +5,7 @@
 //! c of its load for each decade reads c m more than it should, where m sums how well the load is remembered over
 //! a tenth of a second, over one, ten and a hundred seconds. How large c is, feet that leave tiles show: what is
 //! left of them, over m, is c, a moment later and a second later. What a foot leaves that goes on resting there
-//! does not fade with the memory, what comes and goes leaps: they teach nothing.
+//! does not fade with the memory, what comes and goes jumps: they teach nothing.
 
 /// Over which times loads are remembered, in seconds: a decade apart.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
@@ -21,7 +21,7 @@ const MOST: f32 = 0.12;
 const LEAST: f32 = 0.02;
 const WORST: f32 = 0.1;
 
-/// When after a foot has left a tile it is looked at what lingers, in seconds, and by how much, as a share of itself,
+/// When after a foot has left a tile it is examined what lingers, in seconds, and by how much, as a share of itself,
 /// the two looks may differ.
 const LOOKS_S: [f32; 2] = [0.25, 1.0];
 const ALIKE: f32 = 0.25;
@@ -30,9 +30,9 @@ const ALIKE: f32 = 0.25;
 /// minutes it fades so little that a load that rests there would look alike.
 const FADED: f32 = 0.75;
 
-/// How much what lingers may change from one time to the next, in newtons and as a share: it fades, it never leaps.
-const LEAP_N: f32 = 1.0;
-const LEAP: f32 = 0.2;
+/// How much what lingers may change from one time to the next, in newtons and as a share: it fades, it never jumps.
+const JUMP_N: f32 = 1.0;
+const JUMP: f32 = 0.2;
 
 /// How much what one foot left moves the estimate, how much more what the first one does, and which share of feet
 /// leaves less. One foot alone proves nothing.
@@ -62,7 +62,7 @@ pub(super) struct Creep {
 pub(super) struct Memory {
     loads: [[f32; 4]; TIMES_S.len()],
     /// Whether there is anything to forget.
-    is_stirred: bool,
+    was_loaded: bool,
     left: Left,
 }
 
@@ -80,9 +80,9 @@ struct Left {
 impl Left {
     /// The share of the `memory` that lingers, once it is known: when the second look agrees with the first.
     fn look(&mut self, reads: f32, memory: f32, seconds: f32) -> Option<f32> {
-        let leaps = (reads - self.reads).abs() > LEAP_N + LEAP * self.reads.abs();
+        let jumps = (reads - self.reads).abs() > JUMP_N + JUMP * self.reads.abs();
         self.reads = reads;
-        if leaps {
+        if jumps {
             self.seconds = 0.0;
             return None;
         }
@@ -145,7 +145,7 @@ impl Creep {
 impl Memory {
     /// Lets some time pass under these forces; true if anything has changed.
     pub(super) fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
-        if !self.is_stirred && forces.iter().all(|&force| force < NOTHING_N) {
+        if !self.was_loaded && forces.iter().all(|&force| force < NOTHING_N) {
             return false;
         }
         for (loads, part) in self.loads.iter_mut().zip(parts) {
@@ -155,8 +155,8 @@ impl Memory {
                 }
             }
         }
-        self.is_stirred = self.loads.iter().flatten().any(|&load| load > NOTHING_N);
-        if !self.is_stirred {
+        self.was_loaded = self.loads.iter().flatten().any(|&load| load > NOTHING_N);
+        if !self.was_loaded {
             self.loads = Default::default();
         }
         true

@@ -11,7 +11,7 @@
 //! A foot that stands is never near zero, so no standing foot is taken off, however long
 //! it stands and creeps. The worst that can be zeroed away is a resting touch of 4 N.
 //!
-//! What a zero is off by within a newton is no drift but what any tare leaves, and costs light
+//! A zero that is off by less than a newton is within what any tare leaves, and costs light
 //! feet half a centimetre: that much, about where the zero has been followed to slowly, is
 //! followed at once.
 

@@ -41,7 +41,7 @@ const LOADED_N: f32 = 6.0;
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slow {
     visits: u8,
-    /// Whether all sensors were heard at every visit.
+    /// Whether all sensors were connected at every visit.
     broken: bool,
     sums: [f32; 4],
     lows: [f32; 4],
@@ -87,13 +87,13 @@ impl Slow {
     }
 
     /// Adds what the sensors read; true if the block is complete.
-    pub(super) fn add(&mut self, forces: [f32; 4], ends: [End; 4], heard: bool) -> bool {
+    pub(super) fn add(&mut self, forces: [f32; 4], ends: [End; 4], connected: bool) -> bool {
         if self.visits == 0 {
             (self.sums, self.lows, self.highs, self.broken) = ([0.0; 4], forces, forces, false);
             self.ends = ends;
         }
         self.visits += 1;
-        self.broken |= !heard;
+        self.broken |= !connected;
         for (corner, force) in forces.into_iter().enumerate() {
             self.sums[corner] += force;
             self.lows[corner] = self.lows[corner].min(force);
@@ -138,7 +138,7 @@ impl Slow {
                 }
             }
         }
-        let doubted = sensors.map(|sensor| sensor.trouble() == Some(Trouble::Offset));
+        let suspect = sensors.map(|sensor| sensor.trouble() == Some(Trouble::Offset));
         for corner in 0..4 {
             let others = [corner ^ 1, corner ^ 2, corner ^ 3];
             let load: f32 = others.iter().map(|&other| means[other].abs()).sum();
@@ -159,7 +159,7 @@ impl Slow {
             }
             let expected = plate::demanded(means, corner, twist).max(0.0);
             let slack = RIGHT_N + plate::SLACK * load;
-            // A limp plate would leave it alone with its load, too: that is no proof that the load is there.
+            // A limp plate would leave it alone with its load, too: that is not proof that the load is there.
             let is_lone = plate::unanswered(means, [false; 4]) == Some(corner);
             let is_right =
                 !is_lone && own >= expected - slack && (own <= expected + slack || evidence == Told::AtLeast);
@@ -168,9 +168,9 @@ impl Slow {
                 Some(_) if is_right && !sensor.shows(slack) => {}
                 Some(_) => sensor.review(own, is_right && !ends[corner].is_odd(), alone, block.seconds),
             }
-            // A reading at the end of the range stands still rightly under a heavy foot, and what a load that is doubted
-            // demands of the others is no evidence.
-            if ends[corner] == End::High || sensor.is_out() || others.iter().any(|&other| doubted[other]) {
+            // A reading at the end of the range stands still rightly under a heavy foot, and what a suspect load
+            // demands of the others is not evidence.
+            if ends[corner] == End::High || sensor.is_out() || others.iter().any(|&other| suspect[other]) {
                 self.tracks[corner] = Track::default();
             } else if self.tracks[corner].follow(own, block.spreads[corner], expected, load, block.seconds) {
                 sensor.find(Trouble::Stuck, own);

@@ -26,7 +26,7 @@ pub enum Trouble {
     Noisy,
 }
 
-/// How long a load without answer is only doubted, not yet known to be wrong.
+/// How long a load without answer is only suspect, not yet known to be wrong.
 const DOUBT_S: f32 = 0.5;
 
 /// How long a broken sensor must read what its plate demands before it counts as repaired.
@@ -151,7 +151,7 @@ mod tests {
     }
 
     #[test]
-    fn a_load_without_answer_is_doubted_first_and_wrong_after_half_a_second() {
+    fn a_load_without_answer_is_suspect_first_and_wrong_after_half_a_second() {
         let mut sensor = Sensor::default();
         assert!(sensor.find(Trouble::Offset, 50.0));
         assert!(sensor.forbids_start() && sensor.quality() == Quality::Degraded);

@@ -8,7 +8,7 @@ use crate::sense::tile::{LoadedTile, NO_WEIGHT, Wrench, counted};
 use crate::sense::{ForceFrame, Quality};
 
 /// How far from its centre of pressure a foot presses on a tile that hardly feels it, and over which
-/// distance this grows doubtful, in metres: half a shoe (our choice).
+/// distance this grows uncertain, in metres: half a shoe (our choice).
 const REACH_M: f32 = 0.16;
 const REACH_FADE_M: f32 = 0.05;
 

@@ -88,7 +88,7 @@ pub(super) struct Thresholds {
     left_s: Vec<f32>,
     memories: Vec<[f32; TIMES_S.len()]>,
     /// Tiles with a memory.
-    stirred: Vec<u32>,
+    with_memory: Vec<u32>,
     /// Since the last visit, in seconds.
     since_s: f32,
     visits: f32,
@@ -114,7 +114,7 @@ impl Thresholds {
             lowest: vec![f32::INFINITY; tiles],
             left_s: vec![0.0; tiles],
             memories: vec![Default::default(); tiles],
-            stirred: Vec::with_capacity(tiles),
+            with_memory: Vec::with_capacity(tiles),
             since_s: 0.0,
             visits: 0.0,
             parts: (0.0, [0.0; TIMES_S.len()]),
@@ -293,15 +293,15 @@ impl Thresholds {
         if self.parts.0 != elapsed {
             self.parts = (elapsed, TIMES_S.map(|time_s| 1.0 - (-elapsed / time_s).exp()));
         }
-        let Self { memories, residual, stirred, parts, .. } = self;
+        let Self { memories, residual, with_memory, parts, .. } = self;
         for index in list {
             if residual[index as usize] == 0.0 {
                 // A trace marks it as followed.
                 residual[index as usize] = f32::MIN_POSITIVE;
-                stirred.push(index);
+                with_memory.push(index);
             }
         }
-        stirred.retain(|&index| {
+        with_memory.retain(|&index| {
             let index = index as usize;
             let sum = if sums[index].is_finite() { sums[index].clamp(0.0, 1e6) } else { 0.0 };
             for (memory, part) in memories[index].iter_mut().zip(parts.1) {

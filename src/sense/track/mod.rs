@@ -50,16 +50,16 @@ use self::neighbours::{Groups, Near};
 use self::state::{EAST, NORTH, STATES, Track};
 use self::strips::{Axis, Strips};
 use super::contact::ContactId;
-use super::doubt::SensorDoubt;
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
 use super::tile::LoadedTile;
+use super::uncertainty::SensorUncertainty;
 use crate::floor::Geometry;
 
 /// Follows feet over one floor.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
-    doubt: SensorDoubt,
+    doubt: SensorUncertainty,
     cells: Cells,
     next: u32,
     tracks: Vec<Track>,
@@ -121,7 +121,7 @@ fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
 }
 
 impl Tracker {
-    pub(super) fn new(geometry: &Geometry, doubt: SensorDoubt) -> Self {
+    pub(super) fn new(geometry: &Geometry, doubt: SensorUncertainty) -> Self {
         let room = geometry.tile_count().min(1024);
         let cells =
             Cells { pitch: geometry.pitch_m().into(), columns: geometry.columns(), rows: geometry.rows() };

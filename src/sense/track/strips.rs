@@ -103,7 +103,8 @@ impl Strip {
 /// Standard deviation of the centroid of `tiles`, of `force` newtons together, that sensors at the end of their range
 /// or estimated from others leave open, in metres; `pitch` from tile to tile.
 pub(super) fn centroid_sigma<'a>(tiles: impl Iterator<Item = &'a LoadedTile>, force: f64, pitch: f64) -> f64 {
-    let vague = tiles.flat_map(|tile| tile.vague).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
+    let vague =
+        tiles.flat_map(|tile| tile.extra_sigma).map(|vague| f64::from(vague * vague)).sum::<f64>().sqrt();
     // Sensors are about half a diagonal from where the load is.
     FRAC_1_SQRT_2 * pitch * vague / force
 }

@@ -29,7 +29,7 @@ impl Server {
         }
         if on != self.muted.all {
             self.muted.all = on;
-            self.heed_mute();
+            self.update_mute();
             self.tell_mute();
         }
         Ok(())
@@ -55,7 +55,7 @@ impl Server {
     }
 
     /// Lets nothing be felt while the floor is lost or somebody wants it so.
-    pub(super) fn heed_mute(&mut self) {
+    pub(super) fn update_mute(&mut self) {
         match &mut self.feel {
             Some(feel) if self.muted.all || self.link == LinkState::Lost => feel.silence(),
             Some(feel) => feel.resume(),

@@ -12,7 +12,7 @@ use crate::units::Instant;
 /// How long only some boards must have been heard for this to be news; controls on the others are long released.
 const SETTLING: Duration = Duration::from_millis(100);
 
-/// How often the sensors' health is looked at, and how often at most it is told.
+/// How often the sensors' health is checked, and how often at most it is told.
 const HEALTH_LOOK: Duration = Duration::from_millis(100);
 const HEALTH_PERIOD: Duration = Duration::from_secs(1);
 
@@ -28,7 +28,7 @@ impl Server {
                 LinkState::Waiting => {}
             }
             self.link = link;
-            self.heed_mute();
+            self.update_mute();
             self.note_uncalibrated();
             if let Some(events) = &mut self.events {
                 events.link(self.source.now(), link);
@@ -99,11 +99,11 @@ impl Server {
     /// Tells how the sensors are doing when that has changed, once a second at most.
     pub(super) fn note_health(&mut self) {
         let now = self.source.now();
-        if now < self.looked {
+        if now < self.next_check {
             return;
         }
-        // Qualities come and go with single readings: what is told is looked at some times a second.
-        self.looked = now + HEALTH_LOOK;
+        // Qualities come and go with single readings: what is reported is checked a few times a second.
+        self.next_check = now + HEALTH_LOOK;
         self.note_foreign();
         self.note_device(now);
         self.assembler.health(&mut self.health);
@@ -113,7 +113,7 @@ impl Server {
         if !is_due || self.link == LinkState::Waiting {
             return;
         }
-        // That all is well at first is no news.
+        // That all is well at first is not reported.
         let is_news = known.is_some() || self.health.is_news_after(&SensorHealth::default());
         if let Some(events) = self.events.as_mut().filter(|_| is_news) {
             events.health(now, &self.health);

@@ -4,7 +4,7 @@ use glam::Vec2;
 use rand::RngExt;
 
 use super::body::Body;
-use super::thing::{Shape, Thing};
+use super::thing::{Sole, Thing};
 use crate::floor::Rect;
 use crate::sim::gait::Gait;
 use crate::sim::track::forward;
@@ -62,7 +62,7 @@ pub(super) fn stick(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     for (middle, landing_s) in landings.into_iter().step_by(2) {
         let ahead = forward(way.1) * body.within(0.10, 0.20) + right * body.within(0.26, 0.34);
         let half_m = Vec2::splat(0.015);
-        let mut tip = Thing::at(Shape::Round { half_m }, middle + ahead, way.1);
+        let mut tip = Thing::at(Sole::Round { half_m }, middle + ahead, way.1);
         let force = carried * weight;
         let begin = landing_s + f64::from(body.within(-0.05, 0.10)).max(-landing_s);
         tip.presses(begin, 0.0).presses(begin + 0.15, force);
@@ -97,7 +97,7 @@ pub(super) fn wheels(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         (base, 1.0, 0.5 * (1.0 - behind)),
     ] {
         let at = from + forward(heading) * ahead + right * (0.5 * wide * side);
-        let mut wheel = Thing::at(Shape::Round { half_m: Vec2::new(0.012, 0.02) }, at, heading);
+        let mut wheel = Thing::at(Sole::Round { half_m: Vec2::new(0.012, 0.02) }, at, heading);
         let velocity = forward(heading) * (length / took as f32);
         let end = 0.2 + took;
         wheel.presses(0.2, 0.0).presses(0.2, total * share).presses(end, total * share).presses(end, 0.0);

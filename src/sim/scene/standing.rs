@@ -4,7 +4,7 @@ use glam::Vec2;
 use rand::RngExt;
 
 use super::body::Body;
-use super::thing::{STAND_ROLL, Shape, Thing, pair};
+use super::thing::{STAND_ROLL, Sole, Thing, pair};
 use crate::floor::Rect;
 use crate::sim::sway::Sway;
 use crate::sim::track::forward;
@@ -40,7 +40,7 @@ fn step_on(body: &mut Body, feet: &mut [Thing; 2], weight_n: f32) {
     share_weight(feet, 0.95, weight_n, 0.5);
 }
 
-/// Weight given up to 10 to 20 % by one foot, in 0.2 or 1.2 s, and taken back; twice.
+/// Weight taken off to 10 to 20 % by one foot, in 0.2 or 1.2 s, and taken back; twice.
 pub(super) fn shifting(body: &mut Body, bounds: Rect) -> Vec<Thing> {
     let (weight, width) = (body.weight_n(), body.within(0.14, 0.30));
     let mut feet = two_feet(body, bounds, width);
@@ -183,7 +183,7 @@ pub(super) fn kneeling(body: &mut Body, bounds: Rect) -> Vec<Thing> {
         // Lower leg and foot bent up on the toes: 0.35 m from toes to knee.
         let knee = at + forward(heading) * (0.12 * size) + Vec2::from_angle(body.angle()) * 0.01;
         let toes = at - forward(heading) * (0.23 * size);
-        let round = |half_m: Vec2| Shape::Round { half_m: half_m * size };
+        let round = |half_m: Vec2| Sole::Round { half_m: half_m * size };
         (
             Thing::at(round(Vec2::new(0.03, 0.04)), knee, heading),
             Thing::at(round(Vec2::new(0.035, 0.02)), toes, heading),

@@ -14,7 +14,7 @@ use crate::units::Newtons;
 
 /// What it looks like from below.
 #[derive(Clone, Debug)]
-pub(super) enum Shape {
+pub(super) enum Sole {
     /// A foot that stands or works: its roll says how.
     Foot { length_m: f32, footwear: Footwear },
     /// A foot in a step of its own: its roll is the phase of it.
@@ -26,7 +26,7 @@ pub(super) enum Shape {
 /// Something that presses; it is there as long as its force says.
 #[derive(Clone, Debug)]
 pub(super) struct Thing {
-    pub(super) shape: Shape,
+    pub(super) sole: Sole,
     /// In newtons.
     pub(super) force: Curve,
     /// The middle of it, in floor metres.
@@ -43,14 +43,14 @@ pub(super) struct Thing {
 
 impl Thing {
     /// Something at a place, without force yet.
-    pub(super) fn at(shape: Shape, at: Vec2, heading: f32) -> Self {
+    pub(super) fn at(sole: Sole, at: Vec2, heading: f32) -> Self {
         let still = |value| {
             let mut curve = Curve::default();
             curve.rest(0.0, value);
             curve
         };
         Self {
-            shape,
+            sole,
             force: still(0.0),
             x: still(at.x),
             y: still(at.y),
@@ -64,8 +64,8 @@ impl Thing {
     /// A foot of somebody, standing.
     pub(super) fn foot(body: &Body, at: Vec2, heading: f32) -> Self {
         let person = body.person();
-        let shape = Shape::Foot { length_m: person.foot_length_m, footwear: person.footwear };
-        Self::at(shape, at, heading)
+        let sole = Sole::Foot { length_m: person.foot_length_m, footwear: person.footwear };
+        Self::at(sole, at, heading)
     }
 
     /// One step of somebody who walks, from `landing_s` on, with the peak `peak_n`.
@@ -80,12 +80,12 @@ impl Thing {
         let person = *body.person();
         let rolling = body.habit.step(speed_m_s, person.foot_length_m, side);
         let (peak, contact_s) = (peak_n(&rolling), rolling.contact_s());
-        let shape = Shape::Step {
+        let sole = Sole::Step {
             length_m: person.foot_length_m,
             footwear: person.footwear,
             rolling: Box::new(rolling.clone()),
         };
-        let mut thing = Self::at(shape, at, heading);
+        let mut thing = Self::at(sole, at, heading);
         let off_s = landing_s + f64::from(contact_s);
         thing.roll.rest(landing_s, 0.0);
         thing.roll.pass(landing_s, 0.0, 1.0 / contact_s);
@@ -143,18 +143,18 @@ impl Thing {
             force *= 1.0 + 2.0 * share * sideways;
             roll += lengthways;
         }
-        let print = match &self.shape {
-            Shape::Foot { length_m, footwear } => {
+        let print = match &self.sole {
+            Sole::Foot { length_m, footwear } => {
                 let shoe = Print::Shoe { length_m: *length_m, roll: roll.clamp(0.0, 1.0) };
                 let variance = shoe.variance();
                 let radii = Vec2::new(variance.x.sqrt(), variance.y.sqrt());
                 footwear.print(shoe.centre_of_pressure(), radii, *length_m)
             }
-            Shape::Step { length_m, footwear, rolling } => {
+            Sole::Step { length_m, footwear, rolling } => {
                 let (centre, radii) = rolling.pressure(roll);
                 footwear.print(centre, radii, *length_m)
             }
-            Shape::Round { half_m } => Print::Ellipse { half_m: *half_m },
+            Sole::Round { half_m } => Print::Ellipse { half_m: *half_m },
         };
         Some(Load {
             print,

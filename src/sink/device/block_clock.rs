@@ -14,10 +14,10 @@ const FIRST_BANDWIDTH_HZ: f64 = 4.0;
 /// A measured time that is further off than this means that blocks were left out, not that one came late.
 const JUMP_US: f64 = 20_000.0;
 
-/// What is taken of an error at most: somebody who comes this late says nothing about the beat.
+/// What is taken of an error at most: somebody who comes this late says nothing about the period.
 const LATEST_US: f64 = 1_000.0;
 
-/// From where on an error is no late wake-up if so many blocks in a row share it: the device has left out samples.
+/// From where on an error is not taken for a late wake-up if so many blocks in a row share it: the device has left out samples.
 const SHIFT_US: f64 = 300.0;
 const SHIFT_BLOCKS: u32 = 16;
 
@@ -27,7 +27,7 @@ const MOST_DRIFT: f64 = 1e-3;
 /// Estimates when each block of a device starts, on another clock, from when its callback happened to run.
 ///
 /// Callbacks come late by a varying time; blocks follow each other evenly. A
-/// delay-locked loop of second order finds the even beat in the uneven calls,
+/// delay-locked loop of second order finds the even period in the uneven calls,
 /// and follows the slow drift between the two clocks without lagging behind.
 ///
 /// # Source
@@ -146,7 +146,7 @@ mod tests {
     }
 
     #[test]
-    fn wake_ups_that_are_sometimes_very_late_hardly_move_the_beat() {
+    fn wake_ups_that_are_sometimes_very_late_hardly_move_the_period() {
         // Mostly 20 us late, one in a hundred 5 ms: a busy machine.
         let errors = errors(|_, chance| if chance < 0.01 { 5000.0 } else { 20.0 + 40.0 * chance });
         assert!(spread(&errors) < 15.0, "{} us", spread(&errors));
@@ -154,13 +154,13 @@ mod tests {
     }
 
     #[test]
-    fn an_underrun_moves_the_beat_within_some_blocks() {
+    fn an_underrun_moves_the_period_within_some_blocks() {
         // Every 3000 blocks (2 s) the device leaves out 2 ms.
         let errors = errors(|n, chance| f64::from(n / 3000) * 2000.0 + 20.0 * chance);
         let missed: Vec<f64> = errors.iter().map(|error| error.rem_euclid(2000.0)).collect();
         let far = missed.iter().filter(|error| **error > 100.0 && **error < 1900.0).count();
         assert!(far * 50 < missed.len(), "{far} of {} blocks are off", missed.len());
-        // In the end the beat has followed all of them: fourteen.
+        // In the end the period has followed all of them: fourteen.
         assert!((errors[errors.len() - 1] - 28_000.0).abs() < 100.0, "{}", errors[errors.len() - 1]);
     }
 

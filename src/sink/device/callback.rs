@@ -14,12 +14,12 @@ use super::player::Player;
 use super::priority::Promotion;
 use crate::feel::Priority;
 
-/// Errors that may wait to be looked at; what follows from the first ones is of no interest.
+/// Errors that may wait to be examined; what follows from the first ones is of no interest.
 const REPORTS: usize = 16;
 
 /// What the callbacks count, for whoever watches over them.
 #[derive(Debug, Default)]
-pub(super) struct Pulse {
+pub(super) struct CallbackStats {
     pub(super) blocks: AtomicU64,
     pub(super) underruns: AtomicU64,
     /// Frames of the last block.
@@ -27,7 +27,7 @@ pub(super) struct Pulse {
     priority: AtomicU8,
 }
 
-impl Pulse {
+impl CallbackStats {
     pub(super) fn priority(&self) -> Priority {
         match self.priority.load(Ordering::Relaxed) {
             1 => Priority::RealTime,
@@ -57,7 +57,7 @@ pub(super) struct Callback {
     /// `None` only while being dropped.
     player: Option<Player>,
     home: Home,
-    pulse: Arc<Pulse>,
+    stats: Arc<CallbackStats>,
     promotion: Promotion,
     channels: usize,
     sample_rate: u32,
@@ -68,13 +68,13 @@ impl Callback {
         player: Player,
         choice: Choice,
         home: Home,
-        pulse: Arc<Pulse>,
+        stats: Arc<CallbackStats>,
         promotion: Promotion,
     ) -> Self {
         Self {
             player: Some(player),
             home,
-            pulse,
+            stats,
             promotion,
             channels: usize::from(choice.channels).max(1),
             sample_rate: choice.sample_rate,
@@ -94,10 +94,10 @@ impl Callback {
         if let Some(player) = &mut self.player {
             player.fill(out, sounds_in);
         }
-        self.pulse.frames.store(frames as u32, Ordering::Relaxed);
-        self.pulse.blocks.fetch_add(1, Ordering::Relaxed);
+        self.stats.frames.store(frames as u32, Ordering::Relaxed);
+        self.stats.blocks.fetch_add(1, Ordering::Relaxed);
         if let Some(priority) = self.promotion.proceed(frames, self.sample_rate, Instant::now) {
-            self.pulse.set_priority(priority);
+            self.stats.set_priority(priority);
         }
     }
 }
@@ -116,24 +116,24 @@ impl Drop for Callback {
 }
 
 /// What a device calls when something is wrong; it may do so where nothing may be locked or allocated.
-pub(super) struct Ear {
-    pulse: Arc<Pulse>,
+pub(super) struct ErrorForwarder {
+    stats: Arc<CallbackStats>,
     reports: Producer<Error>,
 }
 
-impl Ear {
-    /// An ear, and where the errors come out that are more than a late sample.
-    pub(super) fn new(pulse: Arc<Pulse>) -> (Self, Consumer<Error>) {
+impl ErrorForwarder {
+    /// An forwarder, and where the errors come out that are more than a late sample.
+    pub(super) fn new(stats: Arc<CallbackStats>) -> (Self, Consumer<Error>) {
         let (reports, heard) = RingBuffer::new(REPORTS);
-        (Self { pulse, reports }, heard)
+        (Self { stats, reports }, heard)
     }
 
     pub(super) fn hear(&mut self, error: Error) {
         match error.kind() {
             ErrorKind::Xrun => {
-                self.pulse.underruns.fetch_add(1, Ordering::Relaxed);
+                self.stats.underruns.fetch_add(1, Ordering::Relaxed);
             }
-            ErrorKind::RealtimeDenied => self.pulse.set_priority(Priority::Denied),
+            ErrorKind::RealtimeDenied => self.stats.set_priority(Priority::Denied),
             // If there are too many, the first ones tell.
             _ => drop(self.reports.push(error)),
         }

@@ -113,18 +113,18 @@ mod tests {
     #[test]
     fn in_stereo_the_west_is_left_and_no_column_is_louder() {
         let mixdown = Mixdown::new(&floor(), Mix::Stereo, 3, 2);
-        let heard = |tile: usize| {
+        let gains_of = |tile: usize| {
             let mut frame = [0.0; 3];
             frame[tile] = 0.6;
             let mut out = [0.0_f32; 2];
             mixdown.write(&frame, &mut out);
             out
         };
-        assert!(heard(0)[0] > 0.55 && heard(0)[1] < 0.2);
-        assert!((heard(1)[0] - heard(1)[1]).abs() < 1e-6);
-        assert!(heard(2)[1] > 0.55);
+        assert!(gains_of(0)[0] > 0.55 && gains_of(0)[1] < 0.2);
+        assert!((gains_of(1)[0] - gains_of(1)[1]).abs() < 1e-6);
+        assert!(gains_of(2)[1] > 0.55);
         for tile in 0..3 {
-            assert!((heard(tile)[0].hypot(heard(tile)[1]) - 0.6).abs() < 1e-6);
+            assert!((gains_of(tile)[0].hypot(gains_of(tile)[1]) - 0.6).abs() < 1e-6);
         }
         let mut out = [0.0_f32; 2];
         mixdown.write(&[1.0, 1.0, 1.0], &mut out);

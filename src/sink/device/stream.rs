@@ -3,7 +3,7 @@ use std::time::Duration;
 use cpal::traits::{DeviceTrait, StreamTrait};
 use cpal::{Error, FromSample, I24, OutputCallbackInfo, SampleFormat, SizedSample, U24};
 
-use super::callback::{Callback, Ear};
+use super::callback::{Callback, ErrorForwarder};
 use super::cards::Card;
 use super::choice::Choice;
 use super::paced::PacedStream;
@@ -15,24 +15,30 @@ pub(super) enum Stream {
 }
 
 /// Opens a card and starts it.
-pub(super) fn open(card: &Card, choice: Choice, callback: Callback, mut ear: Ear) -> Result<Stream, Error> {
+pub(super) fn open(
+    card: &Card,
+    choice: Choice,
+    callback: Callback,
+    mut forwarder: ErrorForwarder,
+) -> Result<Stream, Error> {
     let device = match card {
         Card::System(device) => device,
         Card::Paced => {
-            return PacedStream::start(choice, callback, move |error| ear.hear(error)).map(Stream::Paced);
+            return PacedStream::start(choice, callback, move |error| forwarder.hear(error))
+                .map(Stream::Paced);
         }
     };
     let stream = match choice.format {
-        SampleFormat::I8 => build::<i8>(device, choice, callback, ear),
-        SampleFormat::I16 => build::<i16>(device, choice, callback, ear),
-        SampleFormat::I24 => build::<I24>(device, choice, callback, ear),
-        SampleFormat::I32 => build::<i32>(device, choice, callback, ear),
-        SampleFormat::U8 => build::<u8>(device, choice, callback, ear),
-        SampleFormat::U16 => build::<u16>(device, choice, callback, ear),
-        SampleFormat::U24 => build::<U24>(device, choice, callback, ear),
-        SampleFormat::U32 => build::<u32>(device, choice, callback, ear),
-        SampleFormat::F64 => build::<f64>(device, choice, callback, ear),
-        _ => build::<f32>(device, choice, callback, ear),
+        SampleFormat::I8 => build::<i8>(device, choice, callback, forwarder),
+        SampleFormat::I16 => build::<i16>(device, choice, callback, forwarder),
+        SampleFormat::I24 => build::<I24>(device, choice, callback, forwarder),
+        SampleFormat::I32 => build::<i32>(device, choice, callback, forwarder),
+        SampleFormat::U8 => build::<u8>(device, choice, callback, forwarder),
+        SampleFormat::U16 => build::<u16>(device, choice, callback, forwarder),
+        SampleFormat::U24 => build::<U24>(device, choice, callback, forwarder),
+        SampleFormat::U32 => build::<u32>(device, choice, callback, forwarder),
+        SampleFormat::F64 => build::<f64>(device, choice, callback, forwarder),
+        _ => build::<f32>(device, choice, callback, forwarder),
     }?;
     stream.play()?;
     Ok(Stream::System(stream))
@@ -45,12 +51,12 @@ fn build<T: SizedSample + FromSample<f32>>(
     device: &cpal::Device,
     choice: Choice,
     mut callback: Callback,
-    mut ear: Ear,
+    mut forwarder: ErrorForwarder,
 ) -> Result<cpal::Stream, Error> {
     device.build_output_stream::<T, _, _>(
         choice.stream_config(),
         move |out, info| callback.run(out, sounds_in(info)),
-        move |error| ear.hear(error),
+        move |error| forwarder.hear(error),
         Some(OPENING),
     )
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use cpal::{BufferSize, Error, ErrorKind};
 use rtrb::Consumer;
 
-use super::callback::{Callback, Ear, Pulse};
+use super::callback::{Callback, CallbackStats, ErrorForwarder};
 use super::cards::{Card, Cards};
 use super::choice::{self, Choice};
 use super::player::Player;
@@ -38,7 +38,7 @@ pub(super) struct Supervisor {
     floor: Floor,
     options: DeviceOptions,
     ask: Option<Ask>,
-    pulse: Arc<Pulse>,
+    stats: Arc<CallbackStats>,
     watch: Watch,
     open: Option<Open>,
     /// The player while nothing is open; `None` also while a stream has not let go of it.
@@ -63,7 +63,7 @@ struct Open {
 }
 
 /// What a supervisor is to keep playing.
-pub(super) struct Charge {
+pub(super) struct SupervisorConfig {
     pub(super) cards: Arc<dyn Cards>,
     pub(super) card: Card,
     pub(super) choice: Choice,
@@ -75,8 +75,8 @@ pub(super) struct Charge {
 
 impl Supervisor {
     /// Opens the device for the first time.
-    pub(super) fn begin(charge: Charge, player: Player) -> Result<Self, SinkError> {
-        let Charge { cards, card, choice, floor, options, block_is_asked, ask } = charge;
+    pub(super) fn begin(config: SupervisorConfig, player: Player) -> Result<Self, SinkError> {
+        let SupervisorConfig { cards, card, choice, floor, options, block_is_asked, ask } = config;
         let now = DeviceStatus {
             name: card.name(),
             id: card.id(),
@@ -91,7 +91,7 @@ impl Supervisor {
             floor,
             options,
             ask,
-            pulse: Arc::default(),
+            stats: Arc::default(),
             watch: Watch::default(),
             open: None,
             parked: Some(player),
@@ -123,7 +123,7 @@ impl Supervisor {
 
     fn look_after(&mut self, now: Duration) {
         let Some(open) = &mut self.open else { return };
-        let blocks = self.pulse.blocks.load(Ordering::Relaxed);
+        let blocks = self.stats.blocks.load(Ordering::Relaxed);
         if blocks != open.blocks && self.now.state != DeviceState::Playing {
             (self.now.state, self.now.why) = (DeviceState::Playing, String::new());
             tracing::warn!("{} plays again", self.now.name);
@@ -141,12 +141,12 @@ impl Supervisor {
             }
         }
         let choice = open.choice;
-        let frames = match self.pulse.frames.load(Ordering::Relaxed) {
+        let frames = match self.stats.frames.load(Ordering::Relaxed) {
             0 => frames_of(choice.buffer_size).unwrap_or(0),
             frames => frames,
         };
         let block = Duration::from_secs_f64(f64::from(frames) / f64::from(choice.sample_rate.max(1)));
-        let underruns = self.pulse.underruns.load(Ordering::Relaxed);
+        let underruns = self.stats.underruns.load(Ordering::Relaxed);
         match self.watch.look(now, blocks, underruns, block) {
             None => {}
             Some(Alarm::Silent) => self.close(now, DeviceState::Faulty, "it has stopped asking for samples"),
@@ -250,13 +250,13 @@ impl Supervisor {
     fn start(&mut self, card: &Card, choice: Choice, now: Duration) -> Result<(), Error> {
         let Some(mut player) = self.parked.take() else { return Ok(()) };
         player.fit(&self.floor, &self.options, choice);
-        let (ear, reports) = Ear::new(Arc::clone(&self.pulse));
-        let (blocks, underruns) = (&self.pulse.blocks, &self.pulse.underruns);
+        let (forwarder, reports) = ErrorForwarder::new(Arc::clone(&self.stats));
+        let (blocks, underruns) = (&self.stats.blocks, &self.stats.underruns);
         let (blocks, underruns) = (blocks.load(Ordering::Relaxed), underruns.load(Ordering::Relaxed));
-        self.pulse.frames.store(0, Ordering::Relaxed);
+        self.stats.frames.store(0, Ordering::Relaxed);
         let promotion = Promotion::new(self.ask, matches!(card, Card::Paced));
-        let callback = Callback::new(player, choice, self.home.0.clone(), Arc::clone(&self.pulse), promotion);
-        match stream::open(card, choice, callback, ear) {
+        let callback = Callback::new(player, choice, self.home.0.clone(), Arc::clone(&self.stats), promotion);
+        match stream::open(card, choice, callback, forwarder) {
             Ok(stream) => {
                 self.watch.opened(now, blocks, underruns);
                 self.open = Some(Open { stream, reports, choice, blocks });
@@ -271,10 +271,10 @@ impl Supervisor {
 
     /// Tells others how the device is doing.
     fn tell(&mut self) {
-        self.now.blocks = self.pulse.blocks.load(Ordering::Relaxed);
-        self.now.underruns = self.pulse.underruns.load(Ordering::Relaxed);
-        self.now.priority = self.pulse.priority();
-        self.now.block = self.pulse.frames.load(Ordering::Relaxed);
+        self.now.blocks = self.stats.blocks.load(Ordering::Relaxed);
+        self.now.underruns = self.stats.underruns.load(Ordering::Relaxed);
+        self.now.priority = self.stats.priority();
+        self.now.block = self.stats.frames.load(Ordering::Relaxed);
         if self.now.priority == Priority::Denied && !self.said_denied {
             self.said_denied = true;
             tracing::warn!("{}: {FIX}", self.now.name);

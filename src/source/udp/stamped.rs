@@ -111,7 +111,7 @@ mod tests {
                 assert_eq!(&buffer[..4], b"step");
                 received.waited >= Duration::from_millis(9)
             });
-            assert!(seen, "{local}: the kernel's stamps are not heeded");
+            assert!(seen, "{local}: the kernel's stamps are not used");
         }
     }
 

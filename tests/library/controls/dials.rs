@@ -78,7 +78,7 @@ fn lines_9_to_11() {
     press_at(&mut bench, 180.0);
     turn(&mut bench, 180.0, 90.0);
     let before = bench.number();
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     turn(&mut bench, 90.0, 0.0);
     assert_eq!(bench.number(), before, "forces that can't be trusted");
     bench.events();

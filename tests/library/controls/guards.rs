@@ -103,13 +103,13 @@ fn hold_to_run_lines_7_and_8_for_as_long_as_it_is_held() {
 }
 
 #[test]
-fn hold_to_run_line_9_off_on_any_doubt() {
+fn hold_to_run_line_9_off_while_untrusted() {
     let mut bench = Bench::with(RUN);
     run(&mut bench);
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.wait(1);
     assert_eq!(bench.events(), [Changed(OFF), Cancelled], "one frame is enough");
-    bench.walker.doubtful = false;
+    bench.walker.untrusted = false;
     bench.wait(1000);
     assert_eq!(bench.events(), [], "the foot must lift first");
     bench.lift();
@@ -154,7 +154,7 @@ fn a_pedal_can_run_on_a_hold_too() {
     bench.press();
     bench.wait(SETTLED);
     assert!(bench.number() > 0.0);
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.wait(1);
     assert_eq!(bench.number(), 0.0);
 }

@@ -73,14 +73,14 @@ fn pedal_lines_1_to_5_force_is_the_value() {
 }
 
 #[test]
-fn pedal_lines_6_and_7_nothing_is_left_of_a_lost_foot_and_doubt_moves_nothing() {
+fn pedal_lines_6_and_7_nothing_is_left_of_a_lost_foot_and_an_untrusted_foot_moves_nothing() {
     let mut bench = Bench::with(PEDAL);
     bench.press_with(0.5, 0.5, Newtons(145.0));
     let before = bench.number();
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.walker.press(Newtons(300.0));
     assert_eq!(bench.number(), before, "a force that can't be trusted");
-    bench.walker.doubtful = false;
+    bench.walker.untrusted = false;
     bench.wait(5);
     assert_eq!(bench.number(), 1.0);
     bench.slide_off();
@@ -132,11 +132,11 @@ fn lean_lines_6_to_8_zero_however_it_ends() {
     };
     lean(&mut bench);
     let leaning = bench.pair();
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     let back = bench.at(0.5, 0.5);
     bench.walker.slide_to(back, 0.1);
     assert_eq!(bench.pair(), leaning, "a force that can't be trusted");
-    bench.walker.doubtful = false;
+    bench.walker.untrusted = false;
     bench.wait(10);
     bench.lift();
     assert_eq!(bench.events().last(), Some(&Released));

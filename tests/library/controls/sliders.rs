@@ -103,14 +103,14 @@ fn slider_line_7_a_lifting_foot_drags_nothing() {
 }
 
 #[test]
-fn slider_lines_9_and_10_a_cancel_takes_it_back_and_doubt_moves_nothing() {
+fn slider_lines_9_and_10_a_cancel_takes_it_back_and_an_untrusted_foot_moves_nothing() {
     let mut bench = Bench::with(PLAIN);
     bench.press_at(0.2, 0.5);
     let before = bench.number();
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.slide_to(0.8, 0.5);
     assert_eq!(bench.number(), before, "forces that can't be trusted");
-    bench.walker.doubtful = false;
+    bench.walker.untrusted = false;
     bench.wait(10);
     bench.is_about(0.8, 0.06);
     bench.events();
@@ -183,7 +183,7 @@ fn pad_lines_6_to_8() {
     let mut bench = Bench::with(PAD);
     bench.press_at(0.25, 0.75);
     let before = bench.pair();
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.slide_to(0.9, 0.1);
     assert_eq!(bench.pair(), before, "forces that can't be trusted");
     bench.events();

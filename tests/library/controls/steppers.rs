@@ -46,7 +46,7 @@ fn line_3_held_it_repeats_ever_faster() {
 }
 
 #[test]
-fn lines_4_and_8_off_its_half_lifting_or_in_doubt_it_waits() {
+fn lines_4_and_8_off_its_half_lifting_or_untrusted_it_waits() {
     let mut bench = Bench::with(STEPPER);
     bench.press_at(0.7, 0.5);
     bench.slide_to(0.3, 0.5);
@@ -58,10 +58,10 @@ fn lines_4_and_8_off_its_half_lifting_or_in_doubt_it_waits() {
     assert_eq!(bench.number(), 6.0, "back, but not for long");
     bench.wait(250);
     assert_eq!(bench.number(), 7.0);
-    bench.walker.doubtful = true;
+    bench.walker.untrusted = true;
     bench.wait(1000);
     assert_eq!(bench.number(), 7.0, "forces that can't be trusted");
-    bench.walker.doubtful = false;
+    bench.walker.untrusted = false;
     // 42 N: above the release threshold, below what a foot that stays would press.
     bench.walker.press(Newtons(44.0));
     bench.wait(1000);

@@ -79,7 +79,7 @@ impl Bench {
         self.run_with(millis, |_, _, _| {});
     }
 
-    /// A millisecond under loads that are no feet; what the controls make of it is not looked at.
+    /// A millisecond under loads that are not feet; what the controls make of it is not examined.
     pub fn run_under(&mut self, loads: &[Load]) {
         self.now = self.now + Duration::from_millis(1);
         let (sequence, received) = ((self.now.micros() / 1000) as u32, self.now);
@@ -120,7 +120,7 @@ impl Bench {
     }
 
     /// Lets time pass under one foot that stays, swaying by some millimetres as people who stand do:
-    /// what keeps perfectly still for a minute is no foot (S10).
+    /// what keeps perfectly still for a minute is not a foot (S10).
     pub fn stay(
         &mut self,
         at: Vec2,

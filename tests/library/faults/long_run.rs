@@ -71,7 +71,7 @@ proptest! {
                     nonsense_ms = clock_ms;
                 }
                 let improved = tile.quality[0] < worst && value.is_finite() && bench.assembler.troubles().next().is_none();
-                // A reading that is no number marks one frame and no more.
+                // A reading that is not a number marks one frame and no more.
                 let was_found = worst == Quality::Degraded;
                 prop_assert!(!(improved && was_found) || clock_ms - nonsense_ms > 900);
                 worst = tile.quality[0];

@@ -83,7 +83,7 @@ fn f10_a_control_that_vanished_from_the_layout_is_cancelled() {
 
 #[test]
 fn r5_feet_do_not_need_a_window() {
-    // Nobody asks this engine for a snapshot: it says the same as one that is looked at every millisecond.
+    // Nobody asks this engine for a snapshot: it says the same as one that is examined every millisecond.
     let events = |looked_at: bool| {
         let mut walker = at_the_map();
         walker.watched = looked_at;

@@ -1,4 +1,4 @@
-//! People on a floor that breaks: what a mishap does to it, and what became of them.
+//! People on a floor that breaks: what a fault does to it, and what became of them.
 
 use std::f32::consts::TAU;
 use std::time::Duration;
@@ -7,7 +7,7 @@ use rand::RngExt;
 use rand_pcg::Pcg64Mcg;
 use underfoot::engine::Engine;
 use underfoot::experiment::{
-    Followed, Mishap, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
+    FaultHook, Followed, PeopleTable, Rig, Stance, TapScene, TapScore, TapTable, Visit,
 };
 use underfoot::feel::{Cue, CueSender, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
@@ -41,7 +41,7 @@ impl Break {
     }
 }
 
-impl Mishap for Break {
+impl FaultHook for Break {
     fn before(&mut self, milli: u64, rig: &mut Rig) {
         if milli == self.from_ms {
             rig.set_fault(self.sensor, Some(self.fault));
@@ -85,8 +85,8 @@ impl std::fmt::Display for Visited {
     }
 }
 
-/// Lets the visit of `seed` happen on the floor of `rig`, which `mishap` breaks.
-pub fn visited(mut rig: Rig, seed: u64, mishap: impl Mishap) -> Visited {
+/// Lets the visit of `seed` happen on the floor of `rig`, which `fault` breaks.
+pub fn visited(mut rig: Rig, seed: u64, fault: impl FaultHook) -> Visited {
     let visit = Visit::of(seed, rig.geometry()).unwrap();
     let geometry = *rig.geometry();
     let engine = rig.engine(page(ALL_BUTTON), Method::default());
@@ -94,7 +94,7 @@ pub fn visited(mut rig: Rig, seed: u64, mishap: impl Mishap) -> Visited {
         engine,
         geometry,
         visit: &visit,
-        mishap,
+        fault,
         loaded: None,
         pressed: 0,
         out_of_nothing: 0,
@@ -118,7 +118,7 @@ struct Watch<'a, M> {
     engine: Engine,
     geometry: Geometry,
     visit: &'a Visit,
-    mishap: M,
+    fault: M,
     loaded: Option<u64>,
     pressed: usize,
     out_of_nothing: usize,
@@ -126,13 +126,13 @@ struct Watch<'a, M> {
     worst: Quality,
 }
 
-impl<M: Mishap> Mishap for Watch<'_, M> {
+impl<M: FaultHook> FaultHook for Watch<'_, M> {
     fn before(&mut self, milli: u64, rig: &mut Rig) {
-        self.mishap.before(milli, rig);
+        self.fault.before(milli, rig);
     }
 
     fn disturb(&mut self, milli: u64, board: usize, readings: &mut Readings) {
-        self.mishap.disturb(milli, board, readings);
+        self.fault.disturb(milli, board, readings);
     }
 
     fn sensed(&mut self, milli: u64, frame: &ForceFrame) {
@@ -156,7 +156,7 @@ impl<M: Mishap> Mishap for Watch<'_, M> {
             }
         }
         let cues = step.cues.to_vec();
-        self.mishap.felt(milli, &cues);
+        self.fault.felt(milli, &cues);
     }
 }
 
@@ -176,11 +176,11 @@ pub fn busiest_tile(seed: u64, geometry: &Geometry) -> TileId {
     geometry.tile_at_index(most)
 }
 
-/// What became of the taps of `seeds`' people in both stances; `mishap` is made for each scene.
-pub fn tapped<M: Mishap>(
+/// What became of the taps of `seeds`' people in both stances; `fault` is made for each scene.
+pub fn tapped<M: FaultHook>(
     seeds: impl IntoIterator<Item = u64>,
     rig: impl Fn(u64) -> Rig,
-    mishap: impl Fn(&TapScene, &Geometry) -> M,
+    fault: impl Fn(&TapScene, &Geometry) -> M,
 ) -> Tapped {
     let mut table = TapTable::default();
     let mut troubles = Vec::new();
@@ -189,7 +189,7 @@ pub fn tapped<M: Mishap>(
             let geometry = Geometry::default();
             let scene = TapScene::of(seed, stance, &geometry).unwrap();
             let mut rig = rig(seed);
-            table.add_scene(&mut rig, &scene, &mut mishap(&scene, &geometry));
+            table.add_scene(&mut rig, &scene, &mut fault(&scene, &geometry));
             troubles.extend(rig.assembler().troubles());
         }
     }
@@ -249,7 +249,7 @@ pub struct Hum {
     pub rng: Pcg64Mcg,
 }
 
-impl Mishap for Hum {
+impl FaultHook for Hum {
     fn disturb(&mut self, milli: u64, _: usize, readings: &mut Readings) {
         let Readings::Newtons(forces) = readings else { panic!("boards that send counts") };
         let phase = (TAU * self.mains_hz * (milli % 1000) as f32 / 1000.0).sin();
@@ -282,7 +282,7 @@ impl Coupled {
     }
 }
 
-impl Mishap for Coupled {
+impl FaultHook for Coupled {
     fn before(&mut self, _: u64, _: &mut Rig) {
         self.now = self.now + Duration::from_millis(1);
         self.sink.advance(self.now).unwrap();

@@ -114,7 +114,7 @@ fn s5_parts_that_creep() {
 fn s6_loads_out_of_nowhere() {
     for newtons in [50.0, 150.0, -30.0] {
         broken(offset(newtons), |what, tapped| {
-            // Half a second of doubt may swallow a touch or two.
+            // Half a second of suspicion may swallow a touch or two.
             assert_pressed(what, tapped, TOUCHES - 2);
         });
     }

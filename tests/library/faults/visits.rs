@@ -247,7 +247,7 @@ fn s11_people_whose_feet_share_tiles_and_lie_over_four() {
         println!("narrow, person {seed}: {visited}");
         assert_eq!((visited.out_of_nothing, visited.left_down), (0, false));
         let (followed, troubles) = (&visited.followed, &visited.troubles);
-        // One foot alone is always found; of two on one tile the sum is, and the doubt about each is told.
+        // One foot alone is always found; of two on one tile the sum is, and the uncertainty of each is told.
         assert!(followed.one_foot.quantile(0.5).unwrap() < 0.02, "{}", followed.one_foot);
         assert!(followed.share_missed() < 0.1, "{}", followed.share_missed());
         assert_eq!(troubles, &[]);

@@ -4,8 +4,8 @@ use std::sync::Arc;
 
 use proptest::prelude::*;
 use underfoot::feel::{
-    Beat, Click, Effect, EffectKind, Gesture, Impulse, Manner, Mode, Part, Sequence, Tone, TonePoint,
-    audition, heard,
+    Click, Effect, EffectKind, Gesture, Impulse, Manner, Mode, Part, PartKind, Sequence, Tone, TonePoint,
+    analyse, audition,
 };
 use underfoot::schema::{AhapError, Effects, read_ahap, write_ahap};
 use underfoot::units::Newtons;
@@ -38,7 +38,7 @@ fn a_pattern_with_curves_is_felt_as_it_says() {
     let (effect, warnings) = read_ahap(BOING, "boing.ahap").unwrap();
     assert_eq!(warnings, Vec::<String>::new());
     let parts = parts(&effect);
-    let (Beat::Click(click), Beat::Tone(tone)) = (&parts[0].beat, &parts[1].beat) else {
+    let (PartKind::Click(click), PartKind::Tone(tone)) = (&parts[0].kind, &parts[1].kind) else {
         panic!("{parts:?}")
     };
     assert_eq!(click.level, Newtons(16.0));
@@ -52,8 +52,8 @@ fn a_pattern_with_curves_is_felt_as_it_says() {
     assert!((tone.at(0.2499).1 - 70.0 * 4.0_f32.powf(0.1)).abs() < 0.2);
     let effect = Arc::new(effect);
     let samples = audition(&effect, &Gesture::usual(&effect), 48_000);
-    let heard = heard(&samples, 48e3, effect.manner.band).unwrap();
-    assert!(heard.within > 0.95 && heard.peak > 10.0, "{} N", heard.peak);
+    let analysis = analyse(&samples, 48e3, effect.manner.band).unwrap();
+    assert!(analysis.within > 0.95 && analysis.peak > 10.0, "{} N", analysis.peak);
 }
 
 #[test]
@@ -67,12 +67,12 @@ fn dynamic_parameters_change_at_once_and_concern_what_comes_later() {
     let (effect, warnings) = read_ahap(text, "steps.ahap").unwrap();
     assert!(warnings.is_empty());
     let parts = parts(&effect);
-    let level = |part: &Part| match &part.beat {
-        Beat::Click(click) => click.level.0,
-        Beat::Tone(tone) => tone.level.0,
+    let level = |part: &Part| match &part.kind {
+        PartKind::Click(click) => click.level.0,
+        PartKind::Tone(tone) => tone.level.0,
     };
     assert_eq!((level(&parts[0]), level(&parts[2])), (20.0, 10.0));
-    let Beat::Tone(tone) = &parts[1].beat else { panic!("a tone") };
+    let PartKind::Tone(tone) = &parts[1].kind else { panic!("a tone") };
     assert_eq!((tone.at(0.04).0, tone.at(0.06).0), (1.0, 0.5));
 }
 
@@ -136,7 +136,7 @@ fn every_shipped_effect_that_is_played_once_goes_out_and_can_come_back() {
     }
 }
 
-fn click() -> impl Strategy<Value = Beat> {
+fn click() -> impl Strategy<Value = PartKind> {
     (0.05_f32..1.0, 0.0_f32..1.0).prop_map(|(intensity, sharpness)| {
         let mode = Mode {
             frequency_hz: 90.0 * 3.6_f32.powf(sharpness),
@@ -144,11 +144,11 @@ fn click() -> impl Strategy<Value = Beat> {
             amplitude: 1.0,
         };
         let modes = [mode].into_iter().collect();
-        Beat::Click(Click { modes, level: Newtons(20.0 * intensity), impulse: Impulse::default() })
+        PartKind::Click(Click { modes, level: Newtons(20.0 * intensity), impulse: Impulse::default() })
     })
 }
 
-fn tone() -> impl Strategy<Value = Beat> {
+fn tone() -> impl Strategy<Value = PartKind> {
     let curve = prop::collection::vec((0.0_f32..1.0, 0.0_f32..1.0), 0..8);
     (0.05_f32..1.0, 0.0_f32..1.0, 0.05_f32..0.4, 0.0_f32..0.1, any::<bool>(), 0.0_f32..0.1, curve).prop_map(
         |(intensity, sharpness, length_s, attack_s, sustained, release_s, points)| {
@@ -161,7 +161,7 @@ fn tone() -> impl Strategy<Value = Beat> {
                 hz: Some(hz(sharp)),
             });
             let curve = if points.len() > 1 { curve.collect() } else { Default::default() };
-            Beat::Tone(Tone {
+            PartKind::Tone(Tone {
                 level: Newtons(12.0 * intensity),
                 hz: hz(sharpness),
                 noise: 0.0,
@@ -178,11 +178,11 @@ fn tone() -> impl Strategy<Value = Beat> {
 
 /// Level and pitch of a part over its time.
 fn course(part: &Part) -> Vec<(f32, f32)> {
-    match &part.beat {
-        Beat::Click(click) => {
+    match &part.kind {
+        PartKind::Click(click) => {
             vec![(click.level.0, click.modes[0].frequency_hz), (0.0, click.modes[0].decay_s)]
         }
-        Beat::Tone(tone) => (0..50)
+        PartKind::Tone(tone) => (0..50)
             .map(|n| {
                 let (level, hz) = tone.at(tone.whole_s() * (n as f32 + 0.5) / 50.0);
                 (level * tone.level.0, hz)
@@ -196,9 +196,9 @@ proptest! {
 
     /// Parts half a second apart, so that no curve concerns a neighbour.
     #[test]
-    fn whatever_ahap_can_say_goes_out_and_comes_back(beats in prop::collection::vec(prop_oneof![click(), tone()], 2..12)) {
+    fn whatever_ahap_can_say_goes_out_and_comes_back(kinds in prop::collection::vec(prop_oneof![click(), tone()], 2..12)) {
         let parts: Vec<Part> =
-            beats.into_iter().enumerate().map(|(n, beat)| Part { at_s: 0.6 * n as f32, beat }).collect();
+            kinds.into_iter().enumerate().map(|(n, kind)| Part { at_s: 0.6 * n as f32, kind }).collect();
         let kind = EffectKind::Sequence(Sequence { parts: parts.clone().into(), curve: Default::default() });
         let (text, lost) = write_ahap(&Effect { kind, manner: Manner::PLAIN }, "made up").unwrap();
         prop_assert!(lost.is_empty(), "{lost:?}");

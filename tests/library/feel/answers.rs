@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use underfoot::feel::{Clicks, Effect, EffectKind, Lasting, Rub};
+use underfoot::feel::{Clicks, Effect, EffectKind, Lasting, SustainedCue};
 use underfoot::floor::Geometry;
 use underfoot::schema::{Effects, Kinds, parse_layout};
 use underfoot::units::Newtons;
@@ -11,9 +11,14 @@ use underfoot::widget::Value;
 use crate::controls::bench::Bench;
 
 /// Pushes against an end and what is held; frictions are something else.
-fn hums(rubs: &[Rub]) -> Vec<f32> {
-    rubs.iter()
-        .filter_map(|rub| if let Lasting::Hum(hum) = rub.effect { Some(hum.level.0) } else { None })
+fn hums(sustained: &[SustainedCue]) -> Vec<f32> {
+    sustained
+        .iter()
+        .filter_map(
+            |sustained_cue| {
+                if let Lasting::Hum(hum) = sustained_cue.effect { Some(hum.level.0) } else { None }
+            },
+        )
         .collect()
 }
 
@@ -22,10 +27,10 @@ fn a_slider_has_a_wall_at_its_end_that_is_felt_when_it_is_hit_and_pushed() {
     let mut bench = Bench::with(r#"kind: "slider""#);
     bench.press_at(0.5, 0.5);
     bench.walker.take_cues();
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.slide_to(0.9, 0.5);
     assert!(
-        bench.walker.take_cues().is_empty() && hums(&bench.walker.take_rubs()).is_empty(),
+        bench.walker.take_cues().is_empty() && hums(&bench.walker.take_sustained()).is_empty(),
         "nothing on the way"
     );
     bench.slide_to(1.12, 0.5);
@@ -33,20 +38,20 @@ fn a_slider_has_a_wall_at_its_end_that_is_felt_when_it_is_hit_and_pushed() {
     assert_eq!(thuds.len(), 1, "one thud");
     assert!(thuds[0].manner.duck_db > 0.0 && thuds[0].click.level.0 > 10.0, "{thuds:?}");
     assert_eq!(bench.number(), 1.0);
-    let pushed = hums(&bench.walker.take_rubs());
+    let pushed = hums(&bench.walker.take_sustained());
     let (first, last) = (pushed[2], pushed[pushed.len() - 1]);
     assert!(last > 2.0 * first && last > 3.0, "the wall gets harder: {first} to {last} N");
     // Who only stands there is left in peace, who pushes on feels it again.
     bench.wait(1800);
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.wait(100);
-    assert!(hums(&bench.walker.take_rubs()).is_empty());
+    assert!(hums(&bench.walker.take_sustained()).is_empty());
     bench.slide_to(1.2, 0.5);
-    assert!(!hums(&bench.walker.take_rubs()).is_empty());
+    assert!(!hums(&bench.walker.take_sustained()).is_empty());
     bench.slide_to(0.7, 0.5);
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.wait(50);
-    assert!(hums(&bench.walker.take_rubs()).is_empty(), "back on the way there is no wall");
+    assert!(hums(&bench.walker.take_sustained()).is_empty(), "back on the way there is no wall");
     assert!(bench.walker.take_cues().is_empty());
     // The other end, slowly: the same thud, softer and a little lower.
     let to = bench.at(-0.02, 0.5);
@@ -111,36 +116,42 @@ fn what_is_held_is_felt_until_the_foot_lets_go_or_the_floor_is_lost() {
     let mut bench = Bench::with(r#"kind: "hold", feel: (hold: "engine_hum", press: None, release: None)"#);
     bench.press();
     bench.wait(400);
-    let hums_now = hums(&bench.walker.take_rubs());
+    let hums_now = hums(&bench.walker.take_sustained());
     assert!(hums_now.last().is_some_and(|level| *level > 2.9), "{:?}", hums_now.last());
     bench.lift();
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.wait(20);
-    assert!(hums(&bench.walker.take_rubs()).is_empty());
+    assert!(hums(&bench.walker.take_sustained()).is_empty());
     bench.press();
     bench.lose_the_floor();
     bench.walker.connected = true;
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.wait(50);
-    assert!(hums(&bench.walker.take_rubs()).is_empty(), "a cancel ends it too");
+    assert!(hums(&bench.walker.take_sustained()).is_empty(), "a cancel ends it too");
 }
 
 #[test]
 fn what_a_control_lets_be_heard_is_what_it_lets_be_felt() {
     let mut slider = Bench::with(r#"kind: "slider", feel: (drag: "smooth", sound: 0.5)"#);
     slider.press_at(0.5, 0.5);
-    slider.walker.take_rubs();
+    slider.walker.take_sustained();
     slider.slide_to(1.12, 0.5);
-    let (rubs, thuds) = (slider.walker.take_rubs(), slider.walker.take_cues());
-    assert!(rubs.iter().any(|rub| matches!(rub.effect, Lasting::Friction(_))), "it rubs");
-    assert!(rubs.iter().any(|rub| matches!(rub.effect, Lasting::Hum(_))), "and pushes");
-    assert!(rubs.iter().all(|rub| rub.to_air == 0.5));
-    assert!(!thuds.is_empty() && thuds.iter().all(|cue| cue.to_air == 0.5));
+    let (sustained, thuds) = (slider.walker.take_sustained(), slider.walker.take_cues());
+    assert!(
+        sustained.iter().any(|sustained_cue| matches!(sustained_cue.effect, Lasting::Friction(_))),
+        "it slides"
+    );
+    assert!(
+        sustained.iter().any(|sustained_cue| matches!(sustained_cue.effect, Lasting::Hum(_))),
+        "and pushes"
+    );
+    assert!(sustained.iter().all(|sustained_cue| sustained_cue.audio_gain == 0.5));
+    assert!(!thuds.is_empty() && thuds.iter().all(|cue| cue.audio_gain == 0.5));
     let mut hold = Bench::with(r#"kind: "hold", feel: (hold: "engine_hum", press: None, sound: 0.5)"#);
     hold.press();
     hold.wait(100);
-    let held = hold.walker.take_rubs();
-    assert!(!held.is_empty() && held.iter().all(|rub| rub.to_air == 0.5));
+    let held = hold.walker.take_sustained();
+    assert!(!held.is_empty() && held.iter().all(|sustained_cue| sustained_cue.audio_gain == 0.5));
 }
 
 #[test]
@@ -148,14 +159,17 @@ fn a_long_press_swells_and_then_says_that_it_was_long() {
     let mut bench = Bench::with(r#"kind: "gesture_button", feel: (press: None, release: None)"#);
     bench.press();
     bench.wait(500);
-    let levels = hums(&bench.walker.take_rubs());
+    let levels = hums(&bench.walker.take_sustained());
     assert!(levels.windows(50).step_by(50).all(|part| part[49] >= part[0]), "it swells");
     assert!(bench.walker.take_cues().is_empty());
     bench.wait(200);
     assert_eq!(bench.walker.take_cues().len(), 1, "long enough");
-    bench.walker.take_rubs();
+    bench.walker.take_sustained();
     bench.wait(100);
-    assert!(hums(&bench.walker.take_rubs()).iter().all(|level| *level == 0.0), "and the swelling is over");
+    assert!(
+        hums(&bench.walker.take_sustained()).iter().all(|level| *level == 0.0),
+        "and the swelling is over"
+    );
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use std::sync::Arc;
 
 use underfoot::feel::{
-    Band, Effect, EffectKind, Gesture, Heard, Lasting, Manner, Moment, StickSlip, Texture, audition, heard,
+    Analysis, Band, Effect, EffectKind, Gesture, Lasting, Manner, Moment, StickSlip, Texture, analyse,
+    audition,
 };
 use underfoot::schema::{Effects, parse_effect, write_named_effect};
 use underfoot::units::Newtons;
@@ -14,11 +15,11 @@ fn shipped(name: &str) -> Arc<Effect> {
     Arc::clone(&Effects::builtin().get(name).unwrap_or_else(|| panic!("{name}")).effect)
 }
 
-fn hear(effect: &Arc<Effect>, gesture: &Gesture) -> (Vec<f32>, Heard) {
+fn hear(effect: &Arc<Effect>, gesture: &Gesture) -> (Vec<f32>, Analysis) {
     let samples = audition(effect, gesture, RATE);
-    let heard =
-        heard(&samples, RATE as f32, effect.manner.band).unwrap_or_else(|| panic!("silence: {effect:?}"));
-    (samples, heard)
+    let analysis =
+        analyse(&samples, RATE as f32, effect.manner.band).unwrap_or_else(|| panic!("silence: {effect:?}"));
+    (samples, analysis)
 }
 
 fn rms(samples: &[f32]) -> f32 {
@@ -26,9 +27,9 @@ fn rms(samples: &[f32]) -> f32 {
 }
 
 /// The second second of an even slide.
-fn slide(effect: &Arc<Effect>, speed: f32, force: f32) -> Heard {
+fn slide(effect: &Arc<Effect>, speed: f32, force: f32) -> Analysis {
     let samples = audition(effect, &Gesture::steady(speed, Newtons(force), 2.0), RATE);
-    heard(&samples[RATE as usize..], RATE as f32, Band::USEFUL)
+    analyse(&samples[RATE as usize..], RATE as f32, Band::USEFUL)
         .unwrap_or_else(|| panic!("silence at {speed} m/s"))
 }
 
@@ -37,37 +38,37 @@ fn every_shipped_effect_has_95_percent_of_its_energy_between_50_and_750_hz() {
     let effects = Effects::builtin();
     assert!((12..=40).contains(&effects.iter().count()));
     for named in effects.iter() {
-        let (_, heard) = hear(&named.effect, &Gesture::usual(&named.effect));
-        let within = self::heard(
+        let (_, analysis) = hear(&named.effect, &Gesture::usual(&named.effect));
+        let within = self::analyse(
             &audition(&named.effect, &Gesture::usual(&named.effect), RATE),
             RATE as f32,
             Band::USEFUL,
         );
-        let within = within.map_or(0.0, |heard| heard.within);
+        let within = within.map_or(0.0, |analysis| analysis.within);
         println!(
             "{:16} {:5.1} N, {:5.2} % within, {:4.0} Hz",
             named.name,
-            heard.peak,
+            analysis.peak,
             100.0 * within,
-            heard.centroid_hz
+            analysis.centroid_hz
         );
         assert!(within >= 0.95, "{}: {:.2} %", named.name, 100.0 * within);
         // Nobody is shaken, and nobody misses it.
-        assert!((1.5..=45.0).contains(&heard.peak), "{}: {} N", named.name, heard.peak);
+        assert!((1.5..=45.0).contains(&analysis.peak), "{}: {} N", named.name, analysis.peak);
     }
 }
 
 #[test]
-fn what_rubs_keeps_to_its_band_at_every_speed_and_force() {
+fn what_slides_keeps_to_its_band_at_every_speed_and_force() {
     for named in Effects::builtin().iter().filter(|named| named.effect.kind.lasting().is_some()) {
         for speed in [0.03, 0.1, 0.3, 0.6, 1.2] {
             for force in [30.0, 200.0, 600.0] {
-                let heard = slide(&named.effect, speed, force);
+                let analysis = slide(&named.effect, speed, force);
                 assert!(
-                    heard.within >= 0.95,
+                    analysis.within >= 0.95,
                     "{} at {speed} m/s, {force} N: {:.1} %",
                     named.name,
-                    100.0 * heard.within
+                    100.0 * analysis.within
                 );
             }
         }
@@ -75,7 +76,7 @@ fn what_rubs_keeps_to_its_band_at_every_speed_and_force() {
 }
 
 #[test]
-fn what_rubs_has_its_level_and_rises_with_force() {
+fn what_slides_has_its_level_and_rises_with_force() {
     for named in Effects::builtin().iter().filter(|named| named.effect.kind.lasting().is_some()) {
         let (name, effect) = (&named.name, &named.effect);
         let level = match effect.kind.lasting() {
@@ -102,7 +103,7 @@ fn what_rubs_has_its_level_and_rises_with_force() {
 }
 
 #[test]
-fn the_pitch_of_what_rubs_rises_with_the_speed() {
+fn the_pitch_of_what_slides_rises_with_the_speed() {
     // Noise by its mean, ridges by the distance of their pulses, a sole by how often it slips.
     let smooth: Vec<f32> = [0.05, 0.2, 0.4, 0.6]
         .iter()
@@ -151,15 +152,15 @@ fn even_ridges_sound_at_the_speed_over_their_distance() {
         let even = Lasting::Texture(Texture { spacing_m, uneven: 0.0, ..texture }).balanced(Band::USEFUL);
         let Lasting::Texture(even) = even else { panic!("ridges") };
         let effect = Arc::new(Effect { kind: EffectKind::Texture(even), manner: Manner::PLAIN });
-        let heard = slide(&effect, speed, 200.0);
+        let analysis = slide(&effect, speed, 200.0);
         let pitch = speed / spacing_m;
         // All that sounds are multiples of it.
-        let near: f32 = heard
+        let near: f32 = analysis
             .spectrum
             .iter()
             .enumerate()
             .filter(|(bin, _)| {
-                let times = *bin as f32 * heard.bin_hz / pitch;
+                let times = *bin as f32 * analysis.bin_hz / pitch;
                 times > 0.5 && (times - times.round()).abs() * pitch < 6.0
             })
             .map(|(_, power)| power)
@@ -176,21 +177,21 @@ fn textures_differ_in_timbre_and_not_only_in_loudness() {
     for name in ["smooth", "wood", "grating", "glass", "rubber", "leather", "gravel", "sand"] {
         let samples = audition(&shipped(name), &Gesture::steady(0.25, Newtons(200.0), 2.0), RATE);
         let samples = &samples[RATE as usize / 2..];
-        let heard = heard(samples, RATE as f32, Band::USEFUL).unwrap();
+        let analysis = analyse(samples, RATE as f32, Band::USEFUL).unwrap();
         let levels: Vec<f32> = samples.chunks(240).map(rms).collect();
         let mean = levels.iter().sum::<f32>() / levels.len() as f32;
         let unrest = (levels.iter().map(|level| (level / mean - 1.0).powi(2)).sum::<f32>()
             / levels.len() as f32)
             .sqrt();
-        let above: f32 = heard
+        let above: f32 = analysis
             .spectrum
             .iter()
             .enumerate()
-            .filter(|(bin, _)| *bin as f32 * heard.bin_hz > 300.0)
+            .filter(|(bin, _)| *bin as f32 * analysis.bin_hz > 300.0)
             .map(|(_, p)| p)
             .sum();
-        let face = [(heard.centroid_hz / 100.0).log2(), 2.0 * unrest, 2.0 * above];
-        println!("{name:8} {:4.0} Hz, unrest {unrest:.2}, above 300 Hz {above:.2}", heard.centroid_hz);
+        let face = [(analysis.centroid_hz / 100.0).log2(), 2.0 * unrest, 2.0 * above];
+        println!("{name:8} {:4.0} Hz, unrest {unrest:.2}, above 300 Hz {above:.2}", analysis.centroid_hz);
         for (other, known) in &faces {
             let apart = face.iter().zip(known).map(|(a, b)| (a - b).powi(2)).sum::<f32>().sqrt();
             assert!(apart > 0.15, "{name} feels like {other}: {face:?}, {known:?}");

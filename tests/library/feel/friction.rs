@@ -2,7 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use underfoot::feel::{CueSender, Friction, Lasting, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::feel::{
+    CueSender, Friction, Lasting, RendererConfig, Spot, SustainedCue, SustainedCues, renderer,
+};
 use underfoot::floor::Floor;
 use underfoot::sink::{ActuatorSink, ManualSink};
 use underfoot::units::{Instant, Newtons};
@@ -19,7 +21,7 @@ fn floor() -> (CueSender, ManualSink) {
 }
 
 /// A texture of 8 N whose band goes from 100 to 400 Hz.
-fn rub(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> Rub {
+fn sustained_cue(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> SustainedCue {
     let friction = Friction {
         level: Newtons(8.0),
         low_hz: 100.0,
@@ -28,15 +30,22 @@ fn rub(speed_m_s: f32, force: f32, spots: &[(u16, f32)]) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = spots.iter().map(|&(tile, weight)| Spot { tile, weight }).collect();
-    Rub { key: 7, spots, effect: friction.into(), speed_m_s, force: Newtons(force), ..Rub::default() }
+    SustainedCue {
+        key: 7,
+        spots,
+        effect: friction.into(),
+        speed_m_s,
+        force: Newtons(force),
+        ..SustainedCue::default()
+    }
 }
 
 /// What tile 0 gets from two seconds of steady rubbing, without the first 100 ms.
-fn steady(rub: &Rub) -> Vec<f32> {
+fn steady(sustained_cue: &SustainedCue) -> Vec<f32> {
     let (mut sender, mut sink) = floor();
-    let rubs: Rubs = [rub.clone()].into_iter().collect();
+    let sustained: SustainedCues = [sustained_cue.clone()].into_iter().collect();
     for n in 1..=2100 {
-        sender.rubs(&rubs);
+        sender.sustain(&sustained);
         assert!(sink.advance(millis(n)).is_ok());
     }
     sink.channel(0)[4800..].to_vec()
@@ -73,25 +82,25 @@ fn centroid(spectrum: &[(f64, f64)]) -> f64 {
 
 #[test]
 fn the_level_is_that_of_a_sine_and_rises_with_speed_and_force() {
-    let full = rms(&steady(&rub(0.5, 400.0, &[(0, 1.0)])));
+    let full = rms(&steady(&sustained_cue(0.5, 400.0, &[(0, 1.0)])));
     // 8 N of 40 N at full scale, over the root of two; 10 % of play for two seconds of noise.
     let sine = 8.0 / 40.0 / 2.0_f64.sqrt();
     assert!((full / sine - 1.0).abs() < 0.1, "{full} instead of {sine}");
     for (speed, force, share) in [(0.5, 200.0, 0.5), (0.25, 400.0, 0.5), (0.125, 100.0, 0.0625)] {
-        let level = rms(&steady(&rub(speed, force, &[(0, 1.0)])));
+        let level = rms(&steady(&sustained_cue(speed, force, &[(0, 1.0)])));
         assert!((level / (full * share) - 1.0).abs() < 0.15, "{speed} m/s, {force} N: {level}");
     }
-    let beyond = rms(&steady(&rub(3.0, 3000.0, &[(0, 1.0)])));
+    let beyond = rms(&steady(&sustained_cue(3.0, 3000.0, &[(0, 1.0)])));
     assert!((beyond / full - 1.0).abs() < 0.05, "full is full: {beyond}");
-    assert_eq!(rms(&steady(&rub(0.0, 400.0, &[(0, 1.0)]))), 0.0);
-    assert_eq!(rms(&steady(&rub(0.5, 0.0, &[(0, 1.0)]))), 0.0);
+    assert_eq!(rms(&steady(&sustained_cue(0.0, 400.0, &[(0, 1.0)]))), 0.0);
+    assert_eq!(rms(&steady(&sustained_cue(0.5, 0.0, &[(0, 1.0)]))), 0.0);
 }
 
 #[test]
 fn the_pitch_rises_with_the_speed_from_low_to_high() {
     let mut last = 0.0;
     for (speed, wanted) in [(0.05, 130.0), (0.15, 190.0), (0.25, 250.0), (0.4, 340.0), (0.5, 400.0)] {
-        let pitch = centroid(&spectrum(&steady(&rub(speed, 400.0, &[(0, 1.0)]))));
+        let pitch = centroid(&spectrum(&steady(&sustained_cue(speed, 400.0, &[(0, 1.0)]))));
         // The band is lopsided towards high frequencies, its centroid up to a fifth above its centre.
         assert!((0.95..1.25).contains(&(pitch / wanted)), "{speed} m/s: {pitch} Hz");
         assert!(pitch > last);
@@ -102,11 +111,11 @@ fn the_pitch_rises_with_the_speed_from_low_to_high() {
 #[test]
 fn even_the_widest_texture_stays_between_50_and_750_hz() {
     for (low_hz, high_hz, speed) in [(20.0, 20.0, 0.5), (1000.0, 1000.0, 0.5), (100.0, 400.0, 0.25)] {
-        let mut rub = rub(speed, 400.0, &[(0, 1.0)]);
-        let Lasting::Friction(friction) = &mut rub.effect else { unreachable!("a friction") };
+        let mut sustained_cue = sustained_cue(speed, 400.0, &[(0, 1.0)]);
+        let Lasting::Friction(friction) = &mut sustained_cue.effect else { unreachable!("a friction") };
         friction.low_hz = low_hz;
         friction.high_hz = high_hz;
-        let spectrum = spectrum(&steady(&rub));
+        let spectrum = spectrum(&steady(&sustained_cue));
         let all: f64 = spectrum.iter().map(|(_, power)| power).sum();
         let inside: f64 =
             spectrum.iter().filter(|(f, _)| (50.0..=750.0).contains(f)).map(|(_, power)| power).sum();
@@ -115,11 +124,12 @@ fn even_the_widest_texture_stays_between_50_and_750_hz() {
 }
 
 #[test]
-fn a_rub_that_is_over_is_gone_after_15_ms() {
+fn a_sustained_cue_that_is_over_is_gone_after_15_ms() {
     let (mut sender, mut sink) = floor();
     for n in 1..=400 {
-        let rubs: Rubs = (n <= 300).then(|| rub(0.4, 400.0, &[(0, 0.5), (1, 0.5)])).into_iter().collect();
-        sender.rubs(&rubs);
+        let sustained: SustainedCues =
+            (n <= 300).then(|| sustained_cue(0.4, 400.0, &[(0, 0.5), (1, 0.5)])).into_iter().collect();
+        sender.sustain(&sustained);
         sink.advance(millis(n)).unwrap();
     }
     for tile in [0, 1] {
@@ -139,8 +149,8 @@ fn a_foot_that_slides_over_a_seam_takes_its_texture_along() {
     let (mut sender, mut sink) = floor();
     for n in 1..=1000_u64 {
         let share = (n as f32 - 300.0).clamp(0.0, 400.0) / 400.0;
-        let rub = rub(0.4, 400.0, &[(0, 1.0 - share), (1, share)]);
-        sender.rubs(&[rub].into_iter().collect());
+        let sustained_cue = sustained_cue(0.4, 400.0, &[(0, 1.0 - share), (1, share)]);
+        sender.sustain(&[sustained_cue].into_iter().collect());
         sink.advance(millis(n)).unwrap();
     }
     // The same foot, the same noise: the two tiles together give it whole at any time.
@@ -158,6 +168,6 @@ fn a_foot_that_slides_over_a_seam_takes_its_texture_along() {
 
 #[test]
 fn the_same_steps_give_the_same_samples() {
-    let rub = rub(0.4, 400.0, &[(0, 1.0)]);
-    assert_eq!(steady(&rub), steady(&rub));
+    let sustained_cue = sustained_cue(0.4, 400.0, &[(0, 1.0)]);
+    assert_eq!(steady(&sustained_cue), steady(&sustained_cue));
 }

@@ -1,7 +1,8 @@
 //! What is also heard, once or for a while: the same synthesis, in the same block, from where it is felt.
 
 use underfoot::feel::{
-    Click, Cue, CueSender, Hum, Lasting, Mode, RendererConfig, Rub, Rubs, Spot, Tone, renderer,
+    Click, Cue, CueSender, Hum, Lasting, Mode, RendererConfig, Spot, SustainedCue, SustainedCues, Tone,
+    renderer,
 };
 use underfoot::floor::{Floor, Loudspeaker};
 use underfoot::glam::Vec2;
@@ -26,11 +27,11 @@ fn play(floor: &Floor) -> (CueSender, ManualSink) {
     (sender, ManualSink::new(renderer, Instant::START))
 }
 
-fn cue(at: Instant, tile: u16, to_air: f32) -> Cue {
+fn cue(at: Instant, tile: u16, audio_gain: f32) -> Cue {
     let modes = [(80.0, 0.02, 1.0), (210.0, 0.015, -0.6), (470.0, 0.01, 0.5)]
         .map(|(frequency_hz, decay_s, amplitude)| Mode { frequency_hz, decay_s, amplitude });
     let click = Click { modes: modes.into_iter().collect(), level: Newtons(8.0), ..Click::default() };
-    Cue { to_air, ..strike(at, tile, click) }
+    Cue { audio_gain, ..strike(at, tile, click) }
 }
 
 fn energy(samples: &[f32]) -> f64 {
@@ -103,9 +104,9 @@ fn what_is_heard_is_what_is_felt_from_where_it_is_felt() {
 
 #[test]
 fn a_layout_that_does_not_ask_is_not_heard_and_half_is_half() {
-    let heard = |to_air: f32| {
+    let heard = |audio_gain: f32| {
         let (mut sender, mut sink) = play(&floor());
-        sender.send(&cue(Instant::from_millis(10), 0, to_air));
+        sender.send(&cue(Instant::from_millis(10), 0, audio_gain));
         sink.advance(Instant::from_millis(200)).unwrap();
         assert!(energy(sink.channel(0)) > 0.0);
         energy(sink.channel(36)).sqrt()
@@ -125,17 +126,19 @@ fn lasting() -> Vec<(&'static str, Lasting)> {
     all
 }
 
-fn rub(effect: Lasting, tile: u16, to_air: f32) -> Rubs {
+fn sustained_cue(effect: Lasting, tile: u16, audio_gain: f32) -> SustainedCues {
     let spots = [Spot { tile, weight: 1.0 }].into_iter().collect();
     let force = Newtons(200.0);
-    [Rub { key: 1, spots, effect, speed_m_s: 0.2, force, to_air, ..Rub::default() }].into_iter().collect()
+    [SustainedCue { key: 1, spots, effect, speed_m_s: 0.2, force, audio_gain, ..SustainedCue::default() }]
+        .into_iter()
+        .collect()
 }
 
-/// A millisecond after the other, with what rubs in it.
-fn slide(floor: &Floor, millis: u64, rubs: impl Fn(u64) -> Rubs) -> ManualSink {
+/// A millisecond after the other, with what lasts in it.
+fn slide(floor: &Floor, millis: u64, sustained: impl Fn(u64) -> SustainedCues) -> ManualSink {
     let (mut sender, mut sink) = play(floor);
     for ms in 0..millis {
-        sender.rubs(&rubs(ms));
+        sender.sustain(&sustained(ms));
         sink.advance(Instant::from_millis(ms + 1)).unwrap();
     }
     sink
@@ -150,7 +153,12 @@ fn what_lasts_is_heard_as_it_is_felt_and_begins_within_one_sample() {
     let floor = floor();
     for (name, effect) in lasting() {
         // After 20 ms of nothing; between three loudspeakers, so that each has a share.
-        let sink = slide(&floor, 300, |ms| if ms < 20 { Rubs::new() } else { rub(effect, 8, 1.0) });
+        let sink =
+            slide(
+                &floor,
+                300,
+                |ms| if ms < 20 { SustainedCues::new() } else { sustained_cue(effect, 8, 1.0) },
+            );
         let felt = sink.channel(8);
         let begins = onset(felt).unwrap();
         assert!(begins >= 20 * 96, "{name}: {begins}");
@@ -186,7 +194,7 @@ fn a_tone_of_a_cue_is_heard_as_well() {
 #[test]
 fn what_lasts_is_heard_from_where_the_foot_is_and_never_jumps() {
     let effect = Lasting::Hum(Hum { level: Newtons(4.0), hz: 90.0, noise: 0.0 });
-    let sink = slide(&floor(), 1800, |ms| rub(effect, (ms / 300 * 7) as u16, 1.0));
+    let sink = slide(&floor(), 1800, |ms| sustained_cue(effect, (ms / 300 * 7) as u16, 1.0));
     // 200 ms of each tile, once the sound has come there; the fourth loudspeaker is set to half.
     let loud = |channel: usize, step: usize| {
         let own = if channel == 39 { 2.0 } else { 1.0 };
@@ -208,17 +216,22 @@ fn what_lasts_is_heard_from_where_the_foot_is_and_never_jumps() {
 #[test]
 fn what_lasts_and_does_not_ask_is_exactly_silent_on_every_loudspeaker() {
     for (name, effect) in lasting() {
-        for to_air in [0.0, -1.0, f32::NAN] {
-            let sink = slide(&floor(), 100, |_| rub(effect, 8, to_air));
+        for audio_gain in [0.0, -1.0, f32::NAN] {
+            let sink = slide(&floor(), 100, |_| sustained_cue(effect, 8, audio_gain));
             assert!(energy(sink.channel(8)) > 0.0, "{name}");
-            assert!((36..40).all(|channel| onset(sink.channel(channel)).is_none()), "{name}: {to_air}");
+            assert!((36..40).all(|channel| onset(sink.channel(channel)).is_none()), "{name}: {audio_gain}");
         }
-        let half = slide(&floor(), 100, |_| rub(effect, 0, 0.5));
-        let whole = slide(&floor(), 100, |_| rub(effect, 0, 1.0));
+        let half = slide(&floor(), 100, |_| sustained_cue(effect, 0, 0.5));
+        let whole = slide(&floor(), 100, |_| sustained_cue(effect, 0, 1.0));
         let share = (energy(half.channel(36)) / energy(whole.channel(36))).sqrt();
         assert!((share - 0.5).abs() < 0.01, "{name}: {share}");
         // It ends with the foot, but for what the direct-current block lets fade.
-        let lifted = slide(&floor(), 150, |ms| if ms < 100 { rub(effect, 0, 1.0) } else { Rubs::new() });
+        let lifted =
+            slide(
+                &floor(),
+                150,
+                |ms| if ms < 100 { sustained_cue(effect, 0, 1.0) } else { SustainedCues::new() },
+            );
         let (during, after) = lifted.channel(36).split_at(120 * 96);
         assert!(energy(after) < 1e-4 * energy(during), "{name}: {} {}", energy(after), energy(during));
     }

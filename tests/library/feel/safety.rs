@@ -1,7 +1,9 @@
 //! What a person stands on stays gentle: limits, silence, loss.
 
 use proptest::prelude::*;
-use underfoot::feel::{Click, Cue, CueSender, Friction, Mode, RendererConfig, Rub, Rubs, Spot, renderer};
+use underfoot::feel::{
+    Click, Cue, CueSender, Friction, Mode, RendererConfig, Spot, SustainedCue, SustainedCues, renderer,
+};
 use underfoot::floor::{Floor, Loudspeaker, Response};
 use underfoot::glam::Vec2;
 use underfoot::sink::{ActuatorSink, ManualSink};
@@ -35,7 +37,7 @@ fn click(level: f32, decay_s: f32) -> Click {
     Click { modes: modes.into_iter().collect(), level: Newtons(level), ..Click::default() }
 }
 
-fn rub(speed_m_s: f32, force: f32) -> Rub {
+fn sustained_cue(speed_m_s: f32, force: f32) -> SustainedCue {
     let friction = Friction {
         level: Newtons(3.0),
         low_hz: 90.0,
@@ -44,7 +46,14 @@ fn rub(speed_m_s: f32, force: f32) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = [Spot { tile: 3, weight: 1.0 }].into_iter().collect();
-    Rub { key: 1, spots, effect: friction.into(), speed_m_s, force: Newtons(force), ..Rub::default() }
+    SustainedCue {
+        key: 1,
+        spots,
+        effect: friction.into(),
+        speed_m_s,
+        force: Newtons(force),
+        ..SustainedCue::default()
+    }
 }
 
 #[test]
@@ -52,7 +61,7 @@ fn stop_fades_out_in_5_ms_to_exact_zero_and_forgets_what_was_to_come() {
     let (mut sender, mut sink) = floor();
     sender.send(&strike(millis(10), 0, click(20.0, 1.0)));
     sender.send(&strike(millis(70), 0, click(20.0, 1.0)));
-    sender.rubs(&[rub(0.3, 300.0)].into_iter().collect());
+    sender.sustain(&[sustained_cue(0.3, 300.0)].into_iter().collect());
     sink.advance(millis(50)).unwrap();
     sender.silence();
     assert!(!sender.send(&strike(millis(60), 1, click(20.0, 1.0))));
@@ -87,9 +96,9 @@ fn a_stop_that_is_soon_lifted_is_not_missed() {
 }
 
 #[test]
-fn a_rub_that_nobody_renews_fades_out() {
+fn a_sustained_cue_that_nobody_renews_fades_out() {
     let (mut sender, mut sink) = floor();
-    sender.rubs(&[rub(0.4, 300.0)].into_iter().collect());
+    sender.sustain(&[sustained_cue(0.4, 300.0)].into_iter().collect());
     sink.advance(millis(200)).unwrap();
     let samples = sink.channel(3);
     assert!(samples[30 * 48..50 * 48].iter().any(|x| x.abs() > 0.001));
@@ -139,7 +148,7 @@ prop_compose! {
         spots in any_spots(),
         modes in prop::collection::vec((any_number(), any_number(), any_number()), 0..8),
         level in any_number(),
-        to_air in any_number(),
+        audio_gain in any_number(),
     ) -> Cue {
         let modes = modes
             .into_iter()
@@ -148,17 +157,17 @@ prop_compose! {
         let at = Instant::from_micros(u64::from(at) % 50_000);
         let spots = spots.into_iter().collect();
         let click = Click { modes, level: Newtons(level), ..Click::default() };
-        Cue { at, received: at, spots, click, to_air, ..Cue::default() }
+        Cue { at, received: at, spots, click, audio_gain, ..Cue::default() }
     }
 }
 
 prop_compose! {
-    fn any_rub()(
+    fn any_sustained()(
         key in 0..4_u32,
         spots in any_spots(),
         numbers in prop::array::uniform8(any_number()),
-    ) -> Rub {
-        let [level, low_hz, high_hz, full_speed_m_s, full_force, speed_m_s, force, to_air] = numbers;
+    ) -> SustainedCue {
+        let [level, low_hz, high_hz, full_speed_m_s, full_force, speed_m_s, force, audio_gain] = numbers;
         let friction = Friction {
             level: Newtons(level),
             low_hz,
@@ -166,14 +175,14 @@ prop_compose! {
             full_speed_m_s,
             full_force: Newtons(full_force),
         };
-        Rub {
+        SustainedCue {
             key,
             spots: spots.into_iter().collect(),
             effect: friction.into(),
             speed_m_s,
             force: Newtons(force),
-            to_air,
-            ..Rub::default()
+            audio_gain,
+            ..SustainedCue::default()
         }
     }
 }
@@ -184,14 +193,14 @@ proptest! {
     #[test]
     fn whatever_comes_in_the_output_is_finite_and_limited(
         cues in prop::collection::vec(any_cue(), 0..12),
-        rubs in prop::collection::vec(prop::collection::vec(any_rub(), 0..16), 1..4),
+        sustained in prop::collection::vec(prop::collection::vec(any_sustained(), 0..16), 1..4),
     ) {
         let (mut sender, mut sink) = whole_floor();
         for cue in &cues {
             sender.send(cue);
         }
-        for (n, rubs) in rubs.into_iter().enumerate() {
-            sender.rubs(&rubs.into_iter().collect::<Rubs>());
+        for (n, sustained) in sustained.into_iter().enumerate() {
+            sender.sustain(&sustained.into_iter().collect::<SustainedCues>());
             sink.advance(millis(20 * (n as u64 + 1))).unwrap();
         }
         for channel in 0..sink.channels() {

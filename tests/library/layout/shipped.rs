@@ -371,7 +371,7 @@ fn links_and_read_only_files_are_read_like_any_other() {
     std::os::unix::fs::symlink(&file, &link).unwrap();
     let loaded = load_layout(&link, &Kinds::builtin(), &Geometry::default());
     assert_eq!(loaded.unwrap().layout, shipped("map"));
-    // A link to nowhere is no file.
+    // A link to nowhere is not a file.
     fs::remove_file(&file).unwrap();
     let problems = load_layout(&link, &Kinds::builtin(), &Geometry::default()).unwrap_err();
     assert!(problems.to_string().contains("there is no such file"), "{problems}");

@@ -187,7 +187,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     assert_eq!(tried, expected.map(|(verb, count)| (verb.to_owned(), count)).into());
 }
 
-/// Whether the engine and the answers say that a command was obeyed.
+/// Whether the engine and the answers say that a command took effect.
 fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscType], address: &str) {
     if path.starts_with("mute/") {
         if verb != "get" {
@@ -316,9 +316,9 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
 
 #[test]
 fn apps_over_the_channel_are_refused_like_others_and_labels_outlive_a_new_layout() {
-    let (commands, inbox) = mpsc::channel();
+    let (commands, received) = mpsc::channel();
     let desk = Desk::new(layout(EVERYTHING), &Prefix::default());
-    let mut server = desk.server.with_commands(inbox);
+    let mut server = desk.server.with_commands(received);
     let id = WidgetId::new("button");
     let label = underfoot::wire::ControlMessage::Label { id: id.clone(), text: "Start".into() };
     commands.send(underfoot::serve::Command::Control(label)).unwrap();

@@ -5,7 +5,7 @@ use rosc::{OscPacket, encoder};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::{Assembler, ForceFrame, Quality};
 use underfoot::units::Instant;
-use underfoot::wire::garble::{Garbler, bundle_bomb, hostile_address, tag_bomb};
+use underfoot::wire::corrupt::{Corruptor, bundle_bomb, hostile_address, tag_bomb};
 use underfoot::wire::{
     Batch, Decoder, Limits, LinkCounters, Malformed, Readings, SensorEncoder, SensorFormat, SensorPacket,
     WireError, check,
@@ -76,7 +76,7 @@ fn bombs_are_refused_for_what_they_are() {
 // P3
 #[test]
 fn ten_seconds_of_garbage_beside_the_packets_changes_next_to_nothing() {
-    let mut garbler = Garbler::new(17);
+    let mut corruptor = Corruptor::new(17);
     let (mut clean, mut noisy) = (Receiver::new(), Receiver::new());
     let mut encoder = SensorEncoder::new(&floor(), SensorFormat::Counts);
     let mut sent: Vec<Vec<u8>> = Vec::new();
@@ -84,7 +84,7 @@ fn ten_seconds_of_garbage_beside_the_packets_changes_next_to_nothing() {
         let before = std::mem::take(&mut sent);
         for board in 0..6 {
             if ms > 0 {
-                let garbage = garbler.garble(&before[usize::from(board)]);
+                let garbage = corruptor.corrupt(&before[usize::from(board)]);
                 noisy.receive(&garbage, ms);
             }
             let datagram = encoder.encode(&packet(board, ms)).unwrap();
@@ -166,10 +166,10 @@ proptest! {
     fn damaged_packets_never_panic(seed: u64, blob: bool) {
         let format = if blob { SensorFormat::Blob } else { SensorFormat::Counts };
         let mut encoder = SensorEncoder::new(&floor(), format);
-        let mut garbler = Garbler::new(seed);
+        let mut corruptor = Corruptor::new(seed);
         let datagram = encoder.encode(&packet(1, 77)).unwrap();
         for _ in 0..4 {
-            let damaged = garbler.flip(datagram);
+            let damaged = corruptor.flip(datagram);
             let _ = verdict(&damaged);
             guard_and_rosc_agree(&damaged)?;
         }

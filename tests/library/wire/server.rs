@@ -157,8 +157,8 @@ fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
         ControlMessage::Enable { id: id("nowhere") },
     ];
     let (server, told) = server(&[(200, EMPTY), (200, PRESSED), (100, EMPTY)], &requests);
-    let (commands, inbox) = mpsc::channel();
-    let mut server = server.with_commands(inbox);
+    let (commands, received) = mpsc::channel();
+    let mut server = server.with_commands(received);
     commands
         .send(Command::Control(ControlMessage::Set { id: id("zoom"), value: Value::Number(0.5) }))
         .unwrap();
@@ -172,9 +172,9 @@ fn apps_set_disable_and_enable_controls_over_the_wire_and_over_the_channel() {
 #[test]
 fn a_new_layout_is_on_the_floor_at_once_and_shown_with_its_revision() {
     let (server, _told) = server(&[(300, EMPTY)], &[]);
-    let (commands, inbox) = mpsc::channel();
+    let (commands, received) = mpsc::channel();
     let (input, mut snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
-    let mut server = server.with_commands(inbox).with_snapshots(input);
+    let mut server = server.with_commands(received).with_snapshots(input);
     commands.send(Command::SetLayout(Box::new(layout("surgical")))).unwrap();
     play(&mut server);
     assert_eq!(server.engine().layout().title, layout("surgical").title);
@@ -242,8 +242,8 @@ fn an_effect_can_be_tried_while_the_floor_works() {
     let (feel, renderer) = renderer(RendererConfig::of(&Floor::default(), 48_000));
     let (tell, onsets) = mpsc::channel();
     let sink = Watched(ManualSink::new(renderer, Instant::START), tell);
-    let (commands, inbox) = mpsc::channel();
-    let mut server = server.with_feel(feel, Box::new(sink)).with_commands(inbox);
+    let (commands, received) = mpsc::channel();
+    let mut server = server.with_feel(feel, Box::new(sink)).with_commands(received);
     let effect = Arc::clone(&Effects::builtin().get("double_click").unwrap().effect);
     let gesture = Box::new(Gesture::usual(&effect));
     commands.send(Command::Audition { effect, gesture, tile: 30 }).unwrap();
@@ -273,7 +273,7 @@ fn the_sensors_health_is_told_when_it_changes_and_once_a_second_at_most() {
     drop(server);
     let told: Vec<_> = told.iter().filter(|(_, what)| what.starts_with("health")).collect();
     let what: Vec<_> = told.iter().map(|(_, what)| what.trim_start_matches("health ")).collect();
-    // That all is well at first is no news.
+    // That all is well at first is not reported.
     assert_eq!(what, ["1 faulty, 143 live", "2 faulty, 142 live", "1 faulty, 143 live"]);
     assert!(told.windows(2).all(|pair| pair[1].0 - pair[0].0 >= 1000), "{told:?}");
     assert!((1500..1650).contains(&told[0].0), "at once, if the last was a second ago: {told:?}");

@@ -129,13 +129,13 @@ fn messages_nobody_takes_are_kept_up_to_a_thousand_and_counted_beyond() {
 #[test]
 fn senders_not_on_the_list_are_counted_and_not_heard() {
     let elsewhere = IpAddr::V4(Ipv4Addr::new(127, 0, 0, 9));
-    for (allowed, heard) in [(elsewhere, false), (ANY_PORT.ip(), true)] {
+    for (allowed, accepted) in [(elsewhere, false), (ANY_PORT.ip(), true)] {
         let mut source = UdpSource::bind(ANY_PORT, &floor()).unwrap().allowing([allowed]);
         let sender = UdpSocket::bind(ANY_PORT).unwrap();
         sender.send_to(&datagram(&packet(0, 1)), source.local_addr().unwrap()).unwrap();
-        let patience = if heard { SOON } else { Duration::from_millis(50) };
-        assert_eq!(source.next(patience).unwrap().is_some(), heard);
-        assert_eq!(source.counters().foreign, u64::from(!heard));
+        let patience = if accepted { SOON } else { Duration::from_millis(50) };
+        assert_eq!(source.next(patience).unwrap().is_some(), accepted);
+        assert_eq!(source.counters().foreign, u64::from(!accepted));
     }
 }
 
@@ -167,7 +167,7 @@ fn a_flood_of_rubbish_holds_no_call_for_long_and_lets_packets_through() {
     let flood = std::thread::spawn(move || {
         for sequence in 0..2000 {
             for _ in 0..10 {
-                // A full receive buffer makes the kernel drop; that is no failure of the sender.
+                // A full receive buffer makes the kernel drop; that is not a failure of the sender.
                 let _ = sender.send(&[0xFF; 400]);
             }
             let _ = sender.send(&datagram(&packet(0, sequence)));

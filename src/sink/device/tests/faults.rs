@@ -6,7 +6,7 @@ use assert_no_alloc::{assert_no_alloc, violation_count};
 use cpal::{BufferSize, ErrorKind};
 
 use super::*;
-use crate::feel::{Friction, Priority, Rub, Rubs};
+use crate::feel::{Friction, Priority, SustainedCue, SustainedCues};
 
 #[test]
 fn a1_a_card_that_is_pulled_out_comes_back_without_a_restart_and_without_a_burst() {
@@ -21,7 +21,7 @@ fn a1_a_card_that_is_pulled_out_comes_back_without_a_restart_and_without_a_burst
     assert_eq!(status.state, DeviceState::Lost);
     assert!(status.why.contains("disconnected"), "{}", status.why);
 
-    // Feet go on pressing controls for five seconds; it is looked for once a second.
+    // Feet go on pressing controls for five seconds; it is searched for once a second.
     let looks = host.looks.load(Ordering::Relaxed);
     for _ in 0..50 {
         rig.sender.send(&cue(0, Instant::START));
@@ -51,13 +51,13 @@ fn a1_the_rest_goes_on_while_the_card_is_lost() {
     host.pull_out(&card);
     card.fail(ErrorKind::DeviceNotAvailable);
     rig.pass(millis(5000));
-    // More cues than can wait: none of them waits for the card, and stop is still obeyed.
+    // More cues than can wait: none of them waits for the card, and stop still works.
     assert!((0..1000).all(|_| rig.sender.send(&cue(0, Instant::START))));
     rig.sender.silence();
     assert!(!rig.sender.send(&cue(0, Instant::START)));
     host.plug_in(&card);
     rig.pass(millis(1100));
-    rig.sender.rubs(&Rubs::new());
+    rig.sender.sustain(&SustainedCues::new());
     assert!(is_silent(&card.pull(4800)));
 }
 
@@ -216,7 +216,7 @@ fn a6_a_callback_that_allocates_would_be_caught() {
     assert!(violation_count() > before, "{grown:?}");
 }
 
-/// Two seconds of eight feet that rub and click, on a card of another rate, at a steady delay, with latency measured.
+/// Two seconds of eight feet that slide and click, on a card of another rate, at a steady delay, with latency measured.
 #[test]
 fn a6_the_busiest_callback_does_not_allocate() {
     let (host, card) = one_card();
@@ -231,8 +231,9 @@ fn a6_the_busiest_callback_does_not_allocate() {
     };
     let mut rig = Rig::on(&host, options);
     for n in 0..1000_u64 {
-        let rubs: Rubs = (0..8).map(|foot| rub(foot, 0.01 * (n % 50) as f32)).collect();
-        rig.sender.rubs(&rubs);
+        let sustained: SustainedCues =
+            (0..8).map(|foot| sustained_cue(foot, 0.01 * (n % 50) as f32)).collect();
+        rig.sender.sustain(&sustained);
         (0..4).for_each(|tile| _ = rig.sender.send(&cue(((n + tile) % 36) as u16, Instant::START)));
         // `pull` fails if anything is allocated.
         assert!(n < 10 || !is_silent(&card.pull(88)));
@@ -253,8 +254,9 @@ fn a7_nonsense_becomes_silence_and_is_counted() {
         cue.click.modes[0].frequency_hz = monster;
         rig.sender.send(&cue);
     }
-    let rubs: Rubs = monsters.into_iter().zip(0..).map(|(monster, foot)| rub(foot, monster)).collect();
-    rig.sender.rubs(&rubs);
+    let sustained: SustainedCues =
+        monsters.into_iter().zip(0..).map(|(monster, foot)| sustained_cue(foot, monster)).collect();
+    rig.sender.sustain(&sustained);
     for _ in 0..20 {
         let block = card.pull::<f32>(480);
         assert!(block.iter().all(|sample| sample.is_finite() && sample.abs() <= 1.0));
@@ -262,7 +264,7 @@ fn a7_nonsense_becomes_silence_and_is_counted() {
     let counters = rig.sender.counters();
     assert!(counters.refused + counters.not_finite + counters.overloaded >= 7, "{counters:?}");
     // The voices next to them are still heard.
-    rig.sender.rubs(&Rubs::new());
+    rig.sender.sustain(&SustainedCues::new());
     (0..10).for_each(|_| _ = card.pull::<f32>(480));
     rig.sender.send(&cue(35, Instant::START));
     assert!(!is_silent(&card.pull(480)));
@@ -279,16 +281,16 @@ fn a8_a_full_queue_gives_up_the_oldest_clicks_and_never_the_stop() {
         rig.sender.send(&cue(if n < 44 { 0 } else { 1 + n % 35 }, Instant::START));
     }
     card.pull::<f32>(1);
-    rig.sender.rubs(&Rubs::new());
+    rig.sender.sustain(&SustainedCues::new());
     let block = card.pull::<f32>(480);
     let felt = |tile: usize| !is_silent(&block.iter().skip(tile).step_by(36).copied().collect::<Vec<_>>());
     assert_eq!(rig.sender.counters().dropped, 44);
-    assert!(!felt(0) && (1..36).all(felt), "the oldest are given up");
+    assert!(!felt(0) && (1..36).all(felt), "the oldest are evicted");
     (0..300).for_each(|_| _ = rig.sender.send(&cue(0, Instant::START)));
     rig.sender.silence();
     // 5 ms to fade out.
     card.pull::<f32>(480);
-    assert!(is_silent(&card.pull(4800)), "stop is obeyed though the queue is full");
+    assert!(is_silent(&card.pull(4800)), "stop works though the queue is full");
 }
 
 #[test]
@@ -315,7 +317,7 @@ fn a10_another_default_device_is_none_of_our_business() {
     assert_eq!((other.opened(), rig.status().state), (0, DeviceState::Lost));
 }
 
-fn rub(foot: u32, speed_m_s: f32) -> Rub {
+fn sustained_cue(foot: u32, speed_m_s: f32) -> SustainedCue {
     let friction = Friction {
         level: Newtons(3.0),
         low_hz: 80.0,
@@ -324,5 +326,12 @@ fn rub(foot: u32, speed_m_s: f32) -> Rub {
         full_force: Newtons(400.0),
     };
     let spots = [Spot { tile: foot as u16, weight: 1.0 }].into_iter().collect();
-    Rub { key: foot, spots, effect: friction.into(), speed_m_s, force: Newtons(300.0), ..Rub::default() }
+    SustainedCue {
+        key: foot,
+        spots,
+        effect: friction.into(),
+        speed_m_s,
+        force: Newtons(300.0),
+        ..SustainedCue::default()
+    }
 }

@@ -36,7 +36,7 @@ fn a_rebooted_board_is_stale_once_and_back_in_step() {
     assert_eq!(frames.last().unwrap().samples[1], 5199.0);
     assert_eq!(frames.len(), 200);
     let counters = assembler.counters();
-    assert_eq!((counters.restarts, counters.doubtful), (1, 2));
+    assert_eq!((counters.restarts, counters.out_of_order), (1, 2));
 }
 
 #[test]
@@ -79,7 +79,7 @@ fn crystals_200_ppm_apart_slip_now_and_then_and_lose_nothing_else() {
     assert!((59_990..=60_012).contains(&frames.len()), "{}", frames.len());
     let counters = assembler.counters();
     assert!((22..=26).contains(&counters.slips), "{counters:?}");
-    assert_eq!((counters.lost, counters.restarts, counters.doubtful), (0, 0, 0));
+    assert_eq!((counters.lost, counters.restarts, counters.out_of_order), (0, 0, 0));
     assert!(counters.late <= 6, "{counters:?}");
     assert!((11..=13).contains(&assembler.board(2).unwrap().slips));
     assert!((-13..=-11).contains(&assembler.board(0).unwrap().slips));

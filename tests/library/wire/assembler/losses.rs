@@ -87,7 +87,7 @@ fn silence_is_shown_even_if_nobody_polled_during_it() {
 }
 
 #[test]
-fn what_waits_for_a_board_is_given_up_when_time_passes() {
+fn what_waits_for_a_board_is_passed_on_when_time_passes() {
     let mut assembler = assembler();
     feed(&mut assembler, steady(0, 10));
     assert_eq!(feed(&mut assembler, [packet(0, 10, 10), packet(1, 10, 10)]), []);

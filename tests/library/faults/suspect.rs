@@ -11,7 +11,7 @@ use super::bench::{BUTTON, Bench, foot};
 use super::desk::{at_the_map, clicks, quality, sensor, tile_of, trouble};
 
 #[test]
-fn s6_fifty_newtons_out_of_nowhere_are_doubted_at_once_and_press_nothing() {
+fn s6_fifty_newtons_out_of_nowhere_are_suspect_at_once_and_press_nothing() {
     for newtons in [50.0, 150.0, -30.0] {
         for corner in Corner::ALL {
             let mut walker = at_the_map();

@@ -4,7 +4,7 @@ use super::Band;
 
 /// What was measured of rendered samples.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Heard {
+pub struct Analysis {
     /// Highest absolute sample.
     pub peak: f32,
     /// Root mean square over all of it.
@@ -23,9 +23,9 @@ pub struct Heard {
     pub bin_hz: f32,
 }
 
-/// Listens to `samples`, `sample_rate` to the second; `None` of silence or of samples that are not finite.
+/// Measures `samples`, `sample_rate` to the second; `None` of silence or of samples that are not finite.
 #[must_use]
-pub fn heard(samples: &[f32], sample_rate: f32, band: Band) -> Option<Heard> {
+pub fn analyse(samples: &[f32], sample_rate: f32, band: Band) -> Option<Analysis> {
     let peak = samples.iter().fold(0.0_f32, |peak, sample| peak.max(sample.abs()));
     if peak <= 0.0 || !samples.iter().all(|sample| sample.is_finite()) {
         return None;
@@ -39,7 +39,7 @@ pub fn heard(samples: &[f32], sample_rate: f32, band: Band) -> Option<Heard> {
     let all = sum(&|_| true);
     let weighted: f64 = spectrum.iter().enumerate().map(|(bin, power)| f64::from(hz(bin)) * power).sum();
     let loudest = (0..spectrum.len()).max_by(|a, b| spectrum[*a].total_cmp(&spectrum[*b])).unwrap_or(0);
-    Some(Heard {
+    Some(Analysis {
         peak,
         rms: (square / samples.len() as f64).sqrt() as f32,
         within: (sum(&|hz| band.contains(hz)) / all) as f32,
@@ -116,17 +116,17 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_sine_is_heard_where_it_is() {
+    fn a_sine_is_found_where_it_is() {
         let sine: Vec<f32> =
             (0..4800).map(|n| 3.0 * (TAU * 200.0 * f64::from(n) / 48e3).sin() as f32).collect();
-        let heard = heard(&sine, 48e3, Band::USEFUL).unwrap();
-        assert!((heard.peak - 3.0).abs() < 0.01 && (heard.rms - 2.121).abs() < 0.01);
-        assert!((heard.loudest_hz - 200.0).abs() < 6.0, "{}", heard.loudest_hz);
-        assert!(heard.within > 0.98);
+        let found = analyse(&sine, 48e3, Band::USEFUL).unwrap();
+        assert!((found.peak - 3.0).abs() < 0.01 && (found.rms - 2.121).abs() < 0.01);
+        assert!((found.loudest_hz - 200.0).abs() < 6.0, "{}", found.loudest_hz);
+        assert!(found.within > 0.98);
         let above: Vec<f32> = (0..4800).map(|n| (TAU * 2000.0 * f64::from(n) / 48e3).sin() as f32).collect();
-        assert!(super::heard(&above, 48e3, Band::USEFUL).unwrap().within < 0.02);
-        assert_eq!(super::heard(&[0.0; 100], 48e3, Band::USEFUL), None);
-        assert_eq!(super::heard(&[f32::NAN; 100], 48e3, Band::USEFUL), None);
+        assert!(super::analyse(&above, 48e3, Band::USEFUL).unwrap().within < 0.02);
+        assert_eq!(super::analyse(&[0.0; 100], 48e3, Band::USEFUL), None);
+        assert_eq!(super::analyse(&[f32::NAN; 100], 48e3, Band::USEFUL), None);
     }
 
     #[test]
@@ -135,7 +135,7 @@ mod tests {
             .map(|n| ((-f64::from(n) / 48e3 / 0.05).exp() * (TAU * 200.0 * f64::from(n) / 48e3).sin()) as f32)
             .collect();
         // 0.05 s times the logarithm of ten.
-        let heard = heard(&fading, 48e3, Band::USEFUL).unwrap();
-        assert!((heard.decay_s - 0.115).abs() < 0.011, "{}", heard.decay_s);
+        let found = analyse(&fading, 48e3, Band::USEFUL).unwrap();
+        assert!((found.decay_s - 0.115).abs() < 0.011, "{}", found.decay_s);
     }
 }

@@ -15,10 +15,10 @@ use crate::floor::Rect;
 /// A whole file.
 #[derive(Debug, Deserialize)]
 #[serde(rename = "Scenario", deny_unknown_fields)]
-pub(super) struct Written {
+pub(super) struct ScenarioDefinition {
     pub(super) title: String,
     #[serde(default)]
-    pub(super) person: Body,
+    pub(super) person: PersonFields,
     pub(super) steps: Vec<Step>,
     #[serde(default)]
     pub(super) others: Vec<Other>,
@@ -29,20 +29,20 @@ pub(super) struct Written {
 #[serde(rename = "Other", deny_unknown_fields)]
 pub(super) struct Other {
     #[serde(default)]
-    pub(super) person: Body,
+    pub(super) person: PersonFields,
     pub(super) steps: Vec<Step>,
 }
 
 /// A person's measures.
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
 #[serde(rename = "person", deny_unknown_fields, default)]
-pub(super) struct Body {
+pub(super) struct PersonFields {
     pub(super) mass_kg: f32,
     pub(super) foot_m: f32,
     pub(super) speed_m_s: f32,
 }
 
-impl Default for Body {
+impl Default for PersonFields {
     fn default() -> Self {
         let person = super::Person::default();
         Self { mass_kg: person.mass_kg, foot_m: person.foot_length_m, speed_m_s: person.speed_m_s }
@@ -152,7 +152,7 @@ const LARGEST_FILE: usize = 1 << 20;
 /// A number in a file, and what it may be.
 type Number = (&'static str, f32, RangeInclusive<f32>);
 
-impl Body {
+impl PersonFields {
     fn numbers(&self) -> [Number; 3] {
         [
             ("mass_kg", self.mass_kg, 10.0..=300.0),
@@ -253,13 +253,13 @@ impl Places {
 }
 
 /// A file read and each number in it checked, with the places of all steps: the first person's, then the others'.
-pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<ScenarioProblem>> {
+pub(super) fn read(text: &str) -> Result<(ScenarioDefinition, Vec<Vec<Places>>), Vec<ScenarioProblem>> {
     if text.len() > LARGEST_FILE {
         return Err(vec![Place { line: 1, column: 1 }.problem("the file is larger than 1 MB".into())]);
     }
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let options = Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let written: Written = options.from_str(text).map_err(|error| {
+    let definition: ScenarioDefinition = options.from_str(text).map_err(|error| {
         let start = error.span.start;
         vec![Place { line: start.line, column: start.col }.problem(error.code.to_string())]
     })?;
@@ -269,9 +269,9 @@ pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<Scenar
     })?;
     let root = document.value.as_ref().map(fields).unwrap_or_default();
     let mut casts = vec![places_of_steps(root)];
-    let mut bodies = vec![(written.person, places_of(field(root, "person")))];
+    let mut bodies = vec![(definition.person, places_of(field(root, "person")))];
     let others = field(root, "others").map(items).unwrap_or_default();
-    for (other, expr) in written.others.iter().zip(others) {
+    for (other, expr) in definition.others.iter().zip(others) {
         casts.push(places_of_steps(fields(expr)));
         bodies.push((other.person, places_of(field(fields(expr), "person"))));
     }
@@ -279,13 +279,14 @@ pub(super) fn read(text: &str) -> Result<(Written, Vec<Vec<Places>>), Vec<Scenar
     for (body, places) in &bodies {
         problems.extend(body.numbers().into_iter().filter_map(|number| out_of_range(number, places)));
     }
-    let scripts = std::iter::once(&written.steps).chain(written.others.iter().map(|other| &other.steps));
+    let scripts =
+        std::iter::once(&definition.steps).chain(definition.others.iter().map(|other| &other.steps));
     for (steps, places) in scripts.zip(&casts) {
         for (step, places) in steps.iter().zip(places) {
             problems.extend(step.numbers().into_iter().filter_map(|number| out_of_range(number, places)));
         }
     }
-    if problems.is_empty() { Ok((written, casts)) } else { Err(problems) }
+    if problems.is_empty() { Ok((definition, casts)) } else { Err(problems) }
 }
 
 fn out_of_range((name, value, range): Number, places: &Places) -> Option<ScenarioProblem> {

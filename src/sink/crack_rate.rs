@@ -11,7 +11,7 @@ const BURST: u32 = 10;
 
 /// Lets through as many crack events as other programs can follow; a stamp makes hundreds.
 #[derive(Debug, Default)]
-pub(super) struct Crackle {
+pub(super) struct CrackRateLimiter {
     /// The time up to which messages are paid for.
     paid: Instant,
     /// Events left out since the last message.
@@ -35,7 +35,7 @@ pub struct CrackNews {
     pub skipped: u32,
 }
 
-impl Crackle {
+impl CrackRateLimiter {
     /// What is to be told of `event`; `None` if it opened no crack, or has to wait its turn and is only counted.
     pub(super) fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
         let seed = event.seed?;
@@ -75,23 +75,23 @@ mod tests {
 
     #[test]
     fn a_stamp_s_first_cracks_are_told_at_once_and_the_others_counted() {
-        let mut crackle = Crackle::default();
+        let mut limiter = CrackRateLimiter::default();
         // 100 cracks within 20 ms, after a second of rest.
         let told: Vec<CrackNews> =
-            (0..100).filter_map(|n| crackle.news(&event(1_000_000 + n * 200, Some(3)))).collect();
+            (0..100).filter_map(|n| limiter.news(&event(1_000_000 + n * 200, Some(3)))).collect();
         assert!((10..=16).contains(&told.len()), "{}", told.len());
         assert_eq!(told[0].at, Instant::from_micros(1_000_000));
-        let later = crackle.news(&event(2_000_000, Some(4))).unwrap();
+        let later = limiter.news(&event(2_000_000, Some(4))).unwrap();
         let skipped: u32 = told.iter().map(|news| news.skipped).sum::<u32>() + later.skipped;
         assert_eq!(skipped as usize + told.len(), 100, "each one is told or counted");
         assert_eq!((later.seed, later.x_m, later.y_m), (4, 0.5, 0.75));
     }
 
     #[test]
-    fn a_steady_crackle_is_told_200_times_a_second() {
-        let mut crackle = Crackle::default();
-        let told = (0..10_000).filter_map(|n| crackle.news(&event(n * 1000, Some(1)))).count();
+    fn steady_cracking_is_told_200_times_a_second() {
+        let mut limiter = CrackRateLimiter::default();
+        let told = (0..10_000).filter_map(|n| limiter.news(&event(n * 1000, Some(1)))).count();
         assert!((1990..=2015).contains(&told), "{told} in ten seconds");
-        assert_eq!(crackle.news(&event(20_000_000, None)), None, "snow opens no cracks");
+        assert_eq!(limiter.news(&event(20_000_000, None)), None, "snow opens no cracks");
     }
 }

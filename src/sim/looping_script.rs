@@ -8,12 +8,12 @@ use crate::units::Instant;
 /// For a window, which stays open after the last step: feet that come back are
 /// better than a floor that falls silent.
 #[derive(Debug)]
-pub struct Encore {
+pub struct LoopingScript {
     script: Script,
     pause: Duration,
 }
 
-impl Encore {
+impl LoopingScript {
     /// `script` round and round; the floor stays empty for `pause` before each new round.
     #[must_use]
     pub fn new(script: Script, pause: Duration) -> Self {
@@ -21,7 +21,7 @@ impl Encore {
     }
 }
 
-impl FootDriver for Encore {
+impl FootDriver for LoopingScript {
     fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool {
         feet.clear();
         let round = (self.script.duration() + self.pause).as_micros() as u64;
@@ -47,10 +47,10 @@ mod tests {
         let script = stroll.resolve(&pond, &geometry).unwrap();
         let (length, pause) = (script.duration(), Duration::from_secs(2));
         let middle = Duration::from_secs(length.as_secs() / 2);
-        let mut encore = Encore::new(script, pause);
+        let mut looping = LoopingScript::new(script, pause);
         let mut feet_at = |at: Duration| {
             let mut feet = Vec::new();
-            assert!(encore.feet(Instant::START + at, &mut feet), "it never ends");
+            assert!(looping.feet(Instant::START + at, &mut feet), "it never ends");
             feet
         };
         let once = feet_at(middle);

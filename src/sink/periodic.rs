@@ -1,4 +1,4 @@
-//! Contacts at a steady beat, always the latest: between the engine's thread and one that sends.
+//! Contacts at a steady rate, always the latest: between the engine's thread and one that sends.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Mutex, PoisonError, TryLockError};
@@ -12,7 +12,7 @@ const PERIOD: Duration = Duration::from_millis(10);
 
 /// When contacts are to be reported.
 #[derive(Debug)]
-pub(super) struct Beat {
+pub(super) struct PeriodicSender {
     /// How often it is said that nobody is there; `None` for once.
     idle: Option<Duration>,
     /// When the next report is due; `None` while nobody is on the floor.
@@ -21,8 +21,8 @@ pub(super) struct Beat {
     told_empty: Option<Instant>,
 }
 
-impl Beat {
-    /// A beat that says once, or every `idle`, that nobody is on the floor.
+impl PeriodicSender {
+    /// A sender that says once, or every `idle`, that nobody is on the floor.
     pub(super) const fn new(idle: Option<Duration>) -> Self {
         Self { idle, due: None, told_empty: None }
     }
@@ -44,7 +44,7 @@ impl Beat {
             self.told_empty = Some(at);
             return;
         }
-        // Keep the beat, unless it has been missed.
+        // Keep the period, unless a report is late.
         let next = self.due.unwrap_or(at) + PERIOD;
         self.due = Some(if next > at { next } else { at + PERIOD });
     }
@@ -94,13 +94,13 @@ mod tests {
 
     /// The milliseconds at which a report is made while somebody is there from 5 to 35 ms.
     fn reports(idle: Option<Duration>, until: u64) -> Vec<u64> {
-        let mut beat = Beat::new(idle);
+        let mut periodic = PeriodicSender::new(idle);
         let mut reports = Vec::new();
         for ms in 0..until {
             let here = if (5..35).contains(&ms) { vec![Contact::default()] } else { vec![] };
             let at = Instant::from_millis(ms);
-            if beat.is_due(at, &here) {
-                beat.reported(at, &here);
+            if periodic.is_due(at, &here) {
+                periodic.reported(at, &here);
                 reports.push(ms);
             }
         }
@@ -108,7 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_beat_is_100_hz_and_ends_once_or_goes_on_slowly() {
+    fn the_rate_is_100_hz_and_ends_once_or_goes_on_slowly() {
         assert_eq!(reports(None, 1000), [5, 15, 25, 35]);
         assert_eq!(reports(Some(Duration::from_millis(300)), 1000), [0, 5, 15, 25, 35, 335, 635, 935]);
     }

@@ -3,12 +3,12 @@ use crate::floor::{Geometry, TileId};
 
 /// Which tile the side panel shows: the one under the foot that works, or one that was pinned.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Looked {
+pub(super) struct Selection {
     tile: TileId,
     pinned: bool,
 }
 
-impl Looked {
+impl Selection {
     /// The middle of the floor, until a foot comes.
     pub(super) fn new(geometry: &Geometry) -> Self {
         Self { tile: TileId::new(geometry.columns() / 2, geometry.rows() / 2), pinned: false }
@@ -57,20 +57,20 @@ mod tests {
     #[test]
     fn follows_the_working_foot_and_stays_when_it_is_gone() {
         let layout = map();
-        let mut looked = Looked::new(&Geometry::default());
-        assert_eq!(looked.tile(), TileId::new(3, 3));
+        let mut selection = Selection::new(&Geometry::default());
+        assert_eq!(selection.tile(), TileId::new(3, 3));
         // The standing foot is heavier, but the other one is the cursor.
-        looked.follow(&pressing(&layout));
-        assert_eq!(looked.tile(), TileId::new(0, 4));
-        looked.follow(&at_rest(&layout));
-        assert_eq!(looked.tile(), TileId::new(0, 4));
-        looked.pin(TileId::new(5, 5));
+        selection.follow(&pressing(&layout));
+        assert_eq!(selection.tile(), TileId::new(0, 4));
+        selection.follow(&at_rest(&layout));
+        assert_eq!(selection.tile(), TileId::new(0, 4));
+        selection.pin(TileId::new(5, 5));
         let mut elsewhere = at_rest(&layout);
         step_on(&mut elsewhere, 3, Vec2::new(1.0, 1.0), 300.0, Vec2::ZERO);
-        looked.follow(&elsewhere);
-        assert_eq!(looked.pinned(), Some(TileId::new(5, 5)));
-        looked.unpin();
-        looked.follow(&elsewhere);
-        assert_eq!(looked.tile(), TileId::new(3, 3));
+        selection.follow(&elsewhere);
+        assert_eq!(selection.pinned(), Some(TileId::new(5, 5)));
+        selection.unpin();
+        selection.follow(&elsewhere);
+        assert_eq!(selection.tile(), TileId::new(3, 3));
     }
 }

@@ -9,19 +9,19 @@ use rand_pcg::Pcg64Mcg;
 /// *already sent*: a damaged copy is then recognised as a duplicate, where
 /// damage made beforehand could be mistaken for the real thing.
 #[derive(Clone, Debug)]
-pub struct Garbler {
+pub struct Corruptor {
     rng: Pcg64Mcg,
 }
 
-impl Garbler {
-    /// A garbler with its own random numbers.
+impl Corruptor {
+    /// A corruptor with its own random numbers.
     #[must_use]
     pub fn new(seed: u64) -> Self {
         Self { rng: Pcg64Mcg::seed_from_u64(seed) }
     }
 
     /// A datagram of a kind chosen at random, made from `model` where the kind needs one.
-    pub fn garble(&mut self, model: &[u8]) -> Vec<u8> {
+    pub fn corrupt(&mut self, model: &[u8]) -> Vec<u8> {
         match self.rng.random_range(0..8) {
             0 => self.truncate(model),
             1 | 2 => self.flip(model),
@@ -138,13 +138,13 @@ mod tests {
     #[test]
     fn the_same_seed_makes_the_same_garbage() {
         let make = |seed| {
-            let mut garbler = Garbler::new(seed);
-            (0..100).map(|_| garbler.garble(&[7; 60])).collect::<Vec<_>>()
+            let mut corruptor = Corruptor::new(seed);
+            (0..100).map(|_| corruptor.corrupt(&[7; 60])).collect::<Vec<_>>()
         };
         assert_eq!(make(5), make(5));
         assert_ne!(make(5), make(6));
-        // An empty model is no trap either.
-        let mut garbler = Garbler::new(1);
-        (0..100).for_each(|_| drop(garbler.garble(&[])));
+        // An empty model is not a trap either.
+        let mut corruptor = Corruptor::new(1);
+        (0..100).for_each(|_| drop(corruptor.corrupt(&[])));
     }
 }

@@ -6,7 +6,7 @@ use crate::floor::{Corner, Geometry};
 
 /// What is not known about the sensors, however well they are calibrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SensorDoubt {
+pub struct SensorUncertainty {
     /// Standard deviation of a sensor's zero, in newtons.
     pub offset_n: f32,
     /// Standard deviation of a sensor's gain after calibration under light loads, as a share of the reading; half as
@@ -28,16 +28,16 @@ const LIGHT: f32 = 0.25;
 /// a map: few presses teach a sensor how it reads near the end of its range.
 const HEAVY_N: f32 = 102.0;
 
-/// The load from which on the gain of a tile without a map is as doubtful as it gets, in newtons.
+/// The load from which on the gain of a tile without a map is as uncertain as it gets, in newtons.
 const STRAYS_N: f32 = 60.0;
 
-/// How much more doubtful it is there than under a light load, as a share (both by the same coverage).
+/// How much more uncertain it is there than under a light load, as a share (both by the same coverage).
 const STRAYS: f32 = 0.55;
 
-/// The load from which on it is no longer the share that is as doubtful, but the newtons: a law is fitted to those.
+/// The load from which on it is not the share but the newtons that stay as uncertain: a law is fitted to those.
 const FITTED_N: f32 = 180.0;
 
-/// The load from which on a part may be compressing towards its end, in newtons, and what it is then doubted by for each
+/// The load from which on a part may be compressing towards its end, in newtons, and how much its standard deviation then grows for each
 /// newton more.
 ///
 /// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250 N and
@@ -49,7 +49,7 @@ const COMPRESSES: f32 = 0.4;
 /// (by the same coverage, of feet of 50 N).
 const UNSEEN_N: f32 = 0.27;
 
-impl Default for SensorDoubt {
+impl Default for SensorUncertainty {
     /// A ninth of a newton of offset, 10.7 % of gain: what remains once an empty floor's zeros have been followed,
     /// and after a calibration.
     ///
@@ -62,7 +62,7 @@ impl Default for SensorDoubt {
     }
 }
 
-impl SensorDoubt {
+impl SensorUncertainty {
     /// Of sensors that neither lag nor creep, such as load cells.
     #[must_use]
     pub fn without_memory() -> Self {
@@ -70,15 +70,15 @@ impl SensorDoubt {
     }
 
     /// Covariance, in square metres, of a centroid at `point` that carries `force` newtons in all, as far as the
-    /// sensors of `tile` are to blame; those of all its tiles add up.
+    /// sensors of `tile` cause; those of all its tiles add up.
     ///
     /// `share` of the tile's load is the contact's own: its gain errors count for that part.
     ///
     /// # Source
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
-    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + (memory fᵢ)² + noise² + vague², the
+    /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + (memory fᵢ)² + noise² + extra², the
     /// last for a sensor that is estimated, not calibrated or at the end of its range. The gain is that of
-    /// [`SensorDoubt::gain`] under the sensor's load; on a tile with a position map it follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
+    /// [`SensorUncertainty::gain`] under the sensor's load; on a tile with a position map it follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
     #[inline]
     pub fn covariance(
@@ -96,12 +96,12 @@ impl SensorDoubt {
         let x = Vec4::from_array(arms.map(|arm| arm.x));
         let y = Vec4::from_array(arms.map(|arm| arm.y));
         let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
-        let vague = share * Vec4::from_array(tile.vague);
+        let extra = share * Vec4::from_array(tile.extra_sigma);
         let offset = Vec4::splat(self.offset_n);
         let noise = Vec4::splat(tile.noise_n * tile.noise_n);
         let memory = share * self.memory * Vec4::from_array(tile.corners);
         let variance =
-            (offset * offset + misread * misread + memory * memory + vague * vague + noise) * scale;
+            (offset * offset + misread * misread + memory * memory + extra * extra + noise) * scale;
         Covariance {
             xx: strayed + (x * x).dot(variance),
             xy: (x * y).dot(variance),

@@ -9,7 +9,7 @@ use super::push::Pushes;
 /// rendered side by side, where they are needed. A bank that is struck in the
 /// middle of a block is rendered into the mix's row, up to the strike and on from there.
 #[derive(Clone, Debug)]
-pub(super) struct Ringing {
+pub(super) struct ActiveModes {
     banks: Vec<ModalBank>,
     /// What is still striking them.
     pushes: Vec<Pushes>,
@@ -21,7 +21,7 @@ pub(super) struct Ringing {
     side_by_side: Vec<bool>,
 }
 
-impl Ringing {
+impl ActiveModes {
     /// Silent banks for `modes` different modes on each of `channels`.
     pub(super) fn new(sample_rate: u32, channels: usize, modes: usize) -> Self {
         Self {

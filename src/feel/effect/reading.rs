@@ -7,7 +7,7 @@ use ron2::ast::Expr;
 
 use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
 use crate::feel::Click;
-use crate::format::describe::{Description, Shape};
+use crate::format::describe::{Description, FieldType};
 use crate::format::node::{Node, Within};
 use crate::format::number::plain;
 use crate::format::problem::Problem;
@@ -58,9 +58,9 @@ impl Codec<Arc<Effect>> for Played {
         let effect = match node.expr {
             Expr::String(_) => named(node)?,
             Expr::Struct(_) | Expr::AnonStruct(_) | Expr::Unit(_) => {
-                let released = base.filter(|_| node.what == "release").and_then(|base| released(base));
+                let released = base.filter(|_| node.name == "release").and_then(|base| released(base));
                 let base = released.as_ref().or(base.map(|base| &**base));
-                Arc::new(written(node, base, self.0)?)
+                Arc::new(effect_at(node, base, self.0)?)
             }
             _ => return node.mismatch("an effect, by its name or written out"),
         };
@@ -68,7 +68,7 @@ impl Codec<Arc<Effect>> for Played {
             return Some(effect);
         }
         let kind = a(effect.kind.name());
-        let message = match node.what {
+        let message = match node.name {
             "plays" => format!("{kind} can't be part of a sequence"),
             part => format!("{kind} can't be played for `{part}`"),
         };
@@ -80,11 +80,11 @@ impl Codec<Arc<Effect>> for Played {
     }
 
     fn write(&self, effect: &Arc<Effect>) -> Text {
-        effect.written()
+        effect.to_ron()
     }
 
-    fn shape(&self) -> Shape {
-        Shape::Names(self.0.kinds().to_vec())
+    fn shape(&self) -> FieldType {
+        FieldType::Names(self.0.kinds().to_vec())
     }
 
     fn stand_in(&self) -> Arc<Effect> {
@@ -114,7 +114,7 @@ fn named(node: Node<'_>) -> Option<Arc<Effect>> {
 /// The effect that is written out at `node`; what it leaves out is `base`'s if that is of the same kind.
 ///
 /// Fields without a name are what the base is, or what is `used` so most often.
-pub(crate) fn written(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
+pub(crate) fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
     let name = match node.expr {
         Expr::Struct(variant) => {
             let written = &*variant.name.name;
@@ -126,7 +126,7 @@ pub(crate) fn written(node: Node<'_>, base: Option<&Effect>, used: Use) -> Optio
         }
         _ => base.map_or(used.kinds()[0], |base| base.kind.name()),
     };
-    let releases = node.what == "release";
+    let releases = node.name == "release";
     let mut fields = node.fields(name)?;
     let from = match fields.take("from") {
         Some(node) => {
@@ -143,7 +143,7 @@ pub(crate) fn written(node: Node<'_>, base: Option<&Effect>, used: Use) -> Optio
     };
     let base = from.as_deref().or(base).filter(|base| base.kind.name() == name);
     let manner = Manner::read_fields(&mut fields, base.map(|base| &base.manner));
-    // A band that can't be used is told of; what else is wrong is looked for within the usual one.
+    // A band that can't be used is told of; what else is wrong is searched for within the usual one.
     let outer = node.reader.keep_within(Some(manner.band.as_bounds()));
     let kind = EffectKind::read_fields(name, &mut fields, base.map(|base| &base.kind));
     node.reader.keep_within(outer);
@@ -177,7 +177,7 @@ fn a(name: &str) -> String {
 
 impl Effect {
     /// As it is written where it is played.
-    pub(crate) fn written(&self) -> Text {
+    pub(crate) fn to_ron(&self) -> Text {
         let mut entries: Vec<Entry> = Vec::new();
         self.kind.write_fields(&mut entries);
         self.manner.write_fields(&mut entries);
@@ -192,13 +192,13 @@ impl Effect {
 }
 
 /// A band of frequencies, in hertz.
-pub(super) struct WrittenBand;
+pub(super) struct BandFields;
 
 const BAND: Pair = Pair { each: HERTZ, pattern: "(lowest, highest)", parts: ["lowest", "highest"] };
 
 const HERTZ: Num = num(20.0..=1000.0);
 
-impl Codec<Band> for WrittenBand {
+impl Codec<Band> for BandFields {
     fn read(&self, node: Node<'_>, _: Option<&Band>) -> Option<Band> {
         let [low_hz, high_hz] = BAND.read(node, None)?;
         if high_hz < 1.5 * low_hz {
@@ -214,7 +214,7 @@ impl Codec<Band> for WrittenBand {
         BAND.write(&[band.low_hz, band.high_hz])
     }
 
-    fn shape(&self) -> Shape {
+    fn shape(&self) -> FieldType {
         Codec::<[f32; 2]>::shape(&BAND)
     }
 

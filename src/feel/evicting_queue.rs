@@ -1,4 +1,4 @@
-//! A bounded queue between two threads that never waits and, when it is full, gives up its oldest items.
+//! A bounded queue between two threads that never waits and, when it is full, evicts its oldest items.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use rtrb::{Consumer, Producer, RingBuffer};
 /// already the reader's. So items are numbered: what does not fit waits with
 /// the writer, who also says which number is the oldest still worth reading,
 /// and the reader passes over what is older.
-pub(super) fn newest<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
+pub(super) fn evicting_queue<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
     let capacity = capacity.max(1);
     let (producer, consumer) = RingBuffer::new(capacity);
     let shared = Arc::new(Shared::default());
@@ -30,7 +30,7 @@ pub(super) fn newest<T>(capacity: usize) -> (Writer<T>, Reader<T>) {
 struct Shared {
     /// Number of the oldest item that is still worth reading.
     oldest: AtomicU64,
-    /// Items given up so far.
+    /// Items evicted so far.
     dropped: AtomicU64,
 }
 
@@ -52,7 +52,7 @@ pub(super) struct Writer<T> {
 }
 
 impl<T> Writer<T> {
-    /// Puts an item in; if the queue is full, its oldest one is given up.
+    /// Puts an item in; if the queue is full, its oldest one is evicted.
     pub(super) fn push(&mut self, item: T) {
         let number = self.announce();
         self.hand_over(number, item);
@@ -94,7 +94,7 @@ impl<T> Writer<T> {
         number
     }
 
-    /// Items given up so far because newer ones took their place.
+    /// Items evicted so far because newer ones took their place.
     pub(super) fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
@@ -123,7 +123,7 @@ impl<T> Reader<T> {
         }
     }
 
-    /// Items given up so far because newer ones took their place.
+    /// Items evicted so far because newer ones took their place.
     pub(super) fn dropped(&self) -> u64 {
         self.shared.dropped.load(Ordering::Relaxed)
     }
@@ -149,7 +149,7 @@ mod tests {
 
     #[test]
     fn a_queue_that_nobody_reads_keeps_the_newest() {
-        let (mut writer, mut reader) = newest(4);
+        let (mut writer, mut reader) = evicting_queue(4);
         (0..10).for_each(|item| writer.push(item));
         // The ring still holds the first four, which are too old now; the writer holds the last four.
         assert!(drain(&mut reader).is_empty());
@@ -174,7 +174,7 @@ mod tests {
     /// store and its ring operation, the reader's whole pop (which loads once
     /// and then takes). The ring itself is trusted to be linearisable.
     #[test]
-    fn a8_in_every_interleaving_order_is_kept_and_only_the_oldest_are_given_up() {
+    fn a8_in_every_interleaving_order_is_kept_and_only_the_oldest_are_evicted() {
         const CAPACITY: usize = 2;
         let writing = [Step::Announce, Step::HandOver].repeat(5).into_iter().chain([Step::Flush]);
         let writing: Vec<Step> = writing.collect();
@@ -183,7 +183,7 @@ mod tests {
         // A set bit is a step of the reader.
         let steps = writing.len() + reads;
         for order in (0_u32..1 << steps).filter(|order| order.count_ones() as usize == reads) {
-            let (mut writer, mut reader) = newest::<u32>(CAPACITY);
+            let (mut writer, mut reader) = evicting_queue::<u32>(CAPACITY);
             let mut todo = writing.iter();
             let (mut sent, mut number, mut got) = (0, 0, Vec::new());
             for step in 0..steps {

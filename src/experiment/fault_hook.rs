@@ -6,7 +6,7 @@ use crate::wire::Readings;
 /// What goes wrong while people are on an experiment's floor; every method does nothing unless it is written.
 ///
 /// Milliseconds are those of the experiment's scene, from 1.
-pub trait Mishap {
+pub trait FaultHook {
     /// Called before each millisecond; may break sensors.
     fn before(&mut self, milli: u64, rig: &mut Rig) {
         let _ = (milli, rig);
@@ -29,4 +29,4 @@ pub trait Mishap {
 }
 
 /// Nothing goes wrong.
-impl Mishap for () {}
+impl FaultHook for () {}

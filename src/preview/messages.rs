@@ -13,7 +13,7 @@ const KEPT: usize = 500;
 const NOTICES: usize = 4;
 
 /// What other threads said, sorted.
-pub(super) struct Inbox {
+pub(super) struct Messages {
     events: Receiver<WidgetEvent>,
     layouts: Receiver<LayoutNews>,
     notices: Receiver<String>,
@@ -36,13 +36,13 @@ pub(super) struct Inbox {
 pub(super) struct FileNote {
     /// The file's name.
     pub(super) name: String,
-    /// When it was heard, on the window's clock.
+    /// When it was reported, on the window's clock.
     pub(super) at_s: f64,
     /// All problems; `None` if it was loaded.
     pub(super) diagnostics: Option<String>,
 }
 
-impl Inbox {
+impl Messages {
     pub(super) fn new(
         layout: Arc<Layout>,
         events: Receiver<WidgetEvent>,
@@ -131,64 +131,64 @@ mod tests {
     #[test]
     fn a_layout_is_shown_once_snapshots_belong_to_it() {
         let (news, layouts) = channel();
-        let mut inbox = Inbox::new(named("old"), channel().1, layouts, channel().1);
+        let mut messages = Messages::new(named("old"), channel().1, layouts, channel().1);
         for (title, revision) in [("newer", 2), ("newest", 3)] {
             let name = "map.ron".into();
             news.send(LayoutNews::Loaded { layout: named(title), revision, name }).unwrap();
         }
-        inbox.receive(1.0, 1);
-        assert_eq!(inbox.layout.title, "old", "a foot was still on it");
-        inbox.receive(1.1, 2);
-        assert_eq!(inbox.layout.title, "newer");
-        inbox.receive(1.2, 9);
-        assert_eq!(inbox.layout.title, "newest");
+        messages.receive(1.0, 1);
+        assert_eq!(messages.layout.title, "old", "a foot was still on it");
+        messages.receive(1.1, 2);
+        assert_eq!(messages.layout.title, "newer");
+        messages.receive(1.2, 9);
+        assert_eq!(messages.layout.title, "newest");
     }
 
     #[test]
     fn a_bad_layout_leaves_the_good_one_until_a_good_one_comes() {
         let (news, layouts) = channel();
-        let mut inbox = Inbox::new(named("good"), channel().1, layouts, channel().1);
+        let mut messages = Messages::new(named("good"), channel().1, layouts, channel().1);
         let diagnostics = "map.ron:3:9: unknown field".to_owned();
         news.send(LayoutNews::Refused { name: "map.ron".into(), diagnostics: diagnostics.clone() }).unwrap();
-        inbox.receive(1.0, 0);
-        assert_eq!(inbox.layout.title, "good");
-        assert_eq!(inbox.file.as_ref().unwrap().diagnostics, Some(diagnostics));
+        messages.receive(1.0, 0);
+        assert_eq!(messages.layout.title, "good");
+        assert_eq!(messages.file.as_ref().unwrap().diagnostics, Some(diagnostics));
         news.send(LayoutNews::Loaded { layout: named("mended"), revision: 1, name: "map.ron".into() })
             .unwrap();
-        inbox.receive(2.0, 0);
-        assert_eq!(inbox.file.as_ref().unwrap().diagnostics, None);
+        messages.receive(2.0, 0);
+        assert_eq!(messages.file.as_ref().unwrap().diagnostics, None);
     }
 
     #[test]
     fn the_list_of_events_stays_short_and_the_same_notice_is_said_once() {
         let (event, events) = channel();
         let (say, notices) = channel();
-        let mut inbox = Inbox::new(named("it"), events, channel().1, notices);
+        let mut messages = Messages::new(named("it"), events, channel().1, notices);
         for at in 0..2000 {
             event.send(crate::preview::tests::event(at, "home")).unwrap();
             say.send("no sound card".into()).unwrap();
         }
-        inbox.receive(1.0, 0);
-        assert_eq!(inbox.recent.len(), KEPT);
-        assert_eq!(inbox.event_count, 2000);
-        assert_eq!(inbox.recent[0].at, crate::units::Instant::from_millis(1999), "newest first");
-        assert_eq!(inbox.notes, ["no sound card"]);
+        messages.receive(1.0, 0);
+        assert_eq!(messages.recent.len(), KEPT);
+        assert_eq!(messages.event_count, 2000);
+        assert_eq!(messages.recent[0].at, crate::units::Instant::from_millis(1999), "newest first");
+        assert_eq!(messages.notes, ["no sound card"]);
     }
 
     #[test]
     fn a_slider_on_its_way_is_one_line() {
         let (event, events) = channel();
-        let mut inbox = Inbox::new(named("it"), events, channel().1, channel().1);
+        let mut messages = Messages::new(named("it"), events, channel().1, channel().1);
         let moved = |at: u64, id| WidgetEvent {
             kind: EventKind::Changed(Value::Number(at as f32)),
             ..crate::preview::tests::event(at, id)
         };
         let told = [moved(1, "zoom"), moved(2, "zoom"), moved(3, "volume"), moved(4, "zoom")];
         told.into_iter().for_each(|told| event.send(told).unwrap());
-        inbox.receive(1.0, 0);
+        messages.receive(1.0, 0);
         let listed: Vec<_> =
-            inbox.recent.iter().map(|event| (event.at.micros() / 1000, event.id.as_str())).collect();
+            messages.recent.iter().map(|event| (event.at.micros() / 1000, event.id.as_str())).collect();
         assert_eq!(listed, [(4, "zoom"), (3, "volume"), (2, "zoom")]);
-        assert_eq!(inbox.event_count, 4);
+        assert_eq!(messages.event_count, 4);
     }
 }
