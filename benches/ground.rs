@@ -57,7 +57,7 @@ fn ground(criterion: &mut Criterion) {
     let text = builtin_layout("pond").unwrap_or_default();
     let Ok(loaded) = parse_layout(text, "pond", &Kinds::builtin(), &geometry) else { return };
     let frame = ForceFrame::empty(&geometry);
-    let grounds = Grounds::new(&loaded.layout.grounds, &geometry);
+    let grounds = Grounds::new(loaded.layout.grounds.iter().map(|ground| ground.spec), &geometry);
     let mut stamper = Stamper { grounds, geometry, before: frame.clone(), frame, millis: 0 };
     let mut snapshot = Snapshot::default();
     let pieces = |snapshot: &Snapshot| snapshot.grounds.first().map_or(0, |state| state.cracks.len());

@@ -20,6 +20,7 @@ pub mod floor;
 mod format;
 pub mod ground;
 pub mod layout;
+pub mod outgoing;
 #[cfg(feature = "program")]
 pub mod picture;
 #[cfg(feature = "preview")]

@@ -112,7 +112,7 @@ fn report_felt(felt: &FeelCounters) {
     let FeelCounters { dropped, muted, late, unfelt, refused, stolen, .. } = *felt;
     let FeelCounters { not_finite, overloaded, silenced, heated, .. } = *felt;
     let counts = [
-        (dropped, "given up"),
+        (dropped, "dropped"),
         (muted, "muted"),
         (late, "late"),
         (unfelt, "spots without actuator"),
@@ -141,7 +141,7 @@ fn grounds(engine: &Engine) -> Vec<String> {
     grounds
         .map(|(ground, state)| {
             let GroundCounters { events, unfelt, evicted } = state.counters;
-            let cracks = match ground.material {
+            let cracks = match ground.spec.material {
                 Material::Ice(_) => format!(
                     "; pieces of crack {}, seeds {}, evicted {evicted}",
                     state.cracks.len(),
@@ -149,7 +149,10 @@ fn grounds(engine: &Engine) -> Vec<String> {
                 ),
                 Material::Grain(_) | Material::Wood(_) => String::new(),
             };
-            format!("{}: events {events}, too thick to be felt {unfelt}{cracks}.", ground.material.name())
+            format!(
+                "{}: events {events}, too thick to be felt {unfelt}{cracks}.",
+                ground.spec.material.name()
+            )
         })
         .collect()
 }

@@ -71,7 +71,7 @@ impl Engine {
         let interaction = Interaction::new(&layout, &geometry, 0);
         let mut responses = Responses::default();
         responses.begin(&layout, interaction.controls());
-        let grounds = Grounds::new(&layout.grounds, &geometry);
+        let grounds = Grounds::new(layout.grounds.iter().map(|ground| ground.spec), &geometry);
         let cues = Vec::with_capacity(CUES + grounds.most_events());
         Self {
             interaction,
@@ -370,7 +370,7 @@ impl Engine {
             }
         }
         interaction.inherit(&mut self.interaction);
-        let mut grounds = Grounds::new(&layout.grounds, &self.geometry);
+        let mut grounds = Grounds::new(layout.grounds.iter().map(|ground| ground.spec), &self.geometry);
         grounds.inherit(&mut self.grounds);
         self.cues.reserve(CUES + grounds.most_events());
         self.grounds = grounds;

@@ -24,7 +24,7 @@ mod weight;
 
 pub use floor_engine::{Engine, Step};
 pub use page::PageShown;
-pub use snapshot::{FootRole, FootState, LinkState, Snapshot, TileState, WidgetState};
+pub use snapshot::{FootRole, FootState, Snapshot, TileState, WidgetState};
 
 #[cfg(test)]
 mod tests;

@@ -7,7 +7,7 @@ use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Value};
-use crate::wire::LinkCounters;
+use crate::wire::{LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
 ///
@@ -117,18 +117,4 @@ pub enum FootRole {
     Step,
     /// Something left on the floor, ignored until it moves: it has kept still for a minute.
     Object,
-}
-
-/// Whether sensor packets arrive.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum LinkState {
-    /// No packet has come yet.
-    #[default]
-    Waiting,
-    /// Packets arrive from every board.
-    Live,
-    /// Packets arrive, but not from every board.
-    Partial,
-    /// Nothing has come for 100 ms or more; every control is released.
-    Lost,
 }

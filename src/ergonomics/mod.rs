@@ -25,8 +25,8 @@ pub use place_error::{Zone, predicted_error_m};
 pub use rules::{RULES, Rule, rule};
 
 use crate::floor::Floor;
+use crate::format::diagnostic::Severity;
 use crate::layout::{Layout, Widget};
-use crate::schema::Severity;
 
 /// What of a control a finding is about.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -82,7 +82,7 @@ pub fn review(layout: &Layout, floor: &Floor) -> Vec<Finding> {
     findings
 }
 
-/// The control that is looked at, and what was found so far.
+/// The control that is examined, and what was found so far.
 struct Subject<'a> {
     layout: &'a Layout,
     floor: &'a Floor,

@@ -11,7 +11,7 @@ use smallvec::smallvec;
 
 use super::goodness::{Goodness, normal_share};
 use crate::floor::{Geometry, Rect};
-use crate::ground::{CrackRules, EnergyLaw, Fracture, Grounds, IceSpec, Material, Sheet};
+use crate::ground::{CrackRules, EnergyLaw, Fracture, GroundSpec, Grounds, IceSpec, Material, Sheet};
 use crate::layout::{Colour, Ground};
 use crate::sense::{Contact, ContactId, ForceFrame, TileLoad};
 use crate::units::{Instant, Newtons};
@@ -19,9 +19,9 @@ use crate::units::{Instant, Newtons};
 /// One thing that the pond should do.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PondLaw {
-    /// What was looked at.
+    /// What was examined.
     pub what: String,
-    /// How many events, pieces or seeds it was looked at on.
+    /// How many events, pieces or seeds it was examined on.
     pub count: u64,
     /// What the model says, if that is one number.
     pub expected: Option<f64>,
@@ -74,7 +74,7 @@ impl PondLaws {
         let model = Model::of(spec);
         let per_period = *model.expected.last().unwrap_or(&1.0);
         let periods = (events as f64 / per_period.max(1e-9)).ceil().min(1e5) as u64;
-        let mut grounds = Grounds::new(&[pond(*spec, seed, geometry.bounds())], &geometry);
+        let mut grounds = Grounds::new([pond(*spec, seed, geometry.bounds()).spec], &geometry);
         let place = geometry.centre(geometry.tile_at_index(7));
         let (mut frame, mut previous) = (ForceFrame::empty(&geometry), ForceFrame::empty(&geometry));
         let (mut whole, mut energies) = (Vec::new(), Vec::new());
@@ -230,7 +230,8 @@ impl fmt::Display for PondLaws {
 /// Ice of these numbers over `area`.
 pub(super) fn pond(spec: IceSpec, seed: u32, area: Rect) -> Ground {
     let (surface, deep) = (Colour::rgb(0x9f, 0xd3, 0xd6), Colour::rgb(0x0b, 0x3a, 0x47));
-    Ground { area, page: None, seed, material: Material::Ice(spec), surface, deep }
+    let spec = GroundSpec { area, page: None, seed, material: Material::Ice(spec) };
+    Ground { spec, surface, deep }
 }
 
 /// The force at a time since the tile was empty, in newtons: up to 760 N and back, smooth.

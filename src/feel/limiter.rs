@@ -3,9 +3,8 @@
 
 use std::f32::consts::TAU;
 
-use super::mix::LANES;
+use super::mix::{LANES, settled};
 use super::modal::multiply_add;
-use super::rack::settled;
 
 /// Below this share of full scale the limiter changes nothing; our choice.
 const KNEE: f32 = 0.8;

@@ -142,6 +142,21 @@ pub(super) fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES]
     columns
 }
 
+/// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
+const TRIFLE: f32 = 1e-12;
+
+/// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
+pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
+    let mut largest = 0.0;
+    for number in numbers.as_flattened_mut() {
+        if number.abs() < TRIFLE {
+            *number = 0.0;
+        }
+        largest = if number.abs() > largest { number.abs() } else { largest };
+    }
+    largest
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -37,16 +37,13 @@ mod voice;
 
 pub use analysis::{Analysis, analyse};
 pub use audition::{Audition, Gesture, Moment, audition};
-pub use cue::{
-    Click, Cue, Impulse, MAX_MODES, MAX_SPOTS, MAX_SUSTAINED, MODE_HZ, Mode, Spot, Spots, SustainedCue,
-    SustainedCues,
-};
+pub use cue::{Cue, MAX_SPOTS, MAX_SUSTAINED, Spot, Spots, SustainedCue, SustainedCues};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
 pub(crate) use effect::effect_at;
 pub use effect::{
-    Band, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains, Hum,
-    Knob, Lasting, MAX_MARKS, MAX_PARTS, MAX_POINTS, Manner, Material, NamedEffect, Part, PartKind, Push,
-    Resonance, Sequence, StickSlip, Texture, Tone, TonePoint, Use,
+    Band, Click, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains,
+    Hum, Impulse, Knob, Lasting, MAX_MARKS, MAX_MODES, MAX_PARTS, MAX_POINTS, MODE_HZ, Manner, Material,
+    Mode, NamedEffect, Part, PartKind, Push, Resonance, Sequence, StickSlip, Texture, Tone, TonePoint, Use,
 };
 pub use modal::ModalBank;
 pub use muted::Muted;

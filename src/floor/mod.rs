@@ -5,6 +5,7 @@
 //! tiles and sensors are; [`Floor`] adds what is wired to them.
 
 mod calibration;
+mod contact_id;
 mod drive;
 mod geometry;
 mod hardware;
@@ -15,6 +16,7 @@ mod rect;
 mod significant;
 
 pub use calibration::{Calibration, LawKind, Parameter};
+pub use contact_id::ContactId;
 pub use drive::{Drive, Loudspeaker, Response};
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
 pub use hardware::{Actuator, Board, Floor};

@@ -4,9 +4,8 @@ use glam::Vec2;
 
 use super::bed::Bed;
 use super::tile::{Stride, Tread};
-use super::{Elastic, GroundCounters, GroundEvent, GroundState};
+use super::{Elastic, GroundCounters, GroundEvent, GroundSpec, GroundState};
 use crate::floor::{Geometry, Rect};
-use crate::layout::Ground;
 use crate::sense::{Contact, ForceFrame, Quality};
 use crate::units::Instant;
 
@@ -43,7 +42,7 @@ pub struct Grounds {
 /// One ground.
 #[derive(Clone, Debug)]
 struct GroundBed {
-    ground: Ground,
+    spec: GroundSpec,
     elastic: Elastic,
     bed: Bed,
     treads: Vec<Tread>,
@@ -59,12 +58,12 @@ struct GroundBed {
 impl Grounds {
     /// The `grounds` of a layout on a floor of this `geometry`, whole and untrodden.
     #[must_use]
-    pub fn new(grounds: &[Ground], geometry: &Geometry) -> Self {
+    pub fn new(grounds: impl IntoIterator<Item = GroundSpec>, geometry: &Geometry) -> Self {
         let tiles = geometry.tile_count();
-        let beds = grounds.iter().map(|ground| GroundBed {
-            elastic: Elastic::new(ground.material.body(), STEP.as_secs_f64()),
-            bed: Bed::new(&ground.material, ground.area, ground.seed, tiles),
-            ground: ground.clone(),
+        let beds = grounds.into_iter().map(|spec| GroundBed {
+            elastic: Elastic::new(spec.material.body(), STEP.as_secs_f64()),
+            bed: Bed::new(&spec.material, spec.area, spec.seed, tiles),
+            spec,
             treads: vec![Tread::default(); tiles],
             awake: Vec::with_capacity(tiles),
             healed: Instant::START,
@@ -87,13 +86,13 @@ impl Grounds {
         self.last = old.last;
         for bed in &mut self.beds {
             let same = old.beds.iter().position(|other| {
-                let page = bed.ground.page;
-                Ground { page, ..other.ground.clone() } == bed.ground
+                let page = bed.spec.page;
+                GroundSpec { page, ..other.spec } == bed.spec
             });
             if let Some(same) = same {
-                let page = bed.ground.page;
+                let page = bed.spec.page;
                 *bed = old.beds.swap_remove(same);
-                bed.ground.page = page;
+                bed.spec.page = page;
             }
         }
     }
@@ -120,7 +119,7 @@ impl Grounds {
         let passed = self.last.map_or(u64::MAX, |last| frame.at.since(last).as_millis() as u64);
         self.last = Some(frame.at);
         for (number, bed) in self.beds.iter_mut().enumerate() {
-            let is_shown = bed.ground.is_on(page);
+            let is_shown = bed.spec.is_on(page);
             if !is_shown || passed > LONGEST_GAP {
                 bed.doze();
             }
@@ -189,7 +188,7 @@ impl GroundBed {
         for contact in contacts {
             for load in &contact.tiles {
                 let Some(tread) = self.treads.get_mut(load.index) else { continue };
-                if !holds(self.ground.area, load.centroid) {
+                if !holds(self.spec.area, load.centroid) {
                     continue;
                 }
                 let whole_n = force_n(frame, load.index);
@@ -210,7 +209,7 @@ impl GroundBed {
                 // Of several feet on one tile the heavier one counts: the dominant centroid.
                 if contact.force.0 > tread.weight {
                     (tread.contact, tread.weight) = (Some(contact.id), contact.force.0);
-                    tread.place = contact.centroid.clamp(self.ground.area.min, self.ground.area.max);
+                    tread.place = contact.centroid.clamp(self.spec.area.min, self.spec.area.max);
                 }
                 tread.share = (tread.share + share).min(1.0);
             }

@@ -37,5 +37,5 @@ pub use grounds::Grounds;
 pub use onsets::{MOST_PER_S, Onsets};
 pub use relief::Relief;
 pub use resonance::{Resonance, Ring};
-pub use spec::{Grain, GrainSpec, IceSpec, Material, Sheet, WoodSpec};
+pub use spec::{Grain, GrainSpec, GroundSpec, IceSpec, Material, Sheet, WoodSpec};
 pub use state::{GroundCounters, GroundEvent, GroundState};

@@ -1,9 +1,31 @@
 //! What grounds are made of, as layouts describe them.
 
 use super::{Body, CrackRules, EnergyLaw, Ring};
+use crate::floor::Rect;
 use crate::format::{Name, Opt, Own, Rec, num, record};
 use crate::units::Newtons;
 use crate::widget::Axis;
+
+/// Where a ground is and what it is made of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct GroundSpec {
+    /// Where it is.
+    pub area: Rect,
+    /// Which of the layout's pages it is on; `None` if it is on all of them.
+    pub page: Option<usize>,
+    /// What chance begins with: the same seed and the same feet give the same ground.
+    pub seed: u32,
+    /// What it is made of.
+    pub material: Material,
+}
+
+impl GroundSpec {
+    /// Whether it is on the page numbered `page` (0 without pages).
+    #[must_use]
+    pub fn is_on(&self, page: usize) -> bool {
+        self.page.is_none_or(|own| own == page)
+    }
+}
 
 /// What a ground is.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -8,8 +8,8 @@ use super::app::App;
 use super::feed::PreviewCommand;
 use super::painter::color;
 use super::style::{panel_colour, panel_frame, pill, quiet};
-use crate::engine::LinkState;
 use crate::scene::Theme;
+use crate::wire::LinkState;
 
 /// How long the window tells that a saved file was loaded, in seconds.
 const TELL_S: f64 = 6.0;
@@ -89,7 +89,11 @@ impl App {
         pill(ui, colour, theme, text);
         let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
         let texts = [
-            (74.0, format!("{} fps", rate(self.window_frames.per_second())), "Frames a second in this window"),
+            (
+                74.0,
+                format!("{} fps", rate(self.window_frames.per_second())),
+                "Frames a second in this window",
+            ),
             (96.0, format!("{} frames/s", rate(self.frames.per_second())), "Sensor frames a second"),
         ];
         for (width, text, meaning) in texts {

@@ -10,7 +10,7 @@ use glam::Vec2;
 
 use super::app::App;
 use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
-use crate::engine::{LinkState, Snapshot};
+use crate::engine::Snapshot;
 use crate::floor::{Corner, Floor, SensorId, TileId};
 use crate::ground::{Crack, GroundCounters, GroundState};
 use crate::layout::Layout;
@@ -19,6 +19,7 @@ use crate::schema::{Kinds, builtin_layout, parse_layout};
 use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
 use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use crate::wire::LinkState;
 
 pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
     WidgetEvent {

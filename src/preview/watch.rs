@@ -1,6 +1,7 @@
 //! Whether what is shown is still true: how long no packet and no snapshot has come.
 
-use crate::engine::{LinkState, Snapshot};
+use crate::engine::Snapshot;
+use crate::wire::LinkState;
 
 /// Silence after which the sensing thread is taken to have stopped.
 const STOPPED_S: f64 = 0.5;

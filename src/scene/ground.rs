@@ -5,10 +5,11 @@ use glam::Vec2;
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
 use super::{Scene, View, holds, outline, terrain};
-use crate::engine::{LinkState, TileState};
+use crate::engine::TileState;
 use crate::floor::{Corner, Rect, TileId};
 use crate::layout::Colour;
 use crate::sense::Quality;
+use crate::wire::LinkState;
 
 /// The plates with their load, as one slab.
 pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
@@ -184,7 +185,7 @@ pub(super) fn sensors(scene: &mut Scene, view: &View<'_>) {
         return;
     }
     // Where no sensor is better, as on a floor that nobody calibrated, a mark on each would tell nothing.
-    let none_live = super::strip::none_live(view);
+    let none_live = none_live(view);
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let tile = view.geometry.tile_at_index(index);
         // The hatching says it for a tile that is silent as a whole.
@@ -287,4 +288,10 @@ pub(super) fn chosen(scene: &mut Scene, view: &View<'_>) {
         let stroke = Stroke::new(0.005, Ink::solid(view.theme.accent));
         scene.add_box(view.geometry.plate(tile).grown(-0.003), 0.010, Paint::stroke(stroke));
     }
+}
+
+/// Whether sensors are known of and none is better than degraded, as on a floor that nobody calibrated.
+pub(super) fn none_live(view: &View<'_>) -> bool {
+    let tiles = &view.snapshot.tiles;
+    !tiles.is_empty() && !tiles.iter().any(|tile| tile.quality.contains(&Quality::Live))
 }

@@ -6,7 +6,7 @@ use std::time::Duration;
 use glam::Vec2;
 use smallvec::smallvec;
 
-use crate::engine::{LinkState, Snapshot, TileState, WidgetState};
+use crate::engine::{Snapshot, TileState, WidgetState};
 use crate::feel::Feel;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Colour, CursorRule, Layout, Look, Region, Shape, Stance, Widget};
@@ -16,6 +16,7 @@ use crate::widget::{
     Axis, Behaviour, ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Repeat, Scale,
     SelectorSpec, SliderSpec, StepperSpec, SwitchSpec, Thresholds, Track, WidgetId,
 };
+use crate::wire::LinkState;
 
 pub(crate) const THRESHOLDS: Thresholds = Thresholds::new(Newtons(60.0), Newtons(40.0));
 

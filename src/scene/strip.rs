@@ -5,9 +5,9 @@ use glam::Vec2;
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
 use super::{Scene, View, feet, ground};
-use crate::engine::LinkState;
 use crate::floor::Rect;
 use crate::sense::Quality;
+use crate::wire::LinkState;
 
 /// Height of the strip above the floor, in metres.
 pub(super) const HEADER_M: f32 = 0.195;
@@ -42,7 +42,7 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     if view.show.contacts {
         let (state, colour) = match view.snapshot.link {
             LinkState::Waiting => ("no packets yet", theme.warning),
-            LinkState::Live if none_live(view) => ("live, all sensors degraded", theme.warning),
+            LinkState::Live if ground::none_live(view) => ("live, all sensors degraded", theme.warning),
             LinkState::Live => ("live", theme.good),
             LinkState::Partial => ("some boards are silent", theme.warning),
             LinkState::Lost => ("no sensor packets", theme.fault),
@@ -64,17 +64,11 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     }
 }
 
-/// Whether sensors are known of and none is better than degraded, as on a floor that nobody calibrated.
-pub(super) fn none_live(view: &View<'_>) -> bool {
-    let tiles = &view.snapshot.tiles;
-    !tiles.is_empty() && !tiles.iter().any(|tile| tile.quality.contains(&Quality::Live))
-}
-
 /// One line of samples of the marks on this drawing, with their names.
 pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     let theme = view.theme;
     let has = |wanted: Quality| {
-        let is_marked = wanted != Quality::Degraded || !none_live(view);
+        let is_marked = wanted != Quality::Degraded || !ground::none_live(view);
         view.snapshot.link != LinkState::Waiting
             && is_marked
             && view.snapshot.tiles.iter().any(|tile| tile.quality.contains(&wanted))

@@ -5,12 +5,13 @@ use glam::Vec2;
 use super::sample::{self, at_rest, button, map, pressing, widget};
 use super::widths::{CAP_HEIGHT, width};
 use super::{Anchor, Lettering, Mark, Scene, Shoe, Show, Theme, View, draw};
-use crate::engine::{LinkState, Snapshot};
+use crate::engine::Snapshot;
 use crate::floor::{Corner, Geometry, Rect, TileId};
 use crate::layout::{Layout, Shape, Widget};
 use crate::sense::Quality;
 use crate::units::Newtons;
 use crate::widget::{Indicator, Track, Value};
+use crate::wire::LinkState;
 
 fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
     shown(layout, snapshot, Show::WINDOW)

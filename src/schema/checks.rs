@@ -17,8 +17,8 @@ pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
     let floor = Area::of_floor(geometry, page.units);
     check_zones(reader, page, &floor);
     check_ids(reader, page);
-    pages::check(reader, page);
-    ground::check(page, &floor, |problem| reader.report(problem));
+    pages::check(reader, &page.pages, &page.controls);
+    ground::check(&page.grounds, page.units, &floor, |problem| reader.report(problem));
     if page.controls.is_empty() && page.grounds.is_empty() && reader.is_sound() {
         let problem = Problem::warning(page.widgets_at.clone(), "this layout has no controls");
         reader.report(problem.expected("expected some `widgets`"));

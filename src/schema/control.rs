@@ -5,10 +5,10 @@ use std::ops::Range;
 use super::area::Placed;
 use super::behaviour;
 use super::fields::Fields;
+use super::goto::Goto;
 use super::inherit::Choice;
 use super::kind::Kind;
 use super::node::{Node, is_id};
-use super::pages::Goto;
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
@@ -155,7 +155,7 @@ fn names_of_grid(fields: &mut Fields<'_>, repeat: &Repeat<'_>, room: usize) -> N
     let cells: Vec<Cell> = repeat.cells().collect();
     if cells.len() > room {
         let problem = Problem::error(fields.span("repeat"), "too many controls");
-        let expected = format!("{} more, with room for {room} of {}", cells.len(), super::page::MAX_WIDGETS);
+        let expected = format!("{} more, with room for {room} of {}", cells.len(), super::lists::MAX_WIDGETS);
         fields.report(problem.expected(expected));
         return Names::new();
     }

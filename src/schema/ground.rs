@@ -13,13 +13,12 @@ use super::area::{Area, Placed};
 use super::fields::Fields;
 use super::node::Node;
 use super::number::plain;
-use super::page;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
 use crate::format::describe::Description;
 use crate::format::{Codec, Record};
-use crate::ground::{GrainSpec, IceSpec, Material, WoodSpec};
+use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, Hex};
 
 /// Most grounds of one layout: each has state for every tile.
@@ -108,29 +107,29 @@ impl GroundDefinition {
     pub(super) fn checked(&self, geometry: &Geometry, units: Units) -> Option<Ground> {
         let area = self.area(&Area::of_floor(geometry, units))?.in_metres(geometry, units);
         let [surface, deep] = self.colours?;
-        Some(Ground { area, page: self.page, seed: self.seed?, material: self.material?, surface, deep })
+        let spec = GroundSpec { area, page: self.page, seed: self.seed?, material: self.material? };
+        Some(Ground { spec, surface, deep })
     }
 }
 
 /// Notes what is wrong between grounds, and between them and the floor.
-pub(super) fn check(page: &page::Page<'_>, floor: &Area, report: impl Fn(Problem)) {
-    for (index, definition) in page.grounds.iter().enumerate() {
+pub(super) fn check(grounds: &[GroundDefinition], units: Units, floor: &Area, report: impl Fn(Problem)) {
+    for (index, definition) in grounds.iter().enumerate() {
         let Some(area) = definition.area(floor) else { continue };
         let at = definition.placed().map_or(definition.at.clone(), |place| place.at.clone());
         if !area.within(floor) {
             let problem = Problem::error(at, format!("this {} reaches beyond the floor", definition.name()));
-            let help = format!("places count in {} from the floor's south-west corner", page.units.name());
+            let help = format!("places count in {} from the floor's south-west corner", units.name());
             report(problem.expected(format!("it spans {area}, the floor {floor}")).help(help));
             continue;
         }
-        let under =
-            page.grounds[..index].iter().filter(|other| definition.overlaps(other)).find_map(|other| {
-                let shared = area.shared(&other.area(floor)?)?;
-                Some((other, shared))
-            });
+        let under = grounds[..index].iter().filter(|other| definition.overlaps(other)).find_map(|other| {
+            let shared = area.shared(&other.area(floor)?)?;
+            Some((other, shared))
+        });
         if let Some((other, [width, depth])) = under {
             let message = format!("this {} lies on {}", definition.name(), other.name());
-            let shared = format!("{} x {}{}", plain(width), plain(depth), page.units.suffix());
+            let shared = format!("{} x {}{}", plain(width), plain(depth), units.suffix());
             report(Problem::warning(at, message).expected(format!("both answer a foot on these {shared}")));
         }
     }
@@ -202,8 +201,8 @@ mod tests {
             for text in [name.to_owned(), format!("{name}()"), format!("{name}(seed: 3)")] {
                 let loaded = read(&text).unwrap();
                 let ground = &loaded.layout.grounds[0];
-                assert_eq!(ground.material.name(), name);
-                assert_eq!(ground.area, Geometry::default().bounds());
+                assert_eq!(ground.spec.material.name(), name);
+                assert_eq!(ground.spec.area, Geometry::default().bounds());
                 assert_eq!(loaded.warnings.to_string(), "", "no controls are needed");
             }
         }
@@ -219,12 +218,12 @@ mod tests {
             cracks: (apart_m: 0.3, growth_m_per_j: 0.02, turn: 0.1, branch: 0, branch_deg: 30, pieces: 500),
             sheet: (depth_per_j: 0.1, reach_m: 0.2, weakening: 0, refreeze_s: None))";
         let layout = read(text).unwrap().layout;
-        let Material::Ice(ice) = layout.grounds[0].material else { panic!("ice") };
+        let Material::Ice(ice) = layout.grounds[0].spec.material else { panic!("ice") };
         assert_eq!((ice.body.mass_kg, ice.calm_j, ice.energy.gamma), (50.0, 0.0, -2.0));
         assert_eq!((ice.ring.modes, ice.ring.longest_s), (4, 0.09));
         assert_eq!((ice.cracks.per_j_m, ice.cracks.most, ice.cracks.refreeze_s), (0.02, 500, None));
         assert!((ice.cracks.branch_rad - 30.0_f32.to_radians()).abs() < 1e-6);
-        assert!((layout.grounds[0].area.size().x - 4.0 * 0.304).abs() < 1e-5);
+        assert!((layout.grounds[0].spec.area.size().x - 4.0 * 0.304).abs() < 1e-5);
     }
 
     #[test]
@@ -258,7 +257,7 @@ mod tests {
         let text = "Layout(version: 1, pages: [(id: \"a\", grounds: [Ice]), (id: \"b\", grounds: [Snow])])";
         let loaded = parse_layout(text, "pages", &Kinds::builtin(), &Geometry::default()).unwrap();
         assert_eq!(loaded.warnings.to_string(), "");
-        let pages: Vec<_> = loaded.layout.grounds.iter().map(|ground| ground.page).collect();
+        let pages: Vec<_> = loaded.layout.grounds.iter().map(|ground| ground.spec.page).collect();
         assert_eq!(pages, [Some(0), Some(1)]);
     }
 }

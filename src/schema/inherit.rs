@@ -221,7 +221,7 @@ impl<'k> Choice<'k> {
     /// Those in `kinds`, and on top of them those that the layout's list of kinds describes, if it has one.
     pub(super) fn new(kinds: &'k Kinds, list: Option<Node<'_>>) -> Self {
         let mut choice = Self { kinds: Cow::Borrowed(kinds), unusable: HashSet::new() };
-        let nodes = list.and_then(|node| node.list("kind", super::page::MAX_WIDGETS)).unwrap_or_default();
+        let nodes = list.and_then(|node| node.list("kind", super::lists::MAX_WIDGETS)).unwrap_or_default();
         for (node, kind) in nodes.iter().zip(layer(&nodes, kinds)) {
             match kind {
                 Some(kind) => choice.kinds.to_mut().insert(kind),

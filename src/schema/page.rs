@@ -6,10 +6,10 @@ use super::checks;
 use super::control::Control;
 use super::diagnostic::Diagnostics;
 use super::effect;
-use super::fields::Fields;
 use super::ground::{self, GroundDefinition};
 use super::inherit::Choice;
 use super::kind::Kinds;
+use super::lists::{MAX_WIDGETS, list};
 use super::node::Node;
 use super::pages::{self, PageDefinition};
 use super::pairs::Limits;
@@ -22,9 +22,6 @@ use crate::floor::Geometry;
 use crate::format::{Codec, Name};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
-
-/// Most controls, regions or stance zones of one layout.
-pub const MAX_WIDGETS: usize = 4096;
 
 /// A layout that can be used, and what is odd about it.
 #[derive(Clone, Debug, PartialEq)]
@@ -154,7 +151,7 @@ impl<'r> Page<'r> {
                 kind: kind.name,
                 region: self.region_of(area)?,
                 page: control.page,
-                goto: control.goto.as_ref().and_then(|goto| goto.number(&self.pages)),
+                goto: control.goto.as_ref().and_then(|goto| pages::number_of(goto, &self.pages)),
                 area: area.in_metres(geometry, units),
                 label: control.label.clone()?,
                 behaviour: kind.behaviour,
@@ -167,7 +164,11 @@ impl<'r> Page<'r> {
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
             pages: self.pages.iter().map(PageDefinition::checked).collect::<Option<_>>()?,
-            grounds: self.grounds.iter().map(|plot| plot.checked(geometry, units)).collect::<Option<_>>()?,
+            grounds: self
+                .grounds
+                .iter()
+                .map(|ground| ground.checked(geometry, units))
+                .collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
     }
@@ -190,19 +191,4 @@ impl<'r> Zone<'r> {
         fields.finish();
         Some(Self { name, name_at, place, cursor })
     }
-}
-
-/// What `read` makes of the entries of the list `name`, which may be left out, and whether that is all of them.
-pub(super) fn list<'r, T>(
-    fields: &mut Fields<'r>,
-    name: &'static str,
-    entry: &'static str,
-    read: impl FnMut(Node<'r>) -> Option<T>,
-) -> (Vec<T>, bool) {
-    let Some(node) = fields.take(name) else { return (Vec::new(), !fields.are_broken()) };
-    let Some(nodes) = node.list(entry, MAX_WIDGETS) else { return (Vec::new(), false) };
-    let count = nodes.len();
-    let read: Vec<T> = nodes.into_iter().filter_map(read).collect();
-    let all = read.len() == count && !node.reader.is_broken(&node.span());
-    (read, all)
 }

@@ -13,10 +13,11 @@ use std::ops::Range;
 use super::arrange;
 use super::control::Control;
 use super::fields::Fields;
+use super::goto::Goto;
 use super::ground::{self, GroundDefinition};
 use super::inherit::Choice;
+use super::lists::list;
 use super::node::Node;
-use super::page::{self, Page};
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
@@ -30,13 +31,6 @@ pub(super) struct PageDefinition<'r> {
     title: Option<&'r str>,
 }
 
-/// The page that a control switches to.
-#[derive(Clone, Debug)]
-pub(super) struct Goto {
-    id: String,
-    at: Range<usize>,
-}
-
 /// The pages of a layout; their controls are added to `controls`.
 pub(super) fn read<'r>(
     fields: &mut Fields<'r>,
@@ -46,7 +40,7 @@ pub(super) fn read<'r>(
     grounds: &mut Vec<GroundDefinition>,
 ) -> Vec<PageDefinition<'r>> {
     let mut number = 0;
-    let (pages, _) = page::list(fields, "pages", "page", |node| {
+    let (pages, _) = list(fields, "pages", "page", |node| {
         number += 1;
         PageDefinition::read(node, kinds, room, (number - 1, &mut *grounds))
     });
@@ -67,19 +61,19 @@ pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
 }
 
 /// Notes what is wrong between pages and the controls that switch them.
-pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>) {
-    for (number, definition) in page.pages.iter().enumerate() {
+pub(super) fn check(reader: &Reader<'_>, pages: &[PageDefinition<'_>], controls: &[Control]) {
+    for (number, definition) in pages.iter().enumerate() {
         let same = |other: &&PageDefinition<'_>| other.id.is_some() && other.id == definition.id;
-        if let Some(earlier) = page.pages[..number].iter().find(same) {
+        if let Some(earlier) = pages[..number].iter().find(same) {
             let message = format!("two pages have the id \"{}\"", definition.id.unwrap_or_default());
             let expected = format!("the first is on line {}", reader.line(&earlier.id_at));
             reader.report(Problem::error(definition.id_at.clone(), message).expected(expected));
         }
     }
-    for control in &page.controls {
+    for control in controls {
         let Some(goto) = &control.goto else { continue };
-        if goto.number(&page.pages).is_none() && page.pages.iter().all(|definition| definition.id.is_some()) {
-            let ids: Vec<&str> = page.pages.iter().filter_map(|definition| definition.id).collect();
+        if number_of(goto, pages).is_none() && pages.iter().all(|definition| definition.id.is_some()) {
+            let ids: Vec<&str> = pages.iter().filter_map(|definition| definition.id).collect();
             let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
             let help = did_you_mean(&goto.id, &ids, '"');
             let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
@@ -117,15 +111,7 @@ impl<'r> PageDefinition<'r> {
     }
 }
 
-impl Goto {
-    pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
-        let node = fields.take("goto")?;
-        let id = node.id()?;
-        Some(Self { id: id.to_owned(), at: node.span() })
-    }
-
-    /// The number of the page among `pages`.
-    pub(super) fn number(&self, pages: &[PageDefinition<'_>]) -> Option<usize> {
-        pages.iter().position(|definition| definition.id == Some(&self.id))
-    }
+/// The number of the page that `goto` names among `pages`.
+pub(super) fn number_of(goto: &Goto, pages: &[PageDefinition<'_>]) -> Option<usize> {
+    pages.iter().position(|definition| definition.id == Some(&goto.id))
 }

@@ -83,22 +83,22 @@ fn of_page(layout: &Layout, kinds: &[String], page: Option<usize>, entries: &mut
         Text::Fields("", entries)
     });
     entries.push(("widgets", Text::List(widgets.collect())));
-    let grounds = layout.grounds.iter().filter(|ground| ground.page == page).map(ground);
+    let grounds = layout.grounds.iter().filter(|ground| ground.spec.page == page).map(ground);
     entries.push(("grounds", Text::List(grounds.collect())));
 }
 
 fn ground(ground: &Ground) -> Text {
     let mut entries = Vec::new();
-    place(ground.area, &mut entries);
-    entries.push(("seed", bare(&ground.seed.to_string())));
+    place(ground.spec.area, &mut entries);
+    entries.push(("seed", bare(&ground.spec.seed.to_string())));
     entries.push(("surface", Hex.write(&ground.surface)));
     entries.push(("deep", Hex.write(&ground.deep)));
-    match &ground.material {
+    match &ground.spec.material {
         Material::Ice(spec) => spec.write_fields(&mut entries),
         Material::Grain(spec) => spec.write_fields(&mut entries),
         Material::Wood(spec) => spec.write_fields(&mut entries),
     }
-    Text::Fields(ground.material.name(), entries)
+    Text::Fields(ground.spec.material.name(), entries)
 }
 
 fn place(area: Rect, entries: &mut Vec<Entry>) {
@@ -149,8 +149,8 @@ mod tests {
                 again.area = before.area;
             }
             for (again, before) in again.grounds.iter_mut().zip(&layout.grounds) {
-                assert!(near(again.area, before.area), "{name}");
-                again.area = before.area;
+                assert!(near(again.spec.area, before.spec.area), "{name}");
+                again.spec.area = before.spec.area;
             }
             assert_eq!(again, layout, "{name}");
         }

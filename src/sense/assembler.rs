@@ -15,10 +15,9 @@ use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
 use super::health::{Health, SensorHealth, Trouble};
 use super::{ForceFrame, Quality};
-use crate::engine::LinkState;
 use crate::floor::{Floor, SensorId};
 use crate::units::{Instant, Newtons};
-use crate::wire::{LinkCounters, SensorPacket};
+use crate::wire::{LinkCounters, LinkState, SensorPacket};
 
 /// A slot is taken for complete when a board has delivered one this much later.
 const AHEAD: i64 = 2;
@@ -54,7 +53,7 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// altogether. Where packets are stamped with exact milliseconds, as by a
 /// simulated floor, `at` is exact to the microsecond.
 ///
-/// **Completeness.** A frame is ready when every board heard within the last
+/// **Completeness.** A frame is ready when every board that reported within the last
 /// 100 ms has delivered its slot or a later one, or when any board is two slots
 /// ahead. Boards without a sample in the slot keep their last values. What
 /// comes later than that, comes twice, or comes after silence and was more than
@@ -135,7 +134,7 @@ impl Assembler {
     }
 
     /// An assembler for the boards of `floor`. With [`Tare::AtStart`] no frame
-    /// is passed on until the boards heard at first have been tared; one that
+    /// is passed on until the boards that reported at first have been tared; one that
     /// appears later is stale until it is.
     #[must_use]
     pub fn with_tare(floor: &Floor, tare: Tare) -> Self {
@@ -219,7 +218,7 @@ impl Assembler {
 
     /// Whether packets arrive, as of the last packet or poll.
     ///
-    /// While the boards are heard for the first time, one after the other, the floor is still awaited.
+    /// While the boards report for the first time, one after the other, the floor is still awaited.
     #[must_use]
     pub fn link_state(&self) -> LinkState {
         let presences = || self.boards.iter().map(|board| &board.stream.presence);

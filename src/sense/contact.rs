@@ -3,13 +3,9 @@ use serde::Serialize;
 use smallvec::SmallVec;
 
 use super::Quality;
+pub use crate::floor::ContactId;
 use crate::floor::TileId;
 use crate::units::Newtons;
-
-/// The lasting name of one contact: given when it lands, never used again.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
-#[serde(transparent)]
-pub struct ContactId(pub u32);
 
 /// The part of a contact that one tile carries.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -133,7 +133,7 @@ impl Maker<'_> {
             argument("priority", "s", "real-time, denied or host"),
         ];
         self.add(Direction::Out, "device", device, "What moves the actuators, when that changes.");
-        if layout.grounds.iter().any(|ground| matches!(ground.material, Material::Ice(_))) {
+        if layout.grounds.iter().any(|ground| matches!(ground.spec.material, Material::Ice(_))) {
             let mut crack =
                 vec![argument("seed", "i", "where cracks come from"), argument("energy", "f", "J")];
             crack.extend(place());

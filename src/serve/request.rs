@@ -1,8 +1,9 @@
 //! What a floor does with what apps ask, and what it answers.
 
 use crate::engine::Engine;
+use crate::outgoing::{Readback, write_page, write_readback};
 use crate::widget::{SetError, Value, WidgetId};
-use crate::wire::{ControlMessage, Prefix, Readback, write_page, write_readback};
+use crate::wire::{ControlMessage, Prefix};
 
 /// Does what `message` asks of `engine`; true if `answer` now holds what the asker is to be told.
 ///

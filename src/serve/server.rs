@@ -11,15 +11,16 @@ use triple_buffer::Input;
 
 use super::request;
 use super::trial::Trial;
-use crate::engine::{Engine, LinkState, Snapshot};
+use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
 use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
+use crate::outgoing::{write_error, write_mute};
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{ControlMessage, LinkCounters, Prefix, Request, write_error, write_mute};
+use crate::wire::{ControlMessage, LinkCounters, LinkState, Prefix, Request};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -78,7 +79,7 @@ pub struct Server {
     snapshots: Option<Input<Snapshot>>,
     commands: Option<Receiver<Command>>,
     link: LinkState,
-    /// Since when only some boards have been heard.
+    /// Since when only some boards have reported.
     partial_since: Option<Instant>,
     tare: TareOutcome,
     /// Sensors known to be in trouble, and how often that had changed.

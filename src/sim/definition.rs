@@ -9,7 +9,6 @@ use ron::extensions::Extensions;
 use ron2::ast::{Expr, StructBody, StructField, parse_document};
 use serde::Deserialize;
 
-use super::scenario::ScenarioProblem;
 use crate::floor::Rect;
 
 /// A whole file.
@@ -31,6 +30,17 @@ pub(super) struct Other {
     #[serde(default)]
     pub(super) person: PersonFields,
     pub(super) steps: Vec<Step>,
+}
+
+/// One problem and its place.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ScenarioProblem {
+    /// Line, from 1.
+    pub line: usize,
+    /// Column, from 1.
+    pub column: usize,
+    /// What is wrong and what to do about it.
+    pub message: String,
 }
 
 /// A person's measures.

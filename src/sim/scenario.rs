@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::definition::{PersonFields, Places, ScenarioDefinition, Side, Step, read};
+use super::definition::{PersonFields, Places, ScenarioDefinition, ScenarioProblem, Side, Step, read};
 use super::performance::Performance;
 use super::person::{MoveError, Person};
 use super::script::Script;
@@ -70,17 +70,6 @@ pub struct ScenarioError {
     pub file: String,
     /// At least one problem.
     pub problems: Vec<ScenarioProblem>,
-}
-
-/// One problem and its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScenarioProblem {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// What is wrong and what to do about it.
-    pub message: String,
 }
 
 impl fmt::Display for ScenarioError {

@@ -8,6 +8,7 @@ mod callback;
 mod cards;
 mod choice;
 mod mixdown;
+mod options;
 mod paced;
 mod player;
 mod priority;
@@ -21,68 +22,17 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
-use cpal::ErrorKind;
-
-use self::cards::{Card, Cards, System};
+use self::cards::{Card, Cards, System, trouble};
 pub use self::cards::{DeviceEntry, output_devices};
 use self::choice::Choice;
+pub use self::options::{DeviceOptions, Mix};
 use self::player::Player;
 use self::priority::Ask;
 use self::supervisor::{Supervisor, SupervisorConfig};
-use super::{ActuatorSink, LatencyProbe, SinkError};
+use super::{ActuatorSink, SinkError};
 use crate::feel::{DeviceStatus, Renderer};
 use crate::floor::Floor;
-use crate::units::HostClock;
 use crate::units::Instant;
-
-/// How the floor's channels go onto those of the device.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Mix {
-    /// One channel per actuator; a device with fewer is refused.
-    #[default]
-    PerActuator,
-    /// One channel per actuator for as many as the device has; the others are not felt.
-    AsManyAsThereAre,
-    /// All tiles on two loudspeakers, placed by their column, so that a designer hears the floor at a desk.
-    Stereo,
-}
-
-/// What is wanted of a device.
-#[derive(Clone)]
-pub struct DeviceOptions {
-    /// The device's name or a part of it, what the system calls it (`hw:1,0`), its identifier
-    /// ([`DeviceEntry::id`]), a host (`jack`), or `paced`: a clock that stands in for a card. The
-    /// system's own choice if absent: whatever that is at the start, it is never left for another.
-    pub name: Option<String>,
-    /// Samples per second; 48 or 96 kHz if absent and there is a choice.
-    pub sample_rate: Option<u32>,
-    /// Whether samples are converted where the device has not that rate; otherwise it is refused.
-    pub resample: bool,
-    /// Frames per block, as a wish; a block is the shortest time in which a cue can be answered. If absent, 128
-    /// (64 of `paced`) to begin with, and more when samples come late again and again.
-    pub block: Option<u32>,
-    /// How the floor's channels go onto those of the device.
-    pub mix: Mix,
-    /// With the clock that stamps cues, each is played exactly the renderer's delay after its cause; without, as soon as possible.
-    pub steady: Option<HostClock>,
-    /// Measures the latency of the cues, if wanted.
-    pub latency: Option<LatencyProbe>,
-}
-
-impl Default for DeviceOptions {
-    /// The system's own choice, as it likes to be played, one channel per actuator, each cue as soon as possible.
-    fn default() -> Self {
-        Self {
-            name: None,
-            sample_rate: None,
-            resample: false,
-            block: None,
-            mix: Mix::default(),
-            steady: None,
-            latency: None,
-        }
-    }
-}
 
 /// A device that was found fit for a floor, and how it will be used; it makes no sound yet.
 ///
@@ -159,7 +109,7 @@ impl OutputDevice {
 
     /// Starts playing what `renderer` gives.
     ///
-    /// From now on the device is looked after on a thread of its own: when it
+    /// From now on the device is watched on a thread of its own: when it
     /// is lost or hangs, it is opened again as soon as it can be, and what
     /// happened meanwhile is not felt.
     ///
@@ -188,7 +138,7 @@ impl OutputDevice {
     }
 }
 
-/// How often a device is looked after.
+/// How often a device is watched.
 const TICK: Duration = Duration::from_millis(20);
 
 /// How long the end of the program waits for a device to be closed.
@@ -268,22 +218,6 @@ fn no_such_device(name: Option<&str>, names: &[String]) -> SinkError {
             format!("there is no sound card `{name}` and no other: `underfoot rack devices` lists all")
         }
         None => "no sound card was found: connect one, record to a WAV file, or go on without".into(),
-    };
-    SinkError::Device { message }
-}
-
-fn trouble(name: &str, error: &cpal::Error) -> SinkError {
-    let message = match error.kind() {
-        ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => format!(
-            "the sound card {name} can't be used ({error}): connect one, record to a WAV file, or go on without"
-        ),
-        ErrorKind::DeviceBusy => {
-            format!("the sound card {name} is in use: close the program that plays on it, or choose another")
-        }
-        ErrorKind::PermissionDenied => format!(
-            "the sound card {name} may not be used ({error}): on Linux, join the group `audio` and log in again"
-        ),
-        _ => format!("the sound card {name} can't be played ({error}): try another device, rate or block"),
     };
     SinkError::Device { message }
 }

@@ -1,10 +1,11 @@
 use super::EventSink;
-use crate::engine::{LinkState, PageShown};
+use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
+use crate::wire::LinkState;
 
 /// Several event sinks as one; each gets everything, in the order they were added.
 #[derive(Default)]
@@ -108,7 +109,7 @@ mod tests {
 
     #[test]
     fn everybody_hears_everything() {
-        let (tell, heard) = channel();
+        let (tell, received) = channel();
         let mut fanout = Fanout::new().with(Tell("a", tell.clone())).with(Tell("b", tell));
         fanout.events(&[]);
         fanout.contacts(Instant::from_micros(5), &[]);
@@ -118,6 +119,6 @@ mod tests {
         drop(fanout);
         let expected = ["a 0 events", "b 0 events", "a contacts at 5", "b contacts at 5", "a Live", "b Live"];
         let sick = ["a 1 faulty, 3 live", "b 1 faulty, 3 live"];
-        assert_eq!(heard.iter().collect::<Vec<_>>(), [&expected[..], &sick].concat());
+        assert_eq!(received.iter().collect::<Vec<_>>(), [&expected[..], &sick].concat());
     }
 }

@@ -6,14 +6,14 @@ use serde::Serialize;
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::worker::Worker;
 use super::{EventSink, SinkError};
-use crate::engine::{LinkState, PageShown};
+use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
-use crate::wire::link_name;
+use crate::wire::LinkState;
 
 /// Writes one JSON object per event and line.
 ///
@@ -143,7 +143,7 @@ fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
             })?
         }
         Job::Link(at, state) => {
-            let (t_s, state) = (seconds(*at), link_name(*state));
+            let (t_s, state) = (seconds(*at), state.name());
             serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
         }
         Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,

@@ -21,12 +21,13 @@ mod worker;
 
 use thiserror::Error;
 
-use crate::engine::{LinkState, PageShown};
+use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
+use crate::wire::LinkState;
 
 pub use channel_map::ChannelMap;
 pub use crack_rate::CrackNews;

@@ -8,16 +8,17 @@ use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
-use crate::engine::{LinkState, PageShown};
+use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
+use crate::outgoing::{
+    write_contacts, write_crack, write_device, write_event, write_health, write_mute, write_page,
+};
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::widget::WidgetId;
-use crate::wire::{
-    Prefix, write_contacts, write_crack, write_device, write_event, write_health, write_mute, write_page,
-};
+use crate::wire::{LinkState, Prefix};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
@@ -32,7 +33,7 @@ pub struct OscSink {
     undelivered: Arc<AtomicU64>,
     periodic: PeriodicSender,
     cracks: CrackRateLimiter,
-    /// What was last heard of link and sensors: each message tells of both.
+    /// What was last reported of link and sensors: each message tells of both.
     link: LinkState,
     health: SensorHealth,
 }

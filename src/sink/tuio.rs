@@ -10,12 +10,12 @@ use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
-use crate::engine::LinkState;
 use crate::floor::Geometry;
+use crate::outgoing::{Tuio1, Tuio2};
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
-use crate::wire::{Tuio1, Tuio2};
+use crate::wire::LinkState;
 
 /// How often an empty floor is told of: clients that came late learn that it is there.
 const IDLE: Duration = Duration::from_secs(1);

@@ -14,8 +14,9 @@ use self::log::RefusalLog;
 use self::stamped::{Received, Stamped};
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
+use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, write_error};
+use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket};
 
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
 const BUFFER_BYTES: usize = 8 << 20;
@@ -23,7 +24,7 @@ const BUFFER_BYTES: usize = 8 << 20;
 /// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
 
-/// Most datagrams looked at in one call without patience, so that a flood of rubbish cannot hold it.
+/// Most datagrams examined in one call without patience, so that a flood of rubbish cannot hold it.
 const MAX_UNWAITED: usize = 64;
 
 /// How often the kernel is asked how many datagrams it dropped.

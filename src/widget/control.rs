@@ -1,12 +1,10 @@
 use std::time::Duration;
 
-use arrayvec::ArrayVec;
 use glam::Vec2;
-use thiserror::Error;
 
 use super::button::Button;
 use super::dial::Dial;
-use super::guard::Guarding;
+use super::guarding::Guarding;
 use super::hold::Hold;
 use super::lean::Lean;
 use super::moment::{Machine, Moment};
@@ -17,11 +15,8 @@ use super::selector::Selector;
 use super::slider::Slider;
 use super::stepper::Stepper;
 use super::switch::Switch;
-use super::{Behaviour, EventKind, Indicator, Input, Value};
+use super::{Behaviour, Emitted, EventKind, Indicator, Input, SetError, Value};
 use crate::units::Instant;
-
-/// What one step of a control gave, in order; at most eight events.
-pub type Emitted = ArrayVec<EventKind, 8>;
 
 /// One control at work: its press, its guard and its behaviour's state.
 #[derive(Clone, Debug)]
@@ -50,32 +45,6 @@ enum State {
     Dial(Dial),
     Stepper(Stepper),
     Lean(Lean),
-}
-
-/// Why a control does not take a value.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-pub enum SetError {
-    /// The layout has no control of that name.
-    #[error("there is no such control")]
-    Unknown,
-    /// A button holds nothing, a switch no number, a slider no truth.
-    #[error("the control does not hold that type of value")]
-    WrongType,
-    /// The number is NaN or infinite.
-    #[error("the value is not a finite number")]
-    NotFinite,
-    /// A selector has no option of that number.
-    #[error("the selector has no such option")]
-    NoSuchChoice,
-    /// The control acts only while a foot holds it.
-    #[error("only a foot can work this control, for as long as it holds it")]
-    Momentary,
-    /// The control is locked; whoever locked it can unlock it.
-    #[error("the control is locked")]
-    Locked,
-    /// A foot is on the control; the foot has the say until it lets go.
-    #[error("a foot is using the control; try again when it has let go")]
-    InUse,
 }
 
 impl Control {

@@ -1,9 +1,10 @@
 use std::fmt;
 use std::sync::Arc;
 
+use arrayvec::ArrayVec;
 use glam::Vec2;
 
-use crate::sense::ContactId;
+use crate::floor::ContactId;
 use crate::units::{Instant, Newtons};
 
 /// The name of a widget as written in its layout; cheap to clone.
@@ -80,6 +81,9 @@ impl Direction {
         }
     }
 }
+
+/// What one step of a control gave, in order; at most eight events.
+pub type Emitted = ArrayVec<EventKind, 8>;
 
 /// What happened to a control.
 ///

@@ -19,6 +19,7 @@ mod feel;
 mod ground;
 mod intent;
 mod laws;
+mod layers;
 mod layout;
 mod regions;
 mod sense;

@@ -1,8 +1,8 @@
 use std::sync::Arc;
 
+use super::click::SHARE;
 use super::reading::Played;
 use super::{Effect, Use};
-use crate::feel::cue::SHARE;
 use crate::format::{Opt, record};
 
 record! {

@@ -1,6 +1,6 @@
 use arrayvec::ArrayVec;
 
-use crate::feel::cue::{HZ, LEVEL, SHARE};
+use super::click::{HZ, LEVEL, SHARE};
 use crate::format::describe::FieldType;
 use crate::format::hand::Hand;
 use crate::format::node::Node;

@@ -6,6 +6,7 @@
 //! by value: Detents  EndStop                        a control's number drives it: which value, which side
 //! ```
 
+mod click;
 mod feel;
 mod knobs;
 mod lasting;
@@ -15,6 +16,7 @@ mod sequence;
 mod stops;
 mod tone;
 
+pub use click::{Click, Impulse, MAX_MODES, MODE_HZ, Mode};
 pub use feel::Feel;
 pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip, Texture};
 pub use reading::{Effects, NamedEffect};
@@ -24,7 +26,6 @@ pub use tone::{MAX_POINTS, Tone, TonePoint};
 
 use self::reading::BandFields;
 pub(crate) use self::reading::effect_at;
-use super::Click;
 pub use crate::format::hand::Knob;
 use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
 

@@ -1,8 +1,8 @@
 use arrayvec::ArrayVec;
 
 use super::Hum;
+use super::click::SHARE;
 use crate::feel::Click;
-use crate::feel::cue::SHARE;
 use crate::format::{Flat, Opt, Pair, Rec, list, num, record};
 
 /// Most marks of a row of detents.

@@ -1,6 +1,6 @@
 use arrayvec::ArrayVec;
 
-use crate::feel::cue::{HZ, LEVEL, SHARE};
+use super::click::{HZ, LEVEL, SHARE};
 use crate::format::{Faults, Num, Opt, Rec, list, num, record};
 use crate::units::Newtons;
 

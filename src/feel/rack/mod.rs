@@ -21,7 +21,7 @@ use multiversion::target::target_cfg_f;
 
 use super::active_modes::ActiveModes;
 use super::limiter::Limiter;
-use super::mix::{LANES, Mix};
+use super::mix::{LANES, Mix, settled};
 use super::modal::SPAN;
 use crate::floor::{Drive, Response};
 use gate::Gate;
@@ -30,9 +30,6 @@ use section::{Filter, Section};
 
 /// Samples beyond this many full scales are a fault, not a loud cue.
 const OVERLOAD: f32 = 8.0;
-
-/// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
-const TRIFLE: f32 = 1e-12;
 
 /// Below this (-140 dB of full scale) what is left of a sound is dropped.
 const SILENCE: f32 = 1e-7;
@@ -309,18 +306,6 @@ impl Group {
             self.clear();
         }
     }
-}
-
-/// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
-pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
-    let mut largest = 0.0;
-    for number in numbers.as_flattened_mut() {
-        if number.abs() < TRIFLE {
-            *number = 0.0;
-        }
-        largest = if number.abs() > largest { number.abs() } else { largest };
-    }
-    largest
 }
 
 /// What a stretch of samples is like, channel by channel.

@@ -14,14 +14,14 @@ impl App {
         for (number, (ground, state)) in
             self.messages.layout.grounds.iter().zip(&snapshot.grounds).enumerate()
         {
-            if !ground.is_on(snapshot.page) {
+            if !ground.spec.is_on(snapshot.page) {
                 continue;
             }
             ui.add_space(2.0);
-            let title = egui::RichText::new(headline(&ground.material, state)).color(color(theme.ink));
+            let title = egui::RichText::new(headline(&ground.spec.material, state)).color(color(theme.ink));
             CollapsingHeader::new(title).id_salt(("ground", number)).show_unindented(ui, |ui| {
                 ui.spacing_mut().item_spacing.y = 1.0;
-                for (name, count) in lines(&ground.material, state) {
+                for (name, count) in lines(&ground.spec.material, state) {
                     figure(ui, theme, name, count, false);
                 }
                 ui.spacing_mut().item_spacing.y = 5.0;
@@ -68,7 +68,7 @@ mod tests {
     fn materials(layout: &str) -> Vec<Material> {
         let text = builtin_layout(layout).unwrap();
         let loaded = parse_layout(text, layout, &Kinds::builtin(), &Geometry::default()).unwrap();
-        loaded.layout.grounds.iter().map(|ground| ground.material).collect()
+        loaded.layout.grounds.iter().map(|ground| ground.spec.material).collect()
     }
 
     #[test]

@@ -4,11 +4,10 @@ use eframe::egui::{CollapsingHeader, Ui};
 use super::super::app::App;
 use super::super::painter::color;
 use super::super::style::{quiet, row};
-use crate::engine::LinkState;
 use crate::feel::DeviceState;
 use crate::scene::Theme;
 use crate::sense::Quality;
-use crate::wire::LinkCounters;
+use crate::wire::{LinkCounters, LinkState};
 
 impl App {
     /// How the sensors are doing, and which are in trouble.

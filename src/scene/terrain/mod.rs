@@ -27,17 +27,17 @@ pub(super) fn hides(view: &View<'_>, cell: Rect) -> bool {
     view.layout
         .grounds
         .iter()
-        .any(|ground| ground.is_on(view.snapshot.page) && super::holds(ground.area, cell))
+        .any(|ground| ground.spec.is_on(view.snapshot.page) && super::holds(ground.spec.area, cell))
 }
 
 /// The grounds of the page that is shown.
 pub(super) fn draw(scene: &mut Scene, view: &View<'_>) {
     for (index, ground) in view.layout.grounds.iter().enumerate() {
-        if !ground.is_on(view.snapshot.page) {
+        if !ground.spec.is_on(view.snapshot.page) {
             continue;
         }
         let land = Land::new(view, ground, view.snapshot.grounds.get(index), view.snapshot);
-        match &ground.material {
+        match &ground.spec.material {
             Material::Ice(spec) => ice::draw(scene, &land, spec),
             Material::Grain(spec) => loose::draw(scene, &land, spec.grain),
             Material::Wood(spec) => wood::draw(scene, &land, spec),
@@ -65,16 +65,17 @@ struct Land<'a> {
 impl<'a> Land<'a> {
     fn new(view: &View<'_>, ground: &'a Ground, state: Option<&'a GroundState>, snapshot: &Snapshot) -> Self {
         // A state of another layout's ground says nothing of this one.
-        let state = state.filter(|state| state.relief.size() == (0, 0) || state.relief.area() == ground.area);
+        let state =
+            state.filter(|state| state.relief.size() == (0, 0) || state.relief.area() == ground.spec.area);
         let tone = |colour: Colour| if view.theme.is_dark() { colour.mix(BLACK, DARKER) } else { colour };
         let known = state.map(|state| state.relief.size()).filter(|size| *size != (0, 0));
-        let plain = (ground.area.size() / 0.04).ceil().as_uvec2() + 1;
+        let plain = (ground.spec.area.size() / 0.04).ceil().as_uvec2() + 1;
         let (columns, rows) = known.unwrap_or((plain.x.clamp(2, 257), plain.y.clamp(2, 257)));
         Self {
             ground,
             state,
             now: snapshot.at,
-            noise: Noise(ground.seed),
+            noise: Noise(ground.spec.seed),
             surface: tone(ground.surface),
             deep: tone(ground.deep),
             white: tone(WHITE),
@@ -84,7 +85,7 @@ impl<'a> Land<'a> {
     }
 
     fn area(&self) -> Rect {
-        self.ground.area
+        self.ground.spec.area
     }
 
     /// Where a point of the grid is.
@@ -182,7 +183,7 @@ mod tests {
             .filter_map(|mark| if let Mark::Field { area, .. } = mark { Some(*area) } else { None })
             .collect();
         // Wood is made of boxes.
-        let wanted: Vec<Rect> = layout.grounds[1..].iter().map(|ground| ground.area).collect();
+        let wanted: Vec<Rect> = layout.grounds[1..].iter().map(|ground| ground.spec.area).collect();
         assert_eq!(fields, wanted);
         assert!(scene == drawn(&layout, &Snapshot::default()), "the same each time");
     }

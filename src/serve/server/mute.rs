@@ -3,9 +3,9 @@
 use thiserror::Error;
 
 use super::Server;
-use crate::engine::LinkState;
 use crate::floor::TileId;
 use crate::units::Instant;
+use crate::wire::LinkState;
 
 /// Why something can't be muted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]

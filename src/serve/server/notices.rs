@@ -5,11 +5,11 @@ use std::time::Duration;
 use tracing::{info, warn};
 
 use super::Server;
-use crate::engine::LinkState;
 use crate::sense::{SensorHealth, TareOutcome};
 use crate::units::Instant;
+use crate::wire::LinkState;
 
-/// How long only some boards must have been heard for this to be news; controls on the others are long released.
+/// How long only some boards must have reported for this to be news; controls on the others are long released.
 const SETTLING: Duration = Duration::from_millis(100);
 
 /// How often the sensors' health is checked, and how often at most it is told.

@@ -2,9 +2,10 @@ use std::str::FromStr;
 use std::sync::Arc;
 
 use cpal::traits::{DeviceTrait, HostTrait};
-use cpal::{DeviceId, HostId, SupportedStreamConfigRange};
+use cpal::{DeviceId, ErrorKind, HostId, SupportedStreamConfigRange};
 
 use super::paced::{self, PACED};
+use crate::sink::SinkError;
 
 /// Something that plays samples, found but not yet in use.
 #[derive(Clone)]
@@ -41,7 +42,7 @@ impl Card {
     }
 }
 
-/// Where cards are looked for: the system, or what a test makes of it.
+/// Where cards are searched for: the system, or what a test makes of it.
 pub(super) trait Cards: Send + Sync {
     /// The card that the system would choose now.
     fn chosen_by_system(&self) -> Option<Card>;
@@ -200,4 +201,21 @@ fn entry(host: &str, card: &Card, is_default: bool) -> DeviceEntry {
         block,
         trouble,
     }
+}
+
+/// What a person can do about `error` of the card called `name`.
+pub(super) fn trouble(name: &str, error: &cpal::Error) -> SinkError {
+    let message = match error.kind() {
+        ErrorKind::DeviceNotAvailable | ErrorKind::HostUnavailable => format!(
+            "the sound card {name} can't be used ({error}): connect one, record to a WAV file, or go on without"
+        ),
+        ErrorKind::DeviceBusy => {
+            format!("the sound card {name} is in use: close the program that plays on it, or choose another")
+        }
+        ErrorKind::PermissionDenied => format!(
+            "the sound card {name} may not be used ({error}): on Linux, join the group `audio` and log in again"
+        ),
+        _ => format!("the sound card {name} can't be played ({error}): try another device, rate or block"),
+    };
+    SinkError::Device { message }
 }

@@ -1,6 +1,6 @@
 use cpal::{BufferSize, SampleFormat, StreamConfig, SupportedBufferSize, SupportedStreamConfigRange};
 
-use super::{DeviceOptions, Mix};
+use super::options::{DeviceOptions, Mix};
 use crate::floor::Floor;
 use crate::sink::{ChannelMap, SinkError};
 

@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_2;
 
 use cpal::{FromSample, Sample};
 
-use super::Mix;
+use super::options::Mix;
 use crate::floor::Floor;
 
 /// Puts the renderer's channels onto those of a device.

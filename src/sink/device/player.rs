@@ -4,10 +4,10 @@ use std::time::Duration;
 
 use cpal::{FromSample, Sample};
 
-use super::DeviceOptions;
 use super::block_clock::BlockClock;
 use super::choice::Choice;
 use super::mixdown::Mixdown;
+use super::options::DeviceOptions;
 use super::resample::Resampler;
 use crate::feel::Renderer;
 use crate::floor::Floor;

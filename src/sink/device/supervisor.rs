@@ -7,13 +7,13 @@ use cpal::{BufferSize, Error, ErrorKind};
 use rtrb::Consumer;
 
 use super::callback::{Callback, CallbackStats, ErrorForwarder};
-use super::cards::{Card, Cards};
+use super::cards::{Card, Cards, trouble};
 use super::choice::{self, Choice};
+use super::options::DeviceOptions;
 use super::player::Player;
 use super::priority::{Ask, FIX, Promotion};
 use super::stream::{self, Stream};
 use super::watch::{Alarm, Watch};
-use super::{DeviceOptions, trouble};
 use crate::feel::{DeviceState, DeviceStatus, Priority};
 use crate::floor::Floor;
 use crate::sink::SinkError;

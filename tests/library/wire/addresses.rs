@@ -12,6 +12,7 @@ use underfoot::feel::{RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
+use underfoot::outgoing::write_event;
 use underfoot::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
 use underfoot::sense::Method;
 use underfoot::serve::{Argument, Direction, Entry, Reference, Server};
@@ -19,7 +20,7 @@ use underfoot::sink::SilentSink;
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{Control, Indicator, Input, Value, WidgetEvent, WidgetId};
-use underfoot::wire::{Prefix, write_event};
+use underfoot::wire::Prefix;
 
 /// A control of every behaviour, guard and gesture, on two pages.
 const EVERYTHING: &str = r##"Layout(
@@ -360,7 +361,7 @@ fn every_event_is_listed_and_every_listed_event_comes() {
         .filter(|entry| entry.direction == Direction::Out && entry.address.contains("/widget/"))
         .map(|entry| (entry.address.as_str(), entry.arguments.iter().map(|argument| argument.tag).collect()))
         .collect();
-    let mut heard = BTreeSet::new();
+    let mut received = BTreeSet::new();
     let mut rng = Pcg64Mcg::seed_from_u64(4);
     let mut bytes = Vec::new();
     for widget in &page.widgets {
@@ -402,12 +403,12 @@ fn every_event_is_listed_and_every_listed_event_comes() {
                 };
                 let expected = listed.get(message.addr.as_str());
                 assert_eq!(expected, Some(&tags(&message.args)), "{}", message.addr);
-                heard.insert(message.addr);
+                received.insert(message.addr);
             }
         }
     }
-    let silent: Vec<_> = listed.keys().filter(|address| !heard.contains(**address)).collect();
-    assert!(silent.is_empty(), "never heard: {silent:?}");
+    let silent: Vec<_> = listed.keys().filter(|address| !received.contains(**address)).collect();
+    assert!(silent.is_empty(), "never received: {silent:?}");
 }
 
 #[test]

@@ -4,13 +4,13 @@ use std::net::UdpSocket;
 use std::time::Duration;
 
 use rosc::{OscPacket, OscType};
-use underfoot::engine::LinkState;
 use underfoot::floor::TileId;
 use underfoot::glam::Vec2;
 use underfoot::sense::{Contact, ContactId, Covariance, Quality, SensorHealth, TileLoad};
 use underfoot::sink::{EventSink, OscSink};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
+use underfoot::wire::LinkState;
 
 fn listen() -> (UdpSocket, OscSink) {
     let listener = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -27,11 +27,11 @@ fn hear(listener: &UdpSocket) -> Vec<(String, Option<OscType>)> {
         OscPacket::Bundle(bundle) => bundle.content,
         message => vec![message],
     };
-    let heard = content.into_iter().map(|element| match element {
+    let received = content.into_iter().map(|element| match element {
         OscPacket::Message(message) => (message.addr, message.args.first().cloned()),
         OscPacket::Bundle(_) => panic!("a bundle in a bundle"),
     });
-    heard.collect()
+    received.collect()
 }
 
 fn foot(x: f32) -> Contact {
@@ -88,9 +88,9 @@ fn contacts_arrive_at_100_hz_and_end_with_none() {
         // The report falls due at 5, 15, ... 105: the first at once, the last with nobody.
         if (5..=105).contains(&ms) && ms % 10 == 5 {
             reports += 1;
-            let heard = hear(&listener);
-            assert_eq!(heard[0], ("/underfoot/contacts".into(), Some(OscType::Int(here.into()))));
-            assert_eq!(heard.len(), 1 + usize::from(here));
+            let received = hear(&listener);
+            assert_eq!(received[0], ("/underfoot/contacts".into(), Some(OscType::Int(here.into()))));
+            assert_eq!(received.len(), 1 + usize::from(here));
         }
     }
     assert_eq!(reports, 11);

@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use std::time::Duration;
 
 use crate::support::layout;
-use underfoot::engine::{LinkState, Snapshot};
+use underfoot::engine::Snapshot;
 use underfoot::feel::{Gesture, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::schema::Effects;
@@ -17,7 +17,7 @@ use underfoot::sink::{ActuatorSink, EventSink, ManualSink, SinkError};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
-use underfoot::wire::{ControlMessage, Request, SensorPacket};
+use underfoot::wire::{ControlMessage, LinkState, Request, SensorPacket};
 
 /// Packets of a foot on `home`, with silences in between: the clock goes on, nothing comes.
 struct Visit {
@@ -203,7 +203,7 @@ fn controls_go_on_without_actuators() {
     assert!(told.iter().any(|(_, what)| what == "home clicked"));
 }
 
-/// A manual sink that is looked at while the server owns it.
+/// A manual sink that is examined while the server owns it.
 struct Watched(ManualSink, mpsc::Sender<(u64, Instant)>);
 
 impl ActuatorSink for Watched {

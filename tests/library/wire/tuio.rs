@@ -4,13 +4,13 @@ use std::net::UdpSocket;
 use std::time::Duration;
 
 use rosc::{OscMessage, OscPacket, OscTime, OscType};
-use underfoot::engine::LinkState;
 use underfoot::floor::{Geometry, TileId};
 use underfoot::glam::Vec2;
+use underfoot::outgoing::{TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2};
 use underfoot::sense::{Contact, ContactId, TileLoad};
 use underfoot::sink::{EventSink, TuioSink, TuioVersion};
 use underfoot::units::{Instant, Newtons};
-use underfoot::wire::{Limits, TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2, check};
+use underfoot::wire::{Limits, LinkState, check};
 
 const CLOCK: OscTime = OscTime { seconds: 3_900_000_000, fractional: 0 };
 

@@ -11,9 +11,10 @@ use cpal::SampleFormat;
 use self::fake::{FakeCard, FakeHost};
 use super::*;
 use crate::feel::{Click, Cue, CueSender, DeviceState, Mode, RendererConfig, Spot, renderer};
-use crate::units::Newtons;
+use crate::sink::LatencyProbe;
+use crate::units::{HostClock, Newtons};
 
-/// A floor on a device, looked after by hand.
+/// A floor on a device, watched by hand.
 struct Rig {
     sender: CueSender,
     supervisor: Supervisor,

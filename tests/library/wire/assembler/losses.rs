@@ -2,7 +2,7 @@
 
 use std::time::Duration;
 
-use underfoot::engine::LinkState;
+use underfoot::wire::LinkState;
 
 use super::*;
 

@@ -1,9 +1,8 @@
 //! What the packets say, in newtons and qualities.
 
-use underfoot::engine::LinkState;
 use underfoot::floor::{Calibration, Corner, TileId};
 use underfoot::units::Newtons;
-use underfoot::wire::LinkCounters;
+use underfoot::wire::{LinkCounters, LinkState};
 
 use super::*;
 

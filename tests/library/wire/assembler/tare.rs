@@ -1,8 +1,8 @@
 //! The tare measured at the start.
 
-use underfoot::engine::LinkState;
 use underfoot::sense::{Tare, TareOutcome, TareRules};
 use underfoot::units::Newtons;
+use underfoot::wire::LinkState;
 
 use super::*;
 

@@ -1,11 +1,9 @@
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 
-use super::Prefix;
-use super::encode::write;
-use crate::engine::LinkState;
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
 use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
+use crate::wire::{LinkState, Prefix, write};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
 const CONTACTS_PER_DATAGRAM: usize = 20;
@@ -96,7 +94,7 @@ const NAMED_TILES: usize = 100;
 /// trouble, a string each (`tile (2, 1) sw: stuck`), eight at most.
 pub fn write_health(prefix: &Prefix, state: LinkState, health: &SensorHealth, bytes: &mut Vec<u8>) {
     let SensorHealth { counts: [_, degraded, stale, faulty], uncalibrated, troubles, .. } = health;
-    let mut args = vec![OscType::String(link_name(state).into())];
+    let mut args = vec![OscType::String(state.name().into())];
     args.extend([degraded, stale, faulty, uncalibrated].map(|&count| OscType::Int(count.cast_signed())));
     let named = troubles.iter().take(NAMED_SENSORS);
     args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
@@ -210,16 +208,6 @@ pub fn write_readback(prefix: &Prefix, readback: &Readback<'_>, bytes: &mut Vec<
 
 fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
     prefix.address(&format!("widget/{}/{what}", address_part(id)))
-}
-
-/// The word for a link's state in OSC and JSON.
-pub(crate) const fn link_name(state: LinkState) -> &'static str {
-    match state {
-        LinkState::Waiting => "waiting",
-        LinkState::Live => "live",
-        LinkState::Partial => "partial",
-        LinkState::Lost => "lost",
-    }
 }
 
 fn message(addr: String, args: Vec<OscType>) -> OscPacket {

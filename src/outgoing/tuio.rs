@@ -5,10 +5,10 @@ use std::collections::HashMap;
 use glam::Vec2;
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
 
-use super::encode::write;
 use crate::floor::Geometry;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
+use crate::wire::write;
 
 /// Largest datagram, in bytes: what every network carries whole (1500 less the headers of IP and UDP),
 /// and what clients with a buffer of 1536 bytes don't cut.

@@ -1,0 +1,14 @@
+//! Events, contacts and states to datagrams for other programs, OSC and TUIO: pure, no sockets.
+
+mod osc;
+mod tuio;
+mod tuio1;
+mod tuio2;
+
+pub use osc::{
+    Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health, write_mute,
+    write_page, write_readback,
+};
+pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM};
+pub use tuio1::Tuio1;
+pub use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
