@@ -42,3 +42,8 @@ pub use glam;
 #[cfg(test)]
 #[global_allocator]
 static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisabler;
+
+/// The Rust of the page for apps is a doctest.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/in-your-app.md")]
+struct InYourApp;

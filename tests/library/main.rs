@@ -3,6 +3,8 @@
 //! One test program for all: linking a program for each file would take minutes and gigabytes.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../support/pages.rs"]
+mod pages;
 #[path = "../support/sender.rs"]
 mod sender;
 #[path = "../sense_support/mod.rs"]
@@ -21,6 +23,7 @@ mod intent;
 mod laws;
 mod layers;
 mod layout;
+mod page_files;
 mod regions;
 mod sense;
 mod wire;

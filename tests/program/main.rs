@@ -1,11 +1,13 @@
-//! The program `underfoot` itself: processes, sockets, files, and what the README says of it.
+//! The program `underfoot` itself: processes, sockets, files, and what the pages for people say of it.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../support/pages.rs"]
+mod pages;
 #[path = "../support/sender.rs"]
 mod sender;
 
 mod calibrate;
 mod clients;
 mod end_to_end;
+mod page_commands;
 mod rack;
-mod readme;
