@@ -1,3 +1,5 @@
+//! How fast the renderer is: standard loads on the paper's 36 tiles.
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

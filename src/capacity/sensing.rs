@@ -1,3 +1,5 @@
+//! How fast sensing is: floors of several sizes with people walking on them.
+
 use std::time::Duration;
 
 use glam::Vec2;

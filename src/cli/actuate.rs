@@ -1,3 +1,5 @@
+//! Options for samples: sound card, WAV file or silence, and the renderer that feeds them.
+
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 

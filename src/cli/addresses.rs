@@ -1,3 +1,5 @@
+//! `underfoot addresses`: every OSC address of a layout.
+
 use underfoot::serve::{Direction, Entry, Reference};
 
 use super::failure::Failure;

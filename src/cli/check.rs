@@ -1,3 +1,5 @@
+//! `underfoot check`: everything that is wrong with layouts.
+
 use std::path::PathBuf;
 
 use underfoot::ergonomics::{self, RULES};

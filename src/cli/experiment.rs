@@ -1,3 +1,5 @@
+//! `underfoot experiment`: the paper's figures and the accuracy tables.
+
 use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;

@@ -1,3 +1,5 @@
+//! Why a command failed, as it is told on standard error.
+
 use std::fmt;
 use std::path::PathBuf;
 

@@ -1,3 +1,5 @@
+//! `underfoot feel`: effects as sound, picture and figures, and Apple's patterns in and out.
+
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 

@@ -1,3 +1,5 @@
+//! Options that choose a floor, and saving one.
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;

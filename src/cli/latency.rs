@@ -1,3 +1,5 @@
+//! The latency tables of `underfoot run`.
+
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::time::Duration;

@@ -1,3 +1,5 @@
+//! Options that choose a layout, its kinds and its effects.
+
 use std::path::{Path, PathBuf};
 
 use clap::Args;

@@ -1,3 +1,5 @@
+//! `underfoot measure`: forces on the floor, for choosing thresholds.
+
 use std::io::IsTerminal;
 use std::net::SocketAddr;
 use std::sync::atomic::Ordering;

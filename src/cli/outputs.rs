@@ -1,3 +1,5 @@
+//! Options for events: OSC, TUIO, JSON lines.
+
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
 

@@ -1,3 +1,5 @@
+//! Options for a simulated floor, and the scenario played on it.
+
 use std::path::{Path, PathBuf};
 
 use underfoot::floor::{Floor, Geometry};

@@ -1,3 +1,5 @@
+//! `underfoot preview`: the window, with its floor served on a thread of its own.
+
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};

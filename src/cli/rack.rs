@@ -1,3 +1,5 @@
+//! `underfoot rack`: the walk from tile to tile, the devices, the channel map.
+
 #[cfg(feature = "audio")]
 use std::fmt::Write as _;
 use std::path::Path;

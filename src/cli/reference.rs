@@ -1,3 +1,5 @@
+//! `underfoot reference`: what files may say.
+
 use underfoot::schema::write_reference;
 
 use super::failure::Failure;

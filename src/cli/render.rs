@@ -1,3 +1,5 @@
+//! `underfoot render`: a layout as a picture.
+
 use std::path::PathBuf;
 
 use underfoot::engine::{Engine, Snapshot};

@@ -1,3 +1,5 @@
+//! `underfoot run`: a floor is served.
+
 use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};

@@ -1,3 +1,5 @@
+//! `underfoot session`: a scenario played without a window.
+
 use std::fs::File;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};

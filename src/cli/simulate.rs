@@ -1,3 +1,5 @@
+//! `underfoot simulate`: a simulated floor that sends real packets.
+
 use std::net::{SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;

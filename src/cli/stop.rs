@@ -1,3 +1,5 @@
+//! Ctrl-C and termination end a command in order.
+
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
 

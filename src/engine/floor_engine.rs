@@ -1,3 +1,5 @@
+//! The engine: sensing, interaction, grounds and responses, one frame at a time.
+
 use crate::feel::{Cue, SustainedCues};
 use crate::floor::{Geometry, PositionMap};
 use crate::ground::{GroundEvent, Grounds};

@@ -1,3 +1,5 @@
+//! Labels that apps write on controls.
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

@@ -1,3 +1,5 @@
+//! The change of page, as events tell it.
+
 use crate::units::Instant;
 use crate::widget::WidgetId;
 

@@ -1,3 +1,5 @@
+//! Everything there is to see of a floor at one instant.
+
 use std::sync::Arc;
 
 use glam::Vec2;

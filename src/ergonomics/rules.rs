@@ -1,3 +1,5 @@
+//! The ergonomic rules: limits, reasons and sources.
+
 use serde::Serialize;
 
 /// One ergonomic rule: a limit with its reason and where it comes from.

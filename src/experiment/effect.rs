@@ -1,3 +1,5 @@
+//! An effect drawn: waveform, spectrum, band and figures.
+
 use std::fmt::Write;
 use std::sync::Arc;
 

@@ -1,3 +1,5 @@
+//! Statistics of position errors.
+
 use std::fmt;
 
 use serde::Serialize;

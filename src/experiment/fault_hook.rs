@@ -1,3 +1,5 @@
+//! Hooks for faults in the middle of an experiment.
+
 use super::rig::Rig;
 use crate::feel::Cue;
 use crate::sense::ForceFrame;

@@ -1,3 +1,5 @@
+//! What every figure gives: a drawing, a table, a summary.
+
 use crate::scene::Scene;
 
 /// An experiment that can be drawn and written as a table.

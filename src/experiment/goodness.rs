@@ -1,3 +1,5 @@
+//! Tests of goodness of fit: Kolmogorov and Smirnov, chi-square.
+
 use serde::Serialize;
 
 /// How well a sample fits what it should come from.

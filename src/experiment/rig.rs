@@ -1,3 +1,5 @@
+//! A simulated floor with its assembler and engine, for experiments.
+
 use std::time::Duration;
 
 use rand::SeedableRng;

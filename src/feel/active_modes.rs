@@ -1,3 +1,5 @@
+//! The modal banks of all channels, computed in groups.
+
 use super::ModalBank;
 use super::mix::{LANES, Mix};
 use super::modal::{SPAN, ring_side_by_side};

@@ -1,3 +1,5 @@
+//! Figures measured from rendered samples: peak, level, share of energy in a band.
+
 use std::f64::consts::TAU;
 
 use super::Band;

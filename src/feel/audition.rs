@@ -1,3 +1,5 @@
+//! An effect rendered alone, as a described foot would feel it.
+
 use std::sync::Arc;
 use std::time::Duration;
 

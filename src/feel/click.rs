@@ -1,3 +1,5 @@
+//! A click on one channel: its modes struck by its impulse.
+
 use arrayvec::ArrayVec;
 
 use super::push::Pushes;

@@ -1,3 +1,5 @@
+//! What goes from the sensing thread to the renderer: clicks, tones and what lasts, and where they are felt.
+
 use arrayvec::ArrayVec;
 
 use super::{Click, Lasting, Manner, Tone};

@@ -1,3 +1,5 @@
+//! How the device that plays the samples is doing.
+
 use std::fmt;
 
 /// How the device that moves the actuators is doing.

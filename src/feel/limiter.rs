@@ -1,3 +1,5 @@
+//! The limiter of a group of channels, and the ramp of the whole output.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

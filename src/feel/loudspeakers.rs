@@ -1,3 +1,5 @@
+//! How what is felt is panned to loudspeakers.
+
 use arrayvec::ArrayVec;
 use glam::Vec2;
 

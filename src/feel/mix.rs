@@ -1,3 +1,5 @@
+//! The rows of samples that voices and clicks are added to, and which tile drives which channel.
+
 use glam::{Mat4, Vec4};
 
 use crate::floor::Actuator;

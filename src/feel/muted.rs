@@ -1,3 +1,5 @@
+//! What is muted.
+
 use crate::floor::TileId;
 
 /// What somebody has muted.

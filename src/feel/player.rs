@@ -1,3 +1,5 @@
+//! Plays effects part by part as time goes on.
+
 use std::sync::Arc;
 use std::time::Duration;
 

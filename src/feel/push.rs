@@ -1,3 +1,5 @@
+//! Impulses that have a width, struck as series of short ones.
+
 use std::f64::consts::TAU;
 
 use arrayvec::ArrayVec;

@@ -1,3 +1,5 @@
+//! The renderer: cues in, blocks of samples out. It runs in the audio callback.
+
 use std::sync::Arc;
 use std::time::Duration;
 

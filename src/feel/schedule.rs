@@ -1,3 +1,5 @@
+//! Cues in the order of their samples, and the clock that says which sample a moment is.
+
 use std::time::Duration;
 
 use super::Cue;

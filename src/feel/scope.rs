@@ -1,3 +1,5 @@
+//! Least and greatest samples of each channel, for those who draw them.
+
 use rtrb::{Consumer, Producer, RingBuffer};
 
 /// Points per channel that a [`ScopeReader`] holds.

@@ -1,3 +1,5 @@
+//! The sending end of the renderer, and what both ends count.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 

@@ -1,3 +1,5 @@
+//! Amplifiers and coils.
+
 use glam::Vec2;
 
 use crate::units::Newtons;

@@ -1,3 +1,5 @@
+//! Tiles, corners and sensors, and where they are.
+
 use std::fmt;
 
 use glam::Vec2;

@@ -1,3 +1,5 @@
+//! Everything that is known of one floor.
+
 use super::{
     Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, PositionMap,
     Response, SensorId, TileId,

@@ -1,3 +1,5 @@
+//! Corrections of the place of a load on one tile.
+
 use glam::Vec2;
 
 use super::Geometry;

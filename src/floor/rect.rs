@@ -1,3 +1,5 @@
+//! An upright rectangle in floor metres.
+
 use glam::Vec2;
 
 /// An upright rectangle in floor metres.

@@ -1,3 +1,5 @@
+//! Numbers shown to some significant digits.
+
 use std::fmt;
 
 /// A number shown to some significant digits, without trailing zeros, so that a small one can be read as well.

@@ -1,3 +1,5 @@
+//! What the parser complains of, and the character that would mend it.
+
 use std::ops::Range;
 
 use ron2::error::ErrorKind;

@@ -1,3 +1,5 @@
+//! Problems of a file with their places, as people and programs read them.
+
 use std::error::Error;
 use std::fmt;
 use std::ops::Range;

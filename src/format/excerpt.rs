@@ -1,3 +1,5 @@
+//! The line of a file that a message shows.
+
 use std::ops::Range;
 
 use unicode_width::UnicodeWidthStr;

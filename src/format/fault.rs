@@ -1,3 +1,5 @@
+//! What is wrong between the fields of a record.
+
 use super::diagnostic::Severity;
 use super::number::plain;
 

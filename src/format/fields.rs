@@ -1,3 +1,5 @@
+//! The fields of one record, each read once.
+
 use std::ops::Range;
 
 use ron2::ast::StructField;

@@ -1,3 +1,5 @@
+//! One value in the tree, read as what is wanted.
+
 use std::ops::{Range, RangeInclusive};
 
 use ron2::ast::{Expr, StructBody};

@@ -1,3 +1,5 @@
+//! Numbers as written.
+
 /// A number as written.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Number {

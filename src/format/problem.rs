@@ -1,3 +1,5 @@
+//! A problem of a text, before its file is known.
+
 use std::ops::Range;
 
 use super::diagnostic::Severity;

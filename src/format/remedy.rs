@@ -1,3 +1,5 @@
+//! What stands where a record should, in words.
+
 use ron2::ast::Expr;
 
 use super::number::parse_number;

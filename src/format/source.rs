@@ -1,3 +1,5 @@
+//! The text of a file: size, encoding, lines.
+
 use std::fs::File;
 use std::io::{self, Read};
 use std::ops::Range;

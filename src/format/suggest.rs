@@ -1,3 +1,5 @@
+//! The nearest valid name.
+
 use strsim::{jaro_winkler, osa_distance};
 
 /// The name among `valid` that `written` was most likely meant to be; `None` if none comes close.

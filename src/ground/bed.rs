@@ -1,3 +1,5 @@
+//! One material at work, whichever it is.
+
 use super::grains::Grains;
 use super::ice::Ice;
 use super::tile::{Event, Stride};

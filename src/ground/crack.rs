@@ -1,3 +1,5 @@
+//! One straight piece of a crack.
+
 use glam::Vec2;
 
 use crate::units::Instant;

@@ -1,3 +1,5 @@
+//! The mass on a damped spring that is under each tile.
+
 use crate::format::{num, record};
 
 record! {

@@ -1,3 +1,5 @@
+//! A power law of energies.
+
 use crate::format::{Num, num, record};
 
 /// Energies of single events.

@@ -1,3 +1,5 @@
+//! How cracks begin, spread, fork and end.
+
 use std::collections::VecDeque;
 use std::f32::consts::TAU;
 use std::time::Duration;

@@ -1,3 +1,5 @@
+//! Snow, gravel and sand at work.
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,3 +1,5 @@
+//! All grounds of a layout at work: frames in, events out.
+
 use std::time::Duration;
 
 use glam::Vec2;

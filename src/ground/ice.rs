@@ -1,3 +1,5 @@
+//! A frozen pond at work.
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,3 +1,5 @@
+//! When events happen: a Poisson process whose rate follows a signal.
+
 use rand_distr::{Distribution, Exp1};
 use rand_pcg::Pcg64Mcg;
 

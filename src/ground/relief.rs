@@ -1,3 +1,5 @@
+//! How far a ground is worn, and how it recovers.
+
 use glam::{UVec2, Vec2};
 
 use crate::floor::Rect;

@@ -1,3 +1,5 @@
+//! How single events ring.
+
 use arrayvec::ArrayVec;
 use rand::RngExt;
 use rand_pcg::Pcg64Mcg;

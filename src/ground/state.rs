@@ -1,3 +1,5 @@
+//! What grounds tell others: events, counters, what they look like.
+
 use glam::Vec2;
 
 use super::{Crack, Relief, Seed};

@@ -1,3 +1,5 @@
+//! One tile of one ground, and what a material is told of it.
+
 use glam::Vec2;
 
 use super::{Elastic, Motion};

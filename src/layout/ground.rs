@@ -1,3 +1,5 @@
+//! A part of the floor that seems to be made of a material.
+
 use super::Colour;
 use crate::ground::GroundSpec;
 

@@ -1,3 +1,5 @@
+//! Which control lies at a point.
+
 use glam::{UVec2, Vec2};
 
 use super::{Layout, Shape, Widget};

@@ -1,3 +1,5 @@
+//! Pictures on the faces of controls.
+
 use crate::format::Named;
 use crate::widget::Behaviour;
 

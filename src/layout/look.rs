@@ -1,3 +1,5 @@
+//! What a control looks like: shape and colours.
+
 use super::Icon;
 use std::fmt;
 use std::str::FromStr;

@@ -1,3 +1,5 @@
+//! A page of controls.
+
 use crate::widget::WidgetId;
 
 /// A page of controls: those on it are there while it is shown, together with those on all pages.

@@ -1,3 +1,5 @@
+//! Regions, in which feet work controls, and zones where people stand.
+
 use crate::floor::Rect;
 use crate::format::Named;
 

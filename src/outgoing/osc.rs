@@ -1,3 +1,5 @@
+//! OSC messages that tell of events, contacts and states.
+
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 
 use crate::feel::{DeviceStatus, Muted};

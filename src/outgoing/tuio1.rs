@@ -1,3 +1,5 @@
+//! TUIO 1.1: cursors and blobs.
+
 use std::f32::consts::FRAC_PI_4;
 
 use rosc::{OscPacket, OscType};

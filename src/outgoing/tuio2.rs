@@ -1,3 +1,5 @@
+//! TUIO 2.0: pointers with pressure.
+
 use rosc::{OscPacket, OscTime, OscType};
 
 use super::tuio::{Memory, SHOE_M, Surface, Told, heaviest, message, send_frame, session};

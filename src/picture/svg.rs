@@ -1,3 +1,5 @@
+//! A drawing as SVG.
+
 use std::fmt::{self, Write};
 
 use glam::Vec2;

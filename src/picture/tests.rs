@@ -1,3 +1,5 @@
+//! Pictures as files, pixel by pixel where it matters.
+
 use std::path::Path;
 
 use resvg::tiny_skia::Pixmap;

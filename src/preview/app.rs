@@ -1,3 +1,5 @@
+//! The window's contents, from one picture to the next.
+
 use eframe::egui;
 use std::sync::Arc;
 use std::sync::mpsc::Sender;

@@ -1,3 +1,5 @@
+//! What the program hands to the window and takes from it.
+
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 

@@ -1,3 +1,5 @@
+//! Thin lines with soft edges, as textured meshes.
+
 use eframe::egui::epaint::{Mesh, Vertex};
 use eframe::egui::{
     self, Color32, ColorImage, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Vec2, pos2, vec2,

@@ -1,3 +1,5 @@
+//! What other threads tell the window.
+
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;

@@ -1,3 +1,5 @@
+//! Draws a scene with egui.
+
 use eframe::egui;
 use eframe::egui::epaint::{
     self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape,

@@ -1,3 +1,5 @@
+//! How often something happens a second.
+
 /// Counts how often something happens a second, over the last half second.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Rate {

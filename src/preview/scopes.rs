@@ -1,3 +1,5 @@
+//! Levels and waveforms of the actuators.
+
 use super::feed::ScopeFeed;
 use crate::engine::Snapshot;
 use crate::floor::{Floor, TileId};

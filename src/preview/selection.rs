@@ -1,3 +1,5 @@
+//! Which tile the side panel shows.
+
 use crate::engine::Snapshot;
 use crate::floor::{Geometry, TileId};
 

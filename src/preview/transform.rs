@@ -1,3 +1,5 @@
+//! Floor metres to screen points and back.
+
 use eframe::egui;
 use eframe::egui::{Pos2, Rect, pos2, vec2};
 use glam::Vec2;

@@ -1,3 +1,5 @@
+//! The drawing: marks in order, kept and drawn anew.
+
 use std::fmt::{self, Write};
 
 use glam::Vec2;

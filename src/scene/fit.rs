@@ -1,3 +1,5 @@
+//! Labels broken into lines and sized so that they fit.
+
 use std::ops::Range;
 
 use arrayvec::ArrayVec;

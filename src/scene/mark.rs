@@ -1,3 +1,5 @@
+//! What a drawing is made of.
+
 use glam::Vec2;
 
 use crate::floor::Rect;

@@ -1,3 +1,5 @@
+//! What scenes show, mark by mark.
+
 use std::collections::HashSet;
 
 use glam::Vec2;

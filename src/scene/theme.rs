@@ -1,3 +1,5 @@
+//! The colours of everything but the controls' own faces.
+
 use crate::layout::Colour;
 
 /// The colours of everything but the controls' own faces.

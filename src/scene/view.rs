@@ -1,3 +1,5 @@
+//! What a scene is drawn from.
+
 use glam::Vec2;
 
 use super::Theme;

@@ -1,3 +1,5 @@
+//! Rectangles as layouts write them.
+
 use std::fmt;
 use std::ops::Range;
 

@@ -1,3 +1,5 @@
+//! Days as files write them.
+
 use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;

@@ -1,3 +1,5 @@
+//! Floor files: geometry and boards.
+
 use std::collections::HashMap;
 use std::ops::Range;
 use std::path::Path;

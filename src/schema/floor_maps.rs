@@ -1,3 +1,5 @@
+//! Floor files: position maps.
+
 use super::behaviour::single;
 use super::day;
 use super::fields::Fields;

@@ -1,3 +1,5 @@
+//! Floor files: calibration and tare of sensors.
+
 use super::behaviour::single;
 use super::day;
 use super::fields::Fields;

@@ -1,3 +1,5 @@
+//! Floor files: amplifiers, actuators, loudspeakers.
+
 use std::ops::Range;
 
 use glam::Vec2;

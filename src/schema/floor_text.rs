@@ -1,3 +1,5 @@
+//! Floor files, written.
+
 use std::fmt::Write;
 
 use super::floor::usual_address;

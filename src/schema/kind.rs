@@ -1,3 +1,5 @@
+//! Kinds of controls, and folders of them.
+
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;

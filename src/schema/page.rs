@@ -1,3 +1,5 @@
+//! Layout files, from the text to the checked layout.
+
 use std::path::Path;
 
 use super::area::{Area, Placed};

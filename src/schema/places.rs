@@ -1,3 +1,5 @@
+//! Where the parts of a layout are written.
+
 use std::ops::Range;
 use std::sync::Arc;
 

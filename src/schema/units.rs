@@ -1,3 +1,5 @@
+//! Tiles or metres.
+
 use super::fields::Fields;
 use super::node::Node;
 use super::reader::Reader;

@@ -1,3 +1,5 @@
+//! The version of the file formats.
+
 use super::diagnostic::Diagnostics;
 use super::node::Node;
 use super::problem::Problem;

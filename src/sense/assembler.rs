@@ -1,3 +1,5 @@
+//! Packets of boards in, frames of the whole floor out.
+
 mod board;
 mod clock;
 mod presence;

@@ -1,3 +1,5 @@
+//! Groups of loaded tiles that touch each other.
+
 use std::ops::Range;
 
 use super::loaded::{AROUND, LoadedTiles};

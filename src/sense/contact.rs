@@ -1,3 +1,5 @@
+//! Contacts: what presses the floor in one place.
+
 use glam::Vec2;
 use serde::Serialize;
 use smallvec::SmallVec;

@@ -1,3 +1,5 @@
+//! The foot that points in a region.
+
 use std::time::Duration;
 
 use glam::Vec2;

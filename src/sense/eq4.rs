@@ -1,3 +1,5 @@
+//! Contacts by the paper's method (Eq. 4): one per group of connected tiles.
+
 use glam::Vec2;
 
 use super::cluster::Clusters;

@@ -1,3 +1,5 @@
+//! Tables of forces, for sensing without a floor.
+
 use std::io::{self, BufRead, Read};
 
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! The forces and qualities of all sensors at one instant.
+
 use glam::Vec2;
 
 use super::Quality;

@@ -1,3 +1,5 @@
+//! Which tiles carry something.
+
 mod rims;
 mod threshold;
 

@@ -1,3 +1,5 @@
+//! Contacts in objects that are used again.
+
 use smallvec::SmallVec;
 
 use super::Quality;

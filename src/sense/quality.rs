@@ -1,3 +1,5 @@
+//! How far a value can be trusted.
+
 use serde::Serialize;
 
 /// How far a value can be trusted; no force, tile or board travels without one.

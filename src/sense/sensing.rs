@@ -1,3 +1,5 @@
+//! Frames in, contacts out, by either method.
+
 use super::cluster::Clusters;
 use super::eq4::Eq4;
 use super::loaded::{LoadThreshold, LoadedTiles};

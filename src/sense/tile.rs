@@ -1,3 +1,5 @@
+//! The force and the centroid of one tile.
+
 use glam::Vec2;
 
 use super::Quality;

@@ -1,3 +1,5 @@
+//! How uncertain a centroid is, by what sensors leave open.
+
 use glam::{Vec2, Vec4};
 
 use super::contact::Covariance;

@@ -1,3 +1,5 @@
+//! Least, median and greatest forces over time.
+
 use crate::floor::{Floor, TileId};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;

@@ -1,3 +1,5 @@
+//! The server: one turn per packet, and all that follows from it.
+
 mod mute;
 mod notices;
 

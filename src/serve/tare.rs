@@ -1,3 +1,5 @@
+//! A tare taken for a floor file.
+
 use std::time::Duration;
 
 use thiserror::Error;

@@ -1,3 +1,5 @@
+//! An effect tried on one tile.
+
 use std::sync::Arc;
 
 use crate::feel::{Audition, Cue, CueSender, Effect, Gesture, Spot, Spots, SustainedCues};

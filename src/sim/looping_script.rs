@@ -1,3 +1,5 @@
+//! A script played again and again.
+
 use std::time::Duration;
 
 use super::{Foot, FootDriver, Script};

@@ -1,3 +1,5 @@
+//! Which output channel moves which tile, as a plan.
+
 use std::fmt;
 
 use crate::floor::{Floor, TileId};

@@ -1,3 +1,5 @@
+//! A limit to the rate at which cracks are told.
+
 use std::time::Duration;
 
 use crate::ground::GroundEvent;

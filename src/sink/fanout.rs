@@ -1,3 +1,5 @@
+//! Several event sinks as one.
+
 use super::EventSink;
 use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};

@@ -1,3 +1,5 @@
+//! Events as JSON lines.
+
 use std::io::{self, Write};
 use std::sync::mpsc::Receiver;
 

@@ -1,3 +1,5 @@
+//! Histograms of latency, filled from any thread.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::fmt;

@@ -1,3 +1,5 @@
+//! Samples rendered as far as time has passed.
+
 use std::time::Duration;
 
 use crate::feel::{Onset, Renderer};

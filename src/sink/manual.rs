@@ -1,3 +1,5 @@
+//! Samples kept in memory.
+
 use std::convert::Infallible;
 
 use super::lockstep::Lockstep;

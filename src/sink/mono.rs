@@ -1,3 +1,5 @@
+//! One channel of samples as a WAV file.
+
 use std::path::Path;
 
 use hound::{SampleFormat, WavSpec, WavWriter};

@@ -1,3 +1,5 @@
+//! Events and contacts as OSC over UDP.
+
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

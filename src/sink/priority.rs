@@ -1,3 +1,5 @@
+//! Real-time priority of threads that a foot waits for.
+
 use crate::feel::Priority;
 
 /// Who goes before whom among the threads that a foot waits for.

@@ -1,3 +1,5 @@
+//! Samples rendered and not played.
+
 use std::convert::Infallible;
 
 use super::lockstep::Lockstep;

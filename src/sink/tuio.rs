@@ -1,3 +1,5 @@
+//! Contacts as TUIO over UDP.
+
 use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

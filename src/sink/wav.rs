@@ -1,3 +1,5 @@
+//! Samples in WAV files, written by a thread of their own.
+
 use std::fs::File;
 use std::io::{self, BufWriter};
 use std::path::{Path, PathBuf};

@@ -1,3 +1,5 @@
+//! A thread that does what may block, behind a bounded queue.
+
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};

@@ -1,3 +1,5 @@
+//! Faults on the way of packets: losses, repetitions, delays, damage, outages.
+
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::time::Duration;

@@ -1,3 +1,5 @@
+//! Packets of a simulated floor.
+
 use std::fmt;
 use std::thread;
 use std::time::Duration;

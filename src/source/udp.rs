@@ -1,3 +1,5 @@
+//! Packets and requests from a UDP socket.
+
 mod log;
 mod proc_net;
 mod stamped;

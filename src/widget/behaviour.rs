@@ -1,3 +1,5 @@
+//! What a control does: one of ten behaviours with its settings.
+
 use super::{
     ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
     StepperSpec, SwitchSpec, Thresholds, Value,

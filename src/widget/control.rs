@@ -1,3 +1,5 @@
+//! One control at work: press, guard and behaviour.
+
 use std::time::Duration;
 
 use glam::Vec2;

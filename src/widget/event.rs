@@ -1,3 +1,5 @@
+//! Events of controls, values and names.
+
 use std::fmt;
 use std::sync::Arc;
 

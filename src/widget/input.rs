@@ -1,3 +1,5 @@
+//! What one control senses in one frame.
+
 use glam::Vec2;
 
 use crate::units::Newtons;

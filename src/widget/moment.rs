@@ -1,3 +1,5 @@
+//! What a behaviour is told of one frame, and what every behaviour can do.
+
 use std::time::Duration;
 
 use glam::Vec2;

@@ -1,3 +1,5 @@
+//! A number that feet move and a cancel takes back.
+
 use super::press::Outcome;
 use super::{Emitted, EventKind, Scale, SetError, Value};
 

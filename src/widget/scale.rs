@@ -1,3 +1,5 @@
+//! The range, steps and detents of a number.
+
 use crate::format::Faults;
 use crate::format::number::plain;
 use crate::format::{Follow, Num, num, record};

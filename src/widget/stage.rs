@@ -1,3 +1,5 @@
+//! Pairs of thresholds, of which the second follows the first.
+
 use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
 use crate::format::fields::Fields;
 use crate::format::node::Node;

@@ -1,3 +1,5 @@
+//! When a foot's force counts as a press.
+
 use std::time::Duration;
 
 use super::Guard;

@@ -1,3 +1,5 @@
+//! The way along which a slider is worked.
+
 use std::f32::consts::{FRAC_PI_2, PI, TAU};
 
 use glam::Vec2;

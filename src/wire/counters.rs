@@ -1,3 +1,5 @@
+//! What came in and what was not used.
+
 use std::ops::{Add, AddAssign};
 
 use serde::Serialize;

@@ -1,3 +1,5 @@
+//! Datagrams in, packets of sensors and requests of apps out.
+
 use std::collections::HashMap;
 
 use arrayvec::ArrayVec;

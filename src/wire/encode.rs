@@ -1,3 +1,5 @@
+//! Packets as boards write them.
+
 use rosc::{OscMessage, OscPacket, OscType, encoder};
 use thiserror::Error;
 

@@ -1,3 +1,5 @@
+//! Limits that a datagram must keep before it is decoded.
+
 use arrayvec::ArrayVec;
 use thiserror::Error;
 

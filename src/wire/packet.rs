@@ -1,3 +1,5 @@
+//! One packet of one board.
+
 use arrayvec::ArrayVec;
 
 use crate::units::Instant;

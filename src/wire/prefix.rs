@@ -1,3 +1,5 @@
+//! What OSC addresses begin with.
+
 use std::fmt;
 use std::str::FromStr;
 use std::sync::Arc;

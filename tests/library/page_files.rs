@@ -1,4 +1,5 @@
-//! What README.md and the pages under docs/ show is true: their files are good, and what they name is there.
+//! What README.md and the pages under docs/ show is true: their files are good, and what they name is there; each source
+//! file says what it is.
 
 use std::path::Path;
 
@@ -99,4 +100,24 @@ fn every_place_in_the_source_is_there() {
         }
     }
     assert!(functions >= 30, "{functions}");
+}
+
+#[test]
+fn every_source_file_says_what_it_is() {
+    let mut folders: Vec<_> =
+        ["src", "tests", "benches", "examples"].map(|at| Path::new(ROOT).join(at)).into();
+    let mut count = 0;
+    while let Some(folder) = folders.pop() {
+        for entry in folder.read_dir().unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|ending| ending == "rs") {
+                count += 1;
+                let text = std::fs::read_to_string(&path).unwrap();
+                assert!(text.starts_with("//! "), "{} begins without //!", path.display());
+            }
+        }
+    }
+    assert!(count >= 400, "{count}");
 }

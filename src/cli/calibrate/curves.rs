@@ -1,3 +1,5 @@
+//! `underfoot calibrate curves`: each sensor's law from load-cell measurements.
+
 use std::path::PathBuf;
 
 use serde_json::{Value, json};

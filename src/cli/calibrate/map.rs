@@ -1,3 +1,5 @@
+//! `underfoot calibrate map`: position maps from known points pressed.
+
 use std::path::PathBuf;
 
 use serde_json::json;

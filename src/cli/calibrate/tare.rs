@@ -1,3 +1,5 @@
+//! `underfoot calibrate tare`: what sensors read on the empty floor.
+
 use std::net::SocketAddr;
 use std::path::PathBuf;
 use std::time::Duration;

@@ -1,3 +1,5 @@
+//! Which effects a control plays when.
+
 use std::sync::Arc;
 
 use super::click::SHARE;

@@ -1,3 +1,5 @@
+//! Effects that a sliding foot drives: friction, stick-slip, texture, grains; and held tones.
+
 use arrayvec::ArrayVec;
 
 use super::click::{HZ, LEVEL, SHARE};

@@ -1,3 +1,5 @@
+//! Clicks and tones one after the other.
+
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;

@@ -1,3 +1,5 @@
+//! Effects that a value drives: detents and end stops.
+
 use arrayvec::ArrayVec;
 
 use super::Hum;

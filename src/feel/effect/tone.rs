@@ -1,3 +1,5 @@
+//! A tone or a band of noise under an envelope.
+
 use arrayvec::ArrayVec;
 
 use super::click::{HZ, LEVEL, SHARE};

@@ -1,3 +1,5 @@
+//! The terms by which a mode is computed for many samples at once.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

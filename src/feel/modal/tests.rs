@@ -1,3 +1,5 @@
+//! Modal banks against double precision.
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 

@@ -1,3 +1,5 @@
+//! Filters fitted to the measured response of an actuator.
+
 use levenberg_marquardt::{LeastSquaresProblem, LevenbergMarquardt};
 use nalgebra::{DMatrix, DVector, Dyn, Owned};
 

@@ -1,3 +1,5 @@
+//! Gates that open and close channels without a click.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

@@ -1,3 +1,5 @@
+//! Protection of coils from heat.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

@@ -1,3 +1,5 @@
+//! Filters of second order, several channels side by side.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

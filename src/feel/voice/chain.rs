@@ -1,3 +1,5 @@
+//! The resonances and band filters of eight voices.
+
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 

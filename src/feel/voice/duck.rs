@@ -1,3 +1,5 @@
+//! What goes down while something more important plays.
+
 use crate::feel::loudspeakers::NEAREST;
 use crate::feel::{MAX_SPOTS, Manner};
 

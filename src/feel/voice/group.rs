@@ -1,3 +1,5 @@
+//! Eight voices of one model, computed side by side.
+
 use super::chain::Chain;
 use super::hiss::{self, Hiss};
 use super::impacts::{self, Impacts, Nature};

@@ -1,3 +1,5 @@
+//! All voices: which effect gets which, and which one ends when there are too many.
+
 use super::duck::Ducks;
 use super::group::{Group, Model};
 use super::single::{STEP, Span, State, Voice};

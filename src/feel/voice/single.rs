@@ -1,3 +1,5 @@
+//! The control of one voice from slip speed and force.
+
 use arrayvec::ArrayVec;
 
 use super::duck::{Ducks, MAX_REACHES};

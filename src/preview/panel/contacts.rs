@@ -1,3 +1,5 @@
+//! The side panel's list of contacts.
+
 use eframe::egui::Ui;
 
 use super::super::app::App;

@@ -1,3 +1,5 @@
+//! The side panel's list of controls: values set, controls switched off.
+
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{CollapsingHeader, DragValue, Ui, WidgetInfo};

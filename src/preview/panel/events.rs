@@ -1,3 +1,5 @@
+//! The side panel's list of events.
+
 use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, Ui, WidgetInfo, vec2};
 

@@ -1,3 +1,5 @@
+//! The side panel's list of grounds.
+
 use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 

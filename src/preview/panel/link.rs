@@ -1,3 +1,5 @@
+//! The side panel's link, sensors and sound card.
+
 use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 

@@ -1,3 +1,5 @@
+//! The side panel's waveforms.
+
 use eframe::egui::accesskit::Role;
 use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};

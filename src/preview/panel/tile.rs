@@ -1,3 +1,5 @@
+//! The side panel's tile: its four sensors, its mute.
+
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, pos2, vec2};

@@ -1,3 +1,5 @@
+//! The face of a slider along an arc or at an angle.
+
 use glam::Vec2;
 
 use super::super::Scene;

@@ -1,3 +1,5 @@
+//! A control's value in letters.
+
 use std::fmt::Write;
 
 use arrayvec::ArrayString;

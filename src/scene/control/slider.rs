@@ -1,3 +1,5 @@
+//! The face of a straight slider.
+
 use glam::Vec2;
 
 use super::super::Scene;

@@ -1,3 +1,5 @@
+//! The face of a switch.
+
 use glam::Vec2;
 
 use super::super::Scene;

@@ -1,3 +1,5 @@
+//! Numbers that look random and always are the same for the same place.
+
 use glam::{IVec2, Vec2};
 
 /// Numbers that look random and always are the same for the same seed and place.

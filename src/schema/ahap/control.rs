@@ -1,3 +1,5 @@
+//! Parameters of an AHAP pattern that change over time.
+
 use super::file::{DynamicParameter, ParameterCurve};
 
 /// What controls one quality of all events over time.

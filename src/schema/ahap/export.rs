@@ -1,3 +1,5 @@
+//! Effects to AHAP.
+
 use std::collections::BTreeSet;
 
 use serde_json::json;

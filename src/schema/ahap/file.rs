@@ -1,3 +1,5 @@
+//! The AHAP file as written.
+
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 

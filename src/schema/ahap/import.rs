@@ -1,3 +1,5 @@
+//! AHAP to effects.
+
 use std::collections::BTreeMap;
 use std::sync::Arc;
 

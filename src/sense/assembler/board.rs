@@ -1,3 +1,5 @@
+//! One board: its packets that wait, its sensors' calibration and tare.
+
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};

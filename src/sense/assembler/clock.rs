@@ -1,3 +1,5 @@
+//! The sample clock, steered by the arrival of packets.
+
 use crate::units::Instant;
 
 /// One slot of the sample clock, in nanoseconds: a frame each millisecond.

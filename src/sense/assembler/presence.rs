@@ -1,3 +1,5 @@
+//! Whether a board is heard, silent or flapping.
+
 use super::clock::SLOT_NS;
 
 /// Silence after which a board's values are stale.

@@ -1,3 +1,5 @@
+//! What a packet's sequence number says: next, lost, repeated, late, restarted.
+
 /// How far back a packet may lie and still be a straggler rather than a sign of a reboot.
 const WINDOW: u32 = 100;
 

@@ -1,3 +1,5 @@
+//! One board's packets, from sequence numbers to slots of the sample clock.
+
 use super::clock::{Arrivals, SLOT_NS, SampleClock};
 use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{Sequence, Verdict};

@@ -1,3 +1,5 @@
+//! The tare, measured while the floor is empty and quiet.
+
 use std::time::Duration;
 
 use crate::floor::{Floor, SensorId};

@@ -1,3 +1,5 @@
+//! How the floor's sensors are doing, as it is told to others.
+
 use crate::floor::SensorId;
 use crate::sense::Quality;
 

@@ -1,3 +1,5 @@
+//! The sensors of one tile, averaged over 64 ms: what changes too slowly for a single frame to show.
+
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};

@@ -1,3 +1,5 @@
+//! What can be wrong with a sensor, and when it is believed again.
+
 use serde::Serialize;
 
 use crate::sense::Quality;

@@ -1,3 +1,5 @@
+//! When blocks begin on the cues' clock: a delay-locked loop.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::f64::consts::{SQRT_2, TAU};

@@ -1,3 +1,5 @@
+//! The sound cards that the system offers.
+
 use std::str::FromStr;
 use std::sync::Arc;
 

@@ -1,3 +1,5 @@
+//! Rate, format, channels and block length that fit a floor.
+
 use cpal::{BufferSize, SampleFormat, StreamConfig, SupportedBufferSize, SupportedStreamConfigRange};
 
 use super::options::{DeviceOptions, Mix};

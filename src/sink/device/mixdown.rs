@@ -1,3 +1,5 @@
+//! The renderer's channels in the device's channels and format.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::f32::consts::FRAC_PI_2;

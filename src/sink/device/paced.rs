@@ -1,3 +1,5 @@
+//! A clock that stands in for a sound card.
+
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::thread::{Builder, JoinHandle, sleep};

@@ -1,3 +1,5 @@
+//! What a device plays: renderer, resampler, mixdown.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::time::Duration;

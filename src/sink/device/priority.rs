@@ -1,3 +1,5 @@
+//! Real-time priority of the device's thread.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::time::{Duration, Instant};

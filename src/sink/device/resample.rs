@@ -1,3 +1,5 @@
+//! Conversion of the sample rate.
+
 #![deny(clippy::disallowed_macros, clippy::disallowed_methods, clippy::disallowed_types)]
 
 use std::f64::consts::PI;

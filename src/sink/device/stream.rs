@@ -1,3 +1,5 @@
+//! An open stream of a card.
+
 use std::time::Duration;
 
 use cpal::traits::{DeviceTrait, StreamTrait};

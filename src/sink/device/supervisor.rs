@@ -1,3 +1,5 @@
+//! Keeps a device playing.
+
 use std::sync::atomic::Ordering;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex, PoisonError};

@@ -1,3 +1,5 @@
+//! Whether a device asks for samples, and in time.
+
 use std::collections::VecDeque;
 use std::time::Duration;
 

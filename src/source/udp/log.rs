@@ -1,3 +1,5 @@
+//! Warnings about refused datagrams, at a limited rate.
+
 use std::net::SocketAddr;
 use std::time::Duration;
 

@@ -1,3 +1,5 @@
+//! One control on a simulated floor, and a foot that works it.
+
 use underfoot::glam::Vec2;
 use underfoot::units::Newtons;
 use underfoot::widget::{EventKind, Value};

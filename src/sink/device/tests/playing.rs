@@ -1,3 +1,5 @@
+//! What a device plays when nothing goes wrong.
+
 use std::sync::atomic::{AtomicU64, Ordering};
 
 use super::*;
