@@ -11,9 +11,12 @@
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
 
+#[cfg(feature = "lab")]
 pub mod capacity;
 pub mod engine;
+#[cfg(feature = "ergonomics")]
 pub mod ergonomics;
+#[cfg(feature = "lab")]
 pub mod experiment;
 pub mod feel;
 pub mod floor;
@@ -21,14 +24,16 @@ mod format;
 pub mod ground;
 pub mod layout;
 pub mod outgoing;
-#[cfg(feature = "program")]
+#[cfg(feature = "picture")]
 pub mod picture;
 #[cfg(feature = "preview")]
 pub mod preview;
+#[cfg(feature = "scene")]
 pub mod scene;
 pub mod schema;
 pub mod sense;
 pub mod serve;
+#[cfg(feature = "sim")]
 pub mod sim;
 pub mod sink;
 pub mod source;

@@ -5,10 +5,13 @@
 mod actuate;
 mod addresses;
 mod calibrate;
+#[cfg(feature = "lab")]
 mod capacity;
 mod check;
+#[cfg(feature = "lab")]
 mod experiment;
 mod failure;
+#[cfg(feature = "lab")]
 mod feel;
 mod floor_args;
 mod latency;
@@ -67,6 +70,7 @@ enum Command {
     /// What layouts, kinds and effects may say: each field with its unit, range and default.
     Reference(reference::Args),
     /// Render an effect: sound, picture, figures; read and write Apple's haptic patterns.
+    #[cfg(feature = "lab")]
     Feel(feel::Args),
     /// Draw a layout to a PNG or SVG file; needs no display.
     Render(render::Args),
@@ -79,8 +83,10 @@ enum Command {
     /// Least, median and greatest force of each tile and sensor, for choosing thresholds.
     Measure(measure::Args),
     /// How large a floor this machine carries: rendering and sensing, in times real time.
+    #[cfg(feature = "lab")]
     Capacity(capacity::Args),
     /// Make the paper's figures and the accuracy tables on a simulated floor.
+    #[cfg(feature = "lab")]
     Experiment(experiment::Args),
     /// Print completions for a shell.
     Completions {
@@ -113,13 +119,16 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),
+        #[cfg(feature = "lab")]
         Some(Command::Feel(args)) => feel::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
+        #[cfg(feature = "lab")]
         Some(Command::Capacity(args)) => capacity::run(&args),
+        #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
             clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());

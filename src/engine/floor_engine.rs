@@ -113,6 +113,7 @@ impl Engine {
     }
 
     /// As [`Engine::step`] with contacts that were found elsewhere: one sensing for many layouts on the same floor.
+    #[cfg(feature = "lab")]
     pub(crate) fn step_given<'a>(&'a mut self, frame: &ForceFrame, contacts: &'a [Contact]) -> Step<'a> {
         self.respond(frame, Some(contacts))
     }

@@ -6,7 +6,6 @@ use super::Theme;
 use crate::engine::{Snapshot, WidgetState};
 use crate::floor::{Geometry, TileId};
 use crate::layout::Layout;
-use crate::sim::Foot;
 use crate::units::Newtons;
 use crate::widget::Value;
 
@@ -27,9 +26,10 @@ pub struct Shoe {
     pub left: bool,
 }
 
-impl From<&Foot> for Shoe {
+#[cfg(feature = "sim")]
+impl From<&crate::sim::Foot> for Shoe {
     /// A right shoe of the foot's own length: a simulated foot has no side.
-    fn from(foot: &Foot) -> Self {
+    fn from(foot: &crate::sim::Foot) -> Self {
         Self {
             position: foot.position,
             heading_rad: foot.heading,

@@ -28,12 +28,15 @@ mod ground;
 mod inherit;
 mod kind;
 mod lists;
+#[cfg(feature = "ergonomics")]
+mod locate;
 mod page;
 mod pages;
 mod place;
 mod places;
 mod reference;
 mod repeat;
+#[cfg(feature = "save")]
 mod save;
 mod units;
 mod version;
@@ -54,6 +57,7 @@ pub use lists::MAX_WIDGETS;
 pub use page::{Loaded, load_layout, parse_layout};
 pub use places::Places;
 pub use reference::{Chapter, reference, write_reference};
+#[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;

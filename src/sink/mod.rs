@@ -9,6 +9,7 @@ mod json;
 mod latency;
 mod lockstep;
 mod manual;
+#[cfg(feature = "wav")]
 mod mono;
 mod osc;
 mod periodic;
@@ -16,6 +17,7 @@ mod priority;
 mod silent;
 mod tuio;
 mod udp;
+#[cfg(feature = "wav")]
 mod wav;
 mod worker;
 
@@ -37,11 +39,13 @@ pub use fanout::Fanout;
 pub use json::JsonSink;
 pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 pub use manual::ManualSink;
+#[cfg(feature = "wav")]
 pub use mono::write_mono;
 pub use osc::OscSink;
 pub use priority::{Rank, claim_priority};
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
+#[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 
 /// Something that plays the renderer's samples.

@@ -1,10 +1,12 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
 mod fault;
+#[cfg(feature = "sim")]
 mod simulated;
 mod udp;
 
 pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
+#[cfg(feature = "sim")]
 pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;
 
