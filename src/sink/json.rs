@@ -126,117 +126,117 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write) -> io::Result<()> {
 }
 
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
-    let mut line = match job {
-        Job::Event(event) => serde_json::to_vec(&EventLine::of(event))?,
-        Job::Page(shown) => {
-            let (t_s, page) = (seconds(shown.at), shown.page.as_str());
-            serde_json::to_vec(&PageLine { t_s, event: "page", page })?
-        }
-        Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
-            let t_s = seconds(*at);
-            serde_json::to_vec(&CrackLine {
-                t_s,
-                event: "crack",
-                seed: *seed,
-                energy_j: *energy_j,
-                x_m: *x_m,
-                y_m: *y_m,
-                skipped: *skipped,
-            })?
-        }
-        Job::Link(at, state) => {
-            let (t_s, state) = (seconds(*at), state.name());
-            serde_json::to_vec(&LinkLine { t_s, event: "link", state })?
-        }
-        Job::Health(at, health) => serde_json::to_vec(&HealthLine::of(*at, health))?,
-        Job::Device(at, status) => serde_json::to_vec(&DeviceLine::of(*at, status))?,
-        Job::Muted(at, Muted { all, tiles }) => {
-            let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
-            serde_json::to_vec(&MuteLine { t_s: seconds(*at), event: "mute", all: *all, tiles })?
-        }
-    };
+    let mut line = serde_json::to_vec(&Line::of(job))?;
     line.push(b'\n');
     out.write_all(&line)
 }
 
 #[derive(Serialize)]
-struct CrackLine {
+struct Line<'a> {
     t_s: f64,
-    event: &'static str,
-    seed: u32,
-    energy_j: f32,
-    x_m: f32,
-    y_m: f32,
-    skipped: u32,
+    #[serde(flatten)]
+    body: Body<'a>,
 }
 
 #[derive(Serialize)]
-struct EventLine<'a> {
-    t_s: f64,
-    event: &'static str,
-    id: &'a str,
-    value: Option<JsonValue>,
-    force_n: f32,
-    x_m: f32,
-    y_m: f32,
-    contact: Option<ContactId>,
+#[serde(tag = "event", rename_all = "lowercase")]
+enum Body<'a> {
+    Page {
+        page: &'a str,
+    },
+    Crack {
+        seed: u32,
+        energy_j: f32,
+        x_m: f32,
+        y_m: f32,
+        skipped: u32,
+    },
+    Link {
+        state: &'static str,
+    },
+    Mute {
+        all: bool,
+        tiles: Vec<[u16; 2]>,
+    },
+    Health {
+        live: u32,
+        degraded: u32,
+        stale: u32,
+        faulty: u32,
+        uncalibrated: u32,
+        foreign: bool,
+        troubles: Vec<TroubleEntry>,
+    },
+    Device {
+        device: &'a str,
+        state: &'static str,
+        why: &'a str,
+        channels: u16,
+        sample_rate: u32,
+        block: u32,
+        underruns: u64,
+        reopened: u64,
+        priority: &'static str,
+    },
+    /// Its name is that of what happened.
+    #[serde(untagged)]
+    Control {
+        event: &'static str,
+        id: &'a str,
+        value: Option<JsonValue>,
+        force_n: f32,
+        x_m: f32,
+        y_m: f32,
+        contact: Option<ContactId>,
+    },
 }
 
 #[derive(Serialize)]
-struct PageLine<'a> {
-    t_s: f64,
-    event: &'static str,
-    page: &'a str,
+struct TroubleEntry {
+    col: u16,
+    row: u16,
+    corner: &'static str,
+    trouble: Trouble,
 }
 
-#[derive(Serialize)]
-struct LinkLine {
-    t_s: f64,
-    event: &'static str,
-    state: &'static str,
+impl<'a> Line<'a> {
+    fn of(job: &'a Job) -> Self {
+        let (at, body) = match job {
+            Job::Event(event) => (event.at, Body::control(event)),
+            Job::Page(shown) => (shown.at, Body::Page { page: shown.page.as_str() }),
+            Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
+                let (seed, energy_j, x_m, y_m) = (*seed, *energy_j, *x_m, *y_m);
+                (*at, Body::Crack { seed, energy_j, x_m, y_m, skipped: *skipped })
+            }
+            Job::Link(at, state) => (*at, Body::Link { state: state.name() }),
+            Job::Health(at, health) => (*at, Body::health(health)),
+            Job::Device(at, status) => (*at, Body::device(status)),
+            Job::Muted(at, Muted { all, tiles }) => {
+                let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
+                (*at, Body::Mute { all: *all, tiles })
+            }
+        };
+        // Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
+        Self { t_s: at.micros() as f64 / 1e6, body }
+    }
 }
 
-#[derive(Serialize)]
-struct MuteLine {
-    t_s: f64,
-    event: &'static str,
-    all: bool,
-    tiles: Vec<[u16; 2]>,
-}
+impl<'a> Body<'a> {
+    fn health(health: &SensorHealth) -> Self {
+        let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
+            *health;
+        let entry = |&(SensorId { tile, corner }, trouble): &(SensorId, Trouble)| TroubleEntry {
+            col: tile.column,
+            row: tile.row,
+            corner: corner.name(),
+            trouble,
+        };
+        let troubles = troubles.iter().map(entry).collect();
+        Self::Health { live, degraded, stale, faulty, uncalibrated, foreign, troubles }
+    }
 
-#[derive(Serialize)]
-struct HealthLine {
-    t_s: f64,
-    event: &'static str,
-    live: u32,
-    degraded: u32,
-    stale: u32,
-    faulty: u32,
-    uncalibrated: u32,
-    foreign: bool,
-    troubles: Vec<TroubleEntry>,
-}
-
-#[derive(Serialize)]
-struct DeviceLine<'a> {
-    t_s: f64,
-    event: &'static str,
-    device: &'a str,
-    state: &'static str,
-    why: &'a str,
-    channels: u16,
-    sample_rate: u32,
-    block: u32,
-    underruns: u64,
-    reopened: u64,
-    priority: &'static str,
-}
-
-impl<'a> DeviceLine<'a> {
-    fn of(at: Instant, status: &'a DeviceStatus) -> Self {
-        Self {
-            t_s: seconds(at),
-            event: "device",
+    fn device(status: &'a DeviceStatus) -> Self {
+        Self::Device {
             device: &status.name,
             state: status.state.name(),
             why: &status.why,
@@ -248,37 +248,33 @@ impl<'a> DeviceLine<'a> {
             priority: status.priority.name(),
         }
     }
-}
 
-#[derive(Serialize)]
-struct TroubleEntry {
-    col: u16,
-    row: u16,
-    corner: String,
-    trouble: Trouble,
-}
-
-impl HealthLine {
-    fn of(at: Instant, health: &SensorHealth) -> Self {
-        let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
-            *health;
-        let entry = |&(SensorId { tile, corner }, trouble): &(SensorId, Trouble)| TroubleEntry {
-            col: tile.column,
-            row: tile.row,
-            corner: corner.to_string(),
-            trouble,
+    fn control(event: &'a WidgetEvent) -> Self {
+        let value = match event.kind {
+            EventKind::Changed(value) => Some(value.into()),
+            EventKind::Swiped(direction) => Some(JsonValue::Word(direction.name())),
+            EventKind::Pressed
+            | EventKind::Released
+            | EventKind::Clicked
+            | EventKind::DoubleTapped
+            | EventKind::LongPressed
+            | EventKind::HardPressed
+            | EventKind::HardReleased
+            | EventKind::Cancelled
+            | EventKind::Ticked
+            | EventKind::Armed
+            | EventKind::Disarmed
+            | EventKind::Warned
+            | EventKind::Refused => None,
         };
-        let troubles = troubles.iter().map(entry).collect();
-        Self {
-            t_s: seconds(at),
-            event: "health",
-            live,
-            degraded,
-            stale,
-            faulty,
-            uncalibrated,
-            foreign,
-            troubles,
+        Self::Control {
+            event: event.kind.name(),
+            id: event.id.as_str(),
+            value,
+            force_n: event.force.0,
+            x_m: event.position.x,
+            y_m: event.position.y,
+            contact: event.contact,
         }
     }
 }
@@ -302,43 +298,6 @@ impl From<Value> for JsonValue {
             Value::Pair(pair) => Self::Pair(pair.into()),
         }
     }
-}
-
-impl<'a> EventLine<'a> {
-    fn of(event: &'a WidgetEvent) -> Self {
-        let value = match event.kind {
-            EventKind::Changed(value) => Some(value.into()),
-            EventKind::Swiped(direction) => Some(JsonValue::Word(direction.name())),
-            EventKind::Pressed
-            | EventKind::Released
-            | EventKind::Clicked
-            | EventKind::DoubleTapped
-            | EventKind::LongPressed
-            | EventKind::HardPressed
-            | EventKind::HardReleased
-            | EventKind::Cancelled
-            | EventKind::Ticked
-            | EventKind::Armed
-            | EventKind::Disarmed
-            | EventKind::Warned
-            | EventKind::Refused => None,
-        };
-        Self {
-            t_s: seconds(event.at),
-            event: event.kind.name(),
-            id: event.id.as_str(),
-            value,
-            force_n: event.force.0,
-            x_m: event.position.x,
-            y_m: event.position.y,
-            contact: event.contact,
-        }
-    }
-}
-
-/// Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
-fn seconds(at: Instant) -> f64 {
-    at.micros() as f64 / 1e6
 }
 
 #[cfg(test)]
