@@ -71,7 +71,7 @@ pub(super) const RESTS: f32 = 0.25;
 pub(super) const RESTS_N: f32 = 110.0;
 const RESTS_FOR: Duration = Duration::from_secs(1);
 
-/// How far a foot rolls over before that is not a wobble, in metres, and within which time of its landing.
+/// How far a foot must roll over for it to be more than a wobble, in metres, and within which time of its landing.
 const ROLLED_M: f32 = 0.07;
 const ROLLED_WITHIN: Duration = Duration::from_millis(1200);
 

@@ -7,7 +7,7 @@ use super::Spot;
 use super::mix::{FAINT, Output};
 use crate::floor::{Actuator, Loudspeaker};
 
-/// Loudspeakers that play one cue or sustained cue at most.
+/// Loudspeakers that play one cue at most.
 pub(super) const NEAREST: usize = 3;
 
 /// Full scales per newton of a loudspeaker without a gain of its own: as a nominal actuator has them.
@@ -16,7 +16,7 @@ pub(super) const PER_NEWTON: f32 = 1.0 / Actuator::nominal(0).full_scale.0;
 /// As near as a loudspeaker gets, in metres: nobody stands inside of one.
 const NEAR_M: f32 = 0.1;
 
-/// The loudspeakers that play one cue or sustained cue, and how much of it each gets.
+/// The loudspeakers that play one cue, and how much of it each gets.
 pub(super) type Panned = ArrayVec<Output, NEAREST>;
 
 /// The loudspeakers around the floor.

@@ -49,15 +49,18 @@ fn code(text: &str) -> (Vec<(usize, &str)>, Vec<&str>) {
             continue;
         }
         let indent = line.len() - line.trim_start().len();
+        let mut is_open = false;
         for (_, item) in rest.by_ref() {
-            if item.trim_end().ends_with(';') {
-                let name = item.trim_end().trim_end_matches(';').split(' ').next_back();
+            let item = item.trim_end();
+            if is_open && item.len() > indent && item[indent..].starts_with('}') {
+                break;
+            }
+            if !is_open && item.ends_with(';') {
+                let name = item.trim_end_matches(';').split(' ').next_back();
                 test_modules.extend(name.filter(|_| item.contains("mod ")));
                 break;
             }
-            if item.len() > indent && item[indent..].starts_with('}') {
-                break;
-            }
+            is_open |= item.ends_with('{');
         }
     }
     (lines, test_modules)
@@ -75,7 +78,7 @@ fn imports(line: &str) -> Vec<&str> {
         let path = &line[at + start.len()..];
         match path.strip_prefix('{') {
             Some(group) => {
-                found.extend(group.split([',', '}']).map(str::trim).map(|path| &path[..first(path)]))
+                found.extend(group.split([',', '}']).map(str::trim).map(|path| &path[..first(path)]));
             }
             None => found.push(&path[..first(path)]),
         }
@@ -134,11 +137,11 @@ fn no_import_runs_upward() {
 #[test]
 fn imports_are_found_and_comments_and_tests_are_not() {
     let text = "use crate::{floor, units::Newtons};\n// use crate::comment;\n#[cfg(test)]\nmod only;\nlet x = \
-                crate::wire::check;\nuse supercrate::no;\n#[cfg(test)]\nmod tests {\n    use crate::hidden;\n}\nuse \
+                crate::wire::check;\nuse supercrate::no;\n#[cfg(test)]\nmod tests {\n    use crate::hidden;\n    fn f() {\n        crate::hidden::f();\n    }\n}\nuse \
                 crate::last;\n";
     let (lines, test_modules) = code(text);
     let found: Vec<_> =
         lines.iter().flat_map(|(number, line)| imports(line).into_iter().map(|it| (*number, it))).collect();
-    assert_eq!(found, [(1, "floor"), (1, "units"), (5, "wire"), (11, "last")]);
+    assert_eq!(found, [(1, "floor"), (1, "units"), (5, "wire"), (14, "last")]);
     assert_eq!(test_modules, ["only"]);
 }

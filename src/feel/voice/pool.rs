@@ -11,7 +11,7 @@ use crate::feel::{Cue, MAX_SUSTAINED, Manner, SustainedCue, SustainedCues, Tone}
 /// Enough for [`MAX_SUSTAINED`] voices however they fall on the models.
 const GROUPS: usize = MAX_SUSTAINED / LANES + 5;
 
-/// A sustained cue that was not renewed for this long is over: whoever sends them may have died.
+/// A sustained cue that was not renewed for this long is over: its sender may have stopped.
 const STALE_S: f32 = 0.05;
 
 /// All voices of what lasts.

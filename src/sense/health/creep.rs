@@ -21,7 +21,7 @@ const MOST: f32 = 0.12;
 const LEAST: f32 = 0.02;
 const WORST: f32 = 0.1;
 
-/// When after a foot has left a tile it is examined what lingers, in seconds, and by how much, as a share of itself,
+/// When what lingers after a foot has left a tile is examined, in seconds, and by how much, as a share of itself,
 /// the two looks may differ.
 const LOOKS_S: [f32; 2] = [0.25, 1.0];
 const ALIKE: f32 = 0.25;

@@ -21,7 +21,7 @@ fn a1_a_card_that_is_pulled_out_comes_back_without_a_restart_and_without_a_burst
     assert_eq!(status.state, DeviceState::Lost);
     assert!(status.why.contains("disconnected"), "{}", status.why);
 
-    // Feet go on pressing controls for five seconds; it is searched for once a second.
+    // Feet go on pressing controls for five seconds; the device is searched for once a second.
     let looks = host.looks.load(Ordering::Relaxed);
     for _ in 0..50 {
         rig.sender.send(&cue(0, Instant::START));
