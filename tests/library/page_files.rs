@@ -16,7 +16,7 @@ fn problem(block: &str, page: &Page, kinds: &mut Kinds) -> Option<String> {
     let geometry = Floor::default().geometry;
     let name = page.name.as_str();
     let told = |problems: schema::Diagnostics| problems.to_string();
-    match block.split('(').next().unwrap().lines().last() {
+    match block.split('(').next().unwrap().lines().next_back() {
         Some("Kind") => kinds.add(block, name).err().map(told),
         Some("Effect") => schema::parse_effect(block, name, kinds.effects()).err().map(told),
         Some("Layout") => schema::parse_layout(block, name, kinds, &geometry).err().map(told),
