@@ -69,7 +69,7 @@ fn code(text: &str) -> (Vec<(usize, &str)>, Vec<&str>) {
 /// The modules that `line` names behind `crate::`, also those of a group in braces.
 fn imports(line: &str) -> Vec<&str> {
     let is_name = |letter: char| letter.is_ascii_alphanumeric() || letter == '_';
-    let first = |path: &'_ str| path.find(|letter| !is_name(letter)).unwrap_or(path.len());
+    let first = |path: &str| path.find(|letter| !is_name(letter)).unwrap_or(path.len());
     let mut found = Vec::new();
     for (at, start) in line.match_indices("crate::") {
         if line[..at].ends_with(is_name) {
