@@ -1,5 +1,59 @@
 //! User interfaces on the floor: force-sensing tiles in, foot controls and tactile feedback out.
 //!
+//! A floor is a grid of rigid square tiles, each with four force sensors and an actuator. A layout, written in
+//! RON, places controls on it. Give an [`Engine`](engine::Engine) the layout and one frame of forces per
+//! millisecond, and it tells what happened to the controls:
+//!
+//! ```
+//! use underfoot::engine::Engine;
+//! use underfoot::floor::Floor;
+//! use underfoot::schema::{self, Kinds};
+//! use underfoot::sense::{ForceFrame, Method};
+//! use underfoot::units::{Instant, Newtons};
+//!
+//! let floor = Floor::default();
+//! let text = schema::builtin_layout("first_steps").unwrap_or_default();
+//! let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &floor.geometry)?.layout;
+//! let light = layout.widgets[layout.widget_index("light").unwrap_or(0)].area.centre();
+//! let mut engine = Engine::new(floor.geometry, layout, Method::Tracker);
+//!
+//! let mut heard = Vec::new();
+//! for millis in 0..1000 {
+//!     let mut frame = ForceFrame::empty(&floor.geometry);
+//!     frame.at = Instant::from_millis(millis);
+//!     if (400..600).contains(&millis) {
+//!         frame.add_load(&floor.geometry, light, Newtons(150.0));
+//!     }
+//!     heard.extend(engine.step(&frame).events.iter().map(|event| (event.id.to_string(), event.kind.name())));
+//! }
+//! assert!(heard.contains(&("light".into(), "pressed")));
+//! # Ok::<(), schema::Diagnostics>(())
+//! ```
+//!
+//! # Modules, in the order in which an app meets them
+//!
+//! | module | what is in it |
+//! |---|---|
+//! | [`engine`] | a frame of forces in, events, cues and a snapshot out; no clocks, threads or devices |
+//! | [`serve`] | a floor at work in one thread: packets in, events and samples out |
+//! | [`schema`] | layouts, kinds of controls, effects and floors as RON, with all problems at their places |
+//! | [`widget`] | what controls there are, and the events they give |
+//! | [`floor`] | tiles, sensors, boards, actuators of one floor |
+//! | [`sense`] | forces, contacts, cursors, the health of sensors |
+//! | [`layout`] | a checked layout: controls, regions, pages |
+//! | [`source`] | where packets come from: a socket, a simulated floor |
+//! | [`sink`] | where events and samples go: OSC, TUIO, JSON lines, sound cards, files |
+//! | [`wire`] | packets, requests and their limits |
+//! | [`feel`], [`ground`] | what is felt: cues, effects, materials, and the renderer of actuator samples |
+//! | [`units`] | newtons, instants |
+//!
+//! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
+//! (whether feet and eyes can use a layout), `lab` (figures and accuracy tables) and `preview` (a window) add a
+//! module each; an app that leaves the default features out compiles none of them. With `internals`, which the
+//! program needs, names become public that may change in any version.
+//!
+//! # A packet's way
+//!
 //! ```text
 //! datagram -wire-> SensorPacket (counts, 1 kHz) -sense-> ForceFrame (N)
 //!   -> Contacts (m, N) -> Cursor -widget-> WidgetEvent -> EventSink
@@ -10,6 +64,12 @@
 //! SI units everywhere. Floor space has its origin at the floor's south-west
 //! corner, x east, y north, in metres ([`glam::Vec2`]). The sensor corners of a
 //! tile are always in the order south-west, south-east, north-west, north-east.
+
+// Without `internals`, what only the program uses is neither public nor used.
+#![cfg_attr(not(feature = "internals"), allow(dead_code, unreachable_pub))]
+
+#[macro_use]
+mod internal;
 
 #[cfg(feature = "lab")]
 pub mod capacity;
@@ -23,7 +83,10 @@ pub mod floor;
 mod format;
 pub mod ground;
 pub mod layout;
+#[cfg(feature = "internals")]
 pub mod outgoing;
+#[cfg(not(feature = "internals"))]
+mod outgoing;
 #[cfg(feature = "picture")]
 pub mod picture;
 #[cfg(feature = "preview")]
@@ -41,7 +104,8 @@ pub mod units;
 pub mod widget;
 pub mod wire;
 
-pub use glam;
+// Their types stand in public signatures.
+pub use {arrayvec, glam, smallvec, triple_buffer};
 
 /// Whatever runs in an audio callback during a test is caught allocating.
 #[cfg(test)]

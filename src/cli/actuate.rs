@@ -6,7 +6,7 @@ use std::time::Duration;
 use underfoot::feel::{CueSender, Renderer, RendererConfig, renderer};
 use underfoot::floor::Floor;
 use underfoot::sink::{
-    ActuatorSink, LatencyProbe, LatencyStages, SilentSink, SinkError, WavOptions, WavSink, WhenFull,
+    ActuatorSink, LatencyProbe, LatencyStages, SilentSink, SinkError, WavOptions, WavSink,
 };
 #[cfg(feature = "audio")]
 use underfoot::sink::{DeviceOptions, Mix, OutputDevice};
@@ -108,12 +108,7 @@ impl ActuateArgs {
         let probe = LatencyProbe::of_stages(latency.clone(), clock.clone());
         let playing = match &self.wav {
             Some(path) => {
-                let options = WavOptions {
-                    start,
-                    latency: Some(probe),
-                    when_full: WhenFull::LeaveOut,
-                    ..WavOptions::default()
-                };
+                let options = WavOptions::default().with_start(start).with_latency(probe);
                 let notice = format!("Recording the actuators in {}.", path.display());
                 self.playing(floor, self.file_rate(), notice, &mut prepare, |renderer| {
                     Ok(Box::new(WavSink::create(path, renderer, options)?))
@@ -159,8 +154,7 @@ impl ActuateArgs {
         prepare: &mut dyn FnMut(&mut Renderer),
         sink: impl FnOnce(Renderer) -> Result<Box<dyn ActuatorSink>, SinkError>,
     ) -> Result<Playing, SinkError> {
-        let config =
-            RendererConfig { delay: self.delay_ms.unwrap_or_default(), ..RendererConfig::of(floor, rate) };
+        let config = RendererConfig::of(floor, rate).with_delay(self.delay_ms.unwrap_or_default());
         let (feel, mut renderer) = renderer(config);
         prepare(&mut renderer);
         Ok(Playing { feel, sink: sink(renderer)?, notice })
@@ -193,15 +187,14 @@ impl ActuateArgs {
         };
         let mut trouble = None;
         for &mix in mixes {
-            let options = DeviceOptions {
-                name: self.device.clone(),
-                sample_rate: self.rate,
-                resample: self.resample,
-                block: self.block,
-                mix,
-                steady: self.delay_ms.map(|_| clock.clone()),
-                latency: Some(probe.clone()),
-            };
+            let options = DeviceOptions::default()
+                .with_name(self.device.clone())
+                .with_sample_rate(self.rate)
+                .with_resample(self.resample)
+                .with_block(self.block)
+                .with_mix(mix)
+                .with_steady(self.delay_ms.map(|_| clock.clone()))
+                .with_latency(probe.clone());
             let played = OutputDevice::find(floor, options).and_then(|device| {
                 let heard = if mix == Mix::Stereo { "all tiles in stereo" } else { "a channel per tile" };
                 let notice = format!("Sound: {}, {heard}.", device.name());

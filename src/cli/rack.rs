@@ -150,7 +150,7 @@ impl Walk {
 
     fn walk_in_file(&self, floor: &Floor, steps: &[(TileId, u16)], path: &Path) -> Result<(), Failure> {
         let (mut feel, renderer) = renderer(RendererConfig::of(floor, self.actuate.file_rate()));
-        let options = WavOptions { when_full: WhenFull::Wait, ..WavOptions::default() };
+        let options = WavOptions::default().with_when_full(WhenFull::Wait);
         let mut wav = WavSink::create(path, renderer, options)?;
         let mut end = Instant::START;
         for (at, tile, channel) in self.clicks(steps) {

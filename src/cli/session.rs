@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
     let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
-    let options = WavOptions { when_full: WhenFull::Wait, ..WavOptions::default() };
+    let options = WavOptions::default().with_when_full(WhenFull::Wait);
     let wav = WavSink::create(&sound, renderer, options)?;
     let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
     let mut told = Fanout::new().with(JsonSink::new(events)?);

@@ -150,8 +150,11 @@ impl Rig {
     /// Sensing that knows the floor's calibration but none of its position maps.
     #[must_use]
     pub fn sensing_without_maps(&self, method: Method) -> Sensing {
-        let uncertainty =
-            if self.sim.has_memory() { SensorUncertainty::default() } else { SensorUncertainty::without_memory() };
+        let uncertainty = if self.sim.has_memory() {
+            SensorUncertainty::default()
+        } else {
+            SensorUncertainty::without_memory()
+        };
         Sensing::with_config(self.geometry, method, SensingConfig { uncertainty, ..SensingConfig::default() })
     }
 

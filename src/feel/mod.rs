@@ -35,19 +35,26 @@ mod scope;
 mod sender;
 mod voice;
 
-pub use analysis::{Analysis, analyse};
-pub use audition::{Audition, Gesture, Moment, audition};
-pub use cue::{Cue, MAX_SPOTS, MAX_SUSTAINED, Spot, Spots, SustainedCue, SustainedCues};
+pub use audition::{Gesture, Moment};
+pub use cue::{Cue, Spot, Spots, SustainedCue, SustainedCues};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
 pub(crate) use effect::effect_at;
 pub use effect::{
     Band, Click, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains,
-    Hum, Impulse, Knob, Lasting, MAX_MARKS, MAX_MODES, MAX_PARTS, MAX_POINTS, MODE_HZ, Manner, Material,
-    Mode, NamedEffect, Part, PartKind, Push, Resonance, Sequence, StickSlip, Texture, Tone, TonePoint, Use,
+    Hum, Impulse, Lasting, Manner, Material, Mode, NamedEffect, Part, PartKind, Push, Resonance, Sequence,
+    StickSlip, Texture, Tone, TonePoint,
 };
-pub use modal::ModalBank;
 pub use muted::Muted;
-pub use player::{Player, key};
-pub use renderer::{Onset, Renderer, RendererConfig, renderer};
-pub use scope::{MinMax, ScopeReader};
+pub use renderer::{Renderer, RendererConfig, renderer};
+
+internal! {
+    use analysis::{Analysis, analyse};
+    use audition::{Audition, audition};
+    use cue::{MAX_SPOTS, MAX_SUSTAINED};
+    use effect::{Knob, MAX_MARKS, MAX_MODES, MAX_PARTS, MAX_POINTS, MODE_HZ, Use};
+    use modal::{ModalBank};
+    use player::{Player, key};
+    use renderer::{Onset};
+    use scope::{MinMax, ScopeReader};
+}
 pub use sender::{CueSender, FeelCounters};

@@ -26,6 +26,7 @@ const MODES_PER_CHANNEL: usize = 64;
 
 /// What a renderer is made for.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct RendererConfig {
     /// Samples per second, 8,000 to 768,000; what is outside is brought inside.
     pub sample_rate: u32,
@@ -62,6 +63,12 @@ impl RendererConfig {
             max_block: 256,
             delay: Duration::ZERO,
         }
+    }
+
+    /// The same, but every cue is played this long after its cause.
+    #[must_use]
+    pub fn with_delay(self, delay: Duration) -> Self {
+        Self { delay, ..self }
     }
 }
 

@@ -30,12 +30,17 @@ mod tile;
 mod wood;
 
 pub use crack::Crack;
-pub use elastic::{Body, Elastic, Motion};
+pub use elastic::Body;
 pub use energy::EnergyLaw;
-pub use fracture::{CrackRules, Fracture, Growth, Seed};
-pub use grounds::Grounds;
-pub use onsets::{MOST_PER_S, Onsets};
+pub use fracture::{CrackRules, Seed};
 pub use relief::Relief;
 pub use resonance::{Resonance, Ring};
 pub use spec::{Grain, GrainSpec, GroundSpec, IceSpec, Material, Sheet, WoodSpec};
 pub use state::{GroundCounters, GroundEvent, GroundState};
+
+internal! {
+    use elastic::{Elastic, Motion};
+    use fracture::{Fracture, Growth};
+    use grounds::{Grounds};
+    use onsets::{MOST_PER_S, Onsets};
+}

@@ -11,12 +11,15 @@ mod page;
 mod region;
 
 pub use ground::Ground;
-pub use hit::HitIndex;
 pub use icon::Icon;
 pub(crate) use look::Hex;
 pub use look::{Colour, Look, Shape};
 pub use page::Page;
 pub use region::{CursorRule, Region, Stance};
+
+internal! {
+    use hit::{HitIndex};
+}
 
 use glam::Vec2;
 

@@ -5,10 +5,12 @@ mod tuio;
 mod tuio1;
 mod tuio2;
 
-pub use osc::{
-    Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health, write_mute,
-    write_page, write_readback,
-};
-pub use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM};
-pub use tuio1::Tuio1;
-pub use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
+internal! {
+    use osc::{
+        Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health,
+        write_mute, write_page, write_readback,
+    };
+    use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM};
+    use tuio1::{Tuio1};
+    use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
+}

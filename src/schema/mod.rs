@@ -8,6 +8,7 @@
 //!   -page, control, ground, arrange, kind, inherit, floor-> what was meant -checks-> Layout, Kind, Effect, Floor
 //! ```
 
+#[cfg(any(feature = "internals", test))]
 mod ahap;
 mod area;
 mod arrange;
@@ -34,6 +35,7 @@ mod page;
 mod pages;
 mod place;
 mod places;
+#[cfg(any(feature = "internals", test))]
 mod reference;
 mod repeat;
 #[cfg(feature = "save")]
@@ -45,19 +47,26 @@ mod write;
 use crate::format::{diagnostic, fields, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
+#[cfg(feature = "internals")]
 pub use crate::format::describe::{Description, FieldDescription, FieldType};
+#[cfg(any(feature = "internals", test))]
 pub use ahap::{AhapError, read_ahap, write_ahap};
 pub use builtin::{builtin_layout, builtin_layouts};
 pub use diagnostic::{Diagnostic, Diagnostics, Severity};
-pub use effect::{is_effect_name, parse_effect, write_effect, write_named_effect};
+pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use kind::{Kind, Kinds};
-pub use lists::MAX_WIDGETS;
 pub use page::{Loaded, load_layout, parse_layout};
 pub use places::Places;
+#[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text};
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
+
+internal! {
+    use effect::{is_effect_name, write_effect, write_named_effect};
+    use lists::{MAX_WIDGETS};
+}

@@ -182,7 +182,8 @@ mod tests {
     fn a_light_contact_is_less_certain_than_a_heavy_one() {
         let geometry = Geometry::default();
         // Of load cells with maps: otherwise each part's law and memory outweigh its zero.
-        let config = SensingConfig { uncertainty: SensorUncertainty::without_memory(), ..SensingConfig::default() };
+        let config =
+            SensingConfig { uncertainty: SensorUncertainty::without_memory(), ..SensingConfig::default() };
         let mut sensing =
             Sensing::with_config(geometry, Method::Eq4, config)
                 .with_maps(&vec![Some(PositionMap::NONE); geometry.tile_count()]);

@@ -5,14 +5,20 @@
 //! a disk or another program. [`take_tare`] and [`ForceWatch`] are for the
 //! people who set a floor up.
 
+#[cfg(any(feature = "internals", test))]
 mod measure;
+#[cfg(any(feature = "internals", test))]
 mod reference;
 mod request;
 mod server;
+#[cfg(any(feature = "internals", test))]
 mod tare;
 mod trial;
 
+#[cfg(any(feature = "internals", test))]
 pub use measure::{ForceRange, ForceWatch, TileRange};
+#[cfg(any(feature = "internals", test))]
 pub use reference::{Argument, Direction, Entry, Reference};
 pub use server::{Command, Ended, Server};
+#[cfg(any(feature = "internals", test))]
 pub use tare::{TareFailure, take_tare};

@@ -32,21 +32,24 @@ use crate::widget::WidgetEvent;
 use crate::wire::LinkState;
 
 pub use channel_map::ChannelMap;
-pub use crack_rate::CrackNews;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
 pub use json::JsonSink;
-pub use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
 pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;
 pub use osc::OscSink;
-pub use priority::{Rank, claim_priority};
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
+
+internal! {
+    use crack_rate::{CrackNews};
+    use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
+    use priority::{Rank, claim_priority};
+}
 
 /// Something that plays the renderer's samples.
 pub trait ActuatorSink {

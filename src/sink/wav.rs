@@ -45,6 +45,7 @@ pub enum WhenFull {
 
 /// How a [`WavSink`] records.
 #[derive(Clone, Debug, Default)]
+#[non_exhaustive]
 pub struct WavOptions {
     /// When the first sample is, on the floor's sample clock.
     pub start: Instant,
@@ -54,6 +55,32 @@ pub struct WavOptions {
     pub when_full: WhenFull,
     /// Measures the latency of the cues, if wanted.
     pub latency: Option<LatencyProbe>,
+}
+
+impl WavOptions {
+    /// The first sample is at `start` on the floor's sample clock.
+    #[must_use]
+    pub fn with_start(self, start: Instant) -> Self {
+        Self { start, ..self }
+    }
+
+    /// Samples are written in `format`.
+    #[must_use]
+    pub fn with_format(self, format: WavFormat) -> Self {
+        Self { format, ..self }
+    }
+
+    /// What is done when the disk is too slow.
+    #[must_use]
+    pub fn with_when_full(self, when_full: WhenFull) -> Self {
+        Self { when_full, ..self }
+    }
+
+    /// `latency` measures the cues.
+    #[must_use]
+    pub fn with_latency(self, latency: LatencyProbe) -> Self {
+        Self { latency: Some(latency), ..self }
+    }
 }
 
 /// What a finished recording consists of.

@@ -1,10 +1,12 @@
 //! Where sensor packets come from: a socket, a simulated floor, a recording.
 
+#[cfg(any(feature = "internals", test))]
 mod fault;
 #[cfg(feature = "sim")]
 mod simulated;
 mod udp;
 
+#[cfg(any(feature = "internals", test))]
 pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
 #[cfg(feature = "sim")]
 pub use simulated::{Pace, SimulatedSource};

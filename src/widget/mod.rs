@@ -39,12 +39,11 @@ mod track;
 
 pub use behaviour::Behaviour;
 pub use button::{ActsOn, ButtonSpec, Gestures, HardStage};
-pub use control::Control;
 pub use dial::DialSpec;
-pub use event::{Direction, Emitted, EventKind, Value, WidgetEvent, WidgetId};
+pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
 pub use guard::{Confirm, Guard, HoldToRun};
 pub use hold::HoldSpec;
-pub use input::{Indicator, Input};
+pub use input::Indicator;
 pub use lean::LeanSpec;
 pub use pad::PadSpec;
 pub use pedal::PedalSpec;
@@ -56,6 +55,12 @@ pub use stepper::{Repeat, StepperSpec};
 pub use switch::SwitchSpec;
 pub use thresholds::{Thresholds, WeightShare};
 pub use track::Track;
+
+internal! {
+    use control::{Control};
+    use event::{Emitted};
+    use input::{Input};
+}
 
 use crate::format::Named;
 

@@ -5,6 +5,7 @@
 //! back, for simulated boards.
 
 mod command;
+#[cfg(any(feature = "internals", test))]
 pub mod corrupt;
 mod counters;
 mod decode;
@@ -14,12 +15,17 @@ mod link;
 mod packet;
 mod prefix;
 
-pub use command::{ArgumentKind, COMMANDS, Command, ControlMessage, MAX_LABEL, Request};
+pub use command::{ControlMessage, Request};
 pub use counters::LinkCounters;
-pub use decode::{Batch, Decoder, WireError};
 pub(crate) use encode::write;
-pub use encode::{EncodeError, SensorEncoder, SensorFormat};
-pub use guard::{Limits, Malformed, check};
 pub use link::LinkState;
-pub use packet::{MAX_CHANNELS, Readings, SensorPacket};
+pub use packet::{Readings, SensorPacket};
 pub use prefix::{BadPrefix, Prefix};
+
+internal! {
+    use command::{ArgumentKind, COMMANDS, Command, MAX_LABEL};
+    use decode::{Batch, Decoder, WireError};
+    use encode::{EncodeError, SensorEncoder, SensorFormat};
+    use guard::{Limits, Malformed, check};
+    use packet::{MAX_CHANNELS};
+}

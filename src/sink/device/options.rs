@@ -15,6 +15,7 @@ pub enum Mix {
 
 /// What is wanted of a device.
 #[derive(Clone)]
+#[non_exhaustive]
 pub struct DeviceOptions {
     /// The device's name or a part of it, what the system calls it (`hw:1,0`), its identifier
     /// ([`super::DeviceEntry::id`]), a host (`jack`), or `paced`: a clock that stands in for a card. The
@@ -47,5 +48,49 @@ impl Default for DeviceOptions {
             steady: None,
             latency: None,
         }
+    }
+}
+
+impl DeviceOptions {
+    /// The device that is looked for; the system's own choice if `None`.
+    #[must_use]
+    pub fn with_name(self, name: Option<String>) -> Self {
+        Self { name, ..self }
+    }
+
+    /// Samples per second; 48 or 96 kHz if `None` and there is a choice.
+    #[must_use]
+    pub fn with_sample_rate(self, sample_rate: Option<u32>) -> Self {
+        Self { sample_rate, ..self }
+    }
+
+    /// Whether samples are converted where the device has not that rate.
+    #[must_use]
+    pub fn with_resample(self, resample: bool) -> Self {
+        Self { resample, ..self }
+    }
+
+    /// Frames per block, as a wish; grows from 128 by itself if `None`.
+    #[must_use]
+    pub fn with_block(self, block: Option<u32>) -> Self {
+        Self { block, ..self }
+    }
+
+    /// How the floor's channels go onto those of the device.
+    #[must_use]
+    pub fn with_mix(self, mix: Mix) -> Self {
+        Self { mix, ..self }
+    }
+
+    /// The clock that stamps cues; without, each is played as soon as possible.
+    #[must_use]
+    pub fn with_steady(self, steady: Option<HostClock>) -> Self {
+        Self { steady, ..self }
+    }
+
+    /// `latency` measures the cues.
+    #[must_use]
+    pub fn with_latency(self, latency: LatencyProbe) -> Self {
+        Self { latency: Some(latency), ..self }
     }
 }

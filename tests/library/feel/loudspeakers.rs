@@ -44,7 +44,7 @@ fn what_is_felt_and_what_is_heard_begin_within_one_sample_in_one_file() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("both.wav");
     let (mut sender, renderer) = renderer(RendererConfig::of(&floor(), 96_000));
-    let options = WavOptions { format: WavFormat::Pcm24, when_full: WhenFull::Wait, ..WavOptions::default() };
+    let options = WavOptions::default().with_format(WavFormat::Pcm24).with_when_full(WhenFull::Wait);
     let mut file = WavSink::create(&path, renderer, options).unwrap();
     // Half a second apart, so that each begins in silence; at moments that fall into the middle of blocks.
     let moments: Vec<u64> = (0..6).map(|n| 20_000 + n * 517_313).collect();

@@ -29,7 +29,8 @@ fn a_recording_holds_every_channel_as_the_actuators_would_get_it() {
     for (format, tolerance) in [(WavFormat::Float32, 0.0), (WavFormat::Pcm24, 1.0 / 8_388_607.0)] {
         let path = folder.path().join("floor.wav");
         let (mut to_file, file_renderer) = floor();
-        let options = WavOptions { start, format, when_full: WhenFull::Wait, latency: None };
+        let options =
+            WavOptions::default().with_start(start).with_format(format).with_when_full(WhenFull::Wait);
         let mut file = WavSink::create(&path, file_renderer, options).unwrap();
         let (mut to_memory, memory_renderer) = floor();
         let mut memory = ManualSink::new(memory_renderer, start);

@@ -66,7 +66,7 @@ impl Room {
         }
         let (feel, renderer) = renderer(RendererConfig::of(floor, RATE));
         let start = clock();
-        let options = WavOptions { start, when_full: WhenFull::Wait, ..WavOptions::default() };
+        let options = WavOptions::default().with_start(start).with_when_full(WhenFull::Wait);
         let wav = WavSink::create(wav, renderer, options).unwrap();
         let told = OscSink::under(listener.local_addr().unwrap(), Prefix::default()).unwrap();
         let server = Server::new(floor, two_buttons(&floor.geometry), Method::default(), Box::new(source))
