@@ -83,7 +83,7 @@ impl Priority {
 impl DeviceStatus {
     /// Whether others should be told of this after `told`: anything but that it has gone on playing.
     #[must_use]
-    pub fn is_news_after(&self, told: &Self) -> bool {
+    pub(crate) fn is_news_after(&self, told: &Self) -> bool {
         let Self { blocks: _, .. } = self;
         *self != Self { blocks: self.blocks, ..told.clone() }
     }

@@ -126,7 +126,7 @@ pub struct Onset {
     pub frame: usize,
     /// When the packet arrived that caused it.
     pub received: Instant,
-    /// When its cue was sent, as told by [`CueSender::note_time`].
+    /// When its cue was sent, as told by `CueSender::note_time`.
     pub sent: Instant,
 }
 
@@ -185,7 +185,7 @@ impl Renderer {
 
     /// Most frames rendered in one go.
     #[must_use]
-    pub fn max_block(&self) -> usize {
+    pub(crate) fn max_block(&self) -> usize {
         self.max_block
     }
 
@@ -204,6 +204,7 @@ impl Renderer {
     /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from the first.
     ///
     /// Takes memory, so it belongs before the start.
+    #[cfg(any(feature = "internals", test))]
     pub fn scope(&mut self) -> Option<ScopeReader> {
         if self.channels == 0 {
             return None;
@@ -223,7 +224,7 @@ impl Renderer {
     ///
     /// For a device that was away: nobody is to feel at once what happened meanwhile. Cues that are
     /// forgotten are counted as muted.
-    pub fn restart(&mut self) {
+    pub(crate) fn restart(&mut self) {
         count(&self.shared.muted, self.schedule.forget_all());
         self.modes.clear();
         self.rack.clear();

@@ -139,7 +139,7 @@ impl CueSender {
     }
 
     /// Says what time it is when the next cues are sent, on the clock that stamps packets; only for measuring latency.
-    pub fn note_time(&mut self, now: Instant) {
+    pub(crate) fn note_time(&mut self, now: Instant) {
         self.now = now;
     }
 
@@ -191,7 +191,7 @@ impl CueSender {
 
     /// Whether [`CueSender::silence`] holds.
     #[must_use]
-    pub fn is_silenced(&self) -> bool {
+    pub(crate) fn is_silenced(&self) -> bool {
         self.turns % 2 == 1
     }
 

@@ -50,7 +50,7 @@ impl Calibration {
     pub const FULL_SCALE_VOLTS: f32 = 5.0;
 
     /// Counts from which on every sensor is near the end of its range (98 %) and reads "at least".
-    pub const SATURATED: u16 = 64_225;
+    pub(crate) const SATURATED: u16 = 64_225;
 
     /// The exponential law with these numbers.
     #[must_use]
@@ -94,7 +94,7 @@ impl Calibration {
     /// Whether a force sensor can have it: both numbers within the ranges of floor files, and a finite force at the converter's
     /// full scale.
     #[must_use]
-    pub fn is_plausible(&self) -> bool {
+    pub(crate) fn is_plausible(&self) -> bool {
         let within = |(parameter, number): (Parameter, f32)| parameter.range.contains(&f64::from(number));
         self.kind().parameters().into_iter().zip(self.numbers()).all(within)
             && self.force(u16::MAX).is_finite()
@@ -139,7 +139,7 @@ impl Calibration {
     }
 
     /// Counts from which on this sensor is near the end of its range and reads "at least":
-    /// [`Calibration::SATURATED`], or the end of a divider whose supply is less than the converter's full scale.
+    /// 64,225, or the end of a divider whose supply is less than the converter's full scale.
     #[must_use]
     pub fn saturated(&self) -> u16 {
         match self {

@@ -56,7 +56,7 @@ impl Response {
     ///
     /// `None` as for [`Response::of`], or if any force is not positive.
     #[must_use]
-    pub fn of_newtons(points: &[(f32, f32)], full_scale: Newtons) -> Option<Self> {
+    pub(crate) fn of_newtons(points: &[(f32, f32)], full_scale: Newtons) -> Option<Self> {
         if points.iter().any(|(_, newtons)| newtons.is_nan() || *newtons <= 0.0) {
             return None;
         }
@@ -96,7 +96,7 @@ pub struct Loudspeaker {
 
 impl Loudspeaker {
     /// Most loudspeakers of one floor.
-    pub const MOST: usize = 8;
+    pub(crate) const MOST: usize = 8;
 }
 
 #[cfg(test)]

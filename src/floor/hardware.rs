@@ -26,7 +26,7 @@ pub struct Floor {
     pub drive: Drive,
     /// The measured response of each tile's actuator, which the rack makes flat; `None` where none was measured.
     pub responses: Vec<Option<Response>>,
-    /// The loudspeakers beside the floor, at most [`Loudspeaker::MOST`].
+    /// The loudspeakers beside the floor, at most 8.
     pub loudspeakers: Vec<Loudspeaker>,
     /// The position map of each tile; `None` where none was measured.
     pub position_maps: Vec<Option<PositionMap>>,

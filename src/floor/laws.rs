@@ -84,9 +84,9 @@ impl Power {
 impl Divider {
     /// Share of the supply from which on a divider is at the end of its range: another half percent of the supply, and
     /// its force is without bounds (our choice).
-    pub const END: f32 = 0.995;
+    pub(crate) const END: f32 = 0.995;
 
-    /// The force, in newtons, that `volts` stand for; from [`Divider::END`] of the supply on, the force there.
+    /// The force, in newtons, that `volts` stand for; from 0.995 of the supply on, the force there.
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {

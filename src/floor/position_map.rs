@@ -38,13 +38,13 @@ impl PositionMap {
     pub const BENDS: usize = 10;
 
     /// The greatest trim: a part that misses its law by more should be replaced (our choice).
-    pub const MOST_TRIM: f32 = 0.6;
+    pub(crate) const MOST_TRIM: f32 = 0.6;
 
     /// The greatest number of a bend that files may hold.
-    pub const MOST_BEND: f32 = 2.0;
+    pub(crate) const MOST_BEND: f32 = 2.0;
 
     /// The farthest shift, in half pitches: 3.8 cm on the paper's tiles (our choice).
-    pub const MOST_SHIFT: f32 = 0.25;
+    pub(crate) const MOST_SHIFT: f32 = 0.25;
 
     /// The map that corrects nothing.
     pub const NONE: Self = Self {
@@ -85,7 +85,7 @@ impl PositionMap {
     /// # Real-time
     /// Some hundred operations; allocates nothing.
     #[must_use]
-    pub fn trimmed(&self, mut corners: [f32; 4]) -> [f32; 4] {
+    pub(crate) fn trimmed(&self, mut corners: [f32; 4]) -> [f32; 4] {
         for (force, trims) in corners.iter_mut().zip(&self.trims) {
             let (first, shares) = Self::shares(*force);
             let trim: f32 =
@@ -99,7 +99,7 @@ impl PositionMap {
     ///
     /// Stays on the square of one pitch around the tile. A place that is not a number stays so.
     #[must_use]
-    pub fn unbent(&self, arm: Vec2, geometry: &Geometry) -> Vec2 {
+    pub(crate) fn unbent(&self, arm: Vec2, geometry: &Geometry) -> Vec2 {
         let half = 0.5 * geometry.pitch_m();
         let terms = Self::terms((arm / half).clamp(Vec2::NEG_ONE, Vec2::ONE));
         let shift = self.bends.map(|bend| bend.iter().zip(terms).map(|(bend, term)| bend * term).sum());

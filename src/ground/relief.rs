@@ -62,7 +62,7 @@ impl Relief {
 
     /// How far the point in this column and row is worn at `now`, 0 to 1; 0 beyond the grid.
     #[must_use]
-    pub fn depth(&self, column: u32, row: u32, now: Instant) -> f32 {
+    pub(crate) fn depth(&self, column: u32, row: u32, now: Instant) -> f32 {
         if column >= self.columns {
             return 0.0;
         }

@@ -87,7 +87,7 @@ impl IceSpec {
     /// A Poisson process whose rate is the one-sided kinetic energy (paper, section 4.1.1); the
     /// threshold and the weakness of broken ice are ours, and with both at zero it is the paper's.
     #[must_use]
-    pub fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
+    pub(crate) fn onsets_per_s(&self, kinetic_j: f64, depth: f32) -> f64 {
         let beyond = (kinetic_j - f64::from(self.calm_j)).max(0.0);
         f64::from(self.onsets_per_j_s) * beyond * f64::from(1.0 + self.sheet.weakening * depth)
     }
@@ -210,7 +210,7 @@ impl IceSpec {
 
 impl GrainSpec {
     /// Dry snow: crunches while it is packed, and is quieter underfoot the second time.
-    pub const SNOW: Self = Self {
+    pub(crate) const SNOW: Self = Self {
         grain: Grain::Snow,
         body: Body { mass_kg: 20.0, damping_n_s_m: 9000.0, stiffness_n_m: 90_000.0 },
         collisions_per_s: 420.0,
@@ -232,7 +232,7 @@ impl GrainSpec {
     };
 
     /// Gravel: few hard knocks, always loose.
-    pub const GRAVEL: Self = Self {
+    pub(crate) const GRAVEL: Self = Self {
         grain: Grain::Gravel,
         body: Body { mass_kg: 30.0, damping_n_s_m: 7000.0, stiffness_n_m: 160_000.0 },
         collisions_per_s: 260.0,
@@ -254,7 +254,7 @@ impl GrainSpec {
     };
 
     /// Sand: a hiss of very many small grains that soon lie still.
-    pub const SAND: Self = Self {
+    pub(crate) const SAND: Self = Self {
         grain: Grain::Sand,
         body: Body { mass_kg: 25.0, damping_n_s_m: 12_000.0, stiffness_n_m: 120_000.0 },
         collisions_per_s: 900.0,
@@ -278,7 +278,7 @@ impl GrainSpec {
 
 impl WoodSpec {
     /// Old floor boards.
-    pub const PLANKS: Self = Self {
+    pub(crate) const PLANKS: Self = Self {
         body: Body { mass_kg: 15.0, damping_n_s_m: 3000.0, stiffness_n_m: 250_000.0 },
         plank_m: 0.152,
         along: Axis::East,

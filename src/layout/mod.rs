@@ -95,7 +95,7 @@ impl Layout {
 impl Widget {
     /// Whether it is on the page numbered `page`.
     #[must_use]
-    pub fn is_on(&self, page: usize) -> bool {
+    pub(crate) fn is_on(&self, page: usize) -> bool {
         self.page.is_none_or(|own| own == page)
     }
 }

@@ -28,7 +28,7 @@ impl LoadPoint {
 /// A fitted law and how well it follows its points.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Fit {
-    /// The law; a plausible one ([`Calibration::is_plausible`]).
+    /// The law; a plausible one (`Calibration::is_plausible`).
     pub calibration: Calibration,
     /// Root mean square of the force error, as a share of the greatest force measured.
     ///

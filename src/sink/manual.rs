@@ -62,7 +62,7 @@ impl ManualSink {
     }
 
     /// The renderer inside, for its scope.
-    pub fn renderer_mut(&mut self) -> &mut Renderer {
+    pub(crate) fn renderer_mut(&mut self) -> &mut Renderer {
         self.lockstep.renderer_mut()
     }
 }

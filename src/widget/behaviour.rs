@@ -68,7 +68,7 @@ impl Behaviour {
 
     /// Whether a foot should feel something when the control comes to `value`: a step, or a detent.
     #[must_use]
-    pub fn is_stop(&self, value: Value) -> bool {
+    pub(crate) fn is_stop(&self, value: Value) -> bool {
         match (self, value) {
             (Self::Slider(spec), Value::Number(number)) => spec.scale.is_stop(number),
             (Self::Pedal(spec), Value::Number(number)) => spec.scale.is_stop(number),

@@ -42,7 +42,7 @@ record! {
 impl PedalSpec {
     /// Force up to which the value is the least.
     #[must_use]
-    pub fn gives_from(&self) -> Newtons {
+    pub(crate) fn gives_from(&self) -> Newtons {
         self.deadband.unwrap_or(self.thresholds.press)
     }
 }

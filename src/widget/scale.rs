@@ -77,7 +77,7 @@ impl Scale {
     }
 
     /// Any value from 0 to 1.
-    pub const UNIT: Self = Self::new(0.0, 1.0);
+    pub(crate) const UNIT: Self = Self::new(0.0, 1.0);
 
     /// Any value from `min` to `max`.
     #[must_use]
@@ -116,16 +116,10 @@ impl Scale {
 
     /// Whether a foot should feel something when the number comes to `value`: a step, or a detent.
     #[must_use]
-    pub fn is_stop(&self, value: f32) -> bool {
+    pub(crate) fn is_stop(&self, value: f32) -> bool {
         self.step > 0.0
             || (self.detent > 0.0
                 && (nearest(value, self.min, self.detent) - value).abs() <= 1e-5 * self.range())
-    }
-
-    /// Whether it has steps or detents at all.
-    #[must_use]
-    pub fn has_stops(&self) -> bool {
-        self.step > 0.0 || self.detent > 0.0
     }
 
     /// The value that follows `current` when the foot asks for `wanted`; `None` if it stays.

@@ -90,7 +90,7 @@ impl Thresholds {
     /// while the weight is not known (`None`, or no positive number). A press
     /// never takes less than 10 N.
     #[must_use]
-    pub fn for_weight(self, weight: Option<Newtons>) -> Self {
+    pub(crate) fn for_weight(self, weight: Option<Newtons>) -> Self {
         match (self.share, weight) {
             (Some(share), Some(weight)) if weight.is_finite() && weight > Newtons::ZERO => {
                 let press = (weight * share.press).max(LEAST_PRESS);

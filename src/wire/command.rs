@@ -289,13 +289,13 @@ impl Command {
 
     /// The address behind the prefix for the control named `id`.
     #[must_use]
-    pub fn path_of(&self, id: &str) -> String {
+    pub(crate) fn path_of(&self, id: &str) -> String {
         self.path.replace("<id>", id)
     }
 
     /// Whether it is about one control.
     #[must_use]
-    pub fn is_of_a_control(&self) -> bool {
+    pub(crate) fn is_of_a_control(&self) -> bool {
         self.path.contains("<id>")
     }
 }

@@ -50,7 +50,7 @@ const MODES: List<Rec> = list("mode", MAX_MODES, Rec)
 impl Click {
     /// The same, `share` times as strong and with every frequency times `pitch` (within what a mode may have).
     #[must_use]
-    pub fn scaled(&self, share: f32, pitch: f32) -> Self {
+    pub(crate) fn scaled(&self, share: f32, pitch: f32) -> Self {
         let modes = self.modes.iter().map(|mode| Mode {
             frequency_hz: (mode.frequency_hz * pitch).clamp(*MODE_HZ.start(), *MODE_HZ.end()),
             ..*mode
@@ -73,7 +73,7 @@ record! {
     /// faster than it lasts is hardly struck, so that the click gets rounder. The
     /// strongest mode keeps its level.
     pub struct Impulse = "Impulse", Copy, Default;
-    /// How long the push lasts, in seconds; 0 (ideal) to [`Impulse::WIDEST_S`].
+    /// How long the push lasts, in seconds; 0 (ideal) to 0.01.
     pub width_s: f32 = "width_ms", num(0.0..=10.0).milli() => 0.0;
     /// Its shape, from an even push (0) to a bell (1).
     pub round: f32 = "round", SHARE => 0.0;
@@ -81,5 +81,5 @@ record! {
 
 impl Impulse {
     /// The longest push.
-    pub const WIDEST_S: f32 = 0.01;
+    pub(crate) const WIDEST_S: f32 = 0.01;
 }

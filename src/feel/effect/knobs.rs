@@ -10,6 +10,7 @@ impl Effect {
     /// their level anew.
     ///
     /// The order is the same each time.
+    #[cfg(any(feature = "internals", test))]
     pub fn turn(&mut self, visit: &mut dyn FnMut(&Knob, &mut f32)) {
         let mut hand = Hand::new(visit);
         hand.within = Some(self.manner.band.as_bounds());

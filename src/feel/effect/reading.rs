@@ -186,7 +186,7 @@ impl Effect {
 
     /// What is known of each kind of effect; of all of them, at last.
     #[must_use]
-    pub fn describe() -> (Vec<Description>, Description) {
+    pub(crate) fn describe() -> (Vec<Description>, Description) {
         (EffectKind::describe(), Manner::describe())
     }
 }

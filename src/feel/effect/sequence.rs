@@ -78,7 +78,7 @@ impl Sequence {
 
     /// Share of the level `t` seconds from the start.
     #[must_use]
-    pub fn share_at(&self, t: f32) -> f32 {
+    pub(crate) fn share_at(&self, t: f32) -> f32 {
         let after = self.curve.iter().position(|point| point.at_s > t).unwrap_or(self.curve.len());
         let before = after.checked_sub(1).and_then(|before| self.curve.get(before));
         match (before, self.curve.get(after)) {

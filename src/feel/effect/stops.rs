@@ -37,7 +37,7 @@ record! {
 impl Detents {
     /// The click of the detent at `share` of the range (0 to 1), passed upwards or downwards.
     #[must_use]
-    pub fn click_at(&self, share: f32, rising: bool) -> Click {
+    pub(crate) fn click_at(&self, share: f32, rising: bool) -> Click {
         let side = if rising { 1.0 } else { self.falling };
         // A control's own steps come as near as that to a mark that is meant.
         let near = if self.every > 0.0 { 0.25 * self.every } else { 1e-3 };
@@ -91,7 +91,7 @@ const SOFTEST: f32 = 0.4;
 impl EndStop {
     /// The click of an end that is hit at this speed, in metres per second; also without one (NaN), softly.
     #[must_use]
-    pub fn click_at(&self, high: bool, speed_m_s: f32) -> Click {
+    pub(crate) fn click_at(&self, high: bool, speed_m_s: f32) -> Click {
         let hit = (speed_m_s / FULL_HIT_M_S).clamp(0.0, 1.0);
         let hit = if hit.is_nan() { 0.0 } else { hit };
         self.click.scaled(SOFTEST + (1.0 - SOFTEST) * hit, self.pitch[usize::from(high)])
@@ -101,7 +101,7 @@ impl EndStop {
 impl Push {
     /// What is felt with the foot this far beyond the end.
     #[must_use]
-    pub fn hum_at(&self, beyond_m: f32) -> Hum {
+    pub(crate) fn hum_at(&self, beyond_m: f32) -> Hum {
         let share = (beyond_m / self.full_m).clamp(0.0, 1.0);
         let share = if share.is_nan() { 0.0 } else { share };
         Hum { level: self.hum.level * share, ..self.hum }

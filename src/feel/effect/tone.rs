@@ -83,7 +83,7 @@ impl Tone {
 
     /// As [`Tone::at`] for a tone that is held on: it never lets go by itself.
     #[must_use]
-    pub fn held_at(&self, t: f32) -> (f32, f32) {
+    pub(crate) fn held_at(&self, t: f32) -> (f32, f32) {
         let (curve, hz) = self.curve_at(t);
         let envelope = if t < 0.0 || t.is_nan() {
             0.0

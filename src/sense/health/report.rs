@@ -33,7 +33,7 @@ impl SensorHealth {
 
     /// Whether it is worth telling after `told`: more than that a foot saturates a tile's sensors for a moment.
     #[must_use]
-    pub fn is_news_after(&self, told: &Self) -> bool {
+    pub(crate) fn is_news_after(&self, told: &Self) -> bool {
         let [_, degraded, ..] = self.counts;
         degraded.abs_diff(told.counts[1]) > 4
             || self.counts[2..] != told.counts[2..]
