@@ -68,8 +68,18 @@
 // Without `internals`, what only the program uses is neither public nor used.
 #![cfg_attr(not(feature = "internals"), allow(dead_code, unreachable_pub))]
 
-#[macro_use]
-mod internal;
+/// Re-exports that are public with the feature `internals`, and the crate's own without it.
+///
+/// What is re-exported this way may change in any version.
+macro_rules! internal {
+    ($(use $module:ident :: { $($name:ident),* $(,)? };)*) => {$(
+        #[cfg(feature = "internals")]
+        pub use $module::{$($name),*};
+        #[cfg(not(feature = "internals"))]
+        #[allow(unused_imports, reason = "some are used by their own module only")]
+        pub(crate) use $module::{$($name),*};
+    )*};
+}
 
 #[cfg(feature = "lab")]
 pub mod capacity;
