@@ -78,8 +78,8 @@ pub struct LoadedTile {
     /// Standard deviation of each of `corners` beyond what is unknown of any sensor, in newtons:
     /// zero but for one that is estimated from the others, at the end of its range, or contradicted by the others.
     pub extra_sigma: [f32; 4],
-    /// Standard deviation of the white noise of each of `corners`, in newtons, as measured while the tile was idle;
-    /// zero on a floor on which it is too small to matter.
+    /// Standard deviation of the white noise of each of `corners`, in newtons: as measured while the tile was idle, and
+    /// what grows with the load.
     pub noise_n: f32,
     /// How much of `wrench` is taken to be left by a recent load, in newtons; 0 under heavy loads.
     pub left_n: f32,

@@ -60,11 +60,6 @@ impl ManualSink {
     pub fn renderer(&self) -> &Renderer {
         self.lockstep.renderer()
     }
-
-    /// The renderer inside, for its scope.
-    pub(crate) fn renderer_mut(&mut self) -> &mut Renderer {
-        self.lockstep.renderer_mut()
-    }
 }
 
 impl ActuatorSink for ManualSink {

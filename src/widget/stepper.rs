@@ -66,6 +66,7 @@ record! {
 
 impl Repeat {
     /// Not at all.
+    #[cfg(test)]
     pub(crate) const NEVER: Self =
         Self { after: None, every: Duration::from_millis(250), fastest: Duration::from_millis(60) };
 }

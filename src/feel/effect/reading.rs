@@ -7,7 +7,7 @@ use ron2::ast::Expr;
 
 use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
 use crate::feel::Click;
-use crate::format::describe::{Description, FieldType};
+use crate::format::describe::FieldType;
 use crate::format::node::{Node, Within};
 use crate::format::number::plain;
 use crate::format::problem::Problem;
@@ -182,12 +182,6 @@ impl Effect {
         self.kind.write_fields(&mut entries);
         self.manner.write_fields(&mut entries);
         Text::Fields(self.kind.name(), entries)
-    }
-
-    /// What is known of each kind of effect; of all of them, at last.
-    #[must_use]
-    pub(crate) fn describe() -> (Vec<Description>, Description) {
-        (EffectKind::describe(), Manner::describe())
     }
 }
 
