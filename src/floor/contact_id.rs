@@ -1,3 +1,5 @@
+//! The lasting name of a contact.
+
 use serde::Serialize;
 
 /// The lasting name of one contact: given when it lands, never used again.

@@ -1,3 +1,5 @@
+//! The page that a control switches to.
+
 use std::ops::Range;
 
 use super::fields::Fields;

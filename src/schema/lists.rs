@@ -1,3 +1,5 @@
+//! Lists of a layout and how long each may be.
+
 use super::fields::Fields;
 use super::node::Node;
 

@@ -226,7 +226,7 @@ impl LoadedTiles {
         }
         for (position, loaded) in self.list.iter_mut().enumerate() {
             self.place[loaded.index as usize] = position as u32;
-            loaded.noise_n = self.thresholds.noise_n(loaded.index as usize, loaded.wrench.force);
+            loaded.noise_n = self.thresholds.noise_n(loaded.index as usize);
             loaded.left_n = self.thresholds.left_n(loaded.index as usize, loaded.wrench.force);
         }
     }

@@ -1,3 +1,5 @@
+//! Why a control does not take a value.
+
 use thiserror::Error;
 
 /// Why a control does not take a value.

@@ -1,3 +1,5 @@
+//! Whether sensor packets arrive.
+
 /// Whether sensor packets arrive.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum LinkState {

@@ -11,7 +11,7 @@ pub struct Page {
 }
 
 /// What a fenced block may be, and who tries it: `ron` and `sh` are tested, `rust` is a doctest, the others are shown.
-const LANGUAGES: [&str; 6] = ["ron", "sh", "rust", "toml", "console", "text"];
+const LANGUAGES: [&str; 7] = ["ron", "sh", "rust", "toml", "console", "text", "layers"];
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<Page> {

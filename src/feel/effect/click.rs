@@ -1,3 +1,5 @@
+//! Clicks and their modes, as effects describe them.
+
 use arrayvec::ArrayVec;
 
 use crate::format::{List, Num, Rec, list, num, record};

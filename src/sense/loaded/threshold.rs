@@ -56,11 +56,6 @@ const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
 /// Creep of a force-sensing resistor, as a share of its load for each decade of time (maker's figure: 5 %).
 const CREEP: f32 = 0.055;
 
-/// Noise of a loaded sensor, as a share of what it carries: a force that grows by `exp(1.34 v)` makes 0.3 to 1.3 % of the 2 to
-/// 10 mV of its converter (the paper's parts). It is not seen while a tile is idle. At twice as much, two feet close
-/// together are told apart later.
-const LOADED_NOISE: f32 = 0.01;
-
 /// Residual load that is not worth following, in newtons.
 const NOTHING_N: f32 = 0.2;
 
@@ -185,10 +180,9 @@ impl Thresholds {
         residual * (2.0 - force / (self.on[index] + residual)).clamp(0.0, 1.0)
     }
 
-    /// Standard deviation of the noise of each sensor of the tile at `index`, which carries `force`, in newtons.
-    pub(super) fn noise_n(&self, index: usize, force: f32) -> f32 {
-        let idle = if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 };
-        idle.hypot(LOADED_NOISE * 0.25 * force)
+    /// Standard deviation of the noise of each sensor of the tile at `index`, in newtons.
+    pub(super) fn noise_n(&self, index: usize) -> f32 {
+        if self.is_any_noisy { 0.5 / DIFFERENCE * self.differences[index] } else { 0.0 }
     }
 
     /// Takes in what the first frame's tiles read: nothing is known but how well their plates' corners agree.

@@ -136,7 +136,7 @@ impl Tracker {
         pending.seen = true;
         pending.force = keep * pending.force + force;
         pending.moment = keep * pending.moment + place * force;
-        pending.noise = keep * keep * pending.noise + f64::from(tile.noise_n).powi(2);
+        pending.noise = keep * keep * pending.noise + tile.loaded_noise_n().powi(2);
         let middle = pending.moment / pending.force;
         let deviation = NOISE_ARM_M * pending.noise.sqrt() / pending.force;
         let (age, margin) = (pending.age, 0.005 + 3.0 * deviation);

@@ -133,7 +133,7 @@ impl Tracker {
             let slow = foot.smoothed_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
-            let noise = f64::from(tile.noise_n);
+            let noise = tile.loaded_noise_n();
             if added < ADDED_N + 8.0 * noise {
                 continue;
             }

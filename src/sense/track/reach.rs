@@ -36,7 +36,7 @@ impl Track {
             for &position in &self.tiles {
                 let tile = &list[position as usize];
                 let force = f64::from(tile.wrench.force);
-                if force > NOTED * self.force() && force > NOTED_PER_NOISE * f64::from(tile.noise_n) {
+                if force > NOTED * self.force() && force > NOTED_PER_NOISE * tile.loaded_noise_n() {
                     now.add(tile.centroid.as_dvec2());
                 }
             }

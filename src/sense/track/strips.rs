@@ -158,7 +158,7 @@ impl Strips {
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
-            let noise = f64::from(tile.noise_n).powi(2);
+            let noise = tile.loaded_noise_n().powi(2);
             let noise = [4.0 * noise, NOISE_ARM_M * NOISE_ARM_M * noise];
             for axis in Axis::BOTH {
                 let number = match axis {

@@ -1,3 +1,5 @@
+//! What is wanted of a sound card.
+
 use crate::sink::LatencyProbe;
 use crate::units::HostClock;
 
