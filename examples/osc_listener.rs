@@ -3,16 +3,31 @@
 //! Start `underfoot simulate` and `underfoot run layouts/map.ron` beside it. Any OSC library of any language will do.
 
 use std::error::Error;
+use std::io::ErrorKind;
 use std::net::UdpSocket;
+use std::time::{Duration, Instant};
 
 use rosc::{OscMessage, OscPacket, OscType, decoder, encoder};
 
+#[path = "held/mod.rs"]
+pub mod held;
+
+use held::Held;
+
 fn main() -> Result<(), Box<dyn Error>> {
     let socket = UdpSocket::bind("127.0.0.1:9001")?;
+    // Silence ends what is held, so it must be noticed.
+    socket.set_read_timeout(Some(Duration::from_millis(20)))?;
     println!("Listening on {}; Ctrl-C ends it.", socket.local_addr()?);
+    let (mut held, mut before) = (Held::default(), Vec::new());
     loop {
-        for line in listen(&socket, "127.0.0.1:9000")? {
+        for line in listen(&socket, "127.0.0.1:9000", &mut held)? {
             println!("{line}");
+        }
+        let now = held.at(Instant::now());
+        if now != before {
+            println!("held: {}", now.join(", "));
+            before = now;
         }
     }
 }
@@ -21,11 +36,20 @@ fn main() -> Result<(), Box<dyn Error>> {
 ///
 /// # Errors
 /// What the socket says, or that the datagram is not OSC.
-pub fn listen(socket: &UdpSocket, floor: &str) -> Result<Vec<String>, Box<dyn Error>> {
+pub fn listen(socket: &UdpSocket, floor: &str, held: &mut Held) -> Result<Vec<String>, Box<dyn Error>> {
     let mut bytes = [0; 1536];
-    let length = socket.recv(&mut bytes)?;
+    let length = match socket.recv(&mut bytes) {
+        Ok(length) => length,
+        Err(error) if matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut) => {
+            return Ok(Vec::new());
+        }
+        Err(error) => return Err(error.into()),
+    };
     let mut lines = Vec::new();
     for message in messages(decoder::decode_udp(&bytes[..length])?.1) {
+        if held.take(&message, Instant::now()) {
+            continue;
+        }
         let Some(("", widget)) = message.addr.split_once("/underfoot/widget/") else { continue };
         lines.push(match message.args.first() {
             // Value first, then force, x and y.

@@ -1,6 +1,7 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::SocketAddr;
+use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
@@ -22,7 +23,7 @@ use super::floor_args::FloorArgs;
 use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
 use super::outputs::OutputArgs;
-use super::stop::stop_flag;
+use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
 
 /// What `underfoot run` is asked to do.
@@ -59,6 +60,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
     let stop = stop_flag()?;
+    let panicked = panic_flag(&stop);
     let (commands, received) = mpsc::channel();
     let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
         Ok(layout) => {
@@ -88,7 +90,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_commands(received);
     // Last, since threads inherit it. Where it is denied, the sound card's thread says what to do.
     claim_priority(Rank::Sensing);
-    let served = server.run(&stop);
+    // What a panic leaves half done is only looked at to cancel what is held, and to count.
+    let served = panic::catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
     let counters = server.counters();
     let (dropped, felt) = (server.unsent_events(), server.feel_counters());
     let grounds = grounds(server.engine());
@@ -98,7 +101,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     report_felt(&felt);
     grounds.iter().for_each(|ground| anstream::eprintln!("{ground}"));
     args.latency.tell(&latency)?;
-    Ok(served?)
+    if panicked.load(Ordering::Relaxed) {
+        return Err(Failure::Other("a part of the program failed; please report it".into()));
+    }
+    served.map_or(Ok(()), |served| Ok(served?))
 }
 
 fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {

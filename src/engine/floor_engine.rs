@@ -6,7 +6,7 @@ use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
-use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent};
+use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent, WidgetId};
 
 use super::interact::Interaction;
 use super::labels::Labels;
@@ -168,6 +168,23 @@ impl Engine {
         self.layouts_given += 1;
         self.waiting_layout = Some((layout, self.layouts_given));
         self.take_waiting_layout();
+    }
+
+    /// Ends every press and disarms every control without committing anything, since no more frames
+    /// will come; what a foot had changed changes back. Gives the events of it.
+    ///
+    /// Each control must be seen unloaded before it works again.
+    pub fn cancel_all(&mut self) -> &[WidgetEvent] {
+        self.events.clear();
+        self.events.append(&mut self.pending);
+        self.interaction.cancel_all(&self.layout, self.last_frame.at, &mut self.events);
+        &self.events
+    }
+
+    /// The controls that a foot holds pressed, in no order.
+    pub fn held(&self) -> impl Iterator<Item = &WidgetId> + Clone + '_ {
+        let widgets = self.interaction.holding();
+        widgets.filter_map(|held| self.layout.widgets.get(held.widget).map(|widget| &widget.id))
     }
 
     /// The name of the page that is shown; `None` in a layout without pages.

@@ -193,6 +193,18 @@ impl Interaction {
         self.wake(widget);
     }
 
+    /// Ends every press and disarms every control, without committing anything.
+    ///
+    /// It asks the controls themselves, not the regions that lead feet to them, so that it also
+    /// works on what a step that broke off has left behind.
+    pub(super) fn cancel_all(&mut self, layout: &Layout, now: Instant, events: &mut Vec<WidgetEvent>) {
+        for widget in 0..self.controls.len() {
+            if self.controls.get(widget).is_some_and(|control| !control.is_at_rest()) {
+                self.cancel(widget, layout, now, events);
+            }
+        }
+    }
+
     /// Takes in one frame.
     pub(super) fn step(
         &mut self,

@@ -1,11 +1,15 @@
 //! Events, contacts and states to datagrams for other programs, OSC and TUIO: pure, no sockets.
 
+mod held;
 mod osc;
 mod tuio;
 mod tuio1;
 mod tuio2;
 
+pub use held::HeldReport;
+
 internal! {
+    use held::{write_alive, write_held};
     use osc::{
         Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health,
         write_mute, write_page, write_readback,

@@ -208,11 +208,11 @@ pub fn write_readback(prefix: &Prefix, readback: &Readback<'_>, bytes: &mut Vec<
     write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);
 }
 
-fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
+pub(super) fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
     prefix.address(&format!("widget/{}/{what}", address_part(id)))
 }
 
-fn message(addr: String, args: Vec<OscType>) -> OscPacket {
+pub(super) fn message(addr: String, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr, args })
 }
 

@@ -108,6 +108,8 @@ impl Maker<'_> {
         let count = vec![argument("count", "i", "0 or more")];
         self.add(Direction::Out, "contacts", count, "How many contacts follow; 100 times a second at most.");
         self.add(Direction::Out, "contact", contact, "One contact, in the bundle of `contacts`.");
+        let count = vec![argument("sequence", "i", "one more each time")];
+        self.add(Direction::Out, "alive", count, "The floor is served; 10 times a second.");
         let health = vec![
             argument("state", "s", "waiting, live, partial or lost"),
             argument("degraded", "i", "sensors"),
@@ -180,6 +182,10 @@ impl Maker<'_> {
             ]);
             self.add(Direction::Out, &format!("widget/{id}/{name}"), arguments, says);
         }
+        let repeated = vec![argument("held", "i", "0 or 1"), argument("sequence", "i", "one more each time")];
+        let says =
+            "Whether a foot holds it; 1 comes 50 times a second: not heard for 100 ms, it is released.";
+        self.add(Direction::Out, &format!("widget/{id}/held"), repeated, says);
         if !held.is_empty() {
             self.add(Direction::Answer, &format!("widget/{id}/value"), held, "What it holds.");
         }

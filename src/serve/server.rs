@@ -1,5 +1,7 @@
 //! The server: one turn per packet, and all that follows from it.
 
+mod end;
+mod heartbeat;
 mod mute;
 mod notices;
 
@@ -11,6 +13,7 @@ use std::time::Duration;
 use tracing::warn;
 use triple_buffer::Input;
 
+use self::heartbeat::Heartbeat;
 use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
@@ -109,6 +112,7 @@ pub struct Server {
     answer: Vec<u8>,
     /// Requests that could not be met.
     denied: u64,
+    heartbeat: Heartbeat,
 }
 
 impl Server {
@@ -145,6 +149,7 @@ impl Server {
             prefix: Prefix::default(),
             answer: Vec::new(),
             denied: 0,
+            heartbeat: Heartbeat::default(),
         }
     }
 
@@ -228,17 +233,25 @@ impl Server {
         snapshot.unsent_events = self.unsent_events();
     }
 
-    /// Works until the source ends or `stop` is set, which is noticed within some milliseconds.
+    /// Works until the source ends or fails or `stop` is set, which is noticed within some milliseconds;
+    /// then cancels what feet still hold and tells so.
     ///
     /// # Errors
     /// What [`Server::turn`] gives.
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), SourceError> {
-        while !stop.load(Ordering::Relaxed) {
-            if self.turn()? == Ended::Yes {
-                break;
+        self.update_mute();
+        let served = loop {
+            if stop.load(Ordering::Relaxed) {
+                break Ok(());
             }
-        }
-        Ok(())
+            match self.turn() {
+                Ok(Ended::No) => {}
+                Ok(Ended::Yes) => break Ok(()),
+                Err(error) => break Err(error),
+            }
+        };
+        self.end();
+        served
     }
 
     /// Takes one packet, or notices that none came, and does everything that follows from it.
@@ -261,6 +274,7 @@ impl Server {
                 self.play_until(now.before(IDLE_LAG));
             }
             Err(SourceError::Ended) => {
+                self.cancel_all();
                 self.play_until(self.source.now() + TAIL);
                 return Ok(Ended::Yes);
             }
@@ -268,6 +282,7 @@ impl Server {
         }
         self.note_link();
         while self.step() {}
+        self.beat();
         self.note_troubles();
         self.note_health();
         Ok(Ended::No)

@@ -1,6 +1,6 @@
 //! Several event sinks as one.
 
-use super::EventSink;
+use super::{EventSink, HeldReport};
 use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
@@ -70,6 +70,14 @@ impl EventSink for Fanout {
         self.sinks.iter_mut().for_each(|sink| sink.device(at, status));
     }
 
+    fn held(&mut self, report: &HeldReport) {
+        self.sinks.iter_mut().for_each(|sink| sink.held(report));
+    }
+
+    fn alive(&mut self, sequence: u32) {
+        self.sinks.iter_mut().for_each(|sink| sink.alive(sequence));
+    }
+
     fn muted(&mut self, at: Instant, muted: &Muted) {
         self.sinks.iter_mut().for_each(|sink| sink.muted(at, muted));
     }
@@ -104,6 +112,14 @@ mod tests {
             self.1.send(format!("{} {health}", self.0)).unwrap();
         }
 
+        fn held(&mut self, report: &HeldReport) {
+            self.1.send(format!("{} held {}", self.0, report.sequence)).unwrap();
+        }
+
+        fn alive(&mut self, sequence: u32) {
+            self.1.send(format!("{} alive {sequence}", self.0)).unwrap();
+        }
+
         fn dropped(&self) -> u64 {
             3
         }
@@ -117,10 +133,13 @@ mod tests {
         fanout.contacts(Instant::from_micros(5), &[]);
         fanout.link(Instant::START, LinkState::Live);
         fanout.health(Instant::START, &SensorHealth { counts: [3, 0, 0, 1], ..SensorHealth::default() });
+        fanout.held(&HeldReport { sequence: 7, ..HeldReport::default() });
+        fanout.alive(8);
         assert_eq!(fanout.dropped(), 6);
         drop(fanout);
         let expected = ["a 0 events", "b 0 events", "a contacts at 5", "b contacts at 5", "a Live", "b Live"];
         let sick = ["a 1 faulty, 3 live", "b 1 faulty, 3 live"];
-        assert_eq!(received.iter().collect::<Vec<_>>(), [&expected[..], &sick].concat());
+        let beats = ["a held 7", "b held 7", "a alive 8", "b alive 8"];
+        assert_eq!(received.iter().collect::<Vec<_>>(), [&expected[..], &sick, &beats].concat());
     }
 }

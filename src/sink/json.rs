@@ -7,14 +7,14 @@ use serde::Serialize;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::worker::Worker;
-use super::{EventSink, SinkError};
+use super::{EventSink, HeldReport, SinkError};
 use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::units::Instant;
-use crate::widget::{EventKind, Value, WidgetEvent};
+use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
 use crate::wire::LinkState;
 
 /// Writes one JSON object per event and line.
@@ -26,13 +26,15 @@ use crate::wire::LinkState;
 /// {"t_s":9.9,"event":"health","live":143,"degraded":0,"stale":0,"faulty":1,"uncalibrated":0,"foreign":false,"troubles":[{"col":2,"row":1,"corner":"sw","trouble":"stuck"}]}
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
 /// {"t_s":9.9,"event":"mute","all":false,"tiles":[[2,1]]}
+/// {"t_s":9.9,"held":["zoom"],"sequence":12}
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
 /// `value` is a number (of a choice: which, from 0), true or false, two numbers
 /// in a list, the direction of a swipe, or null for events without a value;
 /// `contact` is null if no foot did it. A number that JSON cannot express
-/// (which the engine never gives) is null. Contacts are not written.
+/// (which the engine never gives) is null. Which controls are held is written 50
+/// times a second while any is, and once when none is any longer. Contacts are not written.
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
@@ -48,6 +50,7 @@ enum Job {
     Health(Instant, SensorHealth),
     Device(Instant, DeviceStatus),
     Muted(Instant, Muted),
+    Held(HeldReport),
 }
 
 impl JsonSink {
@@ -104,6 +107,12 @@ impl EventSink for JsonSink {
 
     fn muted(&mut self, at: Instant, muted: &Muted) {
         self.worker.offer(Job::Muted(at, muted.clone()));
+    }
+
+    fn held(&mut self, report: &HeldReport) {
+        let job = Job::Held(report.clone());
+        // A repetition may be missed; that something has ended may not.
+        let _ = if report.ended.is_empty() { self.worker.try_offer(job) } else { self.worker.offer(job) };
     }
 
     fn dropped(&self) -> u64 {
@@ -178,6 +187,12 @@ enum Body<'a> {
         reopened: u64,
         priority: &'static str,
     },
+    /// A state, not an event.
+    #[serde(untagged)]
+    Held {
+        held: Vec<&'a str>,
+        sequence: u32,
+    },
     /// Its name is that of what happened.
     #[serde(untagged)]
     Control {
@@ -214,6 +229,10 @@ impl<'a> Line<'a> {
             Job::Muted(at, Muted { all, tiles }) => {
                 let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
                 (*at, Body::Mute { all: *all, tiles })
+            }
+            Job::Held(HeldReport { at, held, sequence, .. }) => {
+                let held = held.iter().map(WidgetId::as_str).collect();
+                (*at, Body::Held { held, sequence: *sequence })
             }
         };
         // Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
@@ -308,7 +327,7 @@ mod tests {
 
     use super::*;
     use crate::units::Newtons;
-    use crate::widget::{Direction, WidgetId};
+    use crate::widget::Direction;
 
     /// A writer whose other end tells what was flushed.
     struct Pipe {
@@ -399,6 +418,20 @@ mod tests {
         drop(sink);
         let line: String = lines.iter().collect();
         assert_eq!(line.trim_end(), r#"{"t_s":9.9,"event":"mute","all":true,"tiles":[[2,1]]}"#);
+    }
+
+    #[test]
+    fn what_is_held_is_a_line_with_a_number_and_so_is_that_nothing_is() {
+        let (flushed, lines) = channel();
+        let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+        let (at, drive) = (Instant::from_millis(9900), WidgetId::new("drive"));
+        sink.held(&HeldReport { at, held: vec![drive.clone()], sequence: 4, ..HeldReport::default() });
+        sink.held(&HeldReport { at, ended: vec![drive], sequence: 5, ..HeldReport::default() });
+        drop(sink);
+        let text: String = lines.iter().collect();
+        let expected =
+            [r#"{"t_s":9.9,"held":["drive"],"sequence":4}"#, r#"{"t_s":9.9,"held":[],"sequence":5}"#];
+        assert_eq!(text.lines().collect::<Vec<_>>(), expected);
     }
 
     #[test]

@@ -31,6 +31,7 @@ use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::wire::LinkState;
 
+pub use crate::outgoing::HeldReport;
 pub use channel_map::ChannelMap;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
@@ -87,6 +88,12 @@ pub trait EventSink: Send {
 
     /// Takes news of the device that moves the actuators; called when something has changed, once a second at most.
     fn device(&mut self, _at: Instant, _status: &DeviceStatus) {}
+
+    /// Takes which controls are held: at once when that changes, and 50 times a second while any is.
+    fn held(&mut self, _report: &HeldReport) {}
+
+    /// Takes a sign of life, numbered from 1; called ten times a second, also while no packets come.
+    fn alive(&mut self, _sequence: u32) {}
 
     /// Takes news of what is muted; called when that changes.
     fn muted(&mut self, _at: Instant, _muted: &Muted) {}

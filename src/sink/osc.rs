@@ -9,12 +9,13 @@ use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
-use super::{EventSink, SinkError};
+use super::{EventSink, HeldReport, SinkError};
 use crate::engine::PageShown;
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::outgoing::{
-    write_contacts, write_crack, write_device, write_event, write_health, write_mute, write_page,
+    write_alive, write_contacts, write_crack, write_device, write_event, write_health, write_held,
+    write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -25,9 +26,11 @@ use crate::wire::{LinkState, Prefix};
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
-/// there are any, always the latest, and once more when there are none. The
-/// messages are those of [`write_event`], [`write_contacts`], [`write_crack`],
-/// [`write_page`], [`write_health`], [`write_device`] and [`write_mute`].
+/// there are any, always the latest, and once more when there are none. What is
+/// held is repeated 50 times a second, and a sign of life ten times. The
+/// messages are those of [`write_event`], [`write_contacts`], [`write_held`],
+/// [`write_alive`], [`write_crack`], [`write_page`], [`write_health`],
+/// [`write_device`] and [`write_mute`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
@@ -48,6 +51,8 @@ enum Job {
     Health(LinkState, SensorHealth),
     Device(DeviceStatus),
     Muted(Muted),
+    Held(HeldReport),
+    Alive(u32),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
 }
@@ -135,6 +140,16 @@ impl EventSink for OscSink {
         self.worker.offer(Job::Muted(muted.clone()));
     }
 
+    fn held(&mut self, report: &HeldReport) {
+        let job = Job::Held(report.clone());
+        // A repetition may be missed; that something has ended may not.
+        let _ = if report.ended.is_empty() { self.worker.try_offer(job) } else { self.worker.offer(job) };
+    }
+
+    fn alive(&mut self, sequence: u32) {
+        self.worker.try_offer(Job::Alive(sequence));
+    }
+
     fn dropped(&self) -> u64 {
         self.worker.dropped() + self.undelivered.load(Ordering::Relaxed)
     }
@@ -186,6 +201,11 @@ impl Sender {
                 }
                 Job::Muted(muted) => {
                     write_mute(&prefix, &muted, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Held(report) => write_held(&prefix, &report, &mut bytes, |datagram| out.send(datagram)),
+                Job::Alive(sequence) => {
+                    write_alive(&prefix, sequence, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {

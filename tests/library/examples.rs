@@ -3,6 +3,7 @@
 use std::net::UdpSocket;
 use std::time::Duration;
 
+use rosc::{OscMessage, OscType};
 use underfoot::sense::ContactId;
 use underfoot::sink::{EventSink, OscSink};
 use underfoot::units::{Instant, Newtons};
@@ -17,6 +18,8 @@ mod embed;
 #[allow(dead_code)]
 #[path = "../../examples/osc_listener.rs"]
 mod osc_listener;
+
+use osc_listener::held::Held;
 
 #[test]
 fn embed_runs() {
@@ -50,13 +53,34 @@ fn the_osc_listener_hears_controls_and_answers() {
         event("home", EventKind::Clicked),
     ]);
     let answer_to = floor.local_addr().unwrap().to_string();
-    let mut received = Vec::new();
+    let (mut received, mut held) = (Vec::new(), Held::default());
     while received.len() < 3 {
-        received.extend(osc_listener::listen(&app, &answer_to).unwrap());
+        received.extend(osc_listener::listen(&app, &answer_to, &mut held).unwrap());
     }
     assert_eq!(received, ["zoom/changed to 0.50", "satellite/changed to on", "home/clicked"]);
     let mut answer = [0; 256];
     let length = floor.recv(&mut answer).unwrap();
     let text = String::from_utf8_lossy(&answer[..length]);
     assert!(text.starts_with("/underfoot/widget/zoom/set"), "{text}");
+}
+
+#[test]
+fn an_app_believes_that_a_control_is_held_for_100_ms_and_no_number_twice() {
+    let mut held = Held::default();
+    let begun = std::time::Instant::now();
+    let at = |ms| begun + Duration::from_millis(ms);
+    let report = |on: i32, sequence: i32| OscMessage {
+        addr: "/lab/widget/drive/held".into(),
+        args: vec![OscType::Int(on), OscType::Int(sequence)],
+    };
+    assert!(held.take(&report(1, i32::MAX), at(0)));
+    assert_eq!((held.at(at(99)), held.at(at(100))), (vec!["drive".to_string()], vec![]));
+    // The number goes on below zero; the one before it comes late.
+    held.take(&report(0, i32::MIN), at(110));
+    held.take(&report(1, i32::MAX), at(120));
+    assert_eq!(held.at(at(120)), Vec::<String>::new(), "overtaken");
+    // A floor that was started anew counts from one.
+    held.take(&report(1, 1), at(1200));
+    assert_eq!(held.at(at(1210)), ["drive"]);
+    assert!(!held.take(&OscMessage { addr: "/underfoot/alive".into(), args: vec![] }, at(1210)));
 }

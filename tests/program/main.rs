@@ -9,5 +9,6 @@ mod sender;
 mod calibrate;
 mod clients;
 mod end_to_end;
+mod holds;
 mod page_commands;
 mod rack;

@@ -6,6 +6,7 @@ mod bench;
 mod broken;
 mod creeping;
 mod desk;
+mod ends;
 mod long_run;
 mod loop_gain;
 mod lost;

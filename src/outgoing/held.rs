@@ -1,0 +1,82 @@
+//! OSC messages that are repeated for as long as they are true.
+
+use rosc::OscType;
+
+use super::osc::{message, of_widget};
+use crate::units::Instant;
+use crate::widget::WidgetId;
+use crate::wire::{Prefix, write};
+
+/// Which controls feet hold at one moment; repeated 50 times a second while there are any.
+///
+/// Whoever has not heard for 100 ms that a control is held must take it for released: the
+/// server, the network or a board may be gone.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct HeldReport {
+    /// When, on the floor's sample clock.
+    pub at: Instant,
+    /// The controls that are held.
+    pub held: Vec<WidgetId>,
+    /// Those that were in the last report and no longer are.
+    pub ended: Vec<WidgetId>,
+    /// Number of the report, from 1, wrapping at 2^32.
+    pub sequence: u32,
+}
+
+/// Writes each held control as an OSC message `/underfoot/widget/<id>/held 1 <sequence>`, each that has
+/// ended with 0, giving every datagram to `send`.
+///
+/// Both arguments are ints; the sequence goes on with negative numbers after 2^31 - 1.
+pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut send: impl FnMut(&[u8])) {
+    let held = report.held.iter().map(|id| (id, 1));
+    let ended = report.ended.iter().map(|id| (id, 0));
+    for (id, on) in ended.chain(held) {
+        let args = [on, report.sequence.cast_signed()].map(OscType::Int).into();
+        bytes.clear();
+        write(&message(of_widget(prefix, id, "held"), args), bytes);
+        send(bytes);
+    }
+}
+
+/// Writes that the server lives as the OSC message `/underfoot/alive <sequence>`, an int.
+pub fn write_alive(prefix: &Prefix, sequence: u32, bytes: &mut Vec<u8>) {
+    bytes.clear();
+    write(&message(prefix.address("alive"), vec![OscType::Int(sequence.cast_signed())]), bytes);
+}
+
+#[cfg(test)]
+mod tests {
+    use rosc::{OscMessage, OscPacket, decoder};
+
+    use super::*;
+
+    fn decoded(bytes: &[u8]) -> (String, Vec<OscType>) {
+        match decoder::decode_udp(bytes) {
+            Ok((_, OscPacket::Message(OscMessage { addr, args }))) => (addr, args),
+            other => panic!("not a message: {other:?}"),
+        }
+    }
+
+    #[test]
+    fn what_is_held_and_what_has_ended_are_messages_with_the_same_number() {
+        let report = HeldReport {
+            held: vec![WidgetId::new("drive")],
+            ended: vec![WidgetId::new("zoom")],
+            sequence: 1 << 31,
+            ..HeldReport::default()
+        };
+        let mut told = Vec::new();
+        write_held(&Prefix::default(), &report, &mut vec![1, 2], |bytes| told.push(decoded(bytes)));
+        let message = |id: &str, on| {
+            (format!("/underfoot/widget/{id}/held"), vec![OscType::Int(on), OscType::Int(i32::MIN)])
+        };
+        assert_eq!(told, [message("zoom", 0), message("drive", 1)]);
+    }
+
+    #[test]
+    fn a_sign_of_life_is_one_number() {
+        let mut bytes = vec![7];
+        write_alive(&Prefix::default(), 3, &mut bytes);
+        assert_eq!(decoded(&bytes), ("/underfoot/alive".into(), vec![OscType::Int(3)]));
+    }
+}

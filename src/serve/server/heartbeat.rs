@@ -1,0 +1,54 @@
+//! What is said over and over, so that whoever hears it no longer knows that it has ended.
+
+use std::time::Duration;
+
+use super::Server;
+use crate::outgoing::HeldReport;
+use crate::units::Instant;
+
+/// Time between two reports of what is held: five of them may be lost or late before 100 ms are over.
+const HELD_EVERY: Duration = Duration::from_millis(20);
+
+/// Time between two signs of life.
+const ALIVE_EVERY: Duration = Duration::from_millis(100);
+
+/// What was last reported, and when the next reports are due.
+#[derive(Debug, Default)]
+pub(super) struct Heartbeat {
+    report: HeldReport,
+    held_due: Instant,
+    alive: u32,
+    alive_due: Instant,
+}
+
+impl Server {
+    /// Reports what is held if that has changed or is due, and that the server lives.
+    pub(super) fn beat(&mut self) {
+        let Some(events) = &mut self.events else { return };
+        let now = self.source.now();
+        let Heartbeat { report, held_due, alive, alive_due } = &mut self.heartbeat;
+        let held = self.engine.held();
+        let is_news =
+            held.clone().count() != report.held.len() || held.clone().any(|id| !report.held.contains(id));
+        if is_news || (!report.held.is_empty() && now >= *held_due) {
+            report.ended.clear();
+            report.ended.extend(report.held.drain(..).filter(|id| !held.clone().any(|still| still == id)));
+            report.held.extend(held.cloned());
+            report.sequence = report.sequence.wrapping_add(1);
+            report.at = now;
+            *held_due = next(*held_due, HELD_EVERY, now);
+            events.held(report);
+        }
+        if now >= *alive_due {
+            *alive = alive.wrapping_add(1);
+            *alive_due = next(*alive_due, ALIVE_EVERY, now);
+            events.alive(*alive);
+        }
+    }
+}
+
+/// When a report is due again: a period after it was due, or after `now` if it is late or early.
+fn next(due: Instant, period: Duration, now: Instant) -> Instant {
+    let next = due + period;
+    if next > now && due <= now { next } else { now + period }
+}

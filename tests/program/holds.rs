@@ -1,0 +1,94 @@
+//! Every hold ends: a client believes that nothing is held soon after the program, its floor or the way
+//! between them has failed, in whatever way.
+
+mod client;
+mod site;
+
+use std::process::Command;
+use std::time::{Duration, Instant};
+
+use self::client::Client;
+use self::site::{Boards, Mishap, Run, Site};
+
+/// How long a client may still believe that something is held.
+const SOON: Duration = Duration::from_millis(150);
+
+/// How often it is tried again on a machine that had something else to do; what is said and in which order
+/// is not a matter of time and counts every time.
+const TRIES: usize = 6;
+
+/// Holds `drive` and drags `zoom`, then does `end`; gives how long the slower of two clients believed the holds.
+fn believed_for(site: &Site, more: &[&str], end: impl FnOnce(&mut Run, &Boards)) -> (Duration, Client) {
+    let mut client = Client::new();
+    let mut run = site.run(&client, more);
+    let boards = Boards::start(site, run.address);
+    client.wait_until("both are held", |client| client.holds() == ["drive", "zoom"]);
+    client.watch_json(&mut run.child);
+    client.wait_until("the reader of JSON knows", |client| client.json_holds() == ["drive", "zoom"]);
+    let begun = Instant::now();
+    end(&mut run, &boards);
+    client
+        .wait_until("nothing is held", |client| client.holds().is_empty() && client.json_holds().is_empty());
+    let took = begun.elapsed();
+    drop(boards);
+    drop(run);
+    client.hear_the_rest();
+    (took, client)
+}
+
+/// As [`believed_for`], until it is soon; the last of the clients.
+fn soon(site: &Site, more: &[&str], end: impl Fn(&mut Run, &Boards)) -> Client {
+    let mut times = Vec::new();
+    for _ in 0..TRIES {
+        let (took, client) = believed_for(site, more, &end);
+        times.push(took);
+        if took <= SOON {
+            println!("believed for {took:?}");
+            return client;
+        }
+    }
+    panic!("never within {SOON:?}: {times:?}");
+}
+
+fn signal(run: &Run, name: &str) {
+    let status = Command::new("kill").args(["-s", name, &run.child.id().to_string()]).status().unwrap();
+    assert!(status.success());
+}
+
+#[test]
+fn a_program_that_is_asked_to_end_cancels_first_and_says_goodbye_last() {
+    let site = Site::new();
+    for name in ["TERM", "INT", "HUP"] {
+        let client = soon(&site, &[], |run, _| {
+            signal(run, name);
+            assert!(run.child.wait().unwrap().success(), "{name}");
+        });
+        client.expect_an_orderly_end(name);
+    }
+}
+
+#[test]
+fn a_program_whose_time_is_over_cancels_as_well() {
+    let site = Site::new();
+    let client = believed_for(&site, &["--seconds", "6"], |run, _| {
+        assert!(run.child.wait().unwrap().success());
+    });
+    client.1.expect_an_orderly_end("--seconds");
+}
+
+#[test]
+fn a_program_that_is_gone_or_stands_still_is_no_longer_believed() {
+    let site = Site::new();
+    for name in ["KILL", "STOP"] {
+        let client = soon(&site, &[], |run, _| signal(run, name));
+        assert_eq!(client.said("drive", "cancelled"), 0, "{name}: nobody was there to say it");
+        assert_eq!(client.said("drive", "released"), 0, "{name}");
+    }
+}
+
+#[test]
+fn a_floor_that_falls_silent_cancels_what_is_held() {
+    let site = Site::new();
+    let client = soon(&site, &[], |_, boards| boards.suffer(Mishap::Silent));
+    client.expect_cancelled("silence");
+}

@@ -1,0 +1,192 @@
+//! A floor of two boards with a dead man's pedal and a slider, feet on both, and what may happen to the boards.
+
+use std::io::{BufRead, BufReader};
+use std::net::{SocketAddr, UdpSocket};
+use std::process::{Child, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU8, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::{Duration, Instant as HostInstant};
+
+use underfoot::floor::Floor;
+use underfoot::glam::Vec2;
+use underfoot::schema::save_floor;
+use underfoot::sim::{self, Foot, SimFloor};
+use underfoot::units::{Instant, Newtons};
+use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
+
+use super::client::Client;
+use crate::end_to_end::underfoot;
+use crate::sender::{simulated, small_floor};
+
+const PAGE: &str = r#"Layout(
+    version: 1,
+    regions: [(id: "left", at: (0, 0), size: (1, 2)), (id: "right", at: (1, 0), size: (2, 2))],
+    widgets: [
+        (id: "drive", kind: "dead_man", at: (0, 0), size: (0.9, 0.9)),
+        (id: "zoom", kind: "slider", at: (1.2, 0), size: (1.8, 0.9), press_n: 60, release_n: 40),
+    ],
+)"#;
+
+/// When the feet come, in milliseconds of the boards' time.
+const LANDING_MS: u32 = 600;
+
+/// Whatever port is free.
+fn any_port() -> UdpSocket {
+    UdpSocket::bind("127.0.0.1:0").unwrap()
+}
+
+pub struct Site {
+    folder: tempfile::TempDir,
+    floor: Floor,
+    sim: SimFloor,
+}
+
+impl Site {
+    pub fn new() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        let wired = small_floor();
+        let sim = simulated(&wired);
+        let floor = sim::calibrated(&wired, &sim, 7).unwrap();
+        save_floor(&floor, &folder.path().join("floor.ron")).unwrap();
+        std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
+        Self { folder, floor, sim }
+    }
+
+    /// The program, which serves this floor and tells `client`.
+    pub fn run(&self, client: &Client, more: &[&str]) -> Run {
+        let address = any_port().local_addr().unwrap();
+        let [osc, tuio] = client.addresses().map(|address| address.to_string());
+        let mut child = underfoot()
+            .current_dir(self.folder.path())
+            .args(["run", "page.ron", "--floor", "floor.ron", "--json", "--listen", &address.to_string()])
+            .args(["--osc", &osc, "--tuio", &tuio, "--device", "paced"])
+            .args(more)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut chatter = BufReader::new(child.stderr.take().unwrap()).lines().map_while(Result::ok);
+        let said: Vec<String> =
+            chatter.by_ref().take_while(|line| !line.starts_with("Listening on")).collect();
+        let reader = thread::spawn(move || said.into_iter().chain(chatter).collect());
+        Run { child, address, chatter: Some(reader) }
+    }
+}
+
+/// The program at work; it ends with the test, however that ends.
+pub struct Run {
+    pub child: Child,
+    pub address: SocketAddr,
+    chatter: Option<JoinHandle<Vec<String>>>,
+}
+
+impl Run {
+    /// What it has said on standard error, once it has ended.
+    pub fn said(&mut self) -> Vec<String> {
+        self.chatter.take().map(|reader| reader.join().unwrap()).unwrap_or_default()
+    }
+}
+
+impl Drop for Run {
+    fn drop(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
+    }
+}
+
+/// What happens to the boards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u8)]
+pub enum Mishap {
+    /// Nothing.
+    Well,
+    /// No packet comes through.
+    Silent,
+    /// The converters stand still while the packets go on.
+    Frozen,
+    /// A row reads 60,000 counts from one millisecond to the next.
+    Jumped,
+}
+
+/// The boards: real datagrams, a millisecond's every millisecond, until dropped.
+pub struct Boards {
+    mishap: Arc<AtomicU8>,
+    thread: Option<JoinHandle<()>>,
+}
+
+/// Set in place of a mishap to end it all.
+const OVER: u8 = u8::MAX;
+
+impl Boards {
+    pub fn start(site: &Site, target: SocketAddr) -> Self {
+        let mishap = Arc::new(AtomicU8::new(Mishap::Well as u8));
+        let (floor, mut sim, suffered) = (site.floor.clone(), site.sim.clone(), Arc::clone(&mishap));
+        let thread = thread::spawn(move || {
+            let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
+            let socket = any_port();
+            let begun = HostInstant::now();
+            let mut frozen: Option<Vec<Readings>> = None;
+            for sequence in 0.. {
+                let mishap = suffered.load(Ordering::Relaxed);
+                if mishap == OVER {
+                    return;
+                }
+                let mut all: Vec<Readings> = sim.step(&feet(sequence)).to_vec();
+                if mishap == Mishap::Frozen as u8 {
+                    all.clone_from(frozen.get_or_insert(all.clone()));
+                } else if mishap == Mishap::Jumped as u8
+                    && let Some(Readings::Counts(counts)) = all.first_mut()
+                {
+                    counts.fill(Some(60_000));
+                }
+                for (board, readings) in (0..).zip(all) {
+                    let packet = SensorPacket { board, sequence, received: Instant::START, readings };
+                    if mishap != Mishap::Silent as u8 {
+                        // Whoever listened may be gone.
+                        let _ = socket.send_to(encoder.encode(&packet).unwrap(), target);
+                    }
+                }
+                let due = Duration::from_millis(u64::from(sequence) + 1);
+                thread::sleep(due.saturating_sub(begun.elapsed()));
+            }
+        });
+        Self { mishap, thread: Some(thread) }
+    }
+
+    pub fn suffer(&self, mishap: Mishap) {
+        self.mishap.store(mishap as u8, Ordering::Relaxed);
+    }
+}
+
+impl Drop for Boards {
+    fn drop(&mut self) {
+        self.mishap.store(OVER, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            thread.join().unwrap();
+        }
+    }
+}
+
+/// One foot lands on the pedal, then one on the slider, which it drags to the right and stays there.
+fn feet(ms: u32) -> Vec<Foot> {
+    let on = |at: Vec2, since: u32, newtons: f32| {
+        let share = (ms.saturating_sub(since) as f32 / 100.0).min(1.0);
+        let mut foot = Foot {
+            position: Vec2::ZERO,
+            heading: 0.0,
+            length_m: 0.24,
+            force: Newtons(newtons * share),
+            roll: 0.6,
+        };
+        foot.position = at - foot.centre_of_pressure();
+        (share > 0.0).then_some(foot)
+    };
+    let dragged = (ms.saturating_sub(LANDING_MS + 900) as f32 / 500.0).min(1.0);
+    let zoom = Vec2::new(0.40 + 0.25 * dragged, 0.14);
+    [on(Vec2::new(0.14, 0.14), LANDING_MS, 150.0), on(zoom, LANDING_MS + 600, 120.0)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
