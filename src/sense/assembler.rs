@@ -17,7 +17,7 @@ use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
 use super::health::{Health, SensorHealth, Trouble};
 use super::{ForceFrame, Quality};
-use crate::floor::{Floor, SensorId};
+use crate::floor::{Floor, SensorId, TileId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, LinkState, SensorPacket};
 
@@ -62,7 +62,9 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// 20 ms on its way, is dropped and counted.
 ///
 /// **Trust.** A board without a usable sample for 100 ms becomes
-/// [`Quality::Stale`], and so does one that rebooted, for at least one frame.
+/// [`Quality::Stale`], and so does one that rebooted, for at least one frame. Counts that
+/// repeat those of the packet before, all of them and under a load, are not usable: the
+/// converters stand still ([`BoardStatus::frozen`]).
 /// It returns with its next sample, but only after a clean second if outages
 /// follow each other within two seconds. More than 10 % of lost packets within
 /// a second, or a sensor at 98 % of its range, or one that sends counts and was never
@@ -124,6 +126,8 @@ pub struct BoardStatus {
     pub age: Option<Duration>,
     /// Share of its packets lost or too late over the last second, 0 to 1.
     pub loss: f32,
+    /// Whether it is stale because all it reads has stood still for 100 ms under a load.
+    pub frozen: bool,
     /// Samples by which its crystal has run slower (positive) or faster than the common clock.
     pub slips: i64,
 }
@@ -245,6 +249,7 @@ impl Assembler {
             quality: board.quality(),
             age: board.stream.presence.used_ns().map(age),
             loss: board.stream.loss.share(),
+            frozen: board.repeats() && !board.stream.presence.is_live(),
             slips: board.stream.slips(),
         })
     }
@@ -328,8 +333,15 @@ impl Assembler {
 
     /// What came in and what was dropped; datagrams and refusals are counted by the source.
     #[must_use]
-    pub const fn counters(&self) -> LinkCounters {
-        LinkCounters { sensor_troubles: self.health.found(), ..self.counters }
+    pub fn counters(&self) -> LinkCounters {
+        LinkCounters { sensor_troubles: self.health.found(), jumps: self.jumps().0, ..self.counters }
+    }
+
+    /// How often the load of a tile changed faster than a body changes it (by 300 N in a millisecond), and the
+    /// last such tile with its change in newtons. Such a tile is [`Quality::Faulty`] for 100 ms.
+    #[must_use]
+    pub fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
+        self.health.jumps()
     }
 
     /// Moves time on and notices silence, at most once a millisecond.
@@ -342,6 +354,7 @@ impl Assembler {
         let mut gave_out = false;
         for board in &mut self.boards {
             if board.stream.presence.pass(self.now_ns) {
+                self.counters.frozen += u64::from(board.repeats());
                 board.interrupt_tare();
             }
             if board.stream.is_overdue(self.now_ns) {
@@ -428,7 +441,9 @@ impl Assembler {
             return;
         }
         board.store(waiting.buffer, &packet.readings);
-        board.stream.deliver(self.now_ns);
+        if !board.note_repeats(&packet.readings, &self.health) {
+            board.stream.deliver(self.now_ns);
+        }
         self.counters.packets += 1;
     }
 

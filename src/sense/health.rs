@@ -8,10 +8,11 @@
 //!
 //! [`plate`] knows what a rigid plate allows, [`slow`] averages each tile over
 //! 64 ms and looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
-//! lingers of a load. What must be known before a control could be pressed is decided here, in the same frame.
+//! lingers of a load, [`jump`] what no body does. What must be known before a control could be pressed is decided here, in the same frame.
 
 mod creep;
 mod drift;
+mod jump;
 mod plate;
 mod report;
 mod slow;
@@ -19,7 +20,7 @@ mod trouble;
 #[cfg(test)]
 mod walks;
 
-use crate::floor::{Corner, Floor, Geometry, SensorId};
+use crate::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use crate::sense::{ForceFrame, Quality, corners};
 use crate::units::{Instant, Newtons};
 
@@ -27,12 +28,13 @@ pub use report::SensorHealth;
 pub use trouble::Trouble;
 
 use self::creep::{Creep, Memory, Parts};
+use self::jump::Jumps;
 use self::plate::Twist;
 use self::slow::{GAP_S, SHARES, Slow};
 use self::trouble::Sensor;
 
 /// Force beside zero from which on a tile is examined in every frame: the least that counts as load.
-const LOUD_N: f32 = 6.0;
+pub(super) const LOUD_N: f32 = 6.0;
 
 /// A sensor's load that grows by more in a millisecond is not a foot's: the hardest heel strike takes five to
 /// put its weight on (our choice).
@@ -111,6 +113,7 @@ pub(super) struct Health {
     laden: usize,
     /// Whether boards make the newtons themselves: then the file says nothing of them.
     by_boards: bool,
+    jumps: Jumps,
 }
 
 /// By whose law a reading became a force.
@@ -167,6 +170,7 @@ impl Health {
             seen: vec![false; tiles],
             laden: 0,
             by_boards: false,
+            jumps: Jumps::new(tiles),
         }
     }
 
@@ -179,6 +183,7 @@ impl Health {
     /// converter.
     pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, law: Law) {
         self.ends[tile as usize][corner] = end;
+        self.jumps.note(tile as usize);
         self.guessed[tile as usize] |= law == Law::Nominal;
         self.by_boards |= law == Law::Board;
         let is_loud = force.abs() > LOUD_N || end.is_odd();
@@ -211,6 +216,7 @@ impl Health {
         self.loud = loud;
         self.watched = std::mem::replace(&mut self.spare, watched);
         self.visit_share(frame);
+        self.jumps.mark(frame, &self.sensors);
     }
 
     /// Looks at one tile; true if it must be examined again in the next frame.
@@ -353,6 +359,12 @@ impl Health {
     /// How often a sensor has fallen ill.
     pub(super) const fn found(&self) -> u64 {
         self.found
+    }
+
+    /// How often the load of a tile has jumped, and the last such tile and by how many newtons.
+    pub(super) fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
+        let (count, last) = self.jumps.found();
+        (count, last.map(|(tile, newtons)| (self.geometry.tile_at_index(tile), newtons)))
     }
 
     /// Whether most tiles read what no empty tile of the file's floor should, at the start.

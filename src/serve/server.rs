@@ -92,6 +92,10 @@ pub struct Server {
     trouble_changes: u64,
     /// Sensors without calibration, as far as that has been said.
     uncalibrated: usize,
+    /// Boards that stood still and loads that jumped, as far as that has been said.
+    frozen: u64,
+    jumps: u64,
+    next_jumps: Instant,
     /// What was last told of the sensors, and when; `None` before the first time.
     told: Option<(Instant, SensorHealth)>,
     /// How they are, for comparing.
@@ -138,6 +142,9 @@ impl Server {
             troubles: Vec::new(),
             trouble_changes: 0,
             uncalibrated: 0,
+            frozen: 0,
+            jumps: 0,
+            next_jumps: Instant::START,
             told: None,
             health: SensorHealth::default(),
             device: None,

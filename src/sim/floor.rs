@@ -345,6 +345,7 @@ impl SimFloor {
 
     fn read_boards(&mut self) {
         let noise_v = self.noise_v();
+        let converter_v = noise_v.max(LEAST_NOISE_V);
         let full_scale = Calibration::FULL_SCALE_VOLTS;
         for (channels, readings) in self.channels.iter().zip(&mut self.readings) {
             let outputs = channels
@@ -355,7 +356,7 @@ impl SimFloor {
                     read.clear();
                     read.extend(outputs.map(|sensor| {
                         sensor.map_or(Some(0), |(_, _, volts)| {
-                            Some(counts(volts + noise_v * normal(&mut self.noise)))
+                            Some(counts(volts + converter_v * normal(&mut self.noise)))
                         })
                     }));
                 }
@@ -390,6 +391,10 @@ impl Sensing {
         }
     }
 }
+
+/// Noise that a converter has even where its parts have none, in volts: half a count, which is what rounding a
+/// signal to counts comes to (our choice). Without it a floor under a constant load would read as one that is frozen.
+const LEAST_NOISE_V: f32 = 0.5 * Calibration::FULL_SCALE_VOLTS / 65_535.0;
 
 /// Force, moment and twist of a tile that carries nothing.
 const NO_LOAD: (f32, Vec2, f32) = (0.0, Vec2::ZERO, 0.0);

@@ -20,7 +20,7 @@ pub struct PartConfig {
     /// How far the parts are from any exponential law: root mean square of the force error
     /// that is left after the best fit, on average over the parts, as a share of full scale (0 to 0.08).
     pub deviation: f32,
-    /// Standard deviation of the noise, in volts.
+    /// Standard deviation of the noise, in volts; counts have half a count of it at least, as converters do.
     pub noise_v: f32,
     /// Width of the hysteresis loop: how much more a falling force reads than a rising one, as a share.
     pub hysteresis: f32,

@@ -28,6 +28,10 @@ pub struct LinkCounters {
     pub out_of_order: u64,
     /// Times a board's sequence number started anew (reboot or reconnection).
     pub restarts: u64,
+    /// Times a board's readings stood still for 100 ms, all of them and under a load, while its packets went on.
+    pub frozen: u64,
+    /// Times the load of a tile changed faster than a body changes it.
+    pub jumps: u64,
     /// Samples left out or repeated because a board's crystal runs faster or slower than the others'.
     pub slips: u64,
     /// Datagrams refused because they are not well-formed OSC, or nest or grow past the limits.
@@ -71,6 +75,8 @@ impl Add for LinkCounters {
             duplicate: self.duplicate + other.duplicate,
             out_of_order: self.out_of_order + other.out_of_order,
             restarts: self.restarts + other.restarts,
+            frozen: self.frozen + other.frozen,
+            jumps: self.jumps + other.jumps,
             slips: self.slips + other.slips,
             malformed: self.malformed + other.malformed,
             unknown_address: self.unknown_address + other.unknown_address,

@@ -17,8 +17,22 @@ const SOON: Duration = Duration::from_millis(150);
 /// is not a matter of time and counts every time.
 const TRIES: usize = 6;
 
+/// What becomes of the program.
+#[derive(Clone, Copy, PartialEq)]
+enum Then {
+    /// It ends by itself, and all was well.
+    Ends,
+    /// It would go on, or is gone already.
+    IsEnded,
+}
+
 /// Holds `drive` and drags `zoom`, then does `end`; gives how long the slower of two clients believed the holds.
-fn believed_for(site: &Site, more: &[&str], end: impl FnOnce(&mut Run, &Boards)) -> (Duration, Client) {
+fn believed_for(
+    site: &Site,
+    more: &[&str],
+    then: Then,
+    end: impl FnOnce(&Run, &Boards),
+) -> (Duration, Client) {
     let mut client = Client::new();
     let mut run = site.run(&client, more);
     let boards = Boards::start(site, run.address);
@@ -26,21 +40,24 @@ fn believed_for(site: &Site, more: &[&str], end: impl FnOnce(&mut Run, &Boards))
     client.watch_json(&mut run.child);
     client.wait_until("the reader of JSON knows", |client| client.json_holds() == ["drive", "zoom"]);
     let begun = Instant::now();
-    end(&mut run, &boards);
+    end(&run, &boards);
     client
         .wait_until("nothing is held", |client| client.holds().is_empty() && client.json_holds().is_empty());
     let took = begun.elapsed();
+    if then == Then::Ends {
+        assert!(run.child.wait().unwrap().success());
+    }
     drop(boards);
-    drop(run);
+    client.chatter = Some(run.end());
     client.hear_the_rest();
     (took, client)
 }
 
 /// As [`believed_for`], until it is soon; the last of the clients.
-fn soon(site: &Site, more: &[&str], end: impl Fn(&mut Run, &Boards)) -> Client {
+fn soon(site: &Site, more: &[&str], then: Then, end: impl Fn(&Run, &Boards)) -> Client {
     let mut times = Vec::new();
     for _ in 0..TRIES {
-        let (took, client) = believed_for(site, more, &end);
+        let (took, client) = believed_for(site, more, then, &end);
         times.push(took);
         if took <= SOON {
             println!("believed for {took:?}");
@@ -59,10 +76,7 @@ fn signal(run: &Run, name: &str) {
 fn a_program_that_is_asked_to_end_cancels_first_and_says_goodbye_last() {
     let site = Site::new();
     for name in ["TERM", "INT", "HUP"] {
-        let client = soon(&site, &[], |run, _| {
-            signal(run, name);
-            assert!(run.child.wait().unwrap().success(), "{name}");
-        });
+        let client = soon(&site, &[], Then::Ends, |run, _| signal(run, name));
         client.expect_an_orderly_end(name);
     }
 }
@@ -70,25 +84,32 @@ fn a_program_that_is_asked_to_end_cancels_first_and_says_goodbye_last() {
 #[test]
 fn a_program_whose_time_is_over_cancels_as_well() {
     let site = Site::new();
-    let client = believed_for(&site, &["--seconds", "6"], |run, _| {
-        assert!(run.child.wait().unwrap().success());
-    });
-    client.1.expect_an_orderly_end("--seconds");
+    let (_, client) = believed_for(&site, &["--seconds", "6"], Then::Ends, |_, _| {});
+    client.expect_an_orderly_end("--seconds");
 }
 
 #[test]
 fn a_program_that_is_gone_or_stands_still_is_no_longer_believed() {
     let site = Site::new();
     for name in ["KILL", "STOP"] {
-        let client = soon(&site, &[], |run, _| signal(run, name));
-        assert_eq!(client.said("drive", "cancelled"), 0, "{name}: nobody was there to say it");
-        assert_eq!(client.said("drive", "released"), 0, "{name}");
+        let client = soon(&site, &[], Then::IsEnded, |run, _| signal(run, name));
+        for what in ["cancelled", "released"] {
+            assert_eq!(client.said("drive", what), 0, "{name}: nobody was there to say it");
+        }
     }
 }
 
 #[test]
-fn a_floor_that_falls_silent_cancels_what_is_held() {
+fn boards_that_fall_silent_stand_still_or_jump_end_what_is_held() {
     let site = Site::new();
-    let client = soon(&site, &[], |_, boards| boards.suffer(Mishap::Silent));
-    client.expect_cancelled("silence");
+    for (mishap, said) in [
+        (Mishap::Silent, "nothing usable"),
+        (Mishap::Frozen, "board 0: all its readings have stood still"),
+        (Mishap::Jumped, "its load jumped by"),
+    ] {
+        let mut client = soon(&site, &[], Then::IsEnded, |_, boards| boards.suffer(mishap));
+        client.expect_cancelled(&format!("{mishap:?}"));
+        let chatter = client.chatter.take().unwrap();
+        assert!(chatter.iter().any(|line| line.contains(said)), "{mishap:?}: {chatter:?}");
+    }
 }

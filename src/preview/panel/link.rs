@@ -114,6 +114,8 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 17] {
         ("bad readings", counters.bad_readings, true),
         ("dropped by the system", counters.overflowed, true),
         ("sensors found in trouble", counters.sensor_troubles, true),
+        ("boards that stood still", counters.frozen, true),
+        ("loads that jumped", counters.jumps, true),
     ]
 }
 

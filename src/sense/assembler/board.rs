@@ -3,7 +3,7 @@
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
-use crate::sense::health::{End, Health, Law};
+use crate::sense::health::{End, Health, LOUD_N, Law};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
@@ -24,6 +24,9 @@ pub(super) struct BoardTrack {
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
     waiting: [Option<Readings>; BUFFERS],
+    /// What its last packet read, and whether that was no news under a load.
+    last: Option<Readings>,
+    repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
     sends_counts: bool,
     tare: TareState,
@@ -99,6 +102,8 @@ impl BoardTrack {
             geometry: floor.geometry,
             channels,
             waiting: Default::default(),
+            last: None,
+            repeats: false,
             sends_counts: false,
             tare,
         }
@@ -116,6 +121,34 @@ impl BoardTrack {
     pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
         self.sends_counts = matches!(readings, Readings::Counts(_));
         self.waiting[buffer] = Some(readings.clone());
+    }
+
+    /// Whether `readings` are, count for count, those of the packet before, although something rests on the
+    /// board: a converter that works is noisy, and a foot never keeps still to a count.
+    ///
+    /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
+    /// end of their range, nor of boards that send newtons, which may have smoothed them.
+    pub(super) fn note_repeats(&mut self, readings: &Readings, health: &Health) -> bool {
+        let is_same = self.last.as_ref() == Some(readings);
+        if !is_same {
+            self.last = Some(readings.clone());
+        }
+        self.repeats = is_same && !self.is_taring() && self.bears_load(readings, health);
+        self.repeats
+    }
+
+    /// Whether its last packet said nothing new under a load.
+    pub(super) const fn repeats(&self) -> bool {
+        self.repeats
+    }
+
+    fn bears_load(&self, readings: &Readings, health: &Health) -> bool {
+        let Readings::Counts(counts) = readings else { return false };
+        let channels = self.channels.iter().zip(counts);
+        channels.filter_map(|(channel, count)| channel.as_ref().zip(*count)).any(|(channel, count)| {
+            let zero = channel.tare + health.zero(channel.tile as usize, channel.corner.index());
+            channel.end(count) == End::Within && channel.calibration.force(count).0 - zero > LOUD_N
+        })
     }
 
     /// Forgets what waits in `buffer`; true if there was something.

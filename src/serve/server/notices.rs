@@ -19,11 +19,14 @@ const HEALTH_PERIOD: Duration = Duration::from_secs(1);
 impl Server {
     /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
     pub(super) fn note_link(&mut self) {
+        self.note_frozen();
         let link = self.settled_link();
         if link != self.link {
             match link {
-                LinkState::Lost => warn!("no sensor packets for 100 ms: every control is released"),
-                LinkState::Partial => warn!("some boards send nothing"),
+                LinkState::Lost => {
+                    warn!("nothing usable from any board for 100 ms: what was held is cancelled")
+                }
+                LinkState::Partial => warn!("nothing usable comes from some boards"),
                 LinkState::Live => info!("packets arrive from every board"),
                 LinkState::Waiting => {}
             }
@@ -51,6 +54,36 @@ impl Server {
             }
             self.tare = tare;
         }
+    }
+
+    /// Says which boards read the same over and over under a load.
+    fn note_frozen(&mut self) {
+        let frozen = self.assembler.counters().frozen;
+        if std::mem::replace(&mut self.frozen, frozen) == frozen {
+            return;
+        }
+        let boards = (0_u16..).map_while(|board| Some((board, self.assembler.board(board)?)));
+        for (board, _) in boards.filter(|(_, status)| status.frozen) {
+            warn!(
+                "board {board}: all its readings have stood still for 100 ms under a load, which no converter does \
+                 that works; what was held on its tiles is cancelled. Look at its converters and their clock"
+            );
+        }
+    }
+
+    /// Says where a load jumped, once a second at most.
+    pub(super) fn note_jumps(&mut self, now: Instant) {
+        let (count, last) = self.assembler.jumps();
+        let Some((tile, newtons)) = last.filter(|_| count > self.jumps && now >= self.next_jumps) else {
+            return;
+        };
+        warn!(
+            "tile {tile}: its load jumped by {newtons:.0} N within a millisecond, which no body does ({} such jumps); what \
+             was held there is cancelled. Look for a loose plug or earth",
+            count - self.jumps
+        );
+        self.jumps = count;
+        self.next_jumps = now + HEALTH_PERIOD;
     }
 
     /// Says once how many sensors go by nominal gains.
@@ -104,6 +137,7 @@ impl Server {
         }
         // Qualities come and go with single readings: what is reported is checked a few times a second.
         self.next_check = now + HEALTH_LOOK;
+        self.note_jumps(now);
         self.note_foreign();
         self.note_device(now);
         self.assembler.health(&mut self.health);

@@ -91,15 +91,24 @@ impl Bench {
 
     /// Lets time pass; `disturb` may change what channel (board, number) sends, in newtons.
     pub fn run_with(&mut self, millis: u64, mut disturb: impl FnMut(u64, (usize, usize), &mut f32)) {
+        self.run_altered(millis, |ms, board, readings| {
+            if let Readings::Newtons(forces) = readings {
+                forces
+                    .iter_mut()
+                    .enumerate()
+                    .for_each(|(at, force)| disturb(ms, (usize::from(board), at), force));
+            }
+        });
+    }
+
+    /// Lets time pass; `alter` may change what a board sends.
+    pub fn run_altered(&mut self, millis: u64, mut alter: impl FnMut(u64, u16, &mut Readings)) {
         for ms in 0..millis {
             self.now = self.now + Duration::from_millis(1);
             let sequence = (self.now.micros() / 1000) as u32;
-            for (board, readings) in self.sim.step(&self.feet).iter().enumerate() {
+            for (board, readings) in (0..).zip(self.sim.step(&self.feet)) {
                 let mut readings = readings.clone();
-                if let Readings::Newtons(forces) = &mut readings {
-                    forces.iter_mut().enumerate().for_each(|(at, force)| disturb(ms, (board, at), force));
-                }
-                let board = board as u16;
+                alter(ms, board, &mut readings);
                 self.assembler.take(&SensorPacket { board, sequence, received: self.now, readings });
             }
             while let Some(frame) = self.assembler.ready() {

@@ -14,4 +14,5 @@ mod people;
 mod scenes;
 mod suspect;
 mod taps;
+mod unreal;
 mod visits;

@@ -30,6 +30,8 @@ pub struct Client {
     lines: Option<Receiver<Value>>,
     json: Vec<Value>,
     json_held: (Vec<String>, Instant),
+    /// What the program said to people, once it has ended.
+    pub chatter: Option<Vec<String>>,
 }
 
 impl Client {
@@ -49,6 +51,7 @@ impl Client {
             lines: None,
             json: Vec::new(),
             json_held: (Vec::new(), Instant::now()),
+            chatter: None,
         }
     }
 

@@ -60,7 +60,7 @@ impl Site {
         let mut child = underfoot()
             .current_dir(self.folder.path())
             .args(["run", "page.ron", "--floor", "floor.ron", "--json", "--listen", &address.to_string()])
-            .args(["--osc", &osc, "--tuio", &tuio, "--device", "paced"])
+            .args(["--osc", &osc, "--tuio", &tuio])
             .args(more)
             .stdout(Stdio::piped())
             .stderr(Stdio::piped())
@@ -82,17 +82,24 @@ pub struct Run {
 }
 
 impl Run {
-    /// What it has said on standard error, once it has ended.
-    pub fn said(&mut self) -> Vec<String> {
+    /// Ends it if it has not ended, and gives what it has said on standard error.
+    pub fn end(mut self) -> Vec<String> {
+        self.kill();
         self.chatter.take().map(|reader| reader.join().unwrap()).unwrap_or_default()
+    }
+}
+
+impl Run {
+    fn kill(&mut self) {
+        // It may have ended by itself.
+        let _ = self.child.kill();
+        let _ = self.child.wait();
     }
 }
 
 impl Drop for Run {
     fn drop(&mut self) {
-        // It may have ended by itself.
-        let _ = self.child.kill();
-        let _ = self.child.wait();
+        self.kill();
     }
 }
 
@@ -172,7 +179,7 @@ impl Drop for Boards {
 /// One foot lands on the pedal, then one on the slider, which it drags to the right and stays there.
 fn feet(ms: u32) -> Vec<Foot> {
     let on = |at: Vec2, since: u32, newtons: f32| {
-        let share = (ms.saturating_sub(since) as f32 / 100.0).min(1.0);
+        let share = (ms.saturating_sub(since) as f32 / 60.0).min(1.0);
         let mut foot = Foot {
             position: Vec2::ZERO,
             heading: 0.0,

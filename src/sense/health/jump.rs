@@ -1,0 +1,132 @@
+//! Loads that change faster than a body changes them.
+
+use std::time::Duration;
+
+use super::trouble::Sensor;
+use crate::sense::{ForceFrame, Quality};
+use crate::units::Instant;
+
+/// How much the load of one tile changes at most within a millisecond, in newtons (our choice).
+///
+/// # Source
+/// Walking loads a foot by 7 to 20 body weights a second (Winter 1991), that is 14 N a millisecond for
+/// 70 kg; running on the heel in shoes by some 70 (Lieberman et al. 2010), 48 N a millisecond; who stamps
+/// stays below 20. Six times the hardest of these leaves room for plates that ring, and is a third of what
+/// four sensors read that go from nothing to 60,000 counts (920 N of the nominal part).
+const MOST_N: f32 = 300.0;
+
+/// How long the tile is not believed after that (our choice: ten times the settling of a converter that was
+/// cut off and is back, and as long as a board may be silent).
+const DOUBTED_FOR: Duration = Duration::from_millis(100);
+
+/// What one tile read last.
+#[derive(Clone, Copy, Debug, Default)]
+struct Last {
+    /// When; `None` before the first time.
+    at: Option<Instant>,
+    forces: [f32; 4],
+    /// Until when the tile is not believed.
+    doubted_until: Instant,
+    /// Whether it has been read for the frame in the making.
+    is_new: bool,
+}
+
+/// Watches every tile for loads that jump.
+#[derive(Clone, Debug)]
+pub(super) struct Jumps {
+    tiles: Vec<Last>,
+    count: u64,
+    /// The tile of the last jump and its height, in newtons.
+    last: Option<(usize, f32)>,
+}
+
+impl Jumps {
+    pub(super) fn new(tiles: usize) -> Self {
+        Self { tiles: vec![Last::default(); tiles], count: 0, last: None }
+    }
+
+    /// Notes that a sensor of `tile` has been read.
+    pub(super) fn note(&mut self, tile: usize) {
+        self.tiles[tile].is_new = true;
+    }
+
+    /// Takes from tiles whose load has jumped, for a while, whatever quality they had.
+    ///
+    /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
+    pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]]) {
+        let now = frame.at;
+        for (tile, (last, sensors)) in self.tiles.iter_mut().zip(sensors).enumerate() {
+            if std::mem::take(&mut last.is_new) {
+                let forces = frame.forces[tile];
+                let before = std::mem::replace(&mut last.forces, forces);
+                let elapsed = last.at.replace(now).map(|at| now.since(at));
+                let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
+                let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
+                // After silence whatever was held is cancelled anyway, and anybody may have come.
+                let spans = elapsed.filter(|elapsed| *elapsed < DOUBTED_FOR);
+                if spans.is_some_and(|elapsed| jump > MOST_N * (1e3 * elapsed.as_secs_f32()).max(1.0)) {
+                    last.doubted_until = now + DOUBTED_FOR;
+                    self.count += 1;
+                    self.last = Some((tile, jump));
+                }
+            }
+            if now < last.doubted_until {
+                frame.quality[tile] = [Quality::Faulty; 4];
+            }
+        }
+    }
+
+    /// How often a load jumped, and the last tile and height of it.
+    pub(super) const fn found(&self) -> (u64, Option<(usize, f32)>) {
+        (self.count, self.last)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::Geometry;
+
+    /// In which milliseconds a tile that carries `newtons` of each is not believed.
+    fn doubted(newtons: impl IntoIterator<Item = Option<f32>>) -> Vec<usize> {
+        let geometry = Geometry::of_paper_tiles(1, 1).unwrap();
+        let (mut jumps, mut frame) = (Jumps::new(1), ForceFrame::empty(&geometry));
+        let mut doubted = Vec::new();
+        for (ms, newtons) in newtons.into_iter().enumerate() {
+            frame.at = Instant::from_millis(ms as u64);
+            frame.quality.fill([Quality::Live; 4]);
+            if let Some(newtons) = newtons {
+                frame.forces[0] = [0.25 * newtons; 4];
+                jumps.note(0);
+            }
+            jumps.mark(&mut frame, &[[Sensor::default(); 4]]);
+            if frame.quality[0] == [Quality::Faulty; 4] {
+                doubted.push(ms);
+            }
+        }
+        doubted
+    }
+
+    #[test]
+    fn a_jump_up_or_down_is_doubt_for_a_tenth_of_a_second() {
+        let jump = |to: f32| (0..200).map(move |ms| Some(if ms < 50 { 450.0 } else { to }));
+        assert_eq!(doubted(jump(1000.0)), (50..150).collect::<Vec<_>>());
+        assert_eq!(doubted(jump(0.0)), (50..150).collect::<Vec<_>>());
+        assert_eq!(doubted(jump(700.0)), []);
+    }
+
+    #[test]
+    fn the_hardest_heel_strikes_are_believed() {
+        for newtons_per_ms in [14.0, 48.0, 200.0] {
+            let strike = (0..300).map(|ms| Some((newtons_per_ms * ms as f32).min(2500.0)));
+            assert_eq!(doubted(strike), [], "{newtons_per_ms} N a millisecond");
+        }
+    }
+
+    #[test]
+    fn what_came_during_a_gap_is_judged_by_its_length() {
+        // 50 ms of lost packets while a foot lands with 20 N a millisecond.
+        let gap = (0..200).map(|ms| (!(50..100).contains(&ms)).then_some((20.0 * ms as f32).min(1500.0)));
+        assert_eq!(doubted(gap), []);
+    }
+}
