@@ -1,6 +1,7 @@
 //! `underfoot preview`: the window, with its floor served on a thread of its own.
 
 use std::net::SocketAddr;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
@@ -142,11 +143,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
         commands: wishes,
     };
-    let shown = preview::run(input, &PreviewOptions::default());
+    // Also when the window fails, the floor ends in order first.
+    let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &PreviewOptions::default())));
     stop.store(true, Ordering::Relaxed);
     let served =
         server.join().unwrap_or_else(|_| Err(Failure::Other("sensing failed; please report it".into())));
-    match shown {
+    match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
         Ok(()) => served,
         Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
     }

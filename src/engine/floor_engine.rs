@@ -309,6 +309,7 @@ impl Engine {
             press_share: control.press_share(),
             needs_lift: control.needs_lift(),
             disabled: control.is_disabled(),
+            uncalibrated: control.is_inhibited(),
             hidden: !widget.is_on(page),
             locked: control.is_locked(),
             armed: control.is_armed(),
@@ -405,8 +406,8 @@ impl Engine {
 
 /// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
-    let ForceFrame { at, received, forces, quality, may_start } = frame;
-    (kept.at, kept.received) = (*at, *received);
+    let ForceFrame { at, received, forces, quality, may_start, calibrated } = frame;
+    (kept.at, kept.received, kept.calibrated) = (*at, *received, *calibrated);
     kept.forces.clone_from(forces);
     kept.quality.clone_from(quality);
     kept.may_start.clone_from(may_start);

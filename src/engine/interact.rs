@@ -39,6 +39,8 @@ pub(super) struct Interaction {
     rises: Rises,
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
+    /// Whether what acts while it is held is off, since the floor is not calibrated.
+    inhibited: bool,
 }
 
 /// What happens in one frame.
@@ -83,6 +85,7 @@ impl Interaction {
             feet: FootHistories::default(),
             rises: Rises::default(),
             running: false,
+            inhibited: false,
         }
     }
 
@@ -216,6 +219,7 @@ impl Interaction {
         let at = Moment { frame, contacts, layout };
         self.feet.update(contacts, &layout.stances, at.now());
         self.rises.update(contacts, at.now());
+        self.inhibit(&at, events);
         self.lose_unsensed(&at, events);
         for index in 0..self.regions.len() {
             self.step_region(index, &at, events);
@@ -396,6 +400,18 @@ impl Interaction {
             !control.is_at_rest()
         });
         self.awake = awake;
+    }
+
+    /// What acts for as long as it is held is off on a floor whose forces nobody has calibrated.
+    fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
+        let inhibited = !at.frame.calibrated;
+        if std::mem::replace(&mut self.inhibited, inhibited) == inhibited {
+            return;
+        }
+        for widget in (0..self.controls.len()).filter(|&widget| holds_to_run(at.layout, widget)) {
+            let switch = |control: &mut Control| control.set_inhibited(inhibited);
+            self.change(widget, switch, at.layout, at.now(), events);
+        }
     }
 
     /// Controls on a tile that can't be sensed are lost.

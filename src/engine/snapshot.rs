@@ -80,6 +80,8 @@ pub struct WidgetState {
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,
+    /// Whether it is off because it acts for as long as it is held, and this floor is not calibrated.
+    pub uncalibrated: bool,
     /// Whether an app has locked it.
     pub locked: bool,
     /// Whether a first press has armed it.

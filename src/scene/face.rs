@@ -48,12 +48,13 @@ impl<'a> Face<'a> {
     /// The face of `widget`; `lit` is how far it has turned from its colour at rest to its lit one, 0 to 1.
     pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
         let at_rest = widget.look.face.mix(widget.look.lit, lit);
-        let out_of_use = state.disabled || state.needs_lift;
+        let out_of_use = state.disabled || state.uncalibrated || state.needs_lift;
         let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
         let ink = readable(widget.look.ink, colour);
         // Words of what does not work just now step back, but stay legible.
         let faded = ink.mix(colour, 0.4);
-        let ink = if state.disabled && contrast(faded, colour) >= 3.0 { faded } else { ink };
+        let is_off = state.disabled || state.uncalibrated;
+        let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
         let shape = widget.look.shape;
         let radius_m = match shape {
@@ -70,7 +71,7 @@ impl<'a> Face<'a> {
 
     /// Whether it does not work just now.
     pub(super) fn is_out_of_use(&self) -> bool {
-        self.state.disabled || self.state.needs_lift
+        self.state.disabled || self.state.uncalibrated || self.state.needs_lift
     }
 
     /// The colour of what is lit on it.
@@ -88,7 +89,7 @@ impl<'a> Face<'a> {
             self.shadow(scene);
         }
         let edge = self.colour.mix(self.theme.ink, 0.28);
-        let stroke = match (self.state.needs_lift, self.state.disabled) {
+        let stroke = match (self.state.needs_lift, self.state.disabled || self.state.uncalibrated) {
             (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
             (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
             _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
@@ -217,6 +218,7 @@ impl<'a> Face<'a> {
     pub(super) fn badge(&self) -> Option<&'static str> {
         let room = self.widget.area.size();
         let text = match self.state {
+            WidgetState { uncalibrated: true, .. } => "calibrate",
             WidgetState { needs_lift: true, .. } => "lift foot",
             WidgetState { disabled: true, .. } => "disabled",
             WidgetState { locked: true, .. } => "locked",
@@ -242,7 +244,9 @@ impl<'a> Face<'a> {
         self.lamp(scene);
         let Some(text) = self.badge() else { return };
         let ground = match self.state {
-            WidgetState { needs_lift: true, .. } => self.theme.warning,
+            WidgetState { uncalibrated: true, .. } | WidgetState { needs_lift: true, .. } => {
+                self.theme.warning
+            }
             WidgetState { disabled: true, .. } | WidgetState { locked: true, .. } => self.theme.quiet,
             WidgetState { warned: true, .. } => self.theme.warning,
             _ => self.theme.accent,

@@ -489,6 +489,8 @@ impl Assembler {
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame);
+            self.frame.calibrated =
+                !self.health.is_foreign() && !self.boards.iter().any(BoardTrack::is_uncalibrated);
             self.boards.iter_mut().for_each(|board| board.stream.presence.show());
         }
         self.started

@@ -24,6 +24,10 @@ pub struct ForceFrame {
     /// the end of its range, where the force is "at least", or with one that reads a load to
     /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
     pub may_start: Vec<bool>,
+    /// Whether the newtons come of calibrations of this floor. They may be off by a third where a
+    /// sensor was never calibrated or the floor file is another floor's; what acts for as long
+    /// as it is held is off then.
+    pub calibrated: bool,
 }
 
 impl ForceFrame {
@@ -37,6 +41,7 @@ impl ForceFrame {
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
             may_start: vec![true; tiles],
+            calibrated: true,
         }
     }
 

@@ -48,7 +48,7 @@ fn readback<'a>(engine: &'a Engine, id: &'a WidgetId) -> Option<Readback<'a>> {
     Some(Readback {
         id,
         value: control.value(),
-        enabled: !control.is_disabled(),
+        enabled: !control.is_disabled() && !control.is_inhibited(),
         locked: control.is_locked(),
         pressed: control.is_engaged(),
         armed: control.is_armed(),

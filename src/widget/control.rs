@@ -31,6 +31,7 @@ pub struct Control {
     /// Time of the last step.
     now: Instant,
     disabled: bool,
+    inhibited: bool,
     locked: bool,
     indicator: Indicator,
 }
@@ -73,6 +74,7 @@ impl Control {
             size,
             now: Instant::START,
             disabled: false,
+            inhibited: false,
             locked: false,
             indicator: Indicator::Off,
         }
@@ -80,11 +82,11 @@ impl Control {
 
     /// Takes in one frame and gives back what happened; `now` must not run backwards.
     ///
-    /// A disabled control senses nothing. A locked one senses, but all that
+    /// A disabled or inhibited control senses nothing. A locked one senses, but all that
     /// comes of a press is [`EventKind::Refused`].
     pub fn step(&mut self, now: Instant, input: Input) -> Emitted {
         let last = std::mem::replace(&mut self.now, now);
-        if self.disabled {
+        if self.disabled || self.inhibited {
             return Emitted::new();
         }
         let outcome = self.press.step(now, input);
@@ -127,6 +129,20 @@ impl Control {
     #[must_use]
     pub fn is_disabled(&self) -> bool {
         self.disabled
+    }
+
+    /// Switches the control off, whatever apps want, while its floor can't be trusted with it, or lets it work again;
+    /// switching off cancels its press.
+    pub fn set_inhibited(&mut self, inhibited: bool) -> Emitted {
+        let emitted = self.cancel();
+        self.inhibited = inhibited;
+        emitted
+    }
+
+    /// Whether it is off because its floor can't be trusted with it.
+    #[must_use]
+    pub fn is_inhibited(&self) -> bool {
+        self.inhibited
     }
 
     /// Locks or unlocks the control; locking cancels its press.
@@ -209,6 +225,7 @@ impl Control {
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.disabled
+            || self.inhibited
             || (self.press.is_at_rest() && self.guard.is_at_rest() && self.state.machine().is_at_rest())
     }
 
@@ -221,7 +238,7 @@ impl Control {
     /// Force of the foot on it as a share of its press threshold; 0 with no foot on it.
     #[must_use]
     pub fn press_share(&self) -> f32 {
-        if self.disabled { 0.0 } else { self.press.share() }
+        if self.disabled || self.inhibited { 0.0 } else { self.press.share() }
     }
 }
 

@@ -29,6 +29,8 @@ pub(super) struct BoardTrack {
     repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
     sends_counts: bool,
+    /// Whether nobody has calibrated some of its sensors.
+    has_nominal: bool,
     tare: TareState,
 }
 
@@ -93,6 +95,7 @@ impl BoardTrack {
             Some(Channel::new(u32::try_from(tile).ok()?, corner, floor.law(sensor), tare))
         };
         let channels: Vec<_> = wiring.iter().map(|sensor| sensor.and_then(channel)).collect();
+        let has_nominal = channels.iter().flatten().any(|channel| channel.law == Law::Nominal);
         let tare = match tare {
             Tare::FromFloor => TareState::FromFloor,
             Tare::AtStart(rules) => TareState::Measuring(TareMeter::new(channels.len(), rules)),
@@ -105,6 +108,7 @@ impl BoardTrack {
             last: None,
             repeats: false,
             sends_counts: false,
+            has_nominal,
             tare,
         }
     }
@@ -160,6 +164,11 @@ impl BoardTrack {
     pub(super) fn uncalibrated(&self) -> usize {
         let nominal = |channel: &&Channel| channel.law == Law::Nominal;
         if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
+    }
+
+    /// Whether it sends counts of which some are taken for a nominal part's.
+    pub(super) const fn is_uncalibrated(&self) -> bool {
+        self.sends_counts && self.has_nominal
     }
 
     /// How far all of its values can be trusted.

@@ -93,7 +93,8 @@ impl Server {
             self.uncalibrated = uncalibrated;
             warn!(
                 "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
-                 a third; `underfoot calibrate curves` measures them"
+                 a third; `underfoot calibrate curves` measures them. Until then controls with the guard HoldToRun \
+                 are off"
             );
         }
     }
@@ -191,7 +192,8 @@ impl Server {
             self.said_foreign = true;
             warn!(
                 "most tiles read otherwise than the floor file says of the empty floor: is it the file of another \
-                 floor, or was it tared long ago? No force can be trusted; `underfoot calibrate tare` measures it anew"
+                 floor, or was it tared long ago? No force can be trusted, and controls with the guard HoldToRun are off; `underfoot calibrate tare` \
+                 measures it anew"
             );
         } else if counters.packets == 0 && counters.wrong_shape > 100 {
             self.said_foreign = true;

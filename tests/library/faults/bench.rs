@@ -71,6 +71,12 @@ impl Bench {
         self.run(100);
     }
 
+    /// Puts a dead man's pedal in the button's place.
+    pub fn run_pedal(&mut self) {
+        self.engine.set_layout(page(&PAGE.replace("button", "dead_man")));
+        self.run(100);
+    }
+
     pub fn now(&self) -> Instant {
         self.now
     }

@@ -86,26 +86,8 @@ impl SensorSource for Drag {
     }
 }
 
-/// Everything that was said of controls and contacts, in order, contacts by their number only.
-fn told(end: End) -> Vec<(String, Vec<OscType>)> {
-    let app = UdpSocket::bind("127.0.0.1:0").unwrap();
-    app.set_read_timeout(Some(Duration::from_millis(300))).unwrap();
-    let wired = Floor::of(underfoot::floor::Geometry::of_paper_tiles(2, 2).unwrap());
-    let sim = SimFloor::new(&wired, SimConfig::default(), 3);
-    let floor = sim::calibrated(&wired, &sim, 3).unwrap();
-    let stop = Arc::new(AtomicBool::new(false));
-    let source = Drag { sim, millis: 0, waiting: Vec::new(), end, stop: Arc::clone(&stop) };
-    let (feel, renderer) = renderer(RendererConfig::of(&floor, 8000));
-    let played = SilentSink::new(renderer, Instant::START, None);
-    let mut server = Server::new(&floor, page(PAGE), Method::default(), Box::new(source))
-        .with_feel(feel, Box::new(played))
-        .with_events(Box::new(OscSink::new(app.local_addr().unwrap()).unwrap()));
-    let served = catch_unwind(AssertUnwindSafe(move || server.run(&stop).is_ok()));
-    match end {
-        End::Stopped | End::Ended => assert!(served.unwrap()),
-        End::Failed => assert!(!served.unwrap()),
-        End::Panic => assert!(served.is_err()),
-    }
+/// Every message until nothing has come for a while.
+fn hear(app: &UdpSocket) -> Vec<(String, Vec<OscType>)> {
     let mut told = Vec::new();
     let mut bytes = [0; 2048];
     while let Ok(length) = app.recv(&mut bytes) {
@@ -117,6 +99,32 @@ fn told(end: End) -> Vec<(String, Vec<OscType>)> {
             }
         }
     }
+    told
+}
+
+/// Everything that was said of controls and contacts, in order, contacts by their number only.
+fn told(end: End) -> Vec<(String, Vec<OscType>)> {
+    let app = UdpSocket::bind("127.0.0.1:0").unwrap();
+    app.set_read_timeout(Some(Duration::from_secs(2))).unwrap();
+    let wired = Floor::of(underfoot::floor::Geometry::of_paper_tiles(2, 2).unwrap());
+    let sim = SimFloor::new(&wired, SimConfig::default(), 3);
+    let floor = sim::calibrated(&wired, &sim, 3).unwrap();
+    let target = app.local_addr().unwrap();
+    let told = std::thread::spawn(move || hear(&app));
+    let stop = Arc::new(AtomicBool::new(false));
+    let source = Drag { sim, millis: 0, waiting: Vec::new(), end, stop: Arc::clone(&stop) };
+    let (feel, renderer) = renderer(RendererConfig::of(&floor, 8000));
+    let played = SilentSink::new(renderer, Instant::START, None);
+    let mut server = Server::new(&floor, page(PAGE), Method::default(), Box::new(source))
+        .with_feel(feel, Box::new(played))
+        .with_events(Box::new(OscSink::new(target).unwrap()));
+    let served = catch_unwind(AssertUnwindSafe(move || server.run(&stop).is_ok()));
+    match end {
+        End::Stopped | End::Ended => assert!(served.unwrap()),
+        End::Failed => assert!(!served.unwrap()),
+        End::Panic => assert!(served.is_err()),
+    }
+    let mut told = told.join().unwrap();
     told.retain(|(address, _)| address.contains("/widget/") || address == "/underfoot/contacts");
     told
 }

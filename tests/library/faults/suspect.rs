@@ -44,7 +44,7 @@ fn s6_without_a_dwell_to_wait_for_it_presses_nothing_either() {
 }
 
 #[test]
-fn s9_a_floor_nobody_calibrated_starts_degraded_and_works_all_the_same() {
+fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_held() {
     let floor = Floor::of(Geometry::of_paper_tiles(2, 2).unwrap());
     assert_eq!(floor.uncalibrated().count(), 16);
     let sim = SimFloor::new(&floor, SimConfig::default(), 3);
@@ -63,11 +63,28 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_works_all_the_same() {
     bench.run(100);
     bench.lift(BUTTON);
     bench.run(100);
-    assert_eq!(bench.events.first(), Some(&EventKind::Pressed));
+    assert_eq!(bench.events.first(), Some(&EventKind::Pressed), "what does no harm works");
+    // A dead man's pedal in the same place, with the foot that would hold it there.
+    let hold = |bench: &mut Bench| {
+        bench.run_pedal();
+        bench.events.clear();
+        bench.press(BUTTON, 150.0);
+        bench.run(1000);
+    };
+    hold(&mut bench);
+    let state = bench.snapshot().widgets[0];
+    assert!(bench.events.is_empty() && state.uncalibrated && !state.pressed, "{:?}, {state:?}", bench.events);
+    bench.engine.set_enabled("it", true).unwrap();
+    bench.lift(BUTTON);
+    bench.press(BUTTON, 150.0);
+    bench.run(1000);
+    assert_eq!(bench.events, [], "no app can switch it on");
     // The same floor, calibrated.
     let measured = underfoot::sim::calibrated(&floor, &sim, 3).unwrap();
     assert_eq!(measured.uncalibrated().count(), 0);
-    let bench = Bench::with_floor(&measured, sim);
+    let mut bench = Bench::with_floor(&measured, sim);
+    hold(&mut bench);
+    assert!(bench.snapshot().widgets[0].pressed && !bench.snapshot().widgets[0].uncalibrated);
     assert_eq!(bench.assembler.uncalibrated(), 0);
     assert_eq!(bench.quality(SensorId { tile: TileId::new(1, 0), corner: Corner::SouthEast }), Quality::Live);
 }

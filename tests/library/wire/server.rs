@@ -139,7 +139,15 @@ fn silence_is_a_lost_floor_within_120_ms_and_the_return_wants_a_lift() {
     drop(server);
     let told: Vec<_> = told.iter().collect();
     let words: Vec<_> = told.iter().map(|(_, what)| what.as_str()).collect();
-    let expected = ["link Live", "home pressed", "link Lost", "home cancelled", "link Live", "home pressed"];
+    let expected = [
+        "link Live",
+        "home pressed",
+        "link Lost",
+        "home cancelled",
+        "link Live",
+        "home pressed",
+        "home cancelled",
+    ];
     assert_eq!(words, expected, "{told:?}");
     let cancelled = told.iter().find(|(_, what)| what == "home cancelled").unwrap().0;
     assert!((500..=520).contains(&cancelled), "silent from 400 ms on, released at {cancelled} ms");
