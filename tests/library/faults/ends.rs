@@ -15,7 +15,7 @@ use underfoot::serve::Server;
 use underfoot::sim::{self, SimConfig, SimFloor};
 use underfoot::sink::{OscSink, SilentSink};
 use underfoot::source::{SensorSource, SourceError};
-use underfoot::units::{Instant, Newtons};
+use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
 
 use super::bench::foot;
