@@ -55,6 +55,8 @@ enum Job {
     Alive(u32),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
+    /// Nobody is there any more, as far as anybody can tell.
+    Nobody,
 }
 
 impl OscSink {
@@ -158,11 +160,9 @@ impl EventSink for OscSink {
 impl Drop for OscSink {
     /// Says that nobody is on the floor any more, as far as this program can tell.
     fn drop(&mut self) {
+        // A job of its own: contacts that wait already would say so before what was held is cancelled.
         if self.periodic.is_somebody_there() {
-            // The worker holds the last ones for as long as it takes to copy them.
-            while !self.latest.store(Instant::START, &[], || self.worker.try_offer(Job::Contacts)) {
-                std::thread::yield_now();
-            }
+            self.worker.offer(Job::Nobody);
         }
     }
 }
@@ -211,6 +211,7 @@ impl Sender {
                 Job::Contacts => {
                     write_contacts(&prefix, &latest.fetch().1, &mut bytes, |datagram| out.send(datagram));
                 }
+                Job::Nobody => write_contacts(&prefix, &[], &mut bytes, |datagram| out.send(datagram)),
             }
         }
     }

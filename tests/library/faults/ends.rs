@@ -141,7 +141,7 @@ fn r1_every_end_of_a_server_cancels_what_is_held_then_says_so_then_goodbye() {
         let (changed, cancelled) = (place("changed").unwrap(), place("cancelled").unwrap());
         let held = place("held").unwrap();
         let goodbye = told.iter().rposition(|(address, _)| address == "/underfoot/contacts").unwrap();
-        assert!(changed < cancelled && cancelled < held && held < goodbye, "{end:?}: {told:?}");
+        assert!(changed < cancelled && cancelled < held && held < goodbye, "{end:?}: {:?}", &told[changed..]);
         assert_eq!(told[changed].1[0], OscType::Float(0.0), "{end:?}: back to where it was");
         assert_eq!(told[held].1[0], OscType::Int(0), "{end:?}");
         assert_eq!(told[goodbye].1[0], OscType::Int(0), "{end:?}");
