@@ -22,6 +22,9 @@ const SETTLE_MS: u32 = 60;
 /// How long the floor is empty between two contacts, in milliseconds.
 const PAUSE_MS: u32 = 60;
 
+/// How long a contact takes to land, in milliseconds: no load comes from one moment to the next.
+const LANDS_MS: u32 = 5;
+
 /// How far inside the plate's edges contacts are tried, in metres.
 const MARGIN_M: f32 = 0.005;
 
@@ -114,6 +117,10 @@ impl Bench {
             }
         };
         self.rig.hold(PAUSE_MS, &[], &mut sense);
+        for milli in 1..LANDS_MS {
+            let share = milli as f32 / LANDS_MS as f32;
+            self.rig.hold(1, &[Load { force: Newtons(load.force.0 * share), ..load }], &mut sense);
+        }
         self.rig.hold(SETTLE_MS, &[load], &mut sense);
         self.sensing.each_ref().map(|sensing| {
             let heaviest = sensing.contacts().iter().max_by(|a, b| a.force.0.total_cmp(&b.force.0));

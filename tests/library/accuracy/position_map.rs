@@ -49,9 +49,12 @@ impl Bench {
     fn errors(&mut self, at: Vec2, force: f32) -> ([f32; 2], bool) {
         let load = Load { print: Print::Point, position: at, heading: 0.0, force: Newtons(force) };
         for pressed in [false, true] {
-            for _ in 0..if pressed { 30 } else { 5 } {
+            // One that has gone in a moment is doubted for 100 ms.
+            for milli in 1..=if pressed { 30_u8 } else { 110 } {
                 self.millis += 1;
-                let readings = self.sim.step_under(pressed.then_some(load));
+                // No load comes from one moment to the next: it lands within 5 ms.
+                let landed = Load { force: Newtons(force * (0.2 * f32::from(milli)).min(1.0)), ..load };
+                let readings = self.sim.step_under(pressed.then_some(landed));
                 let received = Instant::from_millis(self.millis.into());
                 for (board, readings) in (0..).zip(readings) {
                     let sequence = self.millis;
