@@ -359,6 +359,8 @@ fn every_event_is_listed_and_every_listed_event_comes() {
         .entries
         .iter()
         .filter(|entry| entry.direction == Direction::Out && entry.address.contains("/widget/"))
+        // A state that is repeated, not an event.
+        .filter(|entry| !entry.address.ends_with("/held"))
         .map(|entry| (entry.address.as_str(), entry.arguments.iter().map(|argument| argument.tag).collect()))
         .collect();
     let mut received = BTreeSet::new();

@@ -191,7 +191,7 @@ fn feet(ms: u32) -> Vec<Foot> {
         (share > 0.0).then_some(foot)
     };
     let dragged = (ms.saturating_sub(LANDING_MS + 900) as f32 / 500.0).min(1.0);
-    let zoom = Vec2::new(0.40 + 0.25 * dragged, 0.14);
+    let zoom = Vec2::new(0.62 + 0.2 * dragged, 0.14);
     [on(Vec2::new(0.14, 0.14), LANDING_MS, 150.0), on(zoom, LANDING_MS + 600, 120.0)]
         .into_iter()
         .flatten()
