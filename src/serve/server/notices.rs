@@ -24,7 +24,7 @@ impl Server {
         if link != self.link {
             match link {
                 LinkState::Lost => {
-                    warn!("nothing usable from any board for 100 ms: what was held is cancelled")
+                    warn!("nothing usable from any board for 100 ms: what was held is cancelled");
                 }
                 LinkState::Partial => warn!("nothing usable comes from some boards"),
                 LinkState::Live => info!("packets arrive from every board"),
