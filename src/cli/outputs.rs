@@ -4,6 +4,7 @@ use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
 
 use underfoot::floor::Geometry;
+use underfoot::outgoing::TuioProfiles;
 use underfoot::sink::{Fanout, JsonSink, OscSink, TuioSink, TuioVersion};
 use underfoot::wire::Prefix;
 
@@ -82,7 +83,9 @@ impl OutputArgs {
 impl TuioArgs {
     /// Adds those who are told.
     pub(crate) fn open(&self, geometry: &Geometry, events: &mut Fanout) -> Result<(), Failure> {
-        for (target, version) in [(self.tuio, TuioVersion::One), (self.tuio2, TuioVersion::Two)] {
+        for (target, version) in
+            [(self.tuio, TuioVersion::One(TuioProfiles::default())), (self.tuio2, TuioVersion::Two)]
+        {
             if let Some(target) = target {
                 events.push(TuioSink::new(target, geometry, version)?);
             }

@@ -7,6 +7,7 @@ mod tuio1;
 mod tuio2;
 
 pub use held::HeldReport;
+pub use tuio1::TuioProfiles;
 
 internal! {
     use held::{write_alive, write_held};
@@ -14,7 +15,7 @@ internal! {
         Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health,
         write_mute, write_page, write_readback,
     };
-    use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM};
+    use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
     use tuio1::{Tuio1};
     use tuio2::{TUIO_FULL_FORCE_N, Tuio2};
 }

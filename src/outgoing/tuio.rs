@@ -65,6 +65,15 @@ pub(super) struct Told {
     pub(super) force_change: f32,
 }
 
+/// A contact that has to be told in this frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct News {
+    pub(super) id: ContactId,
+    pub(super) told: Told,
+    /// Whether it has never been told before.
+    is_new: bool,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Known {
     told: Told,
@@ -85,7 +94,7 @@ impl Memory {
     }
 
     /// Those of `contacts` that are new or have changed, or all of them if that is due.
-    pub(super) fn news(&mut self, at: Instant, contacts: &[&Contact]) -> Vec<(ContactId, Told)> {
+    pub(super) fn news(&mut self, at: Instant, contacts: &[&Contact]) -> Vec<News> {
         let refresh = self.refreshed.is_none_or(|last| at.since(last) >= REFRESH);
         if refresh {
             self.refreshed = Some(at);
@@ -97,7 +106,7 @@ impl Memory {
             let told = self.told(at, contact, before);
             if refresh || before.is_none_or(|before| before.told != told) {
                 self.known.insert(contact.id, Known { told, at });
-                news.push((contact.id, told));
+                news.push(News { id: contact.id, told, is_new: before.is_none() });
             }
         }
         news
@@ -150,35 +159,82 @@ pub(super) fn message(address: &str, args: Vec<OscType>) -> OscPacket {
     OscPacket::Message(OscMessage { addr: address.into(), args })
 }
 
-/// Sends one frame: `first`, as many of `news` as fit, `last`; in as many bundles as it takes, at least one.
+/// Frame numbers that a clock gives in a second: about as many datagrams as a floor sends on average at most.
+const NUMBERS_PER_SECOND: u64 = 500;
+
+/// The number of the first frame of a program that starts at `clock`, 1 to `i32::MAX`.
 ///
-/// Every bundle has the same beginning and end, so that each can be read by itself.
+/// Clients take a smaller number than the last for a late datagram, so a program that is started again has to go on
+/// beyond what it had reached. It begins anew after 49 days.
+#[must_use]
+pub fn tuio_first_frame(clock: OscTime) -> i32 {
+    let fraction = (u64::from(clock.fractional) * NUMBERS_PER_SECOND) >> 32;
+    let number = (u64::from(clock.seconds) * NUMBERS_PER_SECOND + fraction) % i32::MAX.cast_unsigned() as u64;
+    i32::try_from(number + 1).unwrap_or(1)
+}
+
+/// The frame number after `number`: never 0 nor negative.
+const fn following(number: i32) -> i32 {
+    if number < 1 || number == i32::MAX { 1 } else { number + 1 }
+}
+
+/// Sends one frame in as many bundles as it takes, at least one; `next` is the number of the next bundle.
+///
+/// `bundle` makes one of its number, the contacts that are alive, and what `set` made of news. Clients take each bundle
+/// for a frame, drop one whose number they have seen, and think up a place for contacts that are alive but were
+/// never set. Therefore each bundle has a number of its own, and a new contact is alive from the bundle on that sets it.
 pub(super) fn send_frame(
-    first: &[OscPacket],
-    news: Vec<OscPacket>,
-    last: &[OscPacket],
+    next: &mut i32,
+    contacts: &[&Contact],
+    news: &[News],
+    set: impl Fn(&News) -> OscPacket,
+    bundle: impl Fn(i32, Vec<OscType>, Vec<OscPacket>) -> Vec<OscPacket>,
     mut send: impl FnMut(&[u8]),
 ) {
     let size = |packet: &OscPacket| encoder::encode(packet).map_or(0, |bytes| bytes.len() + 4);
-    // The tag "#bundle", and the time.
-    let frame = 16 + first.iter().chain(last).map(size).sum::<usize>();
+    let everybody = contacts.iter().map(|contact| session(contact.id)).collect();
+    // The tag "#bundle", the time, and what every bundle has.
+    let frame = 16 + bundle(1, everybody, Vec::new()).iter().map(size).sum::<usize>();
+    let mut unset: Vec<ContactId> = news.iter().filter(|news| news.is_new).map(|news| news.id).collect();
     let mut bytes = Vec::new();
-    let mut bundle = |content: Vec<OscPacket>| {
-        let content = first.iter().cloned().chain(content).chain(last.iter().cloned()).collect();
+    let mut news = news.iter().map(|news| (news.id, set(news))).peekable();
+    loop {
+        let (mut sets, mut used) = (Vec::new(), frame);
+        while let Some((id, packet)) =
+            news.next_if(|(_, packet)| sets.is_empty() || used + size(packet) <= TUIO_DATAGRAM)
+        {
+            used += size(&packet);
+            unset.retain(|unset| *unset != id);
+            sets.push(packet);
+        }
+        let alive = contacts.iter().filter(|contact| !unset.contains(&contact.id));
+        let content = bundle(*next, alive.map(|contact| session(contact.id)).collect(), sets);
+        *next = following(*next);
         let timetag = OscTime { seconds: 0, fractional: 1 };
         bytes.clear();
         write(&OscPacket::Bundle(OscBundle { timetag, content }), &mut bytes);
         send(&bytes);
-    };
-    let (mut content, mut used) = (Vec::new(), frame);
-    for packet in news {
-        let more = size(&packet);
-        if used + more > TUIO_DATAGRAM && !content.is_empty() {
-            bundle(std::mem::take(&mut content));
-            used = frame;
+        if news.peek().is_none() {
+            return;
         }
-        used += more;
-        content.push(packet);
     }
-    bundle(content);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_that_starts_later_begins_with_a_larger_number() {
+        let at = |seconds, fractional| tuio_first_frame(OscTime { seconds, fractional });
+        let then = at(3_900_000_000, 0);
+        assert!(then > 0);
+        // A hundred seconds of 200 datagrams each later, and half a second.
+        assert_eq!(at(3_900_000_100, 0) - then, 50_000);
+        assert_eq!(at(3_900_000_000, 1 << 31) - then, 250);
+        for seconds in [0, 1, 4_294_967, u32::MAX] {
+            assert!(at(seconds, u32::MAX) >= 1);
+        }
+        assert_eq!([0, 1, i32::MAX, -5].map(following), [1, 2, 1, 1]);
+    }
 }

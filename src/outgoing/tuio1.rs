@@ -4,7 +4,7 @@ use std::f32::consts::FRAC_PI_4;
 
 use rosc::{OscPacket, OscType};
 
-use super::tuio::{Memory, SHOE_M, Surface, Told, heaviest, message, send_frame, session};
+use super::tuio::{Memory, News, SHOE_M, Surface, Told, heaviest, message, send_frame, session};
 use crate::floor::Geometry;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
@@ -26,15 +26,38 @@ pub struct Tuio1 {
     surface: Surface,
     memory: Memory,
     source: String,
-    frame: i32,
+    /// The number of the next bundle.
+    next: i32,
+    profiles: TuioProfiles,
+}
+
+/// Which of TUIO 1.1's profiles tell of a foot.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TuioProfiles {
+    /// `2Dcur` only: for clients that take a blob for a second touch.
+    Cursors,
+    /// `2Dblb` only.
+    Blobs,
+    /// Each foot is a cursor and a blob.
+    #[default]
+    Both,
 }
 
 impl Tuio1 {
-    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot@10.0.0.5`.
+    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot@10.0.0.5`, and
+    /// numbers its bundles from `first` on ([`super::tuio_first_frame`]).
     #[must_use]
-    pub fn new(geometry: &Geometry, source: &str) -> Self {
+    pub fn new(geometry: &Geometry, source: &str, first: i32) -> Self {
         let surface = Surface::of(geometry);
-        Self { surface, memory: Memory::of(surface), source: source.into(), frame: 0 }
+        let profiles = TuioProfiles::default();
+        Self { surface, memory: Memory::of(surface), source: source.into(), next: first, profiles }
+    }
+
+    /// The same encoder for these profiles.
+    #[must_use]
+    pub fn with_profiles(mut self, profiles: TuioProfiles) -> Self {
+        self.profiles = profiles;
+        self
     }
 
     /// Gives each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`];
@@ -42,21 +65,29 @@ impl Tuio1 {
     ///
     /// A bundle per profile holds `source`, `alive` with all contacts, `set` with those that have
     /// changed (all of them once a second) and `fseq`; a frame that is too large takes several
-    /// bundles with the same `source`, `alive` and `fseq`. Without contacts `alive` is empty:
-    /// that is also the goodbye.
+    /// bundles, each with an `fseq` of its own and an `alive` without the new contacts that are still to be set. Without
+    /// contacts `alive` is empty: that is also the goodbye.
     pub fn write(&mut self, at: Instant, contacts: &[Contact], mut send: impl FnMut(&[u8])) -> usize {
-        self.frame = if self.frame == i32::MAX { 1 } else { self.frame + 1 };
         let (contacts, left_out) = heaviest(contacts);
         let news = self.memory.news(at, &contacts);
-        for (profile, set) in [(CURSOR, cursor as fn(&Surface, ContactId, &Told) -> OscPacket), (BLOB, blob)]
-        {
+        let both: [(&str, fn(&Surface, &News) -> OscPacket); 2] = [(CURSOR, cursor), (BLOB, blob)];
+        let wanted = match self.profiles {
+            TuioProfiles::Cursors => 0..1,
+            TuioProfiles::Blobs => 1..2,
+            TuioProfiles::Both => 0..2,
+        };
+        for &(profile, set) in both.get(wanted).unwrap_or_default() {
             let word = |word: &str| OscType::String(word.into());
-            let mut alive = vec![word("alive")];
-            alive.extend(contacts.iter().map(|contact| session(contact.id)));
-            let first = [message(profile, vec![word("source"), word(&self.source)]), message(profile, alive)];
-            let sets = news.iter().map(|(id, told)| set(&self.surface, *id, told)).collect();
-            let last = [message(profile, vec![word("fseq"), OscType::Int(self.frame)])];
-            send_frame(&first, sets, &last, &mut send);
+            let bundle = |number, ids, sets| {
+                let alive = std::iter::once(word("alive")).chain::<Vec<OscType>>(ids).collect();
+                let source = message(profile, vec![word("source"), word(&self.source)]);
+                let mut content = vec![source, message(profile, alive)];
+                content.extend::<Vec<OscPacket>>(sets);
+                content.push(message(profile, vec![word("fseq"), OscType::Int(number)]));
+                content
+            };
+            let set = |news: &News| set(&self.surface, news);
+            send_frame(&mut self.next, &contacts, &news, set, bundle, &mut send);
         }
         left_out
     }
@@ -69,14 +100,14 @@ fn set(profile: &str, id: ContactId, floats: impl IntoIterator<Item = f32>) -> O
 }
 
 /// `set s x y X Y m`.
-fn cursor(_: &Surface, id: ContactId, told: &Told) -> OscPacket {
-    let Told { place, velocity, acceleration, .. } = *told;
-    set(CURSOR, id, [place.x, place.y, velocity.x, velocity.y, acceleration])
+fn cursor(_: &Surface, news: &News) -> OscPacket {
+    let Told { place, velocity, acceleration, .. } = news.told;
+    set(CURSOR, news.id, [place.x, place.y, velocity.x, velocity.y, acceleration])
 }
 
 /// `set s x y a w h f X Y A m r`.
-fn blob(surface: &Surface, id: ContactId, told: &Told) -> OscPacket {
-    let Told { place, velocity, acceleration, angle, .. } = *told;
+fn blob(surface: &Surface, news: &News) -> OscPacket {
+    let Told { place, velocity, acceleration, angle, .. } = news.told;
     let size = SHOE_M / surface.size();
     let area = FRAC_PI_4 * size.x * size.y;
     let (turning, turning_change) = (0.0, 0.0);
@@ -93,5 +124,5 @@ fn blob(surface: &Surface, id: ContactId, told: &Told) -> OscPacket {
         acceleration,
         turning_change,
     ];
-    set(BLOB, id, floats)
+    set(BLOB, news.id, floats)
 }

@@ -2,9 +2,9 @@
 
 use rosc::{OscPacket, OscTime, OscType};
 
-use super::tuio::{Memory, SHOE_M, Surface, Told, heaviest, message, send_frame, session};
+use super::tuio::{Memory, News, SHOE_M, Surface, heaviest, message, send_frame, session};
 use crate::floor::Geometry;
-use crate::sense::{Contact, ContactId};
+use crate::sense::Contact;
 use crate::units::Instant;
 
 /// Force that is told as pressure 1, in newtons: a person of 100 kg on one foot. More is told as 1.
@@ -26,13 +26,15 @@ pub struct Tuio2 {
     /// Half a shoe's width, where the floor is 1 wide.
     radius: f32,
     source: String,
-    frame: i32,
+    /// The number of the next bundle.
+    next: i32,
 }
 
 impl Tuio2 {
-    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot:0@10.0.0.5`.
+    /// An encoder for a floor of this geometry, that calls itself `source`, such as `underfoot:0@10.0.0.5`, and
+    /// numbers its bundles from `first` on ([`super::tuio_first_frame`]).
     #[must_use]
-    pub fn new(geometry: &Geometry, source: &str) -> Self {
+    pub fn new(geometry: &Geometry, source: &str, first: i32) -> Self {
         let surface = Surface::of(geometry);
         let millimetres = (surface.size() * 1000.0).round();
         // Beyond 65 m a side is told as 65 m.
@@ -42,17 +44,17 @@ impl Tuio2 {
             dimension: dimension.cast_signed(),
             radius: 0.5 * SHOE_M.y / surface.size().x,
             source: source.into(),
-            frame: 0,
+            next: first,
         }
     }
 
     /// Gives each datagram of one frame to `send`, none larger than [`super::TUIO_DATAGRAM`];
     /// gives back how many contacts had no room.
     ///
-    /// A bundle holds `/tuio2/frm` with the frame's number and `clock`, `/tuio2/ptr` for the contacts
+    /// A bundle holds `/tuio2/frm` with the bundle's number and `clock`, `/tuio2/ptr` for the contacts
     /// that have changed (all of them once a second) and `/tuio2/alv` with all contacts; a frame that
-    /// is too large takes several bundles with the same `frm` and `alv`. Without contacts `alv` is
-    /// empty: that is also the goodbye.
+    /// is too large takes several bundles, each with a number of its own and an `alv` without the new
+    /// contacts that are still to come. Without contacts `alv` is empty: that is also the goodbye.
     pub fn write(
         &mut self,
         at: Instant,
@@ -60,23 +62,29 @@ impl Tuio2 {
         contacts: &[Contact],
         send: impl FnMut(&[u8]),
     ) -> usize {
-        self.frame = if self.frame == i32::MAX { 1 } else { self.frame + 1 };
         let (contacts, left_out) = heaviest(contacts);
         let news = self.memory.news(at, &contacts);
-        let frm = vec![
-            OscType::Int(self.frame),
-            OscType::Time(clock),
-            OscType::Int(self.dimension),
-            OscType::String(self.source.clone()),
-        ];
-        let pointers = news.iter().map(|(id, told)| self.pointer(*id, told)).collect();
-        let alv = contacts.iter().map(|contact| session(contact.id)).collect();
-        send_frame(&[message("/tuio2/frm", frm)], pointers, &[message("/tuio2/alv", alv)], send);
+        let mut next = self.next;
+        let bundle = |number, alive, pointers| {
+            let frm = vec![
+                OscType::Int(number),
+                OscType::Time(clock),
+                OscType::Int(self.dimension),
+                OscType::String(self.source.clone()),
+            ];
+            let mut content = vec![message("/tuio2/frm", frm)];
+            content.extend::<Vec<OscPacket>>(pointers);
+            content.push(message("/tuio2/alv", alive));
+            content
+        };
+        send_frame(&mut next, &contacts, &news, |news| self.pointer(news), bundle, send);
+        self.next = next;
         left_out
     }
 
     /// `ptr s_id tu_id c_id x_pos y_pos angle shear radius press x_vel y_vel p_vel m_acc p_acc`.
-    fn pointer(&self, id: ContactId, told: &Told) -> OscPacket {
+    fn pointer(&self, news: &News) -> OscPacket {
+        let News { id, told, .. } = *news;
         let pressure = |force: f32| force / TUIO_FULL_FORCE_N;
         let (type_and_user, component) = (OscType::Int(0), OscType::Int(0));
         let (shear, pressure_acceleration) = (0.0, 0.0);

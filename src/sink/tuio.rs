@@ -13,7 +13,7 @@ use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, SinkError};
 use crate::floor::Geometry;
-use crate::outgoing::{Tuio1, Tuio2};
+use crate::outgoing::{Tuio1, Tuio2, TuioProfiles, tuio_first_frame};
 use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
@@ -29,7 +29,7 @@ const GOODBYES: usize = 2;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum TuioVersion {
     /// TUIO 1.1: cursors and blobs, each in bundles of its own.
-    One,
+    One(TuioProfiles),
     /// TUIO 2.0: pointers with pressure.
     Two,
 }
@@ -129,9 +129,13 @@ enum Speaker {
 
 impl Speaker {
     fn new(version: TuioVersion, geometry: &Geometry, host: &str) -> Self {
+        let first = tuio_first_frame(clock());
         match version {
-            TuioVersion::One => Self::One(Tuio1::new(geometry, &format!("underfoot@{host}"))),
-            TuioVersion::Two => Self::Two(Tuio2::new(geometry, &format!("underfoot:0@{host}"))),
+            TuioVersion::One(profiles) => {
+                let tuio = Tuio1::new(geometry, &format!("underfoot@{host}"), first);
+                Self::One(tuio.with_profiles(profiles))
+            }
+            TuioVersion::Two => Self::Two(Tuio2::new(geometry, &format!("underfoot:0@{host}"), first)),
         }
     }
 
@@ -139,12 +143,13 @@ impl Speaker {
         let send = |datagram: &[u8]| out.send(datagram);
         let left_out = match self {
             Self::One(tuio) => tuio.write(at, contacts, send),
-            Self::Two(tuio) => {
-                // Only told, never used for a decision.
-                let clock = OscTime::try_from(SystemTime::now());
-                tuio.write(at, clock.unwrap_or(OscTime { seconds: 0, fractional: 1 }), contacts, send)
-            }
+            Self::Two(tuio) => tuio.write(at, clock(), contacts, send),
         };
         out.count(left_out);
     }
+}
+
+/// The wall clock: only told, never used for a decision on the floor. "At once" if it stands before 1900.
+fn clock() -> OscTime {
+    OscTime::try_from(SystemTime::now()).unwrap_or(OscTime { seconds: 0, fractional: 1 })
 }

@@ -7,4 +7,5 @@ mod mute;
 mod osc_out;
 mod server;
 mod tuio;
+mod tuio_client;
 mod udp;

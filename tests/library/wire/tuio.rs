@@ -6,7 +6,7 @@ use std::time::Duration;
 use rosc::{OscMessage, OscPacket, OscTime, OscType};
 use underfoot::floor::{Geometry, TileId};
 use underfoot::glam::Vec2;
-use underfoot::outgoing::{TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2};
+use underfoot::outgoing::{TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2, TuioProfiles};
 use underfoot::sense::{Contact, ContactId, TileLoad};
 use underfoot::sink::{EventSink, TuioSink, TuioVersion};
 use underfoot::units::{Instant, Newtons};
@@ -46,13 +46,15 @@ fn messages(datagram: &[u8]) -> Vec<OscMessage> {
     bundle.content.into_iter().map(message).collect()
 }
 
-/// A frame of TUIO 1.1: per profile the `alive` ids, the `set` messages' floats by id, and the frame number.
+/// A frame of TUIO 1.1: per profile the last `alive` ids, the `set` messages' floats by id, and the last number.
 #[derive(Debug, Default, PartialEq)]
 struct Frame {
     alive: Vec<i32>,
     sets: Vec<(i32, Vec<f32>)>,
     fseq: i32,
     bundles: usize,
+    /// Who was alive in a bundle before being set in this frame, a number per bundle.
+    unset: Vec<i32>,
 }
 
 fn int(arg: &OscType) -> i32 {
@@ -73,17 +75,17 @@ fn read(datagram: &[u8], frames: &mut [Frame; 2]) {
     assert!(messages.iter().all(|message| message.addr == messages[0].addr));
     let alive: Vec<i32> = messages[1].args[1..].iter().map(int).collect();
     let fseq = int(&messages.last().unwrap().args[1]);
-    if frame.bundles > 0 && frame.fseq == fseq {
-        assert_eq!(alive, frame.alive, "every bundle of a frame has the same alive");
-    } else {
-        *frame = Frame { alive, fseq, ..Frame::default() };
-    }
+    assert!(fseq > frame.fseq, "every bundle has a larger number");
+    let gone = frame.alive.iter().find(|id| !alive.contains(id));
+    assert_eq!((frame.bundles > 0).then_some(gone).flatten(), None, "nobody leaves within a frame");
+    (frame.alive, frame.fseq) = (alive, fseq);
     frame.bundles += 1;
     for (message, word) in messages[2..messages.len() - 1].iter().zip(&words[2..]) {
         assert_eq!(word, "set");
         let floats = message.args[2..].iter().map(|arg| arg.clone().float().unwrap()).collect();
         frame.sets.push((int(&message.args[1]), floats));
     }
+    frame.unset.extend(frame.alive.iter().filter(|id| !frame.sets.iter().any(|(set, _)| set == *id)));
 }
 
 fn write(tuio: &mut Tuio1, ms: u64, contacts: &[Contact]) -> ([Frame; 2], usize) {
@@ -101,7 +103,7 @@ fn near(found: &[f32], expected: &[f32]) {
 
 #[test]
 fn the_origin_is_the_north_west_corner() {
-    let mut tuio = Tuio1::new(&floor(), "underfoot@host");
+    let mut tuio = Tuio1::new(&floor(), "underfoot@host", 1);
     // A quarter from the west, a third from the south; moving by half a floor east and north a second.
     let ([cursors, blobs], _) = write(&mut tuio, 0, &[foot(7, 0.456, 0.304)]);
     assert_eq!((cursors.alive.as_slice(), cursors.fseq, cursors.bundles), ([7].as_slice(), 1, 1));
@@ -126,7 +128,7 @@ fn the_origin_is_the_north_west_corner() {
 
 #[test]
 fn a_blob_points_along_the_foot_where_two_tiles_hint_at_it() {
-    let mut tuio = Tuio1::new(&floor(), "underfoot@host");
+    let mut tuio = Tuio1::new(&floor(), "underfoot@host", 1);
     let mut angle = |ms, difference| {
         let contact = Contact { difference, ..foot(1, 0.5, 0.5) };
         write(&mut tuio, ms, &[contact]).0[1].sets.first().map(|(_, floats)| floats[2].to_degrees().round())
@@ -141,12 +143,12 @@ fn a_blob_points_along_the_foot_where_two_tiles_hint_at_it() {
 
 #[test]
 fn only_what_has_changed_is_set_and_everything_once_a_second() {
-    let mut tuio = Tuio1::new(&floor(), "underfoot@host");
+    let mut tuio = Tuio1::new(&floor(), "underfoot@host", 1);
     let sets = |frame: &Frame| frame.sets.iter().map(|(id, _)| *id).collect::<Vec<_>>();
     let ([first, _], _) = write(&mut tuio, 0, &[foot(1, 0.5, 0.5), foot(2, 1.0, 0.5)]);
     assert_eq!(sets(&first), [1, 2]);
     let ([still, _], _) = write(&mut tuio, 10, &[foot(1, 0.5, 0.5), foot(2, 1.0, 0.5)]);
-    assert_eq!((sets(&still), still.alive, still.fseq), (vec![], vec![1, 2], 2));
+    assert_eq!((sets(&still), still.alive, still.fseq), (vec![], vec![1, 2], 3));
     let ([moved, _], _) = write(&mut tuio, 20, &[foot(1, 0.5, 0.5), foot(2, 1.1, 0.5)]);
     assert_eq!(sets(&moved), [2]);
     let ([gone, _], _) = write(&mut tuio, 30, &[foot(2, 1.1, 0.5), foot(3, 0.2, 0.2)]);
@@ -154,18 +156,18 @@ fn only_what_has_changed_is_set_and_everything_once_a_second() {
     let ([again, _], _) = write(&mut tuio, 1000, &[foot(2, 1.1, 0.5), foot(3, 0.2, 0.2)]);
     assert_eq!(sets(&again), [2, 3], "a second after the first frame all are told again");
     let ([empty, _], _) = write(&mut tuio, 1010, &[]);
-    assert_eq!((sets(&empty), empty.alive, empty.fseq), (vec![], vec![], 6));
+    assert_eq!((sets(&empty), empty.alive, empty.fseq), (vec![], vec![], 11));
 }
 
 #[test]
-fn a_crowd_takes_several_datagrams_of_one_frame() {
+fn a_crowd_takes_several_datagrams() {
     for crowd in [1_u32, 60, 200] {
-        let mut tuio = Tuio1::new(&floor(), "underfoot@host");
+        let mut tuio = Tuio1::new(&floor(), "underfoot@host", 1);
         let feet: Vec<Contact> = (0..crowd).map(|id| foot(id, 0.001 * id as f32, 0.5)).collect();
         let (frames, left_out) = write(&mut tuio, 0, &feet);
         for frame in frames {
             let ids: Vec<i32> = (0..crowd as i32).collect();
-            assert_eq!((left_out, frame.fseq), (0, 1));
+            assert_eq!((left_out, &frame.unset), (0, &Vec::new()), "everybody is set before being alive");
             assert_eq!(frame.alive, ids);
             assert_eq!(frame.sets.iter().map(|(id, _)| *id).collect::<Vec<_>>(), ids);
             // 1472 bytes hold some ten of them beside `alive`.
@@ -175,14 +177,14 @@ fn a_crowd_takes_several_datagrams_of_one_frame() {
     // More than fit into one `alive`: the heaviest are told, the rest counted.
     let heavier = |id: u32| Contact { force: Newtons(100.0 + id as f32), ..foot(id, 0.5, 0.5) };
     let feet: Vec<Contact> = (0..250).map(heavier).collect();
-    let ([cursors, _], left_out) = write(&mut Tuio1::new(&floor(), "underfoot@host"), 0, &feet);
+    let ([cursors, _], left_out) = write(&mut Tuio1::new(&floor(), "underfoot@host", 1), 0, &feet);
     assert_eq!(left_out, 250 - TUIO_CONTACTS);
     assert_eq!(cursors.alive.first(), Some(&50));
 }
 
 #[test]
 fn pointers_carry_force_as_pressure() {
-    let mut tuio = Tuio2::new(&floor(), "underfoot:0@host");
+    let mut tuio = Tuio2::new(&floor(), "underfoot:0@host", 1);
     let mut datagrams = Vec::new();
     let heavy = Contact { force: Newtons(1500.0), ..foot(8, 1.0, 0.5) };
     tuio.write(Instant::START, CLOCK, &[foot(7, 0.456, 0.304), heavy], |bytes| {
@@ -211,14 +213,16 @@ fn pointers_carry_force_as_pressure() {
 
     // A crowd is split like TUIO 1.1's, and all leave at once.
     let feet: Vec<Contact> = (0..100).map(|id| foot(id, 0.01 * id as f32, 0.5)).collect();
-    let mut told = 0;
-    let mut bundles = 0;
+    let (mut told, mut bundles) = (0, 0);
     tuio.write(Instant::from_millis(10), CLOCK, &feet, |bytes| {
         let bundle = messages(bytes);
         bundles += 1;
-        assert_eq!(bundle[0].args[0], OscType::Int(2));
-        assert_eq!(bundle.last().unwrap().args.len(), 100);
+        assert_eq!(bundle[0].args[0], OscType::Int(1 + bundles), "a number of its own");
         told += bundle.len() - 2;
+        // 7 and 8 were told before; the others are alive from their first pointer on.
+        let known = |id: i32| id == 7 || id == 8 || id < told as i32;
+        let alive: Vec<i32> = (0..100).filter(|id| known(*id)).collect();
+        assert_eq!(bundle.last().unwrap().args.iter().map(int).collect::<Vec<_>>(), alive);
     });
     assert!(told == 100 && bundles > 1, "{told} in {bundles}");
     tuio.write(Instant::from_millis(20), CLOCK, &[], |bytes| assert_eq!(messages(bytes)[1].args, []));
@@ -249,7 +253,11 @@ fn alive(listener: &UdpSocket) -> Vec<i32> {
 
 #[test]
 fn nobody_stays_behind_as_a_ghost() {
-    for (version, per_frame) in [(TuioVersion::One, 2), (TuioVersion::Two, 1)] {
+    for (version, per_frame) in [
+        (TuioVersion::One(TuioProfiles::Both), 2),
+        (TuioVersion::One(TuioProfiles::Cursors), 1),
+        (TuioVersion::Two, 1),
+    ] {
         let (listener, mut sink) = listen(version);
         let frame = || (0..per_frame).map(|_| alive(&listener)).collect::<Vec<_>>();
         // Also an empty floor is told of: a client that waits learns that somebody is there to speak.
