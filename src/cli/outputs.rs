@@ -13,9 +13,9 @@ use super::failure::Failure;
 /// Who is told what happens.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct OutputArgs {
-    /// Where events and contacts are sent as OSC.
-    #[arg(long, value_name = "HOST:PORT", default_value_t = OSC_TARGET, value_parser = osc_target)]
-    osc: SocketAddr,
+    /// Where events and contacts are sent as OSC; may be given several times, and be a broadcast or multicast address.
+    #[arg(long, value_name = "HOST:PORT", default_values_t = [OSC_TARGET], value_parser = osc_target)]
+    osc: Vec<SocketAddr>,
     /// Send no OSC.
     #[arg(long, conflicts_with = "osc")]
     no_osc: bool,
@@ -39,12 +39,37 @@ pub(crate) struct PrefixArg {
 /// Who is told of contacts as TUIO.
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct TuioArgs {
-    /// Send contacts as TUIO 1.1 cursors and blobs (port 3333 if none is given).
+    /// Send contacts as TUIO 1.1 (port 3333 if none is given); may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = tuio_target)]
-    tuio: Option<SocketAddr>,
-    /// Send contacts as TUIO 2.0 pointers with pressure.
+    tuio: Vec<SocketAddr>,
+    /// Send contacts as TUIO 2.0 pointers with pressure; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = tuio_target)]
-    tuio2: Option<SocketAddr>,
+    tuio2: Vec<SocketAddr>,
+    /// What a foot is in TUIO 1.1; where a client takes both for touches, `cursors`.
+    #[arg(long, value_name = "WHICH", value_enum, default_value_t, requires = "tuio")]
+    tuio_profiles: Profiles,
+}
+
+/// Which profiles of TUIO 1.1 tell of a foot.
+#[derive(clap::ValueEnum, Clone, Copy, Debug, Default)]
+enum Profiles {
+    /// `2Dcur`.
+    Cursors,
+    /// `2Dblb`.
+    Blobs,
+    /// Both: each foot is a cursor and a blob.
+    #[default]
+    Both,
+}
+
+impl From<Profiles> for TuioProfiles {
+    fn from(profiles: Profiles) -> Self {
+        match profiles {
+            Profiles::Cursors => Self::Cursors,
+            Profiles::Blobs => Self::Blobs,
+            Profiles::Both => Self::Both,
+        }
+    }
 }
 
 /// Where an app on the same machine listens.
@@ -56,7 +81,7 @@ const TUIO_PORT: u16 = 3333;
 impl Default for OutputArgs {
     fn default() -> Self {
         Self {
-            osc: OSC_TARGET,
+            osc: vec![OSC_TARGET],
             no_osc: false,
             prefix: PrefixArg::default(),
             tuio: TuioArgs::default(),
@@ -70,7 +95,9 @@ impl OutputArgs {
     pub(crate) fn open(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
         let mut events = Fanout::new();
         if !self.no_osc {
-            events.push(OscSink::under(self.osc, self.prefix.osc_prefix.clone())?);
+            for &target in &self.osc {
+                events.push(OscSink::under(target, self.prefix.osc_prefix.clone())?);
+            }
         }
         self.tuio.open(geometry, &mut events)?;
         if self.json {
@@ -83,10 +110,9 @@ impl OutputArgs {
 impl TuioArgs {
     /// Adds those who are told.
     pub(crate) fn open(&self, geometry: &Geometry, events: &mut Fanout) -> Result<(), Failure> {
-        for (target, version) in
-            [(self.tuio, TuioVersion::One(TuioProfiles::default())), (self.tuio2, TuioVersion::Two)]
-        {
-            if let Some(target) = target {
+        let one = TuioVersion::One(self.tuio_profiles.into());
+        for (targets, version) in [(&self.tuio, one), (&self.tuio2, TuioVersion::Two)] {
+            for &target in targets {
                 events.push(TuioSink::new(target, geometry, version)?);
             }
         }

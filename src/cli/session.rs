@@ -38,9 +38,9 @@ pub(crate) struct Args {
     tuio: TuioArgs,
     #[command(flatten)]
     prefix: PrefixArg,
-    /// Send events and contacts as OSC as well.
+    /// Send events and contacts as OSC as well; may be given several times.
     #[arg(long, value_name = "HOST:PORT", value_parser = osc_target)]
-    osc: Option<SocketAddr>,
+    osc: Vec<SocketAddr>,
     /// Scenario file; without it, the built-in session.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
@@ -70,7 +70,7 @@ impl Default for Args {
             sim: SimArgs::default(),
             tuio: TuioArgs::default(),
             prefix: PrefixArg::default(),
-            osc: None,
+            osc: Vec::new(),
             scenario: None,
             calibrate: false,
             out: DEFAULT_OUT.into(),
@@ -104,7 +104,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let wav = WavSink::create(&sound, renderer, options)?;
     let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
     let mut told = Fanout::new().with(JsonSink::new(events)?);
-    if let Some(osc) = args.osc {
+    for &osc in &args.osc {
         told.push(OscSink::under(osc, args.prefix.osc_prefix.clone())?);
     }
     args.tuio.open(&geometry, &mut told)?;

@@ -5,6 +5,7 @@
 //! a disk or another program. [`take_tare`] and [`ForceWatch`] are for the
 //! people who set a floor up.
 
+mod changes;
 #[cfg(any(feature = "internals", test))]
 mod measure;
 #[cfg(any(feature = "internals", test))]

@@ -14,6 +14,7 @@ use tracing::warn;
 use triple_buffer::Input;
 
 use self::heartbeat::Heartbeat;
+use super::changes::ChangeLimiter;
 use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
@@ -81,6 +82,7 @@ pub struct Server {
     trial: Option<Trial>,
     actuators: Option<Box<dyn ActuatorSink>>,
     events: Option<Box<dyn EventSink>>,
+    changes: ChangeLimiter,
     snapshots: Option<Input<Snapshot>>,
     commands: Option<Receiver<Command>>,
     link: LinkState,
@@ -134,6 +136,7 @@ impl Server {
             trial: None,
             actuators: None,
             events: None,
+            changes: ChangeLimiter::default(),
             snapshots: None,
             commands: None,
             link: LinkState::Waiting,
@@ -290,6 +293,7 @@ impl Server {
         self.note_link();
         while self.step() {}
         self.beat();
+        self.poll();
         self.note_troubles();
         self.note_health();
         Ok(Ended::No)
@@ -323,7 +327,7 @@ impl Server {
             }
         }
         if let Some(events) = &mut self.events {
-            events.events(step.events);
+            events.events(self.changes.thin(step.events, at));
             if let Some(page) = step.page {
                 events.page(page);
             }
@@ -335,6 +339,18 @@ impl Server {
         self.play_until(at + FRAME);
         self.show(at);
         true
+    }
+
+    /// Tells what had to wait, also while no frames come.
+    fn poll(&mut self) {
+        let now = self.source.now();
+        if let Some(events) = &mut self.events {
+            // Otherwise frames give the time, so that the same frames tell the same.
+            if self.link == LinkState::Lost {
+                events.events(self.changes.thin(&[], now));
+            }
+            events.poll(now);
+        }
     }
 
     fn play_until(&mut self, now: Instant) {

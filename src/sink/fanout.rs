@@ -82,6 +82,10 @@ impl EventSink for Fanout {
         self.sinks.iter_mut().for_each(|sink| sink.muted(at, muted));
     }
 
+    fn poll(&mut self, now: Instant) {
+        self.sinks.iter_mut().for_each(|sink| sink.poll(now));
+    }
+
     fn dropped(&self) -> u64 {
         self.sinks.iter().map(|sink| sink.dropped()).sum()
     }

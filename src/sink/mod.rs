@@ -1,5 +1,6 @@
 //! Where samples and events go: sound cards, files, other programs.
 
+mod backlog;
 mod channel_map;
 mod crack_rate;
 #[cfg(feature = "audio")]
@@ -97,6 +98,9 @@ pub trait EventSink: Send {
 
     /// Takes news of what is muted; called when that changes.
     fn muted(&mut self, _at: Instant, _muted: &Muted) {}
+
+    /// Called every few milliseconds, also while no frames come: for what is told again and again, or had to wait.
+    fn poll(&mut self, _now: Instant) {}
 
     /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {

@@ -26,8 +26,8 @@ use crate::wire::{LinkState, Prefix};
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
 /// Events go out at once, in order. Contacts go out 100 times a second while
-/// there are any, always the latest, and once more when there are none. What is
-/// held is repeated 50 times a second, and a sign of life ten times. The
+/// there are any, always the latest, and once a second while there are none, also while no
+/// frames come. What is held is repeated 50 times a second, and a sign of life ten times. The
 /// messages are those of [`write_event`], [`write_contacts`], [`write_held`],
 /// [`write_alive`], [`write_crack`], [`write_page`], [`write_health`],
 /// [`write_device`] and [`write_mute`].
@@ -90,11 +90,21 @@ impl OscSink {
             worker,
             latest,
             undelivered,
-            periodic: PeriodicSender::new(None),
+            periodic: PeriodicSender::default(),
             cracks: CrackRateLimiter::default(),
             link,
             health,
         })
+    }
+}
+
+impl OscSink {
+    /// Nobody is on the floor, as far as this program can tell.
+    fn say_nobody_is_there(&mut self, now: Instant) {
+        // While the worker copies the last ones, the next poll tries again.
+        if self.latest.store(now, &[], || self.worker.try_offer(Job::Contacts)) {
+            self.periodic.reported(now, &[]);
+        }
     }
 }
 
@@ -124,9 +134,19 @@ impl EventSink for OscSink {
         }
     }
 
-    fn link(&mut self, _at: Instant, state: LinkState) {
+    fn link(&mut self, at: Instant, state: LinkState) {
         self.link = state;
         self.worker.offer(Job::Health(state, self.health.clone()));
+        if state == LinkState::Lost {
+            self.say_nobody_is_there(at);
+        }
+    }
+
+    fn poll(&mut self, now: Instant) {
+        let no_frames = matches!(self.link, LinkState::Lost | LinkState::Waiting);
+        if no_frames && self.periodic.is_silence_due(now) {
+            self.say_nobody_is_there(now);
+        }
     }
 
     fn health(&mut self, _at: Instant, health: &SensorHealth) {

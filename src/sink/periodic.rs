@@ -10,11 +10,12 @@ use crate::units::Instant;
 /// Time between two reports of the contacts: the paper's 100 Hz.
 const PERIOD: Duration = Duration::from_millis(10);
 
+/// How often an empty floor is told of: clients that came late learn that it is there.
+pub(super) const IDLE: Duration = Duration::from_secs(1);
+
 /// When contacts are to be reported.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(super) struct PeriodicSender {
-    /// How often it is said that nobody is there; `None` for once.
-    idle: Option<Duration>,
     /// When the next report is due; `None` while nobody is on the floor.
     due: Option<Instant>,
     /// When it was last said that nobody is there.
@@ -22,19 +23,18 @@ pub(super) struct PeriodicSender {
 }
 
 impl PeriodicSender {
-    /// A sender that says once, or every `idle`, that nobody is on the floor.
-    pub(super) const fn new(idle: Option<Duration>) -> Self {
-        Self { idle, due: None, told_empty: None }
-    }
-
     /// Whether `contacts` are to be reported now.
     pub(super) fn is_due(&self, at: Instant, contacts: &[Contact]) -> bool {
-        match (self.due, contacts.is_empty(), self.idle) {
-            (Some(due), _, _) => at >= due,
-            (None, false, _) => true,
-            (None, true, None) => false,
-            (None, true, Some(idle)) => self.told_empty.is_none_or(|told| at.since(told) >= idle),
+        match (self.due, contacts.is_empty()) {
+            (Some(due), _) => at >= due,
+            (None, false) => true,
+            (None, true) => self.told_empty.is_none_or(|told| at.since(told) >= IDLE),
         }
+    }
+
+    /// Whether it is time to say again that nobody is there, where no frames say it.
+    pub(super) fn is_silence_due(&self, now: Instant) -> bool {
+        self.due.is_some() || self.told_empty.is_none_or(|told| now.since(told) >= IDLE)
     }
 
     /// Notes that `contacts` have been reported.
@@ -93,8 +93,8 @@ mod tests {
     use super::*;
 
     /// The milliseconds at which a report is made while somebody is there from 5 to 35 ms.
-    fn reports(idle: Option<Duration>, until: u64) -> Vec<u64> {
-        let mut periodic = PeriodicSender::new(idle);
+    fn reports(until: u64) -> Vec<u64> {
+        let mut periodic = PeriodicSender::default();
         let mut reports = Vec::new();
         for ms in 0..until {
             let here = if (5..35).contains(&ms) { vec![Contact::default()] } else { vec![] };
@@ -108,8 +108,7 @@ mod tests {
     }
 
     #[test]
-    fn the_rate_is_100_hz_and_ends_once_or_goes_on_slowly() {
-        assert_eq!(reports(None, 1000), [5, 15, 25, 35]);
-        assert_eq!(reports(Some(Duration::from_millis(300)), 1000), [0, 5, 15, 25, 35, 335, 635, 935]);
+    fn the_rate_is_100_hz_and_once_a_second_while_nobody_is_there() {
+        assert_eq!(reports(3100), [0, 5, 15, 25, 35, 1035, 2035, 3035]);
     }
 }

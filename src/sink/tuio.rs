@@ -4,7 +4,7 @@ use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
-use std::time::{Duration, SystemTime};
+use std::time::SystemTime;
 
 use rosc::OscTime;
 
@@ -18,9 +18,6 @@ use crate::sense::Contact;
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::wire::LinkState;
-
-/// How often an empty floor is told of: clients that came late learn that it is there.
-const IDLE: Duration = Duration::from_secs(1);
 
 /// How often a goodbye is sent: one datagram may be lost.
 const GOODBYES: usize = 2;
@@ -46,6 +43,8 @@ pub struct TuioSink {
     latest: Arc<Latest>,
     undelivered: Arc<AtomicU64>,
     periodic: PeriodicSender,
+    /// Whether no frames come: nobody else says then that nobody is there.
+    lost: bool,
 }
 
 #[derive(Debug)]
@@ -74,7 +73,7 @@ impl TuioSink {
             message: format!("cannot send TUIO to {target}: {source}"),
             source,
         })?;
-        Ok(Self { worker, latest, undelivered, periodic: PeriodicSender::new(Some(IDLE)) })
+        Ok(Self { worker, latest, undelivered, periodic: PeriodicSender::default(), lost: true })
     }
 }
 
@@ -89,9 +88,17 @@ impl EventSink for TuioSink {
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {
+        self.lost = matches!(state, LinkState::Lost | LinkState::Waiting);
         if state == LinkState::Lost {
             self.worker.offer(Job::Lost(at));
             self.periodic.reported(at, &[]);
+        }
+    }
+
+    fn poll(&mut self, now: Instant) {
+        if self.lost && self.periodic.is_silence_due(now) {
+            self.worker.offer(Job::Lost(now));
+            self.periodic.reported(now, &[]);
         }
     }
 

@@ -3,7 +3,7 @@
 use std::io;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, SyncSender, channel, sync_channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
@@ -46,6 +46,18 @@ impl<T: Send + 'static> Worker<T> {
             self.dropped.fetch_add(1, Ordering::Relaxed);
         }
         taken
+    }
+
+    /// Gives the thread a job; gives it back if too many wait. A thread that has ended takes no more: that is counted.
+    pub(super) fn hand(&self, job: T) -> Option<T> {
+        match self.jobs.as_ref()?.try_send(job) {
+            Ok(()) => None,
+            Err(TrySendError::Full(job)) => Some(job),
+            Err(TrySendError::Disconnected(_)) => {
+                self.dropped.fetch_add(1, Ordering::Relaxed);
+                None
+            }
+        }
     }
 
     /// Gives the thread a job that does not matter if it does not fit.

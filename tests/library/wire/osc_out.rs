@@ -79,12 +79,16 @@ fn events_arrive_in_order_up_to_the_last() {
 #[test]
 fn contacts_arrive_at_100_hz_and_end_with_none() {
     let (listener, mut sink) = listen();
+    let nobody = [("/underfoot/contacts".to_owned(), Some(OscType::Int(0)))];
     // Nobody, then a foot for 100 ms from 5 ms on, then nobody.
     let mut reports = 0;
     for ms in 0..300 {
         let here = (5..105).contains(&ms);
         let contacts = if here { vec![foot(ms as f32)] } else { vec![] };
         sink.contacts(Instant::from_millis(ms), &contacts);
+        if ms == 0 {
+            assert_eq!(hear(&listener), nobody, "who waits learns that the floor is there");
+        }
         // The report falls due at 5, 15, ... 105: the first at once, the last with nobody.
         if (5..=105).contains(&ms) && ms % 10 == 5 {
             reports += 1;
@@ -97,6 +101,37 @@ fn contacts_arrive_at_100_hz_and_end_with_none() {
     listener.set_nonblocking(true).unwrap();
     assert!(listener.recv(&mut [0; 16]).is_err(), "quiet while nobody is there");
     assert_eq!(sink.dropped(), 0);
+}
+
+#[test]
+fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
+    let (listener, mut sink) = listen();
+    let nobody = [("/underfoot/contacts".to_owned(), Some(OscType::Int(0)))];
+    let health = |state: &str| [("/underfoot/health".to_owned(), Some(OscType::String(state.into())))];
+    sink.link(Instant::START, LinkState::Live);
+    assert_eq!(hear(&listener), health("live"));
+    for ms in 0..2500 {
+        let now = Instant::from_millis(ms);
+        sink.contacts(now, &[]);
+        sink.poll(now);
+        if ms % 1000 == 0 {
+            assert_eq!(hear(&listener), nobody);
+        }
+    }
+    sink.contacts(Instant::from_millis(2500), &[foot(0.5)]);
+    assert_eq!(hear(&listener).len(), 2);
+    sink.link(Instant::from_millis(2600), LinkState::Lost);
+    assert_eq!(hear(&listener), health("lost"));
+    assert_eq!(hear(&listener), nobody, "at once");
+    // No frames come: only the clock goes on.
+    for ms in 2601..4700 {
+        sink.poll(Instant::from_millis(ms));
+        if ms == 3600 || ms == 4600 {
+            assert_eq!(hear(&listener), nobody);
+        }
+    }
+    listener.set_nonblocking(true).unwrap();
+    assert!(listener.recv(&mut [0; 16]).is_err(), "not more often");
 }
 
 #[test]

@@ -1,0 +1,195 @@
+//! What stands in a line of JSON.
+
+use serde::Serialize;
+
+use super::Job;
+use crate::feel::{DeviceStatus, Muted};
+use crate::floor::SensorId;
+use crate::sense::{ContactId, SensorHealth, Trouble};
+use crate::outgoing::HeldReport;
+use crate::sink::backlog::Gap;
+use crate::sink::crack_rate::CrackNews;
+use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+
+#[derive(Serialize)]
+pub(super) struct Line<'a> {
+    t_s: f64,
+    #[serde(flatten)]
+    body: Body<'a>,
+}
+
+#[derive(Serialize)]
+#[serde(tag = "event", rename_all = "lowercase")]
+enum Body<'a> {
+    Page {
+        page: &'a str,
+    },
+    Crack {
+        seed: u32,
+        energy_j: f32,
+        x_m: f32,
+        y_m: f32,
+        skipped: u32,
+    },
+    Link {
+        state: &'static str,
+    },
+    Mute {
+        all: bool,
+        tiles: Vec<[u16; 2]>,
+    },
+    Health {
+        live: u32,
+        degraded: u32,
+        stale: u32,
+        faulty: u32,
+        uncalibrated: u32,
+        foreign: bool,
+        troubles: Vec<TroubleEntry>,
+    },
+    Device {
+        device: &'a str,
+        state: &'static str,
+        why: &'a str,
+        channels: u16,
+        sample_rate: u32,
+        block: u32,
+        underruns: u64,
+        reopened: u64,
+        priority: &'static str,
+    },
+    Gap {
+        dropped: u64,
+    },
+    /// A state, not an event.
+    #[serde(untagged)]
+    Held {
+        held: Vec<&'a str>,
+        sequence: u32,
+    },
+    /// Its name is that of what happened.
+    #[serde(untagged)]
+    Control {
+        event: &'static str,
+        id: &'a str,
+        value: Option<JsonValue>,
+        force_n: f32,
+        x_m: f32,
+        y_m: f32,
+        contact: Option<ContactId>,
+    },
+}
+
+#[derive(Serialize)]
+struct TroubleEntry {
+    col: u16,
+    row: u16,
+    corner: &'static str,
+    trouble: Trouble,
+}
+
+impl<'a> Line<'a> {
+    pub(super) fn of(job: &'a Job) -> Self {
+        let (at, body) = match job {
+            Job::Event(event) => (event.at, Body::control(event)),
+            Job::Page(shown) => (shown.at, Body::Page { page: shown.page.as_str() }),
+            Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
+                let (seed, energy_j, x_m, y_m) = (*seed, *energy_j, *x_m, *y_m);
+                (*at, Body::Crack { seed, energy_j, x_m, y_m, skipped: *skipped })
+            }
+            Job::Link(at, state) => (*at, Body::Link { state: state.name() }),
+            Job::Health(at, health) => (*at, Body::health(health)),
+            Job::Device(at, status) => (*at, Body::device(status)),
+            Job::Muted(at, Muted { all, tiles }) => {
+                let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
+                (*at, Body::Mute { all: *all, tiles })
+            }
+            Job::Held(HeldReport { at, held, sequence, .. }) => {
+                let held = held.iter().map(WidgetId::as_str).collect();
+                (*at, Body::Held { held, sequence: *sequence })
+            }
+            Job::Gap(Gap { at, dropped }) => (*at, Body::Gap { dropped: *dropped }),
+        };
+        // Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
+        Self { t_s: at.micros() as f64 / 1e6, body }
+    }
+}
+
+impl<'a> Body<'a> {
+    fn health(health: &SensorHealth) -> Self {
+        let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
+            *health;
+        let entry = |&(SensorId { tile, corner }, trouble): &(SensorId, Trouble)| TroubleEntry {
+            col: tile.column,
+            row: tile.row,
+            corner: corner.name(),
+            trouble,
+        };
+        let troubles = troubles.iter().map(entry).collect();
+        Self::Health { live, degraded, stale, faulty, uncalibrated, foreign, troubles }
+    }
+
+    fn device(status: &'a DeviceStatus) -> Self {
+        Self::Device {
+            device: &status.name,
+            state: status.state.name(),
+            why: &status.why,
+            channels: status.channels,
+            sample_rate: status.sample_rate,
+            block: status.block,
+            underruns: status.underruns,
+            reopened: status.reopened,
+            priority: status.priority.name(),
+        }
+    }
+
+    fn control(event: &'a WidgetEvent) -> Self {
+        let value = match event.kind {
+            EventKind::Changed(value) => Some(value.into()),
+            EventKind::Swiped(direction) => Some(JsonValue::Word(direction.name())),
+            EventKind::Pressed
+            | EventKind::Released
+            | EventKind::Clicked
+            | EventKind::DoubleTapped
+            | EventKind::LongPressed
+            | EventKind::HardPressed
+            | EventKind::HardReleased
+            | EventKind::Cancelled
+            | EventKind::Ticked
+            | EventKind::Armed
+            | EventKind::Disarmed
+            | EventKind::Warned
+            | EventKind::Refused => None,
+        };
+        Self::Control {
+            event: event.kind.name(),
+            id: event.id.as_str(),
+            value,
+            force_n: event.force.0,
+            x_m: event.position.x,
+            y_m: event.position.y,
+            contact: event.contact,
+        }
+    }
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum JsonValue {
+    Switch(bool),
+    Number(f32),
+    Choice(u16),
+    Pair([f32; 2]),
+    Word(&'static str),
+}
+
+impl From<Value> for JsonValue {
+    fn from(value: Value) -> Self {
+        match value {
+            Value::Switch(on) => Self::Switch(on),
+            Value::Number(number) => Self::Number(number),
+            Value::Choice(choice) => Self::Choice(choice),
+            Value::Pair(pair) => Self::Pair(pair.into()),
+        }
+    }
+}
