@@ -213,6 +213,7 @@ fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: 
         ArgumentKind::Label => vec![argument("label", "s", "64 characters at most")],
         ArgumentKind::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
         ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],
+        ArgumentKind::Switch => vec![argument("on", "i|f|T|F", "0 or 1; 1 if left out")],
         ArgumentKind::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
         ArgumentKind::TileFlag => vec![
             argument("column", "i", &format!("0 to {}", geometry.columns().saturating_sub(1))),

@@ -3,7 +3,7 @@
 use crate::engine::Engine;
 use crate::outgoing::{Readback, write_page, write_readback};
 use crate::widget::{SetError, Value, WidgetId};
-use crate::wire::{ControlMessage, Prefix};
+use crate::wire::{ControlMessage, Prefix, is_pattern, matches};
 
 /// Does what `message` asks of `engine`; true if `answer` now holds what the asker is to be told.
 ///
@@ -40,6 +40,15 @@ pub(super) fn answer(
         ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } | ControlMessage::GetMute => {}
     }
     Ok(false)
+}
+
+/// The controls that `id` means as a pattern; none if it is none, or the name of a control.
+pub(super) fn meant(engine: &Engine, id: &WidgetId) -> Vec<WidgetId> {
+    if !is_pattern(id.as_str()) || engine.control(id.as_str()).is_some() {
+        return Vec::new();
+    }
+    let ids = engine.layout().widgets.iter().map(|widget| &widget.id);
+    ids.filter(|other| matches(id.as_str(), other.as_str())).cloned().collect()
 }
 
 fn readback<'a>(engine: &'a Engine, id: &'a WidgetId) -> Option<Readback<'a>> {

@@ -377,16 +377,30 @@ impl Server {
 
     fn process_commands(&mut self) {
         while let Some(request) = self.source.take_request() {
-            self.handle_request(&request);
+            self.process_request(request);
         }
         while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
             match command {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
-                Command::Control(message) => self.handle_request(&message.into()),
+                Command::Control(message) => self.process_request(message.into()),
                 Command::Audition { effect, gesture, tile } => {
                     self.trial = Some(Trial::new(effect, *gesture, tile));
                 }
             }
+        }
+    }
+
+    /// Does what an app asks of one control, or of all that a pattern means.
+    fn process_request(&mut self, mut request: Request) {
+        let meant = request.message.id_mut().map(|id| request::meant(&self.engine, id)).unwrap_or_default();
+        if meant.is_empty() {
+            return self.handle_request(&request);
+        }
+        for id in meant {
+            if let Some(place) = request.message.id_mut() {
+                *place = id;
+            }
+            self.handle_request(&request);
         }
     }
 

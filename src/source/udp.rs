@@ -3,22 +3,25 @@
 mod log;
 mod proc_net;
 mod stamped;
+mod timed;
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::sync::Arc;
-use std::time::{Duration, Instant as HostInstant};
+use std::time::{Duration, Instant as HostInstant, SystemTime};
 
+use rosc::OscTime;
 use socket2::{Domain, Protocol, Socket, Type};
 
 use self::log::RefusalLog;
 use self::stamped::{Received, Stamped};
+use self::timed::{Timed, delay};
 use super::{SensorSource, SourceError};
 use crate::floor::Floor;
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket};
+use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, WireError};
 
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
 const BUFFER_BYTES: usize = 8 << 20;
@@ -51,6 +54,8 @@ pub struct UdpSource {
     batch: Batch,
     packets: VecDeque<SensorPacket>,
     requests: VecDeque<Request>,
+    /// Requests whose time tag has not come.
+    timed: Timed,
     answer: Vec<u8>,
     allowed: Vec<IpAddr>,
     counters: LinkCounters,
@@ -91,6 +96,7 @@ impl UdpSource {
             batch: Batch::default(),
             packets: VecDeque::new(),
             requests: VecDeque::new(),
+            timed: Timed::default(),
             answer: Vec::new(),
             allowed: Vec::new(),
             counters: LinkCounters::default(),
@@ -153,13 +159,20 @@ impl UdpSource {
             self.log.foreign(now, sender);
             return Ok(true);
         }
-        match self.decoder.decode(&self.buffer[..length], self.received, &mut self.batch) {
-            Ok(()) => {
+        let decoded = self.decoder.decode(&self.buffer[..length], self.received, &mut self.batch);
+        match decoded.and_then(|()| self.wait()) {
+            Ok(wait) => {
                 self.packets.extend(self.batch.packets.drain(..));
-                let room = MAX_CONTROLS.saturating_sub(self.requests.len());
+                let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
                 self.counters.overflowed += self.batch.controls.len().saturating_sub(room) as u64;
-                let from = |message| Request { message, sender: Some(sender) };
-                self.requests.extend(self.batch.controls.drain(..).take(room).map(from));
+                for message in self.batch.controls.drain(..).take(room) {
+                    let request = Request { message, sender: Some(sender) };
+                    if wait.is_zero() {
+                        self.requests.push_back(request);
+                    } else {
+                        self.timed.push(now + wait, request);
+                    }
+                }
             }
             Err(error) => {
                 error.count(&mut self.counters);
@@ -173,6 +186,13 @@ impl UdpSource {
             }
         }
         Ok(true)
+    }
+
+    /// How long the requests of the batch are to wait.
+    fn wait(&self) -> Result<Duration, WireError> {
+        let Some(due) = self.batch.due else { return Ok(Duration::ZERO) };
+        // Without a wall clock nothing can be waited for.
+        OscTime::try_from(SystemTime::now()).map_or(Ok(Duration::ZERO), |clock| delay(due, clock))
     }
 
     /// Sets how long the socket waits; zero means not at all. A system call only if it changes.
@@ -230,7 +250,7 @@ impl SensorSource for UdpSource {
     }
 
     fn take_request(&mut self) -> Option<Request> {
-        self.requests.pop_front()
+        self.requests.pop_front().or_else(|| self.timed.take(self.now()))
     }
 
     /// Whoever asked and went away hears nothing; that is not an error of this end.

@@ -5,6 +5,8 @@ use std::net::SocketAddr;
 use glam::Vec2;
 use rosc::OscType;
 
+use super::pattern::{is_pattern, matches};
+use super::prefix::Prefix;
 use crate::floor::TileId;
 use crate::widget::{Indicator, Value, WidgetId};
 
@@ -88,6 +90,25 @@ pub enum ControlMessage {
 }
 
 impl ControlMessage {
+    /// The control it is about, if it is about one.
+    pub(crate) fn id_mut(&mut self) -> Option<&mut WidgetId> {
+        match self {
+            Self::Set { id, .. }
+            | Self::Enable { id }
+            | Self::Disable { id }
+            | Self::Lock { id }
+            | Self::Unlock { id }
+            | Self::Label { id, .. }
+            | Self::Indicate { id, .. }
+            | Self::Get { id } => Some(id),
+            Self::ShowPage { .. }
+            | Self::GetPage
+            | Self::Mute { .. }
+            | Self::MuteTile { .. }
+            | Self::GetMute => None,
+        }
+    }
+
     /// The address behind the prefix that says so, such as `widget/zoom/set`.
     #[must_use]
     pub fn path(&self) -> String {
@@ -141,6 +162,8 @@ pub enum ArgumentKind {
     Page,
     /// 0 or 1, or OSC true or false.
     Flag,
+    /// Nothing, which means 1; or 0 or 1, or OSC true or false.
+    Switch,
     /// Two whole numbers, column and row of a tile, and then 0 or 1, or OSC true or false.
     TileFlag,
 }
@@ -186,27 +209,43 @@ pub const COMMANDS: [Command; 13] = [
     },
     Command {
         path: "widget/<id>/enable",
-        argument: ArgumentKind::Nothing,
+        argument: ArgumentKind::Switch,
         says: "React to feet again.",
-        make: |id, _| Some(ControlMessage::Enable { id }),
+        make: |id, argument| match argument {
+            Argument::Flag(true) => Some(ControlMessage::Enable { id }),
+            Argument::Flag(false) => Some(ControlMessage::Disable { id }),
+            _ => None,
+        },
     },
     Command {
         path: "widget/<id>/disable",
-        argument: ArgumentKind::Nothing,
+        argument: ArgumentKind::Switch,
         says: "React to feet no more; a press under way is cancelled.",
-        make: |id, _| Some(ControlMessage::Disable { id }),
+        make: |id, argument| match argument {
+            Argument::Flag(true) => Some(ControlMessage::Disable { id }),
+            Argument::Flag(false) => Some(ControlMessage::Enable { id }),
+            _ => None,
+        },
     },
     Command {
         path: "widget/<id>/lock",
-        argument: ArgumentKind::Nothing,
+        argument: ArgumentKind::Switch,
         says: "Keep the value, whatever feet and apps do; a press under way is cancelled.",
-        make: |id, _| Some(ControlMessage::Lock { id }),
+        make: |id, argument| match argument {
+            Argument::Flag(true) => Some(ControlMessage::Lock { id }),
+            Argument::Flag(false) => Some(ControlMessage::Unlock { id }),
+            _ => None,
+        },
     },
     Command {
         path: "widget/<id>/unlock",
-        argument: ArgumentKind::Nothing,
+        argument: ArgumentKind::Switch,
         says: "Change the value again.",
-        make: |id, _| Some(ControlMessage::Unlock { id }),
+        make: |id, argument| match argument {
+            Argument::Flag(true) => Some(ControlMessage::Unlock { id }),
+            Argument::Flag(false) => Some(ControlMessage::Lock { id }),
+            _ => None,
+        },
     },
     Command {
         path: "widget/<id>/label",
@@ -287,6 +326,21 @@ impl Command {
         }
     }
 
+    /// What `pattern` has where this command's address has `<id>`, empty if it has none; `None` if it means none such.
+    fn id_in_pattern<'a>(&self, prefix: &Prefix, pattern: &'a str) -> Option<&'a str> {
+        let address = prefix.address(self.path);
+        let (mut id, mut parts) = ("", pattern.split('/'));
+        for part in address.split('/') {
+            let wanted = parts.next()?;
+            if part == "<id>" && !wanted.is_empty() {
+                id = wanted;
+            } else if !matches(wanted, part) {
+                return None;
+            }
+        }
+        parts.next().is_none().then_some(id)
+    }
+
     /// The address behind the prefix for the control named `id`.
     #[must_use]
     pub(crate) fn path_of(&self, id: &str) -> String {
@@ -300,14 +354,75 @@ impl Command {
     }
 }
 
-/// The command at `path`, the address behind the prefix, with these arguments.
-pub(super) fn read(path: &str, args: &[OscType]) -> Result<ControlMessage, NoCommand> {
-    let found = COMMANDS.iter().find_map(|command| Some((command, command.id_in(path)?)));
-    let (command, id) = found.ok_or(NoCommand::Unknown)?;
-    let argument = command.argument.read(args);
-    let made = argument.and_then(|argument| (command.make)(WidgetId::new(id), argument));
-    made.ok_or(NoCommand::Expected(command.argument.expected()))
+/// The commands at `address`, which may be a pattern, with these arguments.
+///
+/// Of the commands that a pattern means, those take part that take such arguments. Where it has a control's id it
+/// stays a pattern: only the floor knows its controls.
+pub(super) fn read(
+    prefix: &Prefix,
+    address: &str,
+    args: &[OscType],
+) -> Result<Vec<ControlMessage>, NoCommand> {
+    let path = prefix.path(address);
+    let (mut found, mut expected) = (Vec::new(), None);
+    for command in &COMMANDS {
+        let id = if is_pattern(address) {
+            command.id_in_pattern(prefix, address)
+        } else {
+            path.and_then(|path| command.id_in(path))
+        };
+        let Some(id) = id else { continue };
+        let argument = command.argument.read(args);
+        match argument.and_then(|argument| (command.make)(WidgetId::new(id), argument)) {
+            Some(message) => found.push(message),
+            None => expected = Some(command.argument.expected()),
+        }
+    }
+    match (found.is_empty(), expected) {
+        (false, _) => Ok(found),
+        (true, Some(expected)) => Err(NoCommand::Expected(expected)),
+        (true, None) => Err(NoCommand::Unknown),
+    }
 }
+
+/// Whether a floor itself sends this, behind its prefix: an answer to it could be answered for ever.
+pub(super) fn is_sent_by_floors(path: &str) -> bool {
+    match path.split_once('/') {
+        None => SENT.contains(&path),
+        Some(("widget", rest)) => {
+            rest.rsplit('/').next().is_some_and(|what| SENT_OF_CONTROLS.contains(&what))
+        }
+        Some(_) => false,
+    }
+}
+
+/// What a floor tells of itself.
+const SENT: [&str; 9] =
+    ["alive", "contact", "contacts", "crack", "device", "error", "health", "mute", "page"];
+
+/// What a floor tells of its controls.
+const SENT_OF_CONTROLS: [&str; 20] = [
+    "armed",
+    "cancelled",
+    "changed",
+    "clicked",
+    "disarmed",
+    "double_tapped",
+    "hard_pressed",
+    "hard_released",
+    "held",
+    "long_pressed",
+    "page",
+    "pressed",
+    "range",
+    "refused",
+    "released",
+    "state",
+    "swiped",
+    "ticked",
+    "value",
+    "warned",
+];
 
 impl ArgumentKind {
     fn read(self, args: &[OscType]) -> Option<Argument> {
@@ -322,7 +437,8 @@ impl ArgumentKind {
                 Some(Argument::Text(text.clone()))
             }
             (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
-            (Self::Flag, [on]) => flag(on).map(Argument::Flag),
+            (Self::Switch, []) => Some(Argument::Flag(true)),
+            (Self::Flag | Self::Switch, [on]) => flag(on).map(Argument::Flag),
             (Self::TileFlag, [column, row, on]) => {
                 let tile = TileId::new(index(column)?, index(row)?);
                 flag(on).map(|on| Argument::TileFlag(tile, on))
@@ -348,6 +464,7 @@ impl ArgumentKind {
             Self::Indicator => "off, on, busy or attention, or 0 or 1",
             Self::Page => "one string: the id of a page",
             Self::Flag => "0 or 1, or true or false",
+            Self::Switch => "no argument, 0 or 1, or true or false",
             Self::TileFlag => "three numbers: column and row of a tile, and 0 or 1",
         }
     }

@@ -3,7 +3,7 @@
 use std::collections::HashMap;
 
 use arrayvec::ArrayVec;
-use rosc::{OscMessage, OscPacket, OscType};
+use rosc::{OscMessage, OscPacket, OscTime, OscType};
 use thiserror::Error;
 
 use super::command::{self, ControlMessage, NoCommand};
@@ -24,6 +24,12 @@ pub enum WireError {
         /// The address, as sent.
         address: String,
     },
+    /// A bundle of requests is to be met later than within a second.
+    #[error("its time tag lies {seconds} s ahead: requests wait for 1 s at most")]
+    TooEarly {
+        /// How far ahead it lies.
+        seconds: u32,
+    },
     /// The arguments are not what this address takes.
     #[error("{address:?} takes {expected}, not {found}")]
     WrongShape {
@@ -42,6 +48,7 @@ impl WireError {
         match self {
             Self::Malformed(_) => counters.malformed += 1,
             Self::UnknownAddress { .. } => counters.unknown_address += 1,
+            Self::TooEarly { .. } => counters.denied += 1,
             Self::WrongShape { .. } => counters.wrong_shape += 1,
         }
     }
@@ -54,6 +61,8 @@ pub struct Batch {
     pub packets: Vec<SensorPacket>,
     /// What apps ask for.
     pub controls: Vec<ControlMessage>,
+    /// When that is to be met: the latest time tag of the bundles that hold it; `None` at once.
+    pub due: Option<OscTime>,
 }
 
 impl Batch {
@@ -61,13 +70,14 @@ impl Batch {
     pub fn clear(&mut self) {
         self.packets.clear();
         self.controls.clear();
+        self.due = None;
     }
 }
 
 /// Turns the datagrams of one floor into sensor packets and control messages.
 ///
-/// Addresses are compared letter by letter: OSC's patterns (`*`, `?`, `[]`) mean
-/// nothing here, so a hostile address can match nothing. Time tags are not examined.
+/// Boards' addresses are compared letter by letter, so that no pattern means them; those of
+/// requests may be OSC's patterns (`*`, `?`, `[]`, `{}`). Time tags matter for requests only.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     boards: HashMap<String, BoardShape>,
@@ -152,7 +162,13 @@ impl Decoder {
         match packet {
             OscPacket::Message(message) => self.message(message, received, batch),
             OscPacket::Bundle(bundle) => {
-                bundle.content.iter().try_for_each(|element| self.packet(element, received, batch))
+                let before = batch.controls.len();
+                bundle.content.iter().try_for_each(|element| self.packet(element, received, batch))?;
+                if batch.controls.len() > before {
+                    let time = |tag: &OscTime| (tag.seconds, tag.fractional);
+                    batch.due = batch.due.into_iter().chain([bundle.timetag]).max_by_key(time);
+                }
+                Ok(())
             }
         }
     }
@@ -161,36 +177,37 @@ impl Decoder {
         if let Some(&shape) = self.boards.get(&message.addr) {
             batch.packets.push(sensor_packet(message, shape, received)?);
         } else {
-            batch.controls.push(self.control(message)?);
+            batch.controls.extend(self.controls(message)?);
         }
         Ok(())
     }
 
-    fn control(&self, message: &OscMessage) -> Result<ControlMessage, WireError> {
-        let address = || message.addr.clone();
-        let path = self.prefix.path(&message.addr);
-        let path = path.ok_or_else(|| WireError::UnknownAddress { address: address() })?;
-        command::read(path, &message.args).map_err(|error| match error {
-            NoCommand::Unknown => WireError::UnknownAddress { address: address() },
+    fn controls(&self, message: &OscMessage) -> Result<Vec<ControlMessage>, WireError> {
+        command::read(&self.prefix, &message.addr, &message.args).map_err(|error| match error {
+            NoCommand::Unknown => WireError::UnknownAddress { address: message.addr.clone() },
             NoCommand::Expected(expected) => WireError::WrongShape {
-                address: address(),
+                address: message.addr.clone(),
                 expected: expected.into(),
                 found: type_tags(&message.args),
             },
         })
     }
 
-    /// Whether the sender of something that was refused for this reason hears why.
+    /// The address of a request that was refused for this reason, if its sender hears why.
     ///
-    /// Only those who meant a control or a page: whoever else sends here
-    /// by mistake, such as another floor its events, could take an answer for an answer.
+    /// Only those hear it who meant this floor: an address under its prefix, and none of those that floors send
+    /// themselves, for another floor that sends here by mistake could take an answer for an answer.
     #[must_use]
     pub fn is_answered<'e>(&self, error: &'e WireError) -> Option<&'e str> {
-        let address = match error {
-            WireError::WrongShape { address, .. } if !self.boards.contains_key(address) => address,
-            _ => return None,
-        };
-        Some(address)
+        match error {
+            WireError::WrongShape { address, .. } if !self.boards.contains_key(address) => Some(address),
+            WireError::UnknownAddress { address } => {
+                let path = self.prefix.path(address)?;
+                (!command::is_sent_by_floors(path)).then_some(address)
+            }
+            WireError::TooEarly { .. } => Some("#bundle"),
+            _ => None,
+        }
     }
 }
 

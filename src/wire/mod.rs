@@ -13,6 +13,7 @@ mod encode;
 mod guard;
 mod link;
 mod packet;
+mod pattern;
 mod prefix;
 
 pub use command::{ControlMessage, Request};
@@ -20,6 +21,7 @@ pub use counters::LinkCounters;
 pub(crate) use encode::write;
 pub use link::LinkState;
 pub use packet::{Readings, SensorPacket};
+pub(crate) use pattern::{is_pattern, matches};
 pub use prefix::{BadPrefix, Prefix};
 
 internal! {

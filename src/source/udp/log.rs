@@ -41,7 +41,7 @@ impl RefusalLog {
         let warned = match error {
             WireError::Malformed(_) => &mut self.malformed,
             WireError::UnknownAddress { .. } => &mut self.unknown,
-            WireError::WrongShape { .. } => &mut self.shape,
+            WireError::WrongShape { .. } | WireError::TooEarly { .. } => &mut self.shape,
         };
         if let Some(others) = warned.due(now) {
             tracing::warn!(%sender, others_like_it = others, "datagram refused: {error}");

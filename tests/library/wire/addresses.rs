@@ -220,8 +220,12 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
             Value::Choice(choice) => assert_eq!(f32::from(choice), number(&args[0]), "{address}"),
             Value::Pair(pair) => assert_eq!(pair, Vec2::new(number(&args[0]), number(&args[1])), "{address}"),
         },
-        "enable" | "disable" => assert_eq!(control.is_disabled(), verb == "disable", "{address}"),
-        "lock" | "unlock" => assert_eq!(control.is_locked(), verb == "lock", "{address}"),
+        "enable" | "disable" => {
+            assert_eq!(control.is_disabled(), (verb == "disable") == (number(&args[0]) == 1.0), "{address}");
+        }
+        "lock" | "unlock" => {
+            assert_eq!(control.is_locked(), (verb == "lock") == (number(&args[0]) == 1.0), "{address}");
+        }
         "label" => {
             let widget = engine.layout().widget_index(id).unwrap();
             assert_eq!(engine.layout().widgets[widget].label, args[0].clone().string().unwrap());
@@ -275,7 +279,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/slider/set", string("full"), "takes one finite number"),
         ("widget/slider/set", vec![OscType::Float(f32::NAN)], "takes one finite number"),
         ("widget/slider/set", vec![], "takes one finite number"),
-        ("widget/slider/enable", vec![OscType::Int(1)], "takes no argument"),
+        ("widget/slider/enable", vec![OscType::Int(2)], "takes no argument, 0 or 1"),
         ("widget/slider/label", vec![OscType::Int(1)], "takes one string"),
         ("widget/slider/indicator", string("purple"), "takes off, on, busy or attention"),
         ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
@@ -302,17 +306,76 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     let counters = desk.server.counters();
     assert_eq!((counters.wrong_shape, counters.denied), (8, 7));
 
-    // What nobody here understands is counted and not answered: an answer to an answer could go on for ever.
+    for address in ["/underfoot/widget/slider/explode", "/underfoot/page/hide", "/underfoot/widget/no*"] {
+        desk.send(address, vec![]);
+        let unknown = format!("nothing here has the address {address:?}");
+        assert_eq!(
+            desk.answer()["/underfoot/error"],
+            [address, &unknown].map(|text| OscType::String(text.into()))
+        );
+    }
+    // What floors send themselves is counted and not answered: an answer to an answer could go on for ever.
     for address in [
         "/underfoot/error",
+        "/underfoot/contacts",
         "/underfoot/widget/slider/value",
         "/underfoot/widget/slider/changed",
         "/elsewhere",
     ] {
         desk.send(address, vec![OscType::Float(1.0)]);
     }
-    assert_eq!(desk.server.counters().unknown_address, 4);
+    assert_eq!(desk.server.counters().unknown_address, 3 + 5);
     assert!(desk.is_silent());
+}
+
+#[test]
+fn a_pattern_asks_every_control_that_it_means() {
+    let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
+    let locked = |desk: &Desk| {
+        let engine = desk.server.engine();
+        let ids = engine.layout().widgets.iter().map(|widget| widget.id.as_str());
+        ids.filter(|id| engine.control(id).unwrap().is_locked()).map(str::to_owned).collect::<Vec<_>>()
+    };
+    desk.send("/underfoot/widget/s*er/lock", vec![]);
+    assert_eq!(locked(&desk), ["slider", "stepper"]);
+    desk.send("/underfoot/widget/{slider,pad}/lock", vec![OscType::Int(0)]);
+    desk.send("/*/widget/pa?/lock", vec![OscType::Bool(true)]);
+    assert_eq!(locked(&desk), ["pad", "stepper"]);
+    desk.send("/underfoot/widget/[ps]*/unloc[a-k]", vec![]);
+    assert!(locked(&desk).is_empty());
+    // Each control that can't do it answers for itself.
+    desk.send("/underfoot/widget/s[wu]*/set", vec![OscType::Int(1)]);
+    let answer = desk.answer();
+    assert_eq!(answer["/underfoot/error"][0], OscType::String("/underfoot/widget/sure/set".into()));
+    assert!(desk.is_silent());
+    assert_eq!(desk.server.engine().value("switch"), Some(Value::Switch(true)));
+    desk.send("/underfoot/widget/x*/lock", vec![]);
+    assert_eq!(desk.answer()["/underfoot/error"][0], OscType::String("/underfoot/widget/x*/lock".into()));
+}
+
+#[test]
+fn a_bundle_with_a_time_tag_waits_until_then_or_is_refused() {
+    let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
+    let bundle = |ahead: Duration| {
+        let timetag = rosc::OscTime::try_from(std::time::SystemTime::now() + ahead).unwrap();
+        let message = OscMessage { addr: "/underfoot/widget/slider/lock".into(), args: vec![] };
+        let content = vec![OscPacket::Message(message)];
+        rosc::encoder::encode(&OscPacket::Bundle(rosc::OscBundle { timetag, content })).unwrap()
+    };
+    let is_locked = |desk: &Desk| desk.server.engine().control("slider").unwrap().is_locked();
+    let begun = std::time::Instant::now();
+    desk.app.send(&bundle(Duration::from_millis(300))).unwrap();
+    while !is_locked(&desk) {
+        desk.server.turn().unwrap();
+        assert!(begun.elapsed() < Duration::from_secs(20), "never met");
+    }
+    assert!(begun.elapsed() >= Duration::from_millis(299), "met after {:?}", begun.elapsed());
+    desk.app.send(&bundle(Duration::from_secs(60))).unwrap();
+    while desk.server.counters().denied == 0 {
+        desk.server.turn().unwrap();
+    }
+    let [_, OscType::String(why)] = &desk.answer()["/underfoot/error"][..] else { panic!("no reason") };
+    assert!(why.contains("wait for 1 s at most"), "{why}");
 }
 
 #[test]
