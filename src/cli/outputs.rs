@@ -26,6 +26,9 @@ pub(crate) struct OutputArgs {
     /// Print every event as a line of JSON on standard output.
     #[arg(long)]
     json: bool,
+    /// Print contacts among them as well, 100 times a second.
+    #[arg(long, requires = "json")]
+    json_contacts: bool,
 }
 
 /// What addresses begin with.
@@ -86,6 +89,7 @@ impl Default for OutputArgs {
             prefix: PrefixArg::default(),
             tuio: TuioArgs::default(),
             json: false,
+            json_contacts: false,
         }
     }
 }
@@ -101,7 +105,8 @@ impl OutputArgs {
         }
         self.tuio.open(geometry, &mut events)?;
         if self.json {
-            events.push(JsonSink::new(io::stdout())?);
+            let lines = JsonSink::new(io::stdout())?;
+            events.push(if self.json_contacts { lines.with_contacts() } else { lines });
         }
         Ok(events)
     }

@@ -8,6 +8,7 @@
 //!   -control-> events -response-> cues; a click may show another page
 //! ```
 
+mod control_state;
 mod feet;
 mod floor_engine;
 mod interact;
@@ -22,6 +23,7 @@ mod step;
 mod still;
 mod weight;
 
+pub use control_state::{ControlState, ValueRange};
 pub use floor_engine::{Engine, Step};
 pub use page::PageShown;
 pub use snapshot::{FootRole, FootState, Snapshot, TileState, WidgetState};

@@ -12,8 +12,8 @@ pub use tuio1::TuioProfiles;
 internal! {
     use held::{write_alive, write_held};
     use osc::{
-        Readback, write_contacts, write_crack, write_device, write_error, write_event, write_health,
-        write_mute, write_page, write_readback,
+        write_contacts, write_control, write_crack, write_device, write_error, write_event, write_health,
+        write_mute, write_page,
     };
     use tuio::{TUIO_CONTACTS, TUIO_DATAGRAM, tuio_first_frame};
     use tuio1::{Tuio1};

@@ -2,9 +2,10 @@
 
 use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 
+use crate::engine::{ControlState, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
-use crate::widget::{EventKind, Indicator, Value, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
 use crate::wire::{LinkState, Prefix, write};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
@@ -167,42 +168,34 @@ pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8
     write(&message(prefix.address("error"), args), bytes);
 }
 
-/// How a control is, for those who ask.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Readback<'a> {
-    /// Which control.
-    pub id: &'a WidgetId,
-    /// What it holds; `None` for what holds nothing.
-    pub value: Option<Value>,
-    /// Whether it reacts to feet.
-    pub enabled: bool,
-    /// Whether it keeps its value.
-    pub locked: bool,
-    /// Whether a foot has it pressed.
-    pub pressed: bool,
-    /// Whether a first press has armed it.
-    pub armed: bool,
-    /// What its lamp shows.
-    pub indicator: Indicator,
-    /// What is written on it.
-    pub label: &'a str,
-}
-
-/// Writes how a control is as an OSC bundle: `/underfoot/widget/<id>/value` with what it holds, if
-/// anything, as `changed` has it; and `/underfoot/widget/<id>/state` with enabled, locked, pressed,
-/// armed (ints, 0 or 1), indicator and label (strings).
-pub fn write_readback(prefix: &Prefix, readback: &Readback<'_>, bytes: &mut Vec<u8>) {
-    let Readback { id, value, enabled, locked, pressed, armed, indicator, label } = *readback;
+/// Writes how a control is as an OSC bundle.
+///
+/// `/underfoot/widget/<id>/value` with what it holds, if anything, as `changed` has it; `/state` with enabled, locked,
+/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/range` with least, greatest and step of a number, least
+/// and greatest of both numbers of a pair (floats), or the names of the choices (strings); `/page` with its page, empty
+/// if it is on all.
+pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>) {
+    let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } = state;
     let mut content = Vec::new();
     if let Some(value) = value {
         let mut args = Vec::new();
-        write_value(value, &mut args);
+        write_value(*value, &mut args);
         content.push(message(of_widget(prefix, id, "value"), args));
     }
     let mut args: Vec<OscType> =
-        [enabled, locked, pressed, armed].into_iter().map(|flag| OscType::Int(flag.into())).collect();
+        [enabled, locked, pressed, armed].into_iter().map(|&flag| OscType::Int(flag.into())).collect();
     args.extend([indicator.name(), label].map(|text| OscType::String(text.into())));
     content.push(message(of_widget(prefix, id, "state"), args));
+    if let Some(range) = range {
+        let args = match range {
+            ValueRange::Number(scale) => [scale.min, scale.max, scale.step].map(OscType::Float).into(),
+            ValueRange::Pair(x, y) => [x.min, x.max, y.min, y.max].map(OscType::Float).into(),
+            ValueRange::Choices(choices) => choices.iter().cloned().map(OscType::String).collect(),
+        };
+        content.push(message(of_widget(prefix, id, "range"), args));
+    }
+    let page = page.as_ref().map_or("", WidgetId::as_str);
+    content.push(message(of_widget(prefix, id, "page"), vec![OscType::String(page.into())]));
     let timetag = OscTime { seconds: 0, fractional: 1 };
     bytes.clear();
     write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);

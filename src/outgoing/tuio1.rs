@@ -12,6 +12,9 @@ use crate::units::Instant;
 const CURSOR: &str = "/tuio/2Dcur";
 const BLOB: &str = "/tuio/2Dblb";
 
+/// What makes a `set` message of a profile.
+type Set = fn(&Surface, &News) -> OscPacket;
+
 /// Contacts as TUIO 1.1 cursors (`2Dcur`) and blobs (`2Dblb`).
 ///
 /// Positions run from 0 to 1, from the floor's north-west corner, y towards the
@@ -70,7 +73,7 @@ impl Tuio1 {
     pub fn write(&mut self, at: Instant, contacts: &[Contact], mut send: impl FnMut(&[u8])) -> usize {
         let (contacts, left_out) = heaviest(contacts);
         let news = self.memory.news(at, &contacts);
-        let both: [(&str, fn(&Surface, &News) -> OscPacket); 2] = [(CURSOR, cursor), (BLOB, blob)];
+        let both: [(&str, Set); 2] = [(CURSOR, cursor), (BLOB, blob)];
         let wanted = match self.profiles {
             TuioProfiles::Cursors => 0..1,
             TuioProfiles::Blobs => 1..2,

@@ -186,9 +186,6 @@ impl Maker<'_> {
         let says =
             "Whether a foot holds it; 1 comes 50 times a second: not heard for 100 ms, it is released.";
         self.add(Direction::Out, &format!("widget/{id}/held"), repeated, says);
-        if !held.is_empty() {
-            self.add(Direction::Answer, &format!("widget/{id}/value"), held, "What it holds.");
-        }
         let flag = |name| argument(name, "i", "0 or 1");
         let state = vec![
             flag("enabled"),
@@ -198,7 +195,27 @@ impl Maker<'_> {
             argument("indicator", "s", &indicators()),
             argument("label", "s", ""),
         ];
-        self.add(Direction::Answer, &format!("widget/{id}/state"), state, "How it is.");
+        let text = |name, range: &str| argument(name, "s", range);
+        let range = match (&widget.behaviour, held.as_slice()) {
+            (Behaviour::Selector(_), _) => vec![text("choices", "the name of each")],
+            (_, [Argument { tag: "f", .. }]) => {
+                ["least", "greatest", "step"].map(|name| argument(name, "f", "")).into()
+            }
+            (_, [_, _]) => {
+                ["x_least", "x_greatest", "y_least", "y_greatest"].map(|name| argument(name, "f", "")).into()
+            }
+            _ => Vec::new(),
+        };
+        let told = [
+            ("value", held, "What it holds; told to all listeners when an app asks or changes it."),
+            ("state", state, "How it is; told to all likewise."),
+            ("range", range, "What it can hold."),
+            ("page", vec![text("page", "empty if it is on all")], "Where it is."),
+        ];
+        for (name, arguments, says) in told.into_iter().filter(|(_, arguments, _)| !arguments.is_empty()) {
+            let path = format!("widget/{id}/{name}");
+            self.add(Direction::Answer, &path, arguments, says);
+        }
     }
 }
 

@@ -1,45 +1,34 @@
-//! What a floor does with what apps ask, and what it answers.
+//! What a floor does with what apps ask.
 
 use crate::engine::Engine;
-use crate::outgoing::{Readback, write_page, write_readback};
 use crate::widget::{SetError, Value, WidgetId};
-use crate::wire::{ControlMessage, Prefix, is_pattern, matches};
+use crate::wire::{ControlMessage, is_pattern, matches};
 
-/// Does what `message` asks of `engine`; true if `answer` now holds what the asker is to be told.
+/// Does what `message` asks of `engine`.
 ///
 /// # Errors
 /// [`SetError`] if it can't be done; nothing has changed then.
-pub(super) fn answer(
-    engine: &mut Engine,
-    prefix: &Prefix,
-    message: &ControlMessage,
-    answer: &mut Vec<u8>,
-) -> Result<bool, SetError> {
+pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
     match message {
         ControlMessage::Set { id, value } => {
             let value = as_held(engine, id.as_str(), *value)?;
-            engine.set_value(id.as_str(), value)?;
+            engine.set_value(id.as_str(), value)
         }
-        ControlMessage::Enable { id } => engine.set_enabled(id.as_str(), true)?,
-        ControlMessage::Disable { id } => engine.set_enabled(id.as_str(), false)?,
-        ControlMessage::Lock { id } => engine.set_locked(id.as_str(), true)?,
-        ControlMessage::Unlock { id } => engine.set_locked(id.as_str(), false)?,
-        ControlMessage::Label { id, text } => engine.set_label(id.as_str(), text)?,
-        ControlMessage::Indicate { id, indicator } => engine.set_indicator(id.as_str(), *indicator)?,
-        ControlMessage::ShowPage { page } => engine.set_page(page.as_str())?,
-        ControlMessage::Get { id } => {
-            let readback = readback(engine, id).ok_or(SetError::Unknown)?;
-            write_readback(prefix, &readback, answer);
-            return Ok(true);
-        }
-        ControlMessage::GetPage => {
-            write_page(prefix, engine.page().unwrap_or_default(), answer);
-            return Ok(true);
-        }
+        ControlMessage::Enable { id } => engine.set_enabled(id.as_str(), true),
+        ControlMessage::Disable { id } => engine.set_enabled(id.as_str(), false),
+        ControlMessage::Lock { id } => engine.set_locked(id.as_str(), true),
+        ControlMessage::Unlock { id } => engine.set_locked(id.as_str(), false),
+        ControlMessage::Label { id, text } => engine.set_label(id.as_str(), text),
+        ControlMessage::Indicate { id, indicator } => engine.set_indicator(id.as_str(), *indicator),
+        ControlMessage::ShowPage { page } => engine.set_page(page.as_str()),
+        ControlMessage::Get { id } => engine.control(id.as_str()).map(drop).ok_or(SetError::Unknown),
         // Not for the engine: the server's own business.
-        ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } | ControlMessage::GetMute => {}
+        ControlMessage::GetPage
+        | ControlMessage::GetAll
+        | ControlMessage::Mute { .. }
+        | ControlMessage::MuteTile { .. }
+        | ControlMessage::GetMute => Ok(()),
     }
-    Ok(false)
 }
 
 /// The controls that `id` means as a pattern; none if it is none, or the name of a control.
@@ -49,21 +38,6 @@ pub(super) fn meant(engine: &Engine, id: &WidgetId) -> Vec<WidgetId> {
     }
     let ids = engine.layout().widgets.iter().map(|widget| &widget.id);
     ids.filter(|other| matches(id.as_str(), other.as_str())).cloned().collect()
-}
-
-fn readback<'a>(engine: &'a Engine, id: &'a WidgetId) -> Option<Readback<'a>> {
-    let control = engine.control(id.as_str())?;
-    let widget = engine.layout().widgets.get(engine.layout().widget_index(id.as_str())?)?;
-    Some(Readback {
-        id,
-        value: control.value(),
-        enabled: !control.is_disabled() && !control.is_inhibited(),
-        locked: control.is_locked(),
-        pressed: control.is_engaged(),
-        armed: control.is_armed(),
-        indicator: control.indicator(),
-        label: &widget.label,
-    })
 }
 
 /// A number stands for on or off where the control is a switch, and for a choice where it is a

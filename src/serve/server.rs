@@ -4,6 +4,7 @@ mod end;
 mod heartbeat;
 mod mute;
 mod notices;
+mod requests;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -15,18 +16,16 @@ use triple_buffer::Input;
 
 use self::heartbeat::Heartbeat;
 use super::changes::ChangeLimiter;
-use super::request;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
 use crate::floor::{Floor, SensorId};
 use crate::layout::Layout;
-use crate::outgoing::{write_error, write_mute};
 use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{ControlMessage, LinkCounters, LinkState, Prefix, Request};
+use crate::wire::{ControlMessage, LinkCounters, LinkState, Prefix};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -387,46 +386,6 @@ impl Server {
                     self.trial = Some(Trial::new(effect, *gesture, tile));
                 }
             }
-        }
-    }
-
-    /// Does what an app asks of one control, or of all that a pattern means.
-    fn process_request(&mut self, mut request: Request) {
-        let meant = request.message.id_mut().map(|id| request::meant(&self.engine, id)).unwrap_or_default();
-        if meant.is_empty() {
-            return self.handle_request(&request);
-        }
-        for id in meant {
-            if let Some(place) = request.message.id_mut() {
-                *place = id;
-            }
-            self.handle_request(&request);
-        }
-    }
-
-    /// Does what an app asks, and tells it what it wants to know or why it can't be done.
-    fn handle_request(&mut self, request: &Request) {
-        let met = match &request.message {
-            ControlMessage::Mute { on } => self.mute(*on).map(|()| false).map_err(|error| error.to_string()),
-            ControlMessage::MuteTile { tile, on } => {
-                self.mute_tile(*tile, *on).map(|()| false).map_err(|error| error.to_string())
-            }
-            ControlMessage::GetMute => {
-                write_mute(&self.prefix, &self.muted, &mut self.answer);
-                Ok(true)
-            }
-            message => request::answer(&mut self.engine, &self.prefix, message, &mut self.answer)
-                .map_err(|error| error.to_string()),
-        };
-        let told = met.unwrap_or_else(|why| {
-            self.denied += 1;
-            let address = self.prefix.address(&request.message.path());
-            warn!("{address} refused: {why}");
-            write_error(&self.prefix, &address, &why, &mut self.answer);
-            true
-        });
-        if let Some(sender) = request.sender.filter(|_| told) {
-            self.source.answer(sender, &self.answer);
         }
     }
 }

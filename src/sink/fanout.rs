@@ -1,7 +1,7 @@
 //! Several event sinks as one.
 
 use super::{EventSink, HeldReport};
-use crate::engine::PageShown;
+use crate::engine::{ControlState, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
@@ -80,6 +80,10 @@ impl EventSink for Fanout {
 
     fn muted(&mut self, at: Instant, muted: &Muted) {
         self.sinks.iter_mut().for_each(|sink| sink.muted(at, muted));
+    }
+
+    fn control(&mut self, at: Instant, state: &ControlState) {
+        self.sinks.iter_mut().for_each(|sink| sink.control(at, state));
     }
 
     fn poll(&mut self, now: Instant) {

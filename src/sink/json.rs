@@ -11,9 +11,10 @@ use std::time::{Duration, Instant as HostInstant};
 use self::line::Line;
 use super::backlog::{Backlog, Gap, Worth};
 use super::crack_rate::{CrackNews, CrackRateLimiter};
+use super::periodic::PeriodicSender;
 use super::worker::Worker;
 use super::{EventSink, HeldReport, SinkError};
-use crate::engine::PageShown;
+use crate::engine::{ControlState, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
@@ -31,6 +32,7 @@ use crate::wire::LinkState;
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
 /// {"t_s":9.9,"event":"mute","all":false,"tiles":[[2,1]]}
 /// {"t_s":9.9,"held":["zoom"],"sequence":12}
+/// {"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///
@@ -38,7 +40,11 @@ use crate::wire::LinkState;
 /// in a list, the direction of a swipe, or null for events without a value;
 /// `contact` is null if no foot did it. A number that JSON cannot express
 /// (which the engine never gives) is null. Which controls are held is written 50
-/// times a second while any is, and once when none is any longer. Contacts are not written.
+/// times a second while any is, and once when none is any longer. Contacts are written on request ([`JsonSink::with_contacts`]):
+///
+/// ```json
+/// {"t_s":9.9,"event":"contacts","contacts":[{"id":3,"x_m":0.61,"y_m":1.2,"force_n":350.0,"x_velocity_m_s":0.0,"y_velocity_m_s":0.0}]}
+/// ```
 ///
 /// A reader that stops reading holds nobody up. Beyond a thousand lines only the latest value and state of
 /// each kind wait for it, and everything that begins or ends a press; where lines were left out stands how many:
@@ -50,6 +56,10 @@ use crate::wire::LinkState;
 pub struct JsonSink {
     worker: Worker<Job>,
     backlog: Backlog<Job, Key>,
+    /// When contacts are written, if they are.
+    contacts: Option<PeriodicSender>,
+    /// Whether no frames come, so that nobody else says that nobody is there.
+    lost: bool,
     cracks: CrackRateLimiter,
 }
 
@@ -64,6 +74,8 @@ enum Job {
     Muted(Instant, Muted),
     Held(HeldReport),
     Gap(Gap),
+    Control(Instant, Box<ControlState>),
+    Contacts(Instant, Vec<Contact>),
 }
 
 impl From<Gap> for Job {
@@ -82,6 +94,8 @@ enum Key {
     Device,
     Muted,
     Held,
+    Control(WidgetId),
+    Contacts,
 }
 
 impl Job {
@@ -104,6 +118,8 @@ impl Job {
             Self::Muted(at, _) => (*at, Worth::Latest(Key::Muted)),
             Self::Held(report) => (report.at, Worth::Latest(Key::Held)),
             Self::Gap(gap) => (gap.at, Worth::None),
+            Self::Control(at, state) => (*at, Worth::Latest(Key::Control(state.id.clone()))),
+            Self::Contacts(at, _) => (*at, Worth::Latest(Key::Contacts)),
         }
     }
 }
@@ -126,7 +142,20 @@ impl JsonSink {
             }
         })
         .map_err(failed)?;
-        Ok(Self { worker, backlog: Backlog::default(), cracks: CrackRateLimiter::default() })
+        Ok(Self {
+            worker,
+            backlog: Backlog::default(),
+            contacts: None,
+            lost: true,
+            cracks: CrackRateLimiter::default(),
+        })
+    }
+
+    /// Writes contacts as well: 100 times a second while there are any, once a second while there are none.
+    #[must_use]
+    pub fn with_contacts(mut self) -> Self {
+        self.contacts = Some(PeriodicSender::default());
+        self
     }
 
     fn put(&mut self, job: Job) {
@@ -164,8 +193,12 @@ impl EventSink for JsonSink {
         }
     }
 
-    fn contacts(&mut self, _at: Instant, _contacts: &[Contact]) {
+    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
         self.flush();
+        if let Some(periodic) = self.contacts.as_mut().filter(|periodic| periodic.is_due(at, contacts)) {
+            periodic.reported(at, contacts);
+            self.put(Job::Contacts(at, contacts.to_vec()));
+        }
     }
 
     fn page(&mut self, page: &PageShown) {
@@ -181,6 +214,7 @@ impl EventSink for JsonSink {
     }
 
     fn link(&mut self, at: Instant, state: LinkState) {
+        self.lost = matches!(state, LinkState::Lost | LinkState::Waiting);
         self.put(Job::Link(at, state));
     }
 
@@ -196,8 +230,17 @@ impl EventSink for JsonSink {
         self.put(Job::Muted(at, muted.clone()));
     }
 
-    fn poll(&mut self, _now: Instant) {
+    fn control(&mut self, at: Instant, state: &ControlState) {
+        self.put(Job::Control(at, Box::new(state.clone())));
+    }
+
+    fn poll(&mut self, now: Instant) {
         self.flush();
+        let due = self.contacts.as_mut().filter(|periodic| self.lost && periodic.is_silence_due(now));
+        if let Some(periodic) = due {
+            periodic.reported(now, &[]);
+            self.put(Job::Contacts(now, Vec::new()));
+        }
     }
 
     fn held(&mut self, report: &HeldReport) {

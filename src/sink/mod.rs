@@ -24,7 +24,7 @@ mod worker;
 
 use thiserror::Error;
 
-use crate::engine::PageShown;
+use crate::engine::{ControlState, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
@@ -98,6 +98,9 @@ pub trait EventSink: Send {
 
     /// Takes news of what is muted; called when that changes.
     fn muted(&mut self, _at: Instant, _muted: &Muted) {}
+
+    /// Takes news of how a control is; called when an app has asked for it or changed it.
+    fn control(&mut self, _at: Instant, _state: &ControlState) {}
 
     /// Called every few milliseconds, also while no frames come: for what is told again and again, or had to wait.
     fn poll(&mut self, _now: Instant) {}

@@ -10,12 +10,12 @@ use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, HeldReport, SinkError};
-use crate::engine::PageShown;
+use crate::engine::{ControlState, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
 use crate::outgoing::{
-    write_alive, write_contacts, write_crack, write_device, write_event, write_health, write_held,
-    write_mute, write_page,
+    write_alive, write_contacts, write_control, write_crack, write_device, write_event, write_health,
+    write_held, write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -30,7 +30,7 @@ use crate::wire::{LinkState, Prefix};
 /// frames come. What is held is repeated 50 times a second, and a sign of life ten times. The
 /// messages are those of [`write_event`], [`write_contacts`], [`write_held`],
 /// [`write_alive`], [`write_crack`], [`write_page`], [`write_health`],
-/// [`write_device`] and [`write_mute`].
+/// [`write_device`], [`write_mute`] and [`write_control`].
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,
@@ -53,6 +53,7 @@ enum Job {
     Muted(Muted),
     Held(HeldReport),
     Alive(u32),
+    Control(Box<ControlState>),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
     /// Nobody is there any more, as far as anybody can tell.
@@ -142,6 +143,10 @@ impl EventSink for OscSink {
         }
     }
 
+    fn control(&mut self, _at: Instant, state: &ControlState) {
+        self.worker.offer(Job::Control(Box::new(state.clone())));
+    }
+
     fn poll(&mut self, now: Instant) {
         let no_frames = matches!(self.link, LinkState::Lost | LinkState::Waiting);
         if no_frames && self.periodic.is_silence_due(now) {
@@ -226,6 +231,10 @@ impl Sender {
                 Job::Held(report) => write_held(&prefix, &report, &mut bytes, |datagram| out.send(datagram)),
                 Job::Alive(sequence) => {
                     write_alive(&prefix, sequence, &mut bytes);
+                    out.send(&bytes);
+                }
+                Job::Control(state) => {
+                    write_control(&prefix, &state, &mut bytes);
                     out.send(&bytes);
                 }
                 Job::Contacts => {

@@ -66,6 +66,8 @@ pub enum ControlMessage {
         /// Which control.
         id: WidgetId,
     },
+    /// Tell the sender, and everybody else who is told, how all controls are, and the floor.
+    GetAll,
     /// Show another page, as soon as no foot is engaged.
     ShowPage {
         /// Which page.
@@ -103,6 +105,7 @@ impl ControlMessage {
             | Self::Get { id } => Some(id),
             Self::ShowPage { .. }
             | Self::GetPage
+            | Self::GetAll
             | Self::Mute { .. }
             | Self::MuteTile { .. }
             | Self::GetMute => None,
@@ -123,6 +126,7 @@ impl ControlMessage {
             Self::Get { id } => ("get", id),
             Self::ShowPage { .. } => return "page/set".into(),
             Self::GetPage => return "page/get".into(),
+            Self::GetAll => return "get".into(),
             Self::Mute { .. } => return "mute/set".into(),
             Self::MuteTile { .. } => return "mute/tile".into(),
             Self::GetMute => return "mute/get".into(),
@@ -191,7 +195,13 @@ enum Argument {
 }
 
 /// Everything that apps may ask.
-pub const COMMANDS: [Command; 13] = [
+pub const COMMANDS: [Command; 14] = [
+    Command {
+        path: "get",
+        argument: ArgumentKind::Nothing,
+        says: "Answer with everything: each control's value, state, range and page; the page that is shown; what is muted.",
+        make: |_, _| Some(ControlMessage::GetAll),
+    },
     Command {
         path: "widget/<id>/set",
         argument: ArgumentKind::Value,

@@ -146,14 +146,14 @@ def expect(condition, what):
 
 
 def play(program, layout):
-    osc, pointers = Osc(), Osc()
+    osc, other, pointers = Osc(), Osc(), Osc()
     tuio_port = free_port()
     client, cursors = listen_to_tuio(tuio_port)
     tap, tap2 = Tap(tuio_port), Tap(pointers.port)
     floor = free_port()
     run = subprocess.Popen(
         [program, "run", layout, "--listen", f"{LOOPBACK}:{floor}", "--osc", f"{LOOPBACK}:{osc.port}",
-         "--tuio", f"{LOOPBACK}:{tap.port}", "--tuio2", f"localhost:{tap2.port}", "--osc-prefix", "/lab"],
+         "--osc", f"{LOOPBACK}:{other.port}", "--tuio", f"{LOOPBACK}:{tap.port}", "--tuio2", f"localhost:{tap2.port}", "--osc-prefix", "/lab"],
         stderr=subprocess.PIPE, stdout=subprocess.DEVNULL)
     simulate = None
     try:
@@ -171,6 +171,15 @@ def play(program, layout):
         answer = app.ask("/lab/widget/satellite/get")
         expect(answer["/lab/widget/satellite/value"] == [1], answer)
         expect(answer["/lab/widget/satellite/state"] == [1, 0, 0, 0, "busy", "Karte"], answer)
+        app.send("/lab/widget/{home,satellite}/lock", 1)
+        app.send("/lab/widget/[hs]*/lock", 0)
+        last = lambda heard: heard.of("/lab/widget/home/state")[-1:]
+        for heard in (osc, other):
+            wait_until("all are told", lambda: [1, 1, 0, 0] in [list(args[:4]) for args in
+                                                                heard.of("/lab/widget/home/state")])
+            wait_until("and told again", lambda: last(heard) and list(last(heard)[0][:4]) == [1, 0, 0, 0])
+        unknown = app.ask("/lab/widget/zoom/explode")
+        expect(unknown["/lab/error"][0] == "/lab/widget/zoom/explode", unknown)
         refused = app.ask("/lab/widget/zoom/set", "wide")
         expect(refused["/lab/error"][0] == "/lab/widget/zoom/set", refused)
 
@@ -180,6 +189,7 @@ def play(program, layout):
         wait_until("zoom changed", lambda: len(osc.of("/lab/widget/zoom/changed")) > 5)
         value, force, x, y = osc.of("/lab/widget/zoom/changed")[-1]
         expect(0.0 <= value <= 1.0 and force > 20.0 and 0.0 < x < 1.83 and 0.0 < y < 1.83, "zoom's arguments")
+        wait_until("the other hears it as well", lambda: other.of("/lab/widget/home/clicked"))
         wait_until("a pointer", lambda: pointers.of("/tuio2/ptr"))
 
         # Somebody asks the program to end while a foot is down.
@@ -217,6 +227,9 @@ def check_streams(osc, pointers, cursors, sizes):
     # 100 Hz: within any second at most a hundred reports, and a few that were held up.
     times = [when for when, address, _ in osc.heard if address == "/lab/contacts"]
     busiest = max(sum(1 for other in times if begun <= other < begun + 1.0) for begun in times[::20])
+    changes = [when for when, address, _ in osc.heard if address == "/lab/widget/zoom/changed"]
+    most = max(sum(1 for other in changes if begun <= other < begun + 1.0) for begun in changes)
+    expect(most <= 66, f"{most} changes of zoom in a second")
     expect(50 < busiest <= 115, f"{busiest} reports of contacts in a second")
 
 

@@ -3,13 +3,14 @@
 use serde::Serialize;
 
 use super::Job;
+use crate::engine::{ControlState, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
-use crate::sense::{ContactId, SensorHealth, Trouble};
 use crate::outgoing::HeldReport;
+use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::sink::backlog::Gap;
 use crate::sink::crack_rate::CrackNews;
-use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, Scale, Value, WidgetEvent, WidgetId};
 
 #[derive(Serialize)]
 pub(super) struct Line<'a> {
@@ -61,6 +62,21 @@ enum Body<'a> {
     Gap {
         dropped: u64,
     },
+    Contacts {
+        contacts: Vec<ContactEntry>,
+    },
+    State {
+        id: &'a str,
+        value: Option<JsonValue>,
+        range: Option<JsonRange<'a>>,
+        enabled: bool,
+        locked: bool,
+        pressed: bool,
+        armed: bool,
+        indicator: &'static str,
+        label: &'a str,
+        page: Option<&'a str>,
+    },
     /// A state, not an event.
     #[serde(untagged)]
     Held {
@@ -78,6 +94,25 @@ enum Body<'a> {
         y_m: f32,
         contact: Option<ContactId>,
     },
+}
+
+#[derive(Serialize)]
+struct ContactEntry {
+    id: ContactId,
+    x_m: f32,
+    y_m: f32,
+    force_n: f32,
+    x_velocity_m_s: f32,
+    y_velocity_m_s: f32,
+}
+
+/// Least and greatest of a number, of both numbers of a pair, or the choices.
+#[derive(Serialize)]
+#[serde(untagged)]
+enum JsonRange<'a> {
+    Number([f32; 2]),
+    Pair([[f32; 2]; 2]),
+    Choices(&'a [String]),
 }
 
 #[derive(Serialize)]
@@ -107,6 +142,10 @@ impl<'a> Line<'a> {
             Job::Held(HeldReport { at, held, sequence, .. }) => {
                 let held = held.iter().map(WidgetId::as_str).collect();
                 (*at, Body::Held { held, sequence: *sequence })
+            }
+            Job::Control(at, state) => (*at, Body::state(state)),
+            Job::Contacts(at, contacts) => {
+                (*at, Body::Contacts { contacts: contacts.iter().map(ContactEntry::of).collect() })
             }
             Job::Gap(Gap { at, dropped }) => (*at, Body::Gap { dropped: *dropped }),
         };
@@ -143,6 +182,29 @@ impl<'a> Body<'a> {
         }
     }
 
+    fn state(state: &'a ControlState) -> Self {
+        let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } =
+            state;
+        let ends = |scale: &Scale| [scale.min, scale.max];
+        let range = range.as_ref().map(|range| match range {
+            ValueRange::Number(scale) => JsonRange::Number(ends(scale)),
+            ValueRange::Pair(x, y) => JsonRange::Pair([ends(x), ends(y)]),
+            ValueRange::Choices(choices) => JsonRange::Choices(choices),
+        });
+        Self::State {
+            id: id.as_str(),
+            value: value.map(JsonValue::from),
+            range,
+            enabled: *enabled,
+            locked: *locked,
+            pressed: *pressed,
+            armed: *armed,
+            indicator: indicator.name(),
+            label,
+            page: page.as_ref().map(WidgetId::as_str),
+        }
+    }
+
     fn control(event: &'a WidgetEvent) -> Self {
         let value = match event.kind {
             EventKind::Changed(value) => Some(value.into()),
@@ -170,6 +232,14 @@ impl<'a> Body<'a> {
             y_m: event.position.y,
             contact: event.contact,
         }
+    }
+}
+
+impl ContactEntry {
+    fn of(contact: &Contact) -> Self {
+        let ([x_m, y_m], [x_velocity_m_s, y_velocity_m_s]) =
+            (contact.centroid.to_array(), contact.velocity.to_array());
+        Self { id: contact.id, x_m, y_m, force_n: contact.force.0, x_velocity_m_s, y_velocity_m_s }
     }
 }
 

@@ -61,6 +61,8 @@ fn each_event_is_a_line_of_its_own_written_before_the_end() {
     let swiped = EventKind::Swiped(Direction::North);
     sink.events(&[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
     sink.events(&[event(EventKind::Cancelled, None)]);
+    // Not without being asked for.
+    sink.contacts(Instant::START, &[Contact::default()]);
     sink.link(Instant::from_millis(9876), LinkState::Lost);
     let sensor = SensorId { tile: crate::floor::TileId::new(2, 1), corner: crate::floor::Corner::SouthWest };
     let troubles = vec![(sensor, Trouble::Stuck)];
@@ -177,4 +179,52 @@ fn a_reader_that_stalls_misses_values_but_no_end_and_is_told_where() {
     assert!(times.is_sorted(), "{times:?}");
     let last = parsed.iter().rfind(|line| line["event"] == "changed").unwrap();
     assert_eq!(last["t_s"], 26.96);
+}
+
+#[test]
+fn contacts_are_written_on_request_100_times_a_second() {
+    let (flushed, lines) = channel();
+    let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap().with_contacts();
+    let foot = Contact { id: ContactId(3), force: Newtons(350.0), ..Contact::default() };
+    for ms in 0..25 {
+        sink.contacts(Instant::from_millis(ms), &[foot.clone()]);
+    }
+    sink.link(Instant::from_millis(30), LinkState::Lost);
+    for ms in 31..1200 {
+        sink.poll(Instant::from_millis(ms));
+    }
+    drop(sink);
+    let text: String = lines.iter().collect();
+    let told: Vec<&str> = text.lines().filter(|line| line.contains("contacts")).collect();
+    assert_eq!(
+        told.len(),
+        3 + 2,
+        "at 0, 10 and 20 ms, then that nobody is there, at once and a second later"
+    );
+    let first = r#"{"t_s":0.0,"event":"contacts","contacts":[{"id":3,"x_m":0.0,"y_m":0.0,"force_n":350.0,"x_velocity_m_s":0.0,"y_velocity_m_s":0.0}]}"#;
+    assert_eq!(told[0], first);
+    assert!(told[3].starts_with(r#"{"t_s":0.031,"#) && told[4].ends_with(r#""contacts":[]}"#), "{told:?}");
+}
+
+#[test]
+fn a_control_that_an_app_changed_is_a_line_of_its_own() {
+    let (flushed, lines) = channel();
+    let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
+    let state = ControlState {
+        id: WidgetId::new("zoom"),
+        value: Some(Value::Number(0.5)),
+        range: Some(crate::engine::ValueRange::Number(crate::widget::Scale::new(0.0, 1.0))),
+        enabled: true,
+        locked: false,
+        pressed: false,
+        armed: false,
+        indicator: crate::widget::Indicator::Off,
+        label: "Zoom".into(),
+        page: None,
+    };
+    sink.control(Instant::from_millis(9900), &state);
+    drop(sink);
+    let line: String = lines.iter().collect();
+    let expected = r#"{"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}"#;
+    assert_eq!(line.trim_end(), expected);
 }

@@ -177,7 +177,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
     let expected = [
         ("disable", 32),
         ("enable", 32),
-        ("get", 36),
+        ("get", 38),
         ("indicator", 32),
         ("label", 32),
         ("lock", 32),
@@ -200,6 +200,21 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
             "tile" => assert_eq!(muted.ends_with(&[5.0, 5.0]), number(&args[2]) == 1.0, "{address}"),
             _ => {}
         }
+        return;
+    }
+    if path == "get" {
+        let (mut said, engine) = (BTreeMap::new(), desk.server.engine());
+        // A datagram per control, then the page and what is muted.
+        for _ in 0..engine.layout().widgets.len() + 2 {
+            said.extend(desk.answer());
+        }
+        for widget in &engine.layout().widgets {
+            let of = |what: &str| said.contains_key(&prefix.address(&format!("widget/{}/{what}", widget.id)));
+            assert!(of("state") && of("page"));
+            assert_eq!(of("value"), engine.value(widget.id.as_str()).is_some());
+        }
+        assert!(said.contains_key(&prefix.address("page")) && said.contains_key(&prefix.address("mute")));
+        assert!(desk.is_silent());
         return;
     }
     let Some(id) = path.strip_prefix("widget/").and_then(|path| path.split('/').next()) else {
@@ -262,6 +277,14 @@ fn reading_back_gives_what_was_set() {
     assert_eq!(answer[&widget("slider", "value")], [OscType::Float(3.5)]);
     let texts = ["attention", "Zoom"].map(|text| OscType::String(text.into()));
     assert_eq!(answer[&widget("slider", "state")], [&[0, 1, 0, 0].map(OscType::Int)[..], &texts].concat());
+
+    assert_eq!(answer[&widget("slider", "range")], [2.0, 4.0, 0.5].map(OscType::Float));
+    assert_eq!(answer[&widget("slider", "page")], [OscType::String(String::new())]);
+    desk.send(&widget("selector", "get"), vec![]);
+    let names = ["Left", "Middle", "Right"].map(|name| OscType::String(name.into()));
+    assert_eq!(desk.answer()[&widget("selector", "range")], names);
+    desk.send(&widget("less", "get"), vec![]);
+    assert_eq!(desk.answer()[&widget("less", "page")], [OscType::String("second".into())]);
 
     desk.send(&widget("pad", "set"), vec![OscType::Float(0.25), OscType::Float(0.75)]);
     desk.send(&widget("pad", "get"), vec![]);
@@ -326,6 +349,49 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     }
     assert_eq!(desk.server.counters().unknown_address, 3 + 5);
     assert!(desk.is_silent());
+}
+
+#[test]
+fn what_one_app_changes_or_asks_is_told_to_all() {
+    let listener = UdpSocket::bind("127.0.0.1:0").unwrap();
+    listener.set_read_timeout(Some(Duration::from_secs(5))).unwrap();
+    let told = underfoot::sink::OscSink::new(listener.local_addr().unwrap()).unwrap();
+    let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
+    desk.server = desk.server.with_events(Box::new(told));
+    let widget = |what: &str| format!("/underfoot/widget/slider/{what}");
+    let hear = |desk: &mut Desk, verb: &str, args: Vec<OscType>| {
+        desk.send(&widget(verb), args);
+        loop {
+            let mut buffer = [0; 2048];
+            let length = listener.recv(&mut buffer).unwrap();
+            // Besides, it is told that nobody is on the floor.
+            let packet = rosc::decoder::decode_udp(&buffer[..length]).unwrap().1;
+            let OscPacket::Bundle(bundle) = packet else { continue };
+            let messages = bundle.content.into_iter().filter_map(|packet| match packet {
+                OscPacket::Message(message) => Some((message.addr, message.args)),
+                OscPacket::Bundle(_) => None,
+            });
+            let messages: BTreeMap<String, Vec<OscType>> = messages.collect();
+            if let Some(state) = messages.get(&widget("state")) {
+                return (messages[&widget("value")].clone(), state.clone());
+            }
+        }
+    };
+    let state = |enabled, locked, label: &str| {
+        let texts = ["off", label].map(|text| OscType::String(text.into()));
+        [&[enabled, locked, 0, 0].map(OscType::Int)[..], &texts].concat()
+    };
+    let number = |number| vec![OscType::Float(number)];
+    let page = desk.server.engine().layout();
+    let label = page.widgets[page.widget_index("slider").unwrap()].label.clone();
+    assert_eq!(hear(&mut desk, "set", number(3.0)), (number(3.0), state(1, 0, &label)));
+    assert_eq!(hear(&mut desk, "lock", vec![]), (number(3.0), state(1, 1, &label)));
+    assert_eq!(hear(&mut desk, "enable", vec![OscType::Int(0)]), (number(3.0), state(0, 1, &label)));
+    let text = vec![OscType::String("Zoom".into())];
+    assert_eq!(hear(&mut desk, "label", text), (number(3.0), state(0, 1, "Zoom")));
+    assert!(desk.is_silent(), "whoever changes it knows");
+    assert_eq!(hear(&mut desk, "get", vec![]), (number(3.0), state(0, 1, "Zoom")));
+    assert_eq!(desk.answer()[&widget("state")], state(0, 1, "Zoom"));
 }
 
 #[test]
