@@ -69,7 +69,7 @@ impl Engine {
             id: widget.id.clone(),
             value: control.value(),
             range: ValueRange::of(&widget.behaviour),
-            enabled: !control.is_disabled(),
+            enabled: !control.is_disabled() && !control.is_inhibited(),
             locked: control.is_locked(),
             pressed: control.is_engaged(),
             armed: control.is_armed(),

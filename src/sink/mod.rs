@@ -32,7 +32,7 @@ use crate::units::Instant;
 use crate::widget::WidgetEvent;
 use crate::wire::LinkState;
 
-pub use crate::outgoing::HeldReport;
+pub use crate::outgoing::{HeldReport, TuioProfiles};
 pub use channel_map::ChannelMap;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
