@@ -13,6 +13,7 @@ use underfoot::sink::{DeviceOptions, Mix, OutputDevice};
 use underfoot::units::{HostClock, Instant};
 
 use super::failure::Failure;
+use super::number::delay_ms;
 
 /// Where actuator samples go.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -21,7 +22,7 @@ pub(crate) struct ActuateArgs {
     #[arg(long, value_name = "FILE")]
     wav: Option<PathBuf>,
     /// Samples per second and channel; without it 48000 in a file, and what the sound card likes best.
-    #[arg(long, value_name = "HZ")]
+    #[arg(long, value_name = "HZ", value_parser = clap::value_parser!(u32).range(8000..=384_000))]
     rate: Option<u32>,
     /// How the sound card plays the actuators.
     #[cfg(feature = "audio")]
@@ -43,17 +44,8 @@ pub(crate) struct ActuateArgs {
     resample: bool,
     /// Play every click exactly so many milliseconds after the foot that caused it; without it, as soon as possible.
     /// A delay that is too short for the sound card makes clicks late, which is counted.
-    #[arg(long, value_name = "MS", value_parser = delay)]
+    #[arg(long, value_name = "MS", value_parser = delay_ms)]
     delay_ms: Option<Duration>,
-}
-
-fn delay(text: &str) -> Result<Duration, String> {
-    let ms: f64 = text.parse().map_err(|error| format!("{error}"))?;
-    if (0.0..=1000.0).contains(&ms) {
-        Ok(Duration::from_secs_f64(ms * 1e-3))
-    } else {
-        Err("0 to 1000".into())
-    }
 }
 
 #[cfg(feature = "audio")]

@@ -5,17 +5,14 @@ mod map;
 mod plot;
 mod tare;
 
-use std::fs::File;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Subcommand;
 use underfoot::floor::Day;
+use underfoot::schema::read_bounded;
 
 use super::failure::Failure;
-
-pub(crate) use tare::seconds;
 
 /// What `underfoot calibrate` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -48,14 +45,7 @@ const MOST_BYTES: u64 = 256 << 20;
 
 /// The text of a table.
 fn read_table(path: &Path) -> Result<String, Failure> {
-    let failed = |error| Failure::File(PathBuf::from(path), error);
-    let mut text = String::new();
-    File::open(path).map_err(failed)?.take(MOST_BYTES + 1).read_to_string(&mut text).map_err(failed)?;
-    if text.len() as u64 > MOST_BYTES {
-        let most = MOST_BYTES >> 20;
-        return Err(Failure::Other(format!("{}: larger than {most} MB; thin the table out", path.display())));
-    }
-    Ok(text)
+    read_bounded(path, MOST_BYTES).map_err(|error| Failure::File(path.into(), error))
 }
 
 /// Today, in UTC.

@@ -8,6 +8,7 @@ use underfoot::capacity::{BankLoad, RenderLoad, RenderWork, SensingLoad, modal_e
 use underfoot::floor::Geometry;
 
 use super::failure::Failure;
+use super::number::patience;
 
 /// What `underfoot capacity` is asked to do.
 ///
@@ -17,8 +18,8 @@ use super::failure::Failure;
 #[derive(ClapArgs, Clone, Debug)]
 pub(crate) struct Args {
     /// How long each load is measured.
-    #[arg(long, value_name = "S", default_value_t = 1.0, value_parser = super::calibrate::seconds)]
-    seconds: f64,
+    #[arg(long, value_name = "S", default_value = "1", value_parser = patience)]
+    seconds: Duration,
     /// Print the result as JSON on standard output.
     #[arg(long)]
     json: bool,
@@ -50,7 +51,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
         anstream::eprintln!("This is a debug build: a release build is many times faster.");
     }
-    let length = Duration::from_secs_f64(args.seconds);
+    let length = args.seconds;
     let rendering = rendering(length);
     let sensing = sensing(length);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));

@@ -66,7 +66,7 @@ struct FigureArgs {
 #[derive(clap::Args, Debug)]
 struct SpotArgs {
     /// How many floors, each of other parts.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     floors: u64,
     /// The first floor's parts; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -79,7 +79,7 @@ struct SpotArgs {
 #[derive(clap::Args, Debug)]
 struct FeetArgs {
     /// How many people, each on a floor of other parts.
-    #[arg(long, value_name = "N", default_value_t = 20)]
+    #[arg(long, value_name = "N", default_value_t = 20, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
     /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
     #[arg(long, value_name = "FAULTS", default_value_t)]
@@ -95,7 +95,7 @@ struct FeetArgs {
 #[derive(clap::Args, Debug)]
 struct ScenesArgs {
     /// How many people, each on floors of other parts.
-    #[arg(long, value_name = "N", default_value_t = 100)]
+    #[arg(long, value_name = "N", default_value_t = 100, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
     /// The first person; the next ones follow.
     #[arg(long, value_name = "N", default_value_t = 1)]
@@ -114,10 +114,10 @@ struct IntentArgs {
     #[arg(long, value_name = "N", default_value_t = 120, value_parser = clap::value_parser!(u64).range(1..=100_000))]
     people: u64,
     /// How many steps they take altogether over the shipped layouts.
-    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
     steps: u64,
     /// How many presses they mean altogether on the shipped layouts.
-    #[arg(long, value_name = "N", default_value_t = 20_000)]
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = clap::value_parser!(u64).range(0..=100_000_000))]
     presses: u64,
     /// The floor's faults: ideal or paper (rigid plates, even rolling feet), slight, moderate or severe.
     #[arg(long, value_name = "FAULTS", default_value_t)]

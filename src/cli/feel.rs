@@ -2,16 +2,20 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::time::Duration;
 
 use serde_json::json;
 use underfoot::experiment::{EffectSheet, Figure};
 use underfoot::feel::{Effect, Gesture};
 use underfoot::picture;
-use underfoot::schema::{self, Effects, NamedEffect, parse_effect, read_ahap, save_text, write_ahap};
+use underfoot::schema::{
+    self, Effects, NamedEffect, parse_effect, read_ahap, read_bounded, save_text, write_ahap,
+};
 use underfoot::sink::write_mono;
 use underfoot::units::Newtons;
 
 use super::failure::Failure;
+use super::number::{gesture, number};
 
 /// What `underfoot feel` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -38,16 +42,16 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     ahap: Option<PathBuf>,
     /// Slip speed of an even slide, in metres per second; without it, a gesture that shows what the effect can do.
-    #[arg(long, value_name = "M_S")]
+    #[arg(long, value_name = "M_S", value_parser = speed)]
     speed: Option<f32>,
     /// Normal force of an even slide, in newtons.
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = force)]
     force: Option<f32>,
     /// How long the slide lasts, or a press is held, in seconds.
-    #[arg(long, value_name = "S")]
-    seconds: Option<f32>,
+    #[arg(long, value_name = "S", value_parser = gesture)]
+    seconds: Option<Duration>,
     /// Newtons at the sound's full scale.
-    #[arg(long, value_name = "N", default_value_t = 40.0)]
+    #[arg(long, value_name = "N", default_value_t = 40.0, value_parser = full_scale)]
     full_scale: f32,
     /// Samples per second.
     #[arg(long, value_name = "HZ", default_value_t = 48_000, value_parser = clap::value_parser!(u32).range(8000..=192_000))]
@@ -58,6 +62,18 @@ pub(crate) struct Args {
     /// What was measured as one JSON object.
     #[arg(long)]
     json: bool,
+}
+
+fn speed(text: &str) -> Result<f32, String> {
+    number(text, &(0.0..=20.0), "metres per second").map(|speed| speed as f32)
+}
+
+fn force(text: &str) -> Result<f32, String> {
+    number(text, &(0.0..=5000.0), "newtons").map(|force| force as f32)
+}
+
+fn full_scale(text: &str) -> Result<f32, String> {
+    number(text, &(0.001..=1e6), "newtons").map(|force| force as f32)
 }
 
 /// Renders one effect, measures it and writes it out.
@@ -122,19 +138,22 @@ impl Args {
             return Err(Failure::Other(message));
         }
         if slides && (self.speed.is_some() || self.force.is_some() || self.seconds.is_some()) {
-            let speed = self.speed.unwrap_or(0.3).clamp(0.0, 20.0);
-            let force = Newtons(self.force.unwrap_or(200.0).clamp(0.0, 5000.0));
-            return Ok(Gesture::steady(speed, force, self.seconds.unwrap_or(2.0).clamp(0.01, 60.0)));
+            let force = Newtons(self.force.unwrap_or(200.0));
+            let seconds = self.seconds.map_or(2.0, |seconds| seconds.as_secs_f32());
+            return Ok(Gesture::steady(self.speed.unwrap_or(0.3), force, seconds));
         }
         Ok(match self.seconds {
             Some(seconds) => {
-                let seconds = seconds.clamp(0.01, 60.0);
+                let seconds = seconds.as_secs_f32();
                 Gesture { holds: true, release_s: Some(0.02 + seconds), length_s: seconds + 0.5, ..usual }
             }
             None => usual,
         })
     }
 }
+
+/// The largest file of an effect or pattern that is read.
+const MOST_BYTES: u64 = 4 << 20;
 
 /// The effect of this name or in this file.
 fn find(wanted: &Path, effects: &Effects) -> Result<NamedEffect, Failure> {
@@ -151,7 +170,7 @@ fn find(wanted: &Path, effects: &Effects) -> Result<NamedEffect, Failure> {
         }
         Failure::File(wanted.to_path_buf(), error)
     };
-    let text = std::fs::read_to_string(wanted).map_err(unreadable)?;
+    let text = read_bounded(wanted, MOST_BYTES).map_err(unreadable)?;
     if wanted.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ahap")) {
         let (effect, lost) = read_ahap(&text, name).map_err(|error| Failure::Other(error.to_string()))?;
         lost.iter().for_each(|lost| anstream::eprintln!("warning: {name}: {lost}"));

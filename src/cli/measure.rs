@@ -13,10 +13,10 @@ use underfoot::serve::{ForceRange, ForceWatch, TileRange};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
 
-use super::calibrate::seconds;
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::number::patience;
 use super::stop::stop_flag;
 
 /// What `underfoot measure` is asked to do.
@@ -33,8 +33,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
     listen: SocketAddr,
     /// How long to watch.
-    #[arg(long, value_name = "S", default_value_t = 10.0, value_parser = seconds)]
-    seconds: f64,
+    #[arg(long, value_name = "S", default_value = "10", value_parser = patience)]
+    seconds: Duration,
     /// Print the result as JSON on standard output.
     #[arg(long)]
     json: bool,
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let mut source = UdpSource::bind(args.listen, &floor)?;
     let tare = Tare::suited_to(&floor);
-    anstream::eprintln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds);
+    anstream::eprintln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
     if tare != Tare::FromFloor {
         anstream::eprintln!("The floor has no tare: keep off it for the first second.");
     }
@@ -65,7 +65,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if watch.frames() == 0 {
         return Err(Failure::Other(format!(
             "no packets of this floor came to {} within {} s; is it switched on, and does it send here?",
-            args.listen, args.seconds
+            args.listen,
+            args.seconds.as_secs_f64()
         )));
     }
     let ranges: Vec<TileRange> = watch.ranges().collect();
@@ -89,8 +90,7 @@ fn watch_floor(
     watch: &mut ForceWatch,
 ) -> Result<(), Failure> {
     let stop = stop_flag()?;
-    let span = Duration::from_secs_f64(args.seconds);
-    let until = source.now() + span;
+    let until = source.now() + args.seconds;
     let live = std::io::stderr().is_terminal();
     let mut shown = Instant::START;
     while !stop.load(Ordering::Relaxed) && source.now() < until {

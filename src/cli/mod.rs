@@ -17,6 +17,7 @@ mod floor_args;
 mod latency;
 mod layout_args;
 mod measure;
+mod number;
 mod outputs;
 mod play;
 #[cfg(feature = "preview")]

@@ -1,9 +1,10 @@
 //! Options for a simulated floor, and the scenario played on it.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
+use underfoot::schema::read_bounded;
 use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
 
 use super::failure::Failure;
@@ -48,12 +49,14 @@ impl SimArgs {
     }
 }
 
+/// The largest scenario that is read: as large as layouts may be.
+const MOST_BYTES: u64 = 4 << 20;
+
 /// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll.
 pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) -> Result<Script, Failure> {
     let scenario = match file {
         Some(path) => {
-            let text =
-                std::fs::read_to_string(path).map_err(|error| Failure::File(PathBuf::from(path), error))?;
+            let text = read_bounded(path, MOST_BYTES).map_err(|error| Failure::File(path.into(), error))?;
             Scenario::parse(&path.display().to_string(), &text)?
         }
         None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,

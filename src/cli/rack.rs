@@ -16,6 +16,7 @@ use underfoot::units::{HostClock, Instant, Newtons};
 use super::actuate::{ActuateArgs, Actuation};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
+use super::number::number;
 use super::stop::stop_flag;
 
 /// What `underfoot rack` is asked to do.
@@ -79,8 +80,7 @@ fn tile(text: &str) -> Result<TileId, String> {
 }
 
 fn level(text: &str) -> Result<f32, String> {
-    let level: f32 = text.parse().map_err(|error| format!("{error}"))?;
-    if (0.1..=40.0).contains(&level) { Ok(level) } else { Err("0.1 to 40 newtons".into()) }
+    number(text, &(0.1..=40.0), "newtons").map(|level| level as f32)
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {

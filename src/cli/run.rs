@@ -22,6 +22,7 @@ use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
+use super::number::lifetime;
 use super::outputs::OutputArgs;
 use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
@@ -46,8 +47,8 @@ pub(crate) struct Args {
     #[arg(long)]
     eq4: bool,
     /// Stop after so many seconds.
-    #[arg(long, value_name = "S")]
-    seconds: Option<f64>,
+    #[arg(long, value_name = "S", value_parser = lifetime)]
+    seconds: Option<Duration>,
 }
 
 /// Serves a floor until it is told to stop.
@@ -107,8 +108,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     served.map_or(Ok(()), |served| Ok(served?))
 }
 
-fn stop_after(seconds: f64, stop: Arc<AtomicBool>) {
-    let span = Duration::try_from_secs_f64(seconds).unwrap_or(Duration::MAX);
+fn stop_after(span: Duration, stop: Arc<AtomicBool>) {
     thread::spawn(move || {
         thread::sleep(span);
         stop.store(true, Ordering::Relaxed);

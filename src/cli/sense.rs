@@ -1,11 +1,11 @@
 //! `underfoot sense`: contacts and cursor from a force table.
 
-use std::fs::File;
 use std::io::{self, BufReader, BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
+use underfoot::schema::open_bounded;
 use underfoot::sense::{
     Contact, ContactId, Covariance, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Quality, Sensing,
 };
@@ -28,6 +28,9 @@ pub(crate) struct SenseArgs {
     eq4: bool,
 }
 
+/// The largest table: a day of a floor of 36 tiles at 1 kHz, which is read line by line.
+const MOST_BYTES: u64 = 128 << 30;
+
 /// Prints one JSON line per instant of the table on standard output.
 ///
 /// The cursor is the one of a region as large as the floor. Ends quietly when
@@ -41,7 +44,7 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     let geometry = floor.geometry;
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", args.file.display()));
     let unwritten = |error: io::Error| Failure::Other(format!("standard output: {error}"));
-    let file = File::open(&args.file).map_err(|error| failed(&error))?;
+    let file = open_bounded(&args.file, MOST_BYTES).map_err(|error| failed(&error))?;
     let method = if args.eq4 { Method::Eq4 } else { Method::Tracker };
     let mut table = ForceTable::new(BufReader::new(file), geometry).map_err(|error| failed(&error))?;
     let mut sensing = Sensing::new(geometry, method).with_maps(&floor.position_maps);

@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[arg(short, long, value_name = "DIR", default_value = DEFAULT_OUT)]
     out: PathBuf,
     /// Samples per second and actuator channel.
-    #[arg(long, value_name = "HZ", default_value_t = SAMPLE_RATE)]
+    #[arg(long, value_name = "HZ", default_value_t = SAMPLE_RATE, value_parser = clap::value_parser!(u32).range(8000..=384_000))]
     rate: u32,
 }
 

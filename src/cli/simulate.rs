@@ -16,6 +16,7 @@ use underfoot::wire::{SensorEncoder, SensorFormat};
 use super::failure::Failure;
 use super::floor_args::{FloorArgs, save_floor};
 use super::layout_args::LayoutArgs;
+use super::number::lifetime;
 use super::play::{self, SimArgs};
 use super::stop::stop_flag;
 
@@ -47,8 +48,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE.csv")]
     write_presses: Option<PathBuf>,
     /// Stop after so many seconds, although the scenario goes on.
-    #[arg(long, value_name = "S")]
-    seconds: Option<f64>,
+    #[arg(long, value_name = "S", value_parser = lifetime)]
+    seconds: Option<Duration>,
     /// Play the scenario again and again.
     #[arg(long = "loop")]
     again: bool,
@@ -121,7 +122,7 @@ impl Args {
         let here: SocketAddr = if self.send.is_ipv4() { ([0; 4], 0).into() } else { ([0; 16], 0).into() };
         let socket = UdpSocket::bind(here).map_err(no_socket)?;
         let stop = stop_flag()?;
-        let until = self.seconds.map(|seconds| Instant::now() + Duration::from_secs_f64(seconds.max(0.0)));
+        let until = self.seconds.map(|seconds| Instant::now() + seconds);
         // Boards are punctual.
         claim_priority(Rank::Sensing);
         let mut sent = 0;

@@ -4,7 +4,7 @@
 //! record! { pub struct Mode ... }   name, type, unit, range, default and one line of each field
 //!   -record, codec-> read_fields, write_fields, turn_fields, describe
 //!
-//! bytes -source-> text -scan-> brackets that close, bounded nesting
+//! bytes -file, source-> text -scan-> brackets that close, bounded nesting
 //!   -syntax-> tree with spans -reader, node, fields-> numbers, texts, names in range -record-> the typed record
 //! ```
 //!
@@ -24,6 +24,7 @@ pub(crate) mod diagnostic;
 mod excerpt;
 pub(crate) mod fault;
 pub(crate) mod fields;
+pub(crate) mod file;
 pub(crate) mod hand;
 pub(crate) mod node;
 pub(crate) mod number;

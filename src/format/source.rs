@@ -1,12 +1,12 @@
 //! The text of a file: size, encoding, lines.
 
-use std::fs::File;
-use std::io::{self, Read};
+use std::io;
 use std::ops::Range;
 use std::path::Path;
 
 use super::diagnostic::{Diagnostic, Diagnostics, Severity};
 use super::excerpt::Excerpt;
+use super::file::read_bytes;
 
 /// Largest file that is read, in bytes.
 pub(crate) const MAX_BYTES: usize = 4 << 20;
@@ -81,30 +81,13 @@ impl<'t> Source<'t> {
 /// If it cannot be opened or read, is not an ordinary file, is larger than [`MAX_BYTES`] or is not UTF-8.
 pub(crate) fn read_text(path: &Path) -> Result<String, Diagnostics> {
     let name = path.display().to_string();
-    let bytes = match read_bytes(path) {
+    let bytes = match read_bytes(path, MAX_BYTES as u64) {
         Ok(bytes) => bytes,
+        Err(error) if error.kind() == io::ErrorKind::FileTooLarge => return Err(too_large(&name).into()),
         Err(error) => return Err(unreadable(&name, &error).into()),
     };
-    if bytes.len() > MAX_BYTES {
-        return Err(too_large(&name).into());
-    }
     String::from_utf8(bytes)
         .map_err(|error| not_utf8(&name, error.as_bytes(), error.utf8_error().valid_up_to()).into())
-}
-
-/// At most one byte more than [`MAX_BYTES`], so that too much is noticed and not read.
-fn read_bytes(path: &Path) -> io::Result<Vec<u8>> {
-    // Examined before it is opened: opening a pipe waits for somebody to write.
-    let metadata = path.metadata()?;
-    if metadata.is_dir() {
-        return Err(io::ErrorKind::IsADirectory.into());
-    }
-    if !metadata.is_file() {
-        return Err(io::Error::other("it is not an ordinary file"));
-    }
-    let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    Ok(bytes)
 }
 
 fn unreadable(name: &str, error: &io::Error) -> Diagnostic {

@@ -44,7 +44,7 @@ mod units;
 mod version;
 mod write;
 
-use crate::format::{diagnostic, fields, node, number, pairs, problem, reader, source, suggest};
+use crate::format::{diagnostic, fields, file, node, number, pairs, problem, reader, source, suggest};
 
 pub use crate::feel::{Effects, NamedEffect};
 #[cfg(feature = "internals")]
@@ -67,6 +67,7 @@ pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 
 internal! {
+    use file::{BoundedFile, open_bounded, read_bounded};
     use effect::{is_effect_name, write_effect, write_named_effect};
     use lists::{MAX_WIDGETS};
 }

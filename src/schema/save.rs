@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 use tempfile::NamedTempFile;
 use thiserror::Error;
 
+use super::file::read_bytes;
 use super::{Diagnostics, parse_floor, write_floor};
 use crate::floor::Floor;
 
@@ -74,11 +75,14 @@ pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
         Err(error) if error.kind() == ErrorKind::NotFound => path.to_path_buf(),
         Err(error) => return Err(failed("looking for it")(error)),
     };
-    let old = match fs::read(&target) {
+    // Of an old file that is longer than the new one, only that matters.
+    let old = match read_bytes(&target, text.len() as u64) {
         Ok(old) if old == text.as_bytes() => return Ok(Saved::Unchanged),
-        Ok(_) => Some(fs::metadata(&target).map_err(failed("looking at the old one"))?),
         Err(error) if error.kind() == ErrorKind::NotFound => None,
-        Err(error) => return Err(failed("reading the old one")(error)),
+        Err(error) if error.kind() != ErrorKind::FileTooLarge => {
+            return Err(failed("reading the old one")(error));
+        }
+        Ok(_) | Err(_) => Some(fs::metadata(&target).map_err(failed("looking at the old one"))?),
     };
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));

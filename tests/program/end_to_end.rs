@@ -20,7 +20,7 @@ pub(super) fn said(output: &Output) -> String {
 }
 
 /// A UDP port that was free a moment ago.
-fn free_port() -> u16 {
+pub(super) fn free_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
@@ -99,7 +99,7 @@ fn without_a_display_the_program_leaves_a_picture_a_sound_and_a_log() {
 }
 
 /// A child process that is ended with the test, however that ends.
-struct Served(Child);
+pub(super) struct Served(pub(super) Child);
 
 impl Drop for Served {
     fn drop(&mut self) {
@@ -110,7 +110,7 @@ impl Drop for Served {
 }
 
 /// Asks a process politely to end, as `kill` does.
-fn terminate(child: &Child) {
+pub(super) fn terminate(child: &Child) {
     let status = Command::new("kill").arg(child.id().to_string()).status().unwrap();
     assert!(status.success());
 }

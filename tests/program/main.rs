@@ -10,5 +10,6 @@ mod calibrate;
 mod clients;
 mod end_to_end;
 mod holds;
+mod input;
 mod page_commands;
 mod rack;

@@ -12,6 +12,7 @@ use underfoot::source::UdpSource;
 use super::today;
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{save_floor, saved_json};
+use crate::cli::number::patience;
 
 /// What `underfoot calibrate tare` is asked to do.
 ///
@@ -27,8 +28,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
     listen: SocketAddr,
     /// How long to wait for the floor to be quiet.
-    #[arg(long, value_name = "S", default_value_t = 5.0, value_parser = seconds)]
-    seconds: f64,
+    #[arg(long, value_name = "S", default_value = "5", value_parser = patience)]
+    seconds: Duration,
     /// Take the tare although a tile weighs otherwise than at the last one, because the floor was changed.
     #[arg(long)]
     accept_change: bool,
@@ -37,23 +38,18 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Reads a time in seconds that a person would wait.
-pub(crate) fn seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse::<f64>().ok().filter(|seconds| (0.1..=86_400.0).contains(seconds));
-    seconds.ok_or_else(|| "expected 0.1 to 86400 seconds".into())
-}
-
 /// Takes the tare and keeps it, or says why not.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut floor = schema::load_floor(&args.floor)?;
     let mut source = UdpSource::bind(args.listen, &floor)?;
     anstream::eprintln!("Listening on {}; keep off the floor.", args.listen);
-    let patience = Duration::from_secs_f64(args.seconds);
     floor.tare =
-        take_tare(&mut source, &floor, patience, args.accept_change).map_err(|failure| match failure {
-            TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
-            failure => Failure::Other(failure.to_string()),
-        })?;
+        take_tare(&mut source, &floor, args.seconds, args.accept_change).map_err(
+            |failure| match failure {
+                TareFailure::Changed { .. } => Failure::Other(format!("{failure} with --accept-change")),
+                failure => Failure::Other(failure.to_string()),
+            },
+        )?;
     floor.tared = Some(today());
     let saved = save_floor(&floor, &args.floor)?;
     let weights = floor.tare.iter().map(|tare| tare.iter().map(|tare| tare.0).sum::<f32>());

@@ -1,0 +1,59 @@
+//! Numbers on the command line: finite, within their range, and said so where they are not.
+
+use std::ops::RangeInclusive;
+use std::time::Duration;
+
+/// Longest time that a program is asked to work: a year.
+const LONGEST_S: f64 = 365.0 * 86_400.0;
+
+/// Reads a finite number within `range`; `unit` stands behind the range in the message, such as `newtons`.
+pub(crate) fn number(text: &str, range: &RangeInclusive<f64>, unit: &str) -> Result<f64, String> {
+    // NaN lies in no range.
+    let read = text.parse::<f64>().ok().filter(|number| range.contains(number));
+    read.ok_or_else(|| format!("expected {} to {} {unit}", range.start(), range.end()))
+}
+
+/// Reads a time in seconds within `range`.
+fn span(text: &str, range: &RangeInclusive<f64>) -> Result<Duration, String> {
+    number(text, range, "seconds").map(Duration::from_secs_f64)
+}
+
+/// Reads the seconds after which a program ends: 0 to a year.
+pub(crate) fn lifetime(text: &str) -> Result<Duration, String> {
+    span(text, &(0.0..=LONGEST_S))
+}
+
+/// Reads the seconds that a person waits for a measurement: 0.1 s to a day.
+pub(crate) fn patience(text: &str) -> Result<Duration, String> {
+    span(text, &(0.1..=86_400.0))
+}
+
+/// Reads how long a simulated foot slides or presses: 0.01 s to a minute.
+#[cfg(feature = "lab")]
+pub(crate) fn gesture(text: &str) -> Result<Duration, String> {
+    span(text, &(0.01..=60.0))
+}
+
+/// Reads a delay in milliseconds: 0 to a second.
+pub(crate) fn delay_ms(text: &str) -> Result<Duration, String> {
+    number(text, &(0.0..=1000.0), "milliseconds").map(|ms| Duration::from_secs_f64(ms * 1e-3))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_not_a_finite_number_in_range_is_refused() {
+        for text in ["nan", "NaN", "inf", "-inf", "1e999", "-1", "1e30", "", "ten", "1s"] {
+            let message = lifetime(text).unwrap_err();
+            assert_eq!(message, "expected 0 to 31536000 seconds", "{text}");
+        }
+        for read in [patience, delay_ms] {
+            assert!(["nan", "inf", "-0.1", "1e9"].iter().all(|text| read(text).is_err()));
+        }
+        assert_eq!(lifetime("2.5"), Ok(Duration::from_millis(2500)));
+        assert_eq!(lifetime("0"), Ok(Duration::ZERO));
+        assert_eq!(delay_ms("12"), Ok(Duration::from_millis(12)));
+    }
+}
