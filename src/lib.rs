@@ -101,6 +101,7 @@ mod outgoing;
 pub mod picture;
 #[cfg(feature = "preview")]
 pub mod preview;
+mod rate_limit;
 #[cfg(feature = "scene")]
 pub mod scene;
 pub mod schema;

@@ -28,11 +28,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let reference = Reference::of(&layout, &floor, &args.prefix.osc_prefix);
     if args.json {
         let json = serde_json::to_string(&reference).map_err(|error| Failure::Other(error.to_string()))?;
-        anstream::println!("{json}");
+        outln!("{json}");
         return Ok(());
     }
     for entry in &reference.entries {
-        anstream::println!("{}", line(entry));
+        outln!("{}", line(entry));
     }
     Ok(())
 }

@@ -49,7 +49,7 @@ struct Measured {
 /// None; the type is every command's.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
-        anstream::eprintln!("This is a debug build: a release build is many times faster.");
+        errln!("This is a debug build: a release build is many times faster.");
     }
     let length = args.seconds;
     let rendering = rendering(length);
@@ -65,7 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         };
         let errors: serde_json::Map<_, _> =
             errors.iter().map(|(rate, error)| (rate.to_string(), json!(error))).collect();
-        anstream::println!(
+        outln!(
             "{}",
             json!({
                 "render_x_real_time": table(&rendering),
@@ -78,15 +78,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
         return Ok(());
     }
-    anstream::println!("Rendering 36 tiles at 96 kHz in blocks of 64 frames, on one core:");
+    outln!("Rendering 36 tiles at 96 kHz in blocks of 64 frames, on one core:");
     rendering.iter().for_each(print);
-    anstream::println!("Sensing at 1 kHz, on one core:");
+    outln!("Sensing at 1 kHz, on one core:");
     sensing.iter().for_each(print);
-    anstream::println!("Error of modal banks against double precision:");
+    outln!("Error of modal banks against double precision:");
     for (rate, error) in errors {
-        anstream::println!("  {:<52} {error:>7.1} dB", format!("{} kHz", rate / 1000));
+        outln!("  {:<52} {error:>7.1} dB", format!("{} kHz", rate / 1000));
     }
-    anstream::println!(
+    outln!(
         "With half a core for either, this machine feels {felt_tiles} tiles in use at once and senses at least \
          {sensed_tiles} with two people on each 6 x 6: a floor of {side} x {side} tiles."
     );
@@ -95,7 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 fn print(measured: &Measured) {
     let digits = if measured.times_real_time < 10.0 { 2 } else { 0 };
-    anstream::println!("  {:<52} {:>7.digits$} x real time", measured.name, measured.times_real_time);
+    outln!("  {:<52} {:>7.digits$} x real time", measured.name, measured.times_real_time);
 }
 
 fn rendering(length: Duration) -> Vec<Measured> {

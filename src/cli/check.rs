@@ -9,6 +9,7 @@ use underfoot::schema::{self, Diagnostics};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::output::colours;
 
 /// What `underfoot check` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -57,12 +58,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         print_json(&found)?;
     } else if !found.is_empty() {
-        anstream::eprintln!("{}", if colours() { format!("{found:#}") } else { found.to_string() });
+        errln!("{}", if colours() { format!("{found:#}") } else { found.to_string() });
     }
     match bad {
         0 => {
             if !args.json {
-                anstream::println!("{} good", count(args.layouts.len()));
+                outln!("{} good", count(args.layouts.len()));
             }
             Ok(())
         }
@@ -96,7 +97,7 @@ fn explain(code: &str, json: bool) -> Result<(), Failure> {
     if json {
         return print_json(rule);
     }
-    anstream::println!(
+    outln!(
         "{}: {}\n\n{}\n\nWhy: {}\nTo do: {}",
         rule.code,
         rule.title,
@@ -112,20 +113,15 @@ fn list_rules(json: bool) -> Result<(), Failure> {
         return print_json(&RULES);
     }
     for rule in RULES {
-        anstream::println!("{}  {}: {}", rule.code, rule.title, rule.limits);
+        outln!("{}  {}: {}", rule.code, rule.title, rule.limits);
     }
     Ok(())
 }
 
 fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
     let json = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
-    anstream::println!("{json}");
+    outln!("{json}");
     Ok(())
-}
-
-/// Whether somebody looks at standard error who sees colours.
-fn colours() -> bool {
-    anstream::stderr().current_choice() != anstream::ColorChoice::Never
 }
 
 fn count(layouts: usize) -> String {

@@ -185,7 +185,7 @@ fn pond(args: &PondArgs) -> Result<(), Failure> {
         }
         return print_json(&Tables { laws, walk });
     }
-    anstream::println!("{laws}\n{walk}");
+    outln!("{laws}\n{walk}");
     let failed = |path: &Path| {
         let path = path.to_path_buf();
         move |error| Failure::File(path, error)
@@ -194,11 +194,11 @@ fn pond(args: &PondArgs) -> Result<(), Failure> {
     for (name, scene) in PondWalk::pictures(args.seed.into())? {
         let path = args.out.join(name).with_extension("png");
         picture::write(&scene, &path, args.width)?;
-        anstream::println!("{}", path.display());
+        outln!("{}", path.display());
     }
     let path = args.out.join("pond_walk.csv");
     std::fs::write(&path, walk.csv()).map_err(failed(&path))?;
-    anstream::println!("{}", path.display());
+    outln!("{}", path.display());
     Ok(())
 }
 
@@ -234,11 +234,11 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
         }
         return print_json(&Tables { lines: table.lines().collect(), cells: sweep.cells() });
     }
-    anstream::println!("{table}");
+    outln!("{table}");
     FigureArgs { out: args.out.clone(), seed: args.seed, width: args.width }.make("intent_sweep", &sweep)?;
     let path = args.out.join("intent.csv");
     std::fs::write(&path, table.csv()).map_err(|error| Failure::File(path.clone(), error))?;
-    anstream::println!("{}", path.display());
+    outln!("{}", path.display());
     Ok(())
 }
 
@@ -266,7 +266,7 @@ fn in_parallel<T: Send>(
                     let Ok(mut done) = done.lock() else { break };
                     done.push((number, result));
                     if watched {
-                        anstream::eprint!("\r{what} {} of {times} ", done.len());
+                        err!("\r{what} {} of {times} ", done.len());
                     }
                     if failed {
                         next.store(times, Ordering::Relaxed);
@@ -276,7 +276,7 @@ fn in_parallel<T: Send>(
         }
     });
     if watched {
-        anstream::eprint!("\r{:40}\r", "");
+        err!("\r{:40}\r", "");
     }
     let mut done = done.into_inner().map_err(|_| Failure::Other("a thread of the experiment died".into()))?;
     done.sort_by_key(|(number, _)| *number);
@@ -292,15 +292,15 @@ impl FigureArgs {
         };
         std::fs::create_dir_all(&self.out).map_err(failed(&self.out))?;
         let scene = figure.draw();
-        anstream::print!("{}", figure.summary());
+        out!("{}", figure.summary());
         for ending in ["png", "svg"] {
             let path = self.out.join(name).with_extension(ending);
             picture::write(&scene, &path, self.width)?;
-            anstream::println!("{}", path.display());
+            outln!("{}", path.display());
         }
         let path = self.out.join(name).with_extension("csv");
         std::fs::write(&path, figure.csv()).map_err(failed(&path))?;
-        anstream::println!("{}", path.display());
+        outln!("{}", path.display());
         Ok(())
     }
 }
@@ -318,7 +318,7 @@ fn spot(args: &SpotArgs) -> Result<(), Failure> {
         }
         return print_json(&Tables { lines: tile.lines().chain(seam.lines()).collect() });
     }
-    anstream::println!("{tile}\n{seam}");
+    outln!("{tile}\n{seam}");
     Ok(())
 }
 
@@ -328,7 +328,7 @@ fn place(args: &SpotArgs) -> Result<(), Failure> {
     if args.json {
         return print_json(&table.lines().collect::<Vec<_>>());
     }
-    anstream::println!("{table}");
+    outln!("{table}");
     Ok(())
 }
 
@@ -345,7 +345,7 @@ fn scenes(args: &ScenesArgs) -> Result<(), Failure> {
     if args.json {
         return print_json(&table.lines().collect::<Vec<_>>());
     }
-    anstream::print!("{table}");
+    out!("{table}");
     Ok(())
 }
 
@@ -369,7 +369,7 @@ fn feet(args: &FeetArgs) -> Result<(), Failure> {
         }
         return print_json(&Tables { people: people.lines().collect(), taps: taps.lines().collect() });
     }
-    anstream::println!("{people}\n{taps}");
+    outln!("{people}\n{taps}");
     Ok(())
 }
 
@@ -382,20 +382,20 @@ fn counted(
     let watched = std::io::stderr().is_terminal();
     for step in 0..times {
         if watched {
-            anstream::eprint!("\r{what} {} of {times} ", step + 1);
+            err!("\r{what} {} of {times} ", step + 1);
         }
         act(step)?;
     }
     if watched {
         // Over what was written there, so that the tables begin on a clean line.
-        anstream::eprint!("\r{:40}\r", "");
+        err!("\r{:40}\r", "");
     }
     Ok(())
 }
 
 fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     let text = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
-    anstream::println!("{text}");
+    outln!("{text}");
     Ok(())
 }
 

@@ -87,14 +87,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let gesture = args.gesture(&named.effect)?;
     let sheet = EffectSheet::new(&named.name, &named.about, Arc::clone(&named.effect), gesture, args.rate);
     if args.json {
-        anstream::println!("{}", measured(&sheet));
+        outln!("{}", measured(&sheet));
     } else {
-        anstream::print!("{}", sheet.summary());
+        out!("{}", sheet.summary());
     }
     if let Some(path) = &args.wav {
         let cut = write_mono(path, &sheet.samples, args.rate, args.full_scale)?;
         if cut > 0 {
-            anstream::eprintln!(
+            errln!(
                 "warning: {cut} samples are beyond {} N and were cut off; see --full-scale",
                 args.full_scale
             );
@@ -109,7 +109,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = &args.ahap {
         let (text, lost) =
             write_ahap(&named.effect, &named.name).map_err(|error| Failure::Other(error.to_string()))?;
-        lost.iter().for_each(|lost| anstream::eprintln!("warning: {lost}"));
+        lost.iter().for_each(|lost| errln!("warning: {lost}"));
         save_text(&text, path)?;
     }
     Ok(())
@@ -123,7 +123,7 @@ impl Args {
         if let Some(folder) = self.effects.as_deref().or_else(|| here.is_dir().then_some(here)) {
             let warnings = effects.read_folder(folder)?;
             if !warnings.is_empty() {
-                anstream::eprint!("{warnings}");
+                err!("{warnings}");
             }
         }
         Ok(effects)
@@ -173,7 +173,7 @@ fn find(wanted: &Path, effects: &Effects) -> Result<NamedEffect, Failure> {
     let text = read_bounded(wanted, MOST_BYTES).map_err(unreadable)?;
     if wanted.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("ahap")) {
         let (effect, lost) = read_ahap(&text, name).map_err(|error| Failure::Other(error.to_string()))?;
-        lost.iter().for_each(|lost| anstream::eprintln!("warning: {name}: {lost}"));
+        lost.iter().for_each(|lost| errln!("warning: {name}: {lost}"));
         let stem = wanted.file_stem().and_then(|stem| stem.to_str()).unwrap_or("pattern").to_lowercase();
         let fit = |c: char| if c.is_ascii_lowercase() || c.is_ascii_digit() { c } else { '_' };
         let about = "A haptic pattern of Apple's".to_owned();
@@ -185,7 +185,7 @@ fn find(wanted: &Path, effects: &Effects) -> Result<NamedEffect, Failure> {
     }
     let (named, warnings) = parse_effect(&text, name, effects)?;
     if !warnings.is_empty() {
-        anstream::eprint!("{warnings}");
+        err!("{warnings}");
     }
     Ok(named)
 }
@@ -194,9 +194,9 @@ fn list(effects: &Effects, as_json: bool) {
     for named in effects.iter() {
         let kind = named.effect.kind.name();
         if as_json {
-            anstream::println!("{}", json!({ "name": named.name, "kind": kind, "about": named.about }));
+            outln!("{}", json!({ "name": named.name, "kind": kind, "about": named.about }));
         } else {
-            anstream::println!("{:<18}{kind:<12}{}", named.name, named.about);
+            outln!("{:<18}{kind:<12}{}", named.name, named.about);
         }
     }
 }

@@ -40,14 +40,10 @@ pub(crate) fn grid(text: &str) -> Result<Geometry, String> {
 pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
     let saved = schema::save_floor(floor, path)?;
     match &saved {
-        Saved::New => anstream::eprintln!("Written to {}.", path.display()),
-        Saved::Unchanged => anstream::eprintln!("{} holds all this already.", path.display()),
+        Saved::New => errln!("Written to {}.", path.display()),
+        Saved::Unchanged => errln!("{} holds all this already.", path.display()),
         Saved::Replaced { backup } => {
-            anstream::eprintln!(
-                "Written to {}; what it held before is in {}.",
-                path.display(),
-                backup.display()
-            );
+            errln!("Written to {}; what it held before is in {}.", path.display(), backup.display());
         }
     }
     Ok(saved)

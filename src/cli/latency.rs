@@ -23,9 +23,9 @@ impl LatencyArgs {
     /// Tells what `stages` have gathered.
     pub(crate) fn tell(&self, stages: &LatencyStages) -> Result<(), Failure> {
         match stages.whole.summary() {
-            None => anstream::eprintln!("No cue was played."),
-            Some(_) if self.latency => anstream::println!("{}", report(stages)),
-            Some(summary) => anstream::eprintln!("From packet to first sample handed on: {summary}."),
+            None => errln!("No cue was played."),
+            Some(_) if self.latency => outln!("{}", report(stages)),
+            Some(summary) => errln!("From packet to first sample handed on: {summary}."),
         }
         match &self.latency_csv {
             Some(path) => write_csv(stages, path),
@@ -131,7 +131,7 @@ fn write_csv(stages: &LatencyStages, path: &Path) -> Result<(), Failure> {
         }
     }
     std::fs::write(path, table).map_err(|error| Failure::File(path.to_owned(), error))?;
-    anstream::eprintln!("Latencies written to {}.", path.display());
+    errln!("Latencies written to {}.", path.display());
     Ok(())
 }
 

@@ -39,7 +39,7 @@ impl LayoutArgs {
             }
         };
         if !loaded.warnings.is_empty() {
-            anstream::eprint!("{}", loaded.warnings);
+            err!("{}", loaded.warnings);
         }
         Ok(loaded.layout)
     }

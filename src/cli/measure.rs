@@ -49,18 +49,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     let mut source = UdpSource::bind(args.listen, &floor)?;
     let tare = Tare::suited_to(&floor);
-    anstream::eprintln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
+    errln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
     if tare != Tare::FromFloor {
-        anstream::eprintln!("The floor has no tare: keep off it for the first second.");
+        errln!("The floor has no tare: keep off it for the first second.");
     }
     let mut assembler = Assembler::with_tare(&floor, tare);
     let mut watch = ForceWatch::new(&floor);
     watch_floor(args, &mut source, &mut assembler, &mut watch)?;
     if let TareOutcome::Refused { sensor, mean, .. } = assembler.tare_outcome() {
-        anstream::eprintln!(
-            "The floor was never empty: {sensor} read {:.0} N. Forces are not tared.",
-            mean.0
-        );
+        errln!("The floor was never empty: {sensor} read {:.0} N. Forces are not tared.", mean.0);
     }
     if watch.frames() == 0 {
         return Err(Failure::Other(format!(
@@ -75,7 +72,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let tiles: Vec<_> = ranges.iter().map(tile_json).collect();
         let controls: Vec<_> = controls.iter().map(|(widget, range)| control_json(widget, range)).collect();
-        anstream::println!("{}", json!({ "frames": watch.frames(), "tiles": tiles, "controls": controls }));
+        outln!("{}", json!({ "frames": watch.frames(), "tiles": tiles, "controls": controls }));
     } else {
         print(&ranges);
         print_controls(&controls);
@@ -105,12 +102,12 @@ fn watch_floor(
             shown = source.now();
             if let Some((tile, force)) = watch.heaviest() {
                 let left = until.since(shown).as_secs_f32();
-                anstream::eprint!("\r{left:5.1} s left, most on tile {tile}: {:6.1} N   ", force.0);
+                err!("\r{left:5.1} s left, most on tile {tile}: {:6.1} N   ", force.0);
             }
         }
     }
     if live {
-        anstream::eprintln!();
+        errln!();
     }
     Ok(())
 }
@@ -136,8 +133,8 @@ fn print(ranges: &[TileRange]) {
     let heads: String = columns.iter().map(|name| format!("  {name:^20}")).collect();
     let units: String =
         columns.iter().map(|_| format!("  {:>6} {:>6} {:>6}", "least", "median", "most")).collect();
-    anstream::println!("newtons   {}", heads.trim_end());
-    anstream::println!("tile      {units}");
+    outln!("newtons   {}", heads.trim_end());
+    outln!("tile      {units}");
     for range in ranges {
         let tile = range.tile.to_string();
         let forces: String = std::iter::once(&range.force).chain(&range.sensors).map(shown).collect();
@@ -145,7 +142,7 @@ fn print(ranges: &[TileRange]) {
             Quality::Live => String::new(),
             quality => format!("  {}", quality_name(quality)),
         };
-        anstream::println!("{tile:<10}{forces}{note}");
+        outln!("{tile:<10}{forces}{note}");
     }
 }
 
@@ -169,14 +166,12 @@ fn print_controls(controls: &[(&Widget, ForceRange)]) {
     if controls.is_empty() {
         return;
     }
-    anstream::println!();
-    anstream::println!(
-        "control            presses at  lets go at   least median   most on its heaviest tile"
-    );
+    outln!();
+    outln!("control            presses at  lets go at   least median   most on its heaviest tile");
     for (widget, range) in controls {
         let at = widget.behaviour.thresholds();
         let note = if range.greatest_n < at.press.0 { "  never pressed" } else { "" };
-        anstream::println!(
+        outln!(
             "{:<18} {:>8.0} N  {:>8.0} N{}{note}",
             widget.id.as_str(),
             at.press.0,

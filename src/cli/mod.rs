@@ -1,6 +1,10 @@
 //! The command line: one file per subcommand.
 //!
-//! Exit status 0: done; 1: the work failed (standard error says what to do next); 2: wrong usage.
+//! Exit status 0: done; 1: the work failed (standard error says what to do next), or what was said could not be
+//! written; 2: wrong usage.
+
+#[macro_use]
+mod output;
 
 mod actuate;
 mod addresses;
@@ -98,15 +102,27 @@ enum Command {
 
 /// Runs the program and gives its exit status.
 pub(crate) fn main() -> ExitCode {
-    let cli = Cli::parse();
-    start_logging(cli.verbose);
-    match dispatch(cli.command) {
-        Ok(()) => ExitCode::SUCCESS,
-        Err(failure) => {
-            anstream::eprintln!("{failure}");
-            ExitCode::from(1)
+    let status = match Cli::try_parse() {
+        Ok(cli) => {
+            start_logging(cli.verbose);
+            dispatch(cli.command).map_or_else(
+                |failure| {
+                    errln!("{failure}");
+                    1
+                },
+                |()| 0,
+            )
         }
-    }
+        Err(asked) => {
+            // Help and version, too.
+            if let Err(error) = asked.print() {
+                output::note_failure(error);
+            }
+            u8::try_from(asked.exit_code()).unwrap_or(2)
+        }
+    };
+    let is_whole = output::finish();
+    ExitCode::from(if status == 0 && !is_whole { 1 } else { status })
 }
 
 fn dispatch(command: Option<Command>) -> Result<(), Failure> {
@@ -132,7 +148,10 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {
-            clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut std::io::stdout());
+            // Written to standard output directly, it would panic when the reader has gone.
+            let mut script = Vec::new();
+            clap_complete::generate(shell, &mut Cli::command(), "underfoot", &mut script);
+            out!("{}", String::from_utf8_lossy(&script));
             Ok(())
         }
     }
@@ -144,7 +163,7 @@ fn by_default() -> Result<(), Failure> {
     if preview::has_display() {
         match preview::run(&preview::Args::default()) {
             Err(Failure::NoWindow(reason)) => {
-                anstream::eprintln!("No window: {reason}. Playing the built-in session instead.");
+                errln!("No window: {reason}. Playing the built-in session instead.");
             }
             done => return done,
         }
@@ -161,5 +180,10 @@ fn start_logging(verbose: u8) {
         _ => "trace",
     };
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
-    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).with_target(false).init();
+    tracing_subscriber::fmt()
+        .with_env_filter(filter)
+        .with_writer(|| output::Log)
+        .with_ansi(output::colours())
+        .with_target(false)
+        .init();
 }

@@ -161,7 +161,7 @@ impl Walk {
         }
         wav.advance(end + TAIL)?;
         wav.finish()?;
-        anstream::eprintln!("Written to {}, a channel per tile.", path.display());
+        errln!("Written to {}, a channel per tile.", path.display());
         Ok(())
     }
 
@@ -170,7 +170,7 @@ impl Walk {
         let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
         let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock, |_| {})?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;
-        anstream::eprintln!("{notice} Ctrl-C ends the walk.");
+        errln!("{notice} Ctrl-C ends the walk.");
         let stop = stop_flag()?;
         for (at, tile, channel) in self.clicks(steps) {
             if !wait(at, &*clock, &mut feel, sink.as_mut(), &stop)? {
@@ -185,7 +185,7 @@ impl Walk {
 }
 
 fn say(at: Instant, tile: TileId, channel: u16) {
-    anstream::println!("{:8.2} s  tile {tile}  channel {channel}", at.secs());
+    outln!("{:8.2} s  tile {tile}  channel {channel}", at.secs());
 }
 
 /// Waits until `at`; false if the walk is to end before.
@@ -214,17 +214,17 @@ impl Map {
         if self.json {
             let entry = |(tile, channel): (TileId, u16)| serde_json::json!({ "col": tile.column, "row": tile.row, "channel": channel });
             let entries: Vec<_> = map.entries().map(entry).collect();
-            anstream::println!("{}", serde_json::Value::from(entries));
+            outln!("{}", serde_json::Value::from(entries));
             return Ok(());
         }
         let tiles = map.entries().count();
-        anstream::println!(
+        outln!(
             "{tiles} tiles on {} channels. The channel of each tile, from 0, north at the top:\n{map}",
             floor.channel_count()
         );
         for (channel, tiles) in map.shared() {
             let tiles: Vec<String> = tiles.iter().map(TileId::to_string).collect();
-            anstream::eprintln!("Channel {channel} moves several tiles: {}.", tiles.join(", "));
+            errln!("Channel {channel} moves several tiles: {}.", tiles.join(", "));
         }
         Ok(())
     }
@@ -254,13 +254,13 @@ impl Devices {
                 })
             };
             let entries: Vec<_> = devices.iter().map(entry).collect();
-            anstream::println!("{}", serde_json::Value::from(entries));
+            outln!("{}", serde_json::Value::from(entries));
             return Ok(());
         }
         for device in &devices {
-            anstream::println!("{}", line(device));
+            outln!("{}", line(device));
         }
-        anstream::eprintln!("`--device` takes a name, a part of it, or what stands in brackets.");
+        errln!("`--device` takes a name, a part of it, or what stands in brackets.");
         Ok(())
     }
 }

@@ -14,6 +14,6 @@ pub(crate) struct Args {
 /// Prints what files may say: each field with its unit, range, default and meaning.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let text = write_reference(args.name.as_deref()).map_err(Failure::Other)?;
-    anstream::println!("{}", text.trim_end());
+    outln!("{}", text.trim_end());
     Ok(())
 }

@@ -51,6 +51,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let view = View { show, ..View::new(&geometry, engine.layout(), &snapshot, &Theme::LIGHT) };
     scene::draw(&mut scene, &view);
     picture::write(&scene, &args.out, args.width)?;
-    anstream::println!("{}", args.out.display());
+    outln!("{}", args.out.display());
     Ok(())
 }

@@ -70,11 +70,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             let _ = commands.send(Command::SetLayout(Box::new(layout)));
         }
         Err(diagnostics) => {
-            anstream::eprintln!("{diagnostics}The last good layout stays on the floor.");
+            errln!("{diagnostics}The last good layout stays on the floor.");
         }
     })?;
     if let Ok(address) = address {
-        anstream::eprintln!(
+        errln!(
             "Listening on {address} with a receive buffer of {} KiB. {notice} Ctrl-C ends it.",
             granted / 1024
         );
@@ -100,7 +100,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     drop(server);
     report(&counters, dropped);
     report_felt(&felt);
-    grounds.iter().for_each(|ground| anstream::eprintln!("{ground}"));
+    grounds.iter().for_each(|ground| errln!("{ground}"));
     args.latency.tell(&latency)?;
     if panicked.load(Ordering::Relaxed) {
         return Err(Failure::Other("a part of the program failed; please report it".into()));
@@ -137,7 +137,7 @@ fn report_felt(felt: &FeelCounters) {
         .map(|(count, what)| format!("{what} {count}"))
         .collect();
     if !said.is_empty() {
-        anstream::eprintln!("Cues: {}.", said.join(", "));
+        errln!("Cues: {}.", said.join(", "));
     }
 }
 
@@ -167,7 +167,7 @@ fn grounds(engine: &Engine) -> Vec<String> {
 
 /// What came in and what was not used.
 fn report(counters: &LinkCounters, dropped: u64) {
-    anstream::eprintln!(
+    errln!(
         "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; requests not met {}; events not sent {dropped}.",
         counters.packets,
         counters.frames,

@@ -12,6 +12,7 @@ use underfoot::sense::{
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
+use super::output::note_failure;
 
 /// What `underfoot sense` is asked to do.
 #[derive(Args, Clone, Debug)]
@@ -33,7 +34,7 @@ const MOST_BYTES: u64 = 128 << 30;
 
 /// Prints one JSON line per instant of the table on standard output.
 ///
-/// The cursor is the one of a region as large as the floor. Ends quietly when
+/// The cursor is the one of a region as large as the floor. Ends when
 /// nobody reads the output any more.
 ///
 /// # Errors
@@ -43,7 +44,6 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let geometry = floor.geometry;
     let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", args.file.display()));
-    let unwritten = |error: io::Error| Failure::Other(format!("standard output: {error}"));
     let file = open_bounded(&args.file, MOST_BYTES).map_err(|error| failed(&error))?;
     let method = if args.eq4 { Method::Eq4 } else { Method::Tracker };
     let mut table = ForceTable::new(BufReader::new(file), geometry).map_err(|error| failed(&error))?;
@@ -56,21 +56,19 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
             Ok(Some(t_s)) => t_s,
             Ok(None) => break,
             Err(error) => {
-                out.flush().map_err(unwritten)?;
+                out.flush().unwrap_or_else(note_failure);
                 return Err(failed(&error));
             }
         };
         let contacts = sensing.update(&frame);
         let cursor = picker.update(geometry.bounds(), contacts, frame.at);
-        match write_line(&mut out, t_s, contacts, cursor) {
-            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => return Ok(()),
-            written => written.map_err(unwritten)?,
+        if let Err(error) = write_line(&mut out, t_s, contacts, cursor) {
+            note_failure(error);
+            return Ok(());
         }
     }
-    match out.flush() {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        flushed => flushed.map_err(unwritten),
-    }
+    out.flush().unwrap_or_else(note_failure);
+    Ok(())
 }
 
 #[derive(Serialize)]

@@ -118,7 +118,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let layout = server.engine().layout().clone();
     drop(server);
     camera.develop(&geometry, &layout, &script, &picture)?;
-    anstream::println!(
+    outln!(
         "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
          What its controls did: {}",
         script.duration().as_secs_f64(),

@@ -82,13 +82,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         write(path, &sim::press_table(&calibrated, &sim, args.sim.seed))?;
     }
     let sent = args.send_all(&floor, &layout, &sim, encoder)?;
-    anstream::eprintln!("{sent} packets sent to {}.", args.send);
+    errln!("{sent} packets sent to {}.", args.send);
     Ok(())
 }
 
 fn write(path: &Path, table: &str) -> Result<(), Failure> {
     schema::save_text(table, path)?;
-    anstream::eprintln!("Written to {}.", path.display());
+    errln!("Written to {}.", path.display());
     Ok(())
 }
 

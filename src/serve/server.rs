@@ -2,6 +2,7 @@
 
 mod end;
 mod heartbeat;
+mod limited;
 mod mute;
 mod notices;
 mod requests;
@@ -16,6 +17,7 @@ use triple_buffer::Input;
 
 use self::heartbeat::Heartbeat;
 use super::changes::ChangeLimiter;
+use self::limited::Notices;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
@@ -118,6 +120,8 @@ pub struct Server {
     /// Requests that could not be met.
     denied: u64,
     heartbeat: Heartbeat,
+    /// How often notices are repeated.
+    notices: Notices,
 }
 
 impl Server {
@@ -159,6 +163,7 @@ impl Server {
             answer: Vec::new(),
             denied: 0,
             heartbeat: Heartbeat::default(),
+            notices: Notices::default(),
         }
     }
 

@@ -11,5 +11,6 @@ mod clients;
 mod end_to_end;
 mod holds;
 mod input;
+mod output;
 mod page_commands;
 mod rack;

@@ -71,16 +71,16 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let sensors: Vec<_> = judged.iter().map(|(loads, judgement)| as_json(loads, judgement)).collect();
         let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
-        anstream::println!("{}", json!({ "sensors": sensors, "maps_dropped": dropped, "saved": saved }));
+        outln!("{}", json!({ "sensors": sensors, "maps_dropped": dropped, "saved": saved }));
     } else {
         print(&judged, args.laws);
         if saved.is_none() {
-            anstream::eprintln!("Nothing is kept: say where with --out FLOOR.ron.");
+            errln!("Nothing is kept: say where with --out FLOOR.ron.");
         }
     }
     if dropped > 0 {
         let maps = count(dropped, "position map");
-        anstream::eprintln!("{maps} made through the old curves were taken away: measure them anew.");
+        errln!("{maps} made through the old curves were taken away: measure them anew.");
     }
     outcome(&judged)
 }
@@ -114,19 +114,14 @@ fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
         others.chain([formula(&judgement.fit)])
     });
     let wide = shown.map(|formula| formula.len()).max().unwrap_or(0).max("f in N, v in V".len());
-    anstream::println!(
-        "tile      corner  law          {:<wide$}  residual  points  verdict",
-        "f in N, v in V"
-    );
+    outln!("tile      corner  law          {:<wide$}  residual  points  verdict", "f in N, v in V");
     for (loads, judgement) in judged {
         let tile = loads.sensor.tile.to_string();
         let corner = loads.sensor.corner.name();
         let law = judgement.fit.map_or("-", |fit| fit.calibration.kind().name());
         let (formula, residual) = (formula(&judgement.fit), residual(&judgement.fit));
         let (points, verdict) = (loads.points.len(), verdict(judgement));
-        anstream::println!(
-            "{tile:<9} {corner:<6}  {law:<11}  {formula:<wide$}  {residual:>8}  {points:>6}  {verdict}"
-        );
+        outln!("{tile:<9} {corner:<6}  {law:<11}  {formula:<wide$}  {residual:>8}  {points:>6}  {verdict}");
         for candidate in judgement.laws.candidates.iter().filter(|_| all_laws) {
             print_law(candidate, wide);
         }
@@ -134,7 +129,7 @@ fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
     let saturated: usize = judged.iter().map(|(loads, _)| loads.saturated).sum();
     if saturated > 0 {
         let readings = count(saturated, "reading");
-        anstream::println!("{readings} at 98 % of the converter's range or above were left out.");
+        outln!("{readings} at 98 % of the converter's range or above were left out.");
     }
 }
 
@@ -149,9 +144,9 @@ fn print_law(candidate: &Candidate, wide: usize) {
             } else {
                 "too few measurements to compare".to_owned()
             };
-            anstream::println!("{:18}{law:<11}  {formula:<wide$}  {residual:>8}  {:6}  {excess}", "", "");
+            outln!("{:18}{law:<11}  {formula:<wide$}  {residual:>8}  {:6}  {excess}", "", "");
         }
-        Err(error) => anstream::println!("{:18}{law:<11}  {error}", ""),
+        Err(error) => outln!("{:18}{law:<11}  {error}", ""),
     }
 }
 

@@ -51,15 +51,15 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let tiles: Vec<_> = fits.iter().map(|(tile, fit)| as_json(*tile, fit)).collect();
         let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
-        anstream::println!("{}", json!({ "tiles": tiles, "saturated": table.saturated, "saved": saved }));
+        outln!("{}", json!({ "tiles": tiles, "saturated": table.saturated, "saved": saved }));
     } else {
         print(&fits);
         if table.saturated > 0 {
             let points = count(table.saturated, "point");
-            anstream::println!("{points} with a sensor at 98 % of its range or above left out.");
+            outln!("{points} with a sensor at 98 % of its range or above left out.");
         }
         if saved.is_none() {
-            anstream::eprintln!("Nothing is kept: say where with --out FLOOR.ron.");
+            errln!("Nothing is kept: say where with --out FLOOR.ron.");
         }
     }
     outcome(&fits)
@@ -82,8 +82,8 @@ fn keep(floor: &mut Floor, fits: &Fits) {
 }
 
 fn print(fits: &Fits) {
-    anstream::println!("                   without map, cm         with map, cm");
-    anstream::println!("tile      points   median   95 %  worst    median   95 %  worst");
+    outln!("                   without map, cm         with map, cm");
+    outln!("tile      points   median   95 %  worst    median   95 %  worst");
     let shown = |Errors { median_m, p95_m, worst_m }: Errors| {
         format!("{:>6.2} {:>6.2} {:>6.2}", 100.0 * median_m, 100.0 * p95_m, 100.0 * worst_m)
     };
@@ -92,9 +92,9 @@ fn print(fits: &Fits) {
         match fit {
             Ok(fit) => {
                 let (before, after) = (shown(fit.before), shown(fit.after));
-                anstream::println!("{tile:<9} {:>6}   {before}    {after}", fit.points);
+                outln!("{tile:<9} {:>6}   {before}    {after}", fit.points);
             }
-            Err(error) => anstream::println!("{tile:<9} {error}"),
+            Err(error) => outln!("{tile:<9} {error}"),
         }
     }
 }

@@ -42,7 +42,7 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut floor = schema::load_floor(&args.floor)?;
     let mut source = UdpSource::bind(args.listen, &floor)?;
-    anstream::eprintln!("Listening on {}; keep off the floor.", args.listen);
+    errln!("Listening on {}; keep off the floor.", args.listen);
     floor.tare =
         take_tare(&mut source, &floor, args.seconds, args.accept_change).map_err(
             |failure| match failure {
@@ -61,10 +61,10 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             .zip(&floor.tare)
             .map(|(tile, tare)| json!({ "col": tile.column, "row": tile.row, "tare_n": tare }))
             .collect();
-        anstream::println!("{}", json!({ "tiles": tiles, "saved": saved_json(&args.floor, &saved) }));
+        outln!("{}", json!({ "tiles": tiles, "saved": saved_json(&args.floor, &saved) }));
     } else {
         let sensors = 4 * floor.tare.len();
-        anstream::println!("Tared {sensors} sensors; the tiles weigh {least:.1} to {most:.1} N.");
+        outln!("Tared {sensors} sensors; the tiles weigh {least:.1} to {most:.1} N.");
     }
     Ok(())
 }

@@ -23,11 +23,15 @@ impl Server {
         let link = self.settled_link();
         if link != self.link {
             match link {
-                LinkState::Lost => {
-                    warn!("nothing usable from any board for 100 ms: what was held is cancelled");
+                LinkState::Lost => self.notices.link.warn(self.source.now(), || {
+                    "nothing usable from any board for 100 ms: what was held is cancelled".into()
+                }),
+                LinkState::Partial => {
+                    self.notices.link.warn(self.source.now(), || "nothing usable comes from some boards".into());
                 }
-                LinkState::Partial => warn!("nothing usable comes from some boards"),
-                LinkState::Live => info!("packets arrive from every board"),
+                LinkState::Live => {
+                    self.notices.link.info(self.source.now(), || "packets arrive from every board".into());
+                }
                 LinkState::Waiting => {}
             }
             self.link = link;
@@ -120,11 +124,13 @@ impl Server {
         self.trouble_changes = changes;
         let now: Vec<_> = self.assembler.troubles().collect();
         for (sensor, trouble) in now.iter().filter(|found| !self.troubles.contains(found)) {
-            warn!("{sensor}: {trouble}");
+            self.notices.troubles.warn(self.source.now(), || format!("{sensor}: {trouble}"));
         }
         for (sensor, trouble) in &self.troubles {
             if !now.iter().any(|(still, _)| still == sensor) {
-                info!("{sensor}: well again (was: {trouble})");
+                self.notices
+                    .troubles
+                    .info(self.source.now(), || format!("{sensor}: well again (was: {trouble})"));
             }
         }
         self.troubles = now;

@@ -38,7 +38,8 @@ impl Server {
             Err(why) => {
                 self.denied += 1;
                 let address = self.prefix.address(&request.message.path());
-                warn!("{address} refused: {why}");
+                let now = self.source.now();
+                self.notices.denied.warn(now, || format!("{} refused: {why}", address.escape_debug()));
                 write_error(&self.prefix, &address, &why, &mut self.answer);
                 self.send_answer(request);
             }

@@ -3,6 +3,7 @@
 use std::net::SocketAddr;
 use std::time::Duration;
 
+use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 use crate::wire::WireError;
 
@@ -10,29 +11,18 @@ use crate::wire::WireError;
 const QUIET: Duration = Duration::from_secs(60);
 
 /// Warnings about refused datagrams: the first of each kind, then one a minute with the number in between.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(super) struct RefusalLog {
-    malformed: Warned,
-    unknown: Warned,
-    shape: Warned,
-    foreign: Warned,
+    malformed: RateLimit,
+    unknown: RateLimit,
+    shape: RateLimit,
+    foreign: RateLimit,
 }
 
-#[derive(Debug, Default)]
-struct Warned {
-    last: Option<Instant>,
-    kept_quiet: u64,
-}
-
-impl Warned {
-    /// How many were kept quiet since the last warning, if it is time for another.
-    fn due(&mut self, now: Instant) -> Option<u64> {
-        if self.last.is_some_and(|last| now.since(last) < QUIET) {
-            self.kept_quiet += 1;
-            return None;
-        }
-        self.last = Some(now);
-        Some(std::mem::take(&mut self.kept_quiet))
+impl Default for RefusalLog {
+    fn default() -> Self {
+        let limit = RateLimit::new(1, QUIET);
+        Self { malformed: limit, unknown: limit, shape: limit, foreign: limit }
     }
 }
 
@@ -43,33 +33,18 @@ impl RefusalLog {
             WireError::UnknownAddress { .. } => &mut self.unknown,
             WireError::WrongShape { .. } | WireError::TooEarly { .. } => &mut self.shape,
         };
-        if let Some(others) = warned.due(now) {
+        if let Some(others) = warned.take(now) {
             tracing::warn!(%sender, others_like_it = others, "datagram refused: {error}");
         }
     }
 
     pub(super) fn foreign(&mut self, now: Instant, sender: SocketAddr) {
-        if let Some(others) = self.foreign.due(now) {
+        if let Some(others) = self.foreign.take(now) {
             tracing::warn!(
                 %sender,
                 others_like_it = others,
                 "datagram refused: the sender is not among the allowed ones"
             );
         }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_warning_a_minute_tells_how_many_were_kept_quiet() {
-        let mut warned = Warned::default();
-        assert_eq!(warned.due(Instant::from_millis(1)), Some(0));
-        for ms in 2..100 {
-            assert_eq!(warned.due(Instant::from_millis(ms)), None);
-        }
-        assert_eq!(warned.due(Instant::from_millis(60_001)), Some(98));
     }
 }

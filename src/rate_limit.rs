@@ -1,0 +1,67 @@
+//! How often something may happen: repeated notices, what one sender may ask for.
+
+use std::time::Duration;
+
+use crate::units::Instant;
+
+/// A token bucket: so many at once, then one each so often.
+///
+/// Turner's leaky bucket as a virtual schedule (ITU-T I.371, generic cell rate algorithm): what is stored is
+/// when the bucket would be full again, so that a limiter costs two numbers and no clock.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct RateLimit {
+    every: Duration,
+    burst: u32,
+    /// When all tokens are back.
+    full_at: Instant,
+    /// How many came too soon since the last that did not.
+    held_back: u64,
+}
+
+impl RateLimit {
+    /// At most `burst` (0 counts as 1) at once, and one each `every` in the long run.
+    pub(crate) const fn new(burst: u32, every: Duration) -> Self {
+        Self { every, burst, full_at: Instant::START, held_back: 0 }
+    }
+
+    /// Whether one more may happen at `now`: then how many were held back since the last; `None` holds it back.
+    ///
+    /// A clock that goes back gives no tokens.
+    pub(crate) fn take(&mut self, now: Instant) -> Option<u64> {
+        let spent = self.full_at.since(now);
+        if spent > self.every * self.burst.saturating_sub(1) {
+            self.held_back += 1;
+            return None;
+        }
+        self.full_at = self.full_at.max(now) + self.every;
+        Some(std::mem::take(&mut self.held_back))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_burst_passes_and_then_one_each_so_often_with_the_number_in_between() {
+        let mut limit = RateLimit::new(3, Duration::from_secs(10));
+        let now = Instant::from_millis(500);
+        assert_eq!([(); 5].map(|()| limit.take(now)), [Some(0), Some(0), Some(0), None, None]);
+        assert_eq!(limit.take(Instant::from_millis(10_499)), None);
+        assert_eq!(limit.take(Instant::from_millis(10_500)), Some(3));
+        assert_eq!(limit.take(Instant::from_millis(10_501)), None);
+    }
+
+    #[test]
+    fn in_the_long_run_no_more_pass_than_one_each_so_often() {
+        let mut limit = RateLimit::new(10, Duration::from_millis(5));
+        let passed = (0..10_000).filter(|&us| limit.take(Instant::from_micros(us * 100)).is_some()).count();
+        assert_eq!(passed, 10 + 1_000_000 / 5_000 - 1);
+    }
+
+    #[test]
+    fn a_limit_of_nothing_at_once_lets_one_pass() {
+        let mut limit = RateLimit::new(0, Duration::from_secs(1));
+        assert_eq!([limit.take(Instant::START), limit.take(Instant::START)], [Some(0), None]);
+    }
+}
