@@ -13,6 +13,7 @@ use underfoot::serve::{ForceRange, ForceWatch, TileRange};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
 
+use super::doors::BoardArgs;
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
@@ -30,8 +31,10 @@ pub(crate) struct Args {
     #[command(flatten)]
     floor: FloorArgs,
     /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
     listen: SocketAddr,
+    #[command(flatten)]
+    boards: BoardArgs,
     /// How long to watch.
     #[arg(long, value_name = "S", default_value = "10", value_parser = patience)]
     seconds: Duration,
@@ -47,7 +50,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         Some(_) => Some(args.layout.load(&floor.geometry)?),
         None => None,
     };
-    let mut source = UdpSource::bind(args.listen, &floor)?;
+    let mut source = args.boards.bind(args.listen, &floor)?;
     let tare = Tare::suited_to(&floor);
     errln!("Listening on {} for {} s; Ctrl-C ends it.", args.listen, args.seconds.as_secs_f64());
     if tare != Tare::FromFloor {

@@ -12,6 +12,7 @@ mod calibrate;
 #[cfg(feature = "lab")]
 mod capacity;
 mod check;
+mod doors;
 #[cfg(feature = "lab")]
 mod experiment;
 mod failure;

@@ -23,12 +23,13 @@ use underfoot::sense::{Contact, Method};
 use underfoot::serve::{Command, Server};
 use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
 use underfoot::sink::{EventSink, Fanout};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, UdpSource};
+use underfoot::source::{Pace, SensorSource, SimulatedSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::{ControlMessage, Prefix};
 
 use super::actuate::{ActuateArgs, Actuation};
+use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
@@ -46,6 +47,10 @@ pub(crate) struct Args {
     /// Show a real floor, whose packets arrive here.
     #[arg(long, value_name = "ADDR", conflicts_with_all = ["scenario", "session"])]
     listen: Option<SocketAddr>,
+    #[command(flatten)]
+    boards: BoardArgs,
+    #[command(flatten)]
+    commands: CommandArgs,
     /// Show a scenario played on the simulated floor, instead of the mouse's feet.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
@@ -167,7 +172,7 @@ impl Args {
     fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
         if let Some(address) = self.listen {
             let prefix = self.outputs.prefix.osc_prefix.clone();
-            let source = UdpSource::bind(address, floor)?.with_prefix(prefix);
+            let source = self.commands.open(self.boards.bind(address, floor)?.with_prefix(prefix))?;
             return Ok(Stage {
                 floor: floor.clone(),
                 clock: source.clock(),

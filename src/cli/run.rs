@@ -14,10 +14,11 @@ use underfoot::ground::{GroundCounters, Material};
 use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{SensorSource, UdpSource};
+use underfoot::source::SensorSource;
 use underfoot::wire::LinkCounters;
 
 use super::actuate::{ActuateArgs, Actuation};
+use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::latency::LatencyArgs;
@@ -34,9 +35,14 @@ pub(crate) struct Args {
     layout: LayoutArgs,
     #[command(flatten)]
     floor: FloorArgs,
-    /// Where the boards' packets and apps' requests arrive.
-    #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
+    /// Where the boards' packets arrive: an address of this machine and a port. Another machine's boards need the
+    /// address of the network card that they are on.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
     listen: SocketAddr,
+    #[command(flatten)]
+    boards: BoardArgs,
+    #[command(flatten)]
+    commands: CommandArgs,
     #[command(flatten)]
     outputs: OutputArgs,
     #[command(flatten)]
@@ -56,7 +62,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
     let prefix = args.outputs.prefix.osc_prefix.clone();
-    let source = UdpSource::bind(args.listen, &floor)?.with_prefix(prefix.clone());
+    let source = args.boards.bind(args.listen, &floor)?.with_prefix(prefix.clone());
+    let source = args.commands.open(source)?;
     let (address, granted) = (source.local_addr(), source.granted_buffer());
     let Actuation { feel, sink, latency, notice, .. } =
         args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
@@ -168,13 +175,15 @@ fn grounds(engine: &Engine) -> Vec<String> {
 /// What came in and what was not used.
 fn report(counters: &LinkCounters, dropped: u64) {
     errln!(
-        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {}, bad readings {}; requests not met {}; events not sent {dropped}.",
+        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {} (may not send {}, sent too much {}), bad readings {}; requests not met {}; events not sent {dropped}.",
         counters.packets,
         counters.frames,
         counters.lost,
         counters.late,
         counters.duplicate,
         counters.refused(),
+        counters.foreign,
+        counters.limited,
         counters.bad_readings,
         counters.denied,
     );

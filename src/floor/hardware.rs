@@ -1,8 +1,8 @@
 //! Everything that is known of one floor.
 
 use super::{
-    Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, PositionMap,
-    Response, SensorId, TileId,
+    Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, Network,
+    PositionMap, Response, SensorId, TileId,
 };
 use crate::units::Newtons;
 
@@ -36,6 +36,8 @@ pub struct Floor {
     pub map_records: Vec<Option<MapRecord>>,
     /// When `tare` was measured; `None` where nobody said.
     pub tared: Option<Day>,
+    /// Where the boards' packets come from, on the network; nowhere but this machine if it is empty.
+    pub allow: Vec<Network>,
 }
 
 impl Floor {
@@ -57,6 +59,7 @@ impl Floor {
             calibration_records: vec![[None; 4]; tiles],
             map_records: vec![None; tiles],
             tared: None,
+            allow: Vec::new(),
             geometry,
         }
     }

@@ -17,8 +17,11 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version;
-use crate::floor::{Board, Corner, Floor, Geometry, GeometryError, SensorId, TileId};
+use crate::floor::{Board, Corner, Floor, Geometry, GeometryError, Network, SensorId, TileId};
 use crate::wire::MAX_CHANNELS;
+
+/// Most networks that boards may send from.
+const MAX_NETWORKS: usize = 256;
 
 /// Most boards of one floor.
 const MAX_BOARDS: usize = 16_384;
@@ -55,6 +58,7 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     // A floor whose measures are wrong is read on as the paper's, but its tiles are not judged by that.
     let mut floor = Floor::of(geometry.unwrap_or_default());
     let grid = Grid { known: geometry };
+    let allow = fields.read("allow", Some(Vec::new()), allow);
     let boards = fields.read("boards", Some(None), |node| boards(node, grid).map(Some));
     let sensors = fields.read("sensors", Some(()), |node| sensors(node, grid, &mut floor));
     let tared = fields.read("tared", Some(None), |node| day::read(node).map(Some));
@@ -65,6 +69,7 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     sensors?;
     maps?;
     floor.tared = tared?;
+    floor.allow = allow?;
     if let Some(boards) = boards? {
         floor.boards = boards;
     }
@@ -234,6 +239,20 @@ pub(super) fn corner(node: Node<'_>) -> Option<Corner> {
     node.choice(&[("Sw", sw), ("Se", se), ("Nw", nw), ("Ne", ne)])
 }
 
+/// Networks, such as `["192.168.1.0/24"]`.
+fn allow(node: Node<'_>) -> Option<Vec<Network>> {
+    all(node.list("network", MAX_NETWORKS)?.into_iter().map(|node| {
+        let text = node.text(64)?;
+        let read = text.parse();
+        if read.is_err() {
+            let problem = Problem::error(node.span(), format!("{text:?} is not a network"));
+            let expected = "expected an address or a range of them";
+            node.report(problem.expected(expected).help("write \"192.168.1.20\" or \"192.168.1.0/24\""));
+        }
+        read.ok()
+    }))
+}
+
 /// An OSC address that stands for itself: no pattern characters.
 fn address(node: Node<'_>) -> Option<String> {
     let text = node.text(255)?;
@@ -275,6 +294,7 @@ mod tests {
     fn what_is_listed_replaces_what_would_be_assumed() {
         let floor = read(
             "Floor(columns: 2, rows: 1,
+                allow: [\"10.0.0.5\", \"192.168.1.0/24\"],
                 boards: [
                     (tiles: [(1, 0)]),
                     (address: \"/lab/west\", channels: [(0, 0, Ne), None, (0, 0, Sw)]),
@@ -296,6 +316,8 @@ mod tests {
         assert_eq!(floor.calibration[0][0], Calibration::NOMINAL);
         assert_eq!(floor.tare[0][Corner::NorthEast.index()], Newtons(12.5));
         assert_eq!(floor.actuators, [None, Some(Actuator { channel: 7, full_scale: Newtons(55.0) })]);
+        assert_eq!(floor.allow, ["10.0.0.5", "192.168.1.0/24"].map(|text| text.parse().unwrap()));
+        assert_eq!(read(&write_floor(&floor)), floor);
     }
 
     #[test]

@@ -47,10 +47,20 @@ fn write(floor: &Floor, text: &mut String) -> std::fmt::Result {
         }
         writeln!(text, "    ],")?;
     }
+    write_allow(floor, text)?;
     write_sensors(floor, text)?;
     write_maps(floor, text)?;
     write_sound(floor, &usual, text)?;
     writeln!(text, ")")
+}
+
+fn write_allow(floor: &Floor, text: &mut String) -> std::fmt::Result {
+    if floor.allow.is_empty() {
+        return Ok(());
+    }
+    let networks: Vec<String> = floor.allow.iter().map(|network| format!("\"{network}\"")).collect();
+    writeln!(text, "    // Where the boards' packets come from.")?;
+    writeln!(text, "    allow: [{}],", networks.join(", "))
 }
 
 fn write_board(board: &Board, number: usize, text: &mut String) -> std::fmt::Result {

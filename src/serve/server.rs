@@ -16,8 +16,8 @@ use tracing::warn;
 use triple_buffer::Input;
 
 use self::heartbeat::Heartbeat;
-use super::changes::ChangeLimiter;
 use self::limited::Notices;
+use super::changes::ChangeLimiter;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};

@@ -1,30 +1,31 @@
 //! Packets and requests from a UDP socket.
 
+mod admission;
 mod log;
+mod open;
 mod proc_net;
+mod senders;
 mod stamped;
 mod timed;
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
-use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant as HostInstant, SystemTime};
 
 use rosc::OscTime;
-use socket2::{Domain, Protocol, Socket, Type};
 
+use self::admission::Admission;
 use self::log::RefusalLog;
+use self::open::{BUFFER_BYTES, open};
 use self::stamped::{Received, Stamped};
 use self::timed::{Timed, delay};
 use super::{SensorSource, SourceError};
-use crate::floor::Floor;
+use crate::floor::{Floor, Network};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
 use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, WireError};
-
-/// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
-const BUFFER_BYTES: usize = 8 << 20;
 
 /// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
@@ -32,10 +33,17 @@ const MAX_CONTROLS: usize = 1024;
 /// Most datagrams examined in one call without patience, so that a flood of rubbish cannot hold it.
 const MAX_UNWAITED: usize = 64;
 
+/// How often requests on their own port are looked for, and most that are examined then.
+const REQUESTS_EVERY: Duration = Duration::from_millis(1);
+const MAX_REQUESTS: usize = 32;
+
 /// How often the kernel is asked how many datagrams it dropped.
 const DROPS_EVERY: Duration = Duration::from_secs(1);
 
 /// Sensor packets and control messages from a UDP socket.
+///
+/// Packets are taken from where the floor says ([`Floor::allow`]), else from this machine only; requests from this
+/// machine only, on the same port, unless [`UdpSource::with_commands`] opens one for them.
 ///
 /// Its clock starts at zero when the socket is bound. On Linux packets are
 /// stamped with the moment the kernel received them; elsewhere when the program
@@ -43,6 +51,8 @@ const DROPS_EVERY: Duration = Duration::from_secs(1);
 #[derive(Debug)]
 pub struct UdpSource {
     socket: UdpSocket,
+    /// Where requests come, if they have a port of their own, and when that was last looked at.
+    commands: Option<(UdpSocket, Instant)>,
     stamped: Stamped,
     /// When the last datagram came.
     received: Instant,
@@ -57,7 +67,8 @@ pub struct UdpSource {
     /// Requests whose time tag has not come.
     timed: Timed,
     answer: Vec<u8>,
-    allowed: Vec<IpAddr>,
+    admission: Admission,
+    boards: usize,
     counters: LinkCounters,
     drops_read: Instant,
     kernel_drops: u64,
@@ -71,9 +82,7 @@ impl UdpSource {
     /// [`SourceError::Socket`] if the port is taken or the address is not this
     /// machine's; its message says what to do.
     pub fn bind(address: SocketAddr, floor: &Floor) -> Result<Self, SourceError> {
-        let socket = open(address)
-            .map_err(|source| SourceError::Socket { message: advice(address, &source), source })?;
-        let granted = socket.recv_buffer_size().unwrap_or(0);
+        let (socket, granted) = open(address, "--listen")?;
         if granted < BUFFER_BYTES {
             tracing::info!(
                 granted,
@@ -82,11 +91,11 @@ impl UdpSource {
             );
         }
         let decoder = Decoder::new(floor);
-        let socket = UdpSocket::from(socket);
         Ok(Self {
             stamped: Stamped::on(&socket),
             received: Instant::START,
             socket,
+            commands: None,
             granted,
             started: HostInstant::now(),
             patience: None,
@@ -98,7 +107,8 @@ impl UdpSource {
             requests: VecDeque::new(),
             timed: Timed::default(),
             answer: Vec::new(),
-            allowed: Vec::new(),
+            admission: Admission::new(floor),
+            boards: floor.boards.len(),
             counters: LinkCounters::default(),
             drops_read: Instant::START,
             kernel_drops: 0,
@@ -106,11 +116,34 @@ impl UdpSource {
         })
     }
 
-    /// Takes datagrams from these senders only; from everybody if there are none.
+    /// Takes sensor packets from these networks only, whatever the floor says; from nobody if there are none.
     #[must_use]
-    pub fn allowing(mut self, senders: impl IntoIterator<Item = IpAddr>) -> Self {
-        self.allowed = senders.into_iter().collect();
+    pub fn allowing(mut self, networks: impl IntoIterator<Item = Network>) -> Self {
+        self.admission.set_boards(networks.into_iter().collect());
         self
+    }
+
+    /// Holds each board to the address from which it is first heard, until the program ends.
+    #[must_use]
+    pub fn pinned(mut self) -> Self {
+        self.admission.pin(self.boards);
+        self
+    }
+
+    /// Takes requests on a port of their own, from these networks only, and none any more beside the packets.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] as for [`UdpSource::bind`].
+    pub fn with_commands(
+        mut self,
+        address: SocketAddr,
+        networks: impl IntoIterator<Item = Network>,
+    ) -> Result<Self, SourceError> {
+        let (socket, _) = open(address, "--commands")?;
+        socket.set_nonblocking(true).map_err(failed)?;
+        self.admission.set_apps(networks.into_iter().collect());
+        self.commands = Some((socket, Instant::START));
+        Ok(self)
     }
 
     /// Takes requests whose addresses begin with `prefix`.
@@ -126,6 +159,12 @@ impl UdpSource {
     /// What the system says; it should not happen on a bound socket.
     pub fn local_addr(&self) -> std::io::Result<SocketAddr> {
         self.socket.local_addr()
+    }
+
+    /// Where requests come, if they have a port of their own.
+    #[must_use]
+    pub fn commands_addr(&self) -> Option<SocketAddr> {
+        self.commands.as_ref().and_then(|(socket, _)| socket.local_addr().ok())
     }
 
     /// The receive buffer granted, in bytes as the system counts them (Linux
@@ -150,42 +189,65 @@ impl UdpSource {
             Err(error) if is_passing(error.kind()) => return Ok(false),
             Err(error) => return Err(failed(error)),
         };
-        self.counters.datagrams += 1;
         let now = self.now();
         // The wall clock that the kernel stamps by may be slewed; time still never goes back.
         self.received = self.received.max(now.before(waited));
-        if !self.allowed.is_empty() && !self.allowed.contains(&sender.ip().to_canonical()) {
-            self.counters.foreign += 1;
-            self.log.foreign(now, sender);
-            return Ok(true);
-        }
-        let decoded = self.decoder.decode(&self.buffer[..length], self.received, &mut self.batch);
-        match decoded.and_then(|()| self.wait()) {
-            Ok(wait) => {
-                self.packets.extend(self.batch.packets.drain(..));
-                let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
-                self.counters.overflowed += self.batch.controls.len().saturating_sub(room) as u64;
-                for message in self.batch.controls.drain(..).take(room) {
-                    let request = Request { message, sender: Some(sender) };
-                    if wait.is_zero() {
-                        self.requests.push_back(request);
-                    } else {
-                        self.timed.push(now + wait, request);
-                    }
+        self.sort(sender, length, false, now);
+        Ok(true)
+    }
+
+    /// Takes what came on the requests' own port.
+    fn receive_commands(&mut self) -> Result<(), SourceError> {
+        for _ in 0..MAX_REQUESTS {
+            let now = self.now();
+            let Some((socket, looked)) = &mut self.commands else { return Ok(()) };
+            match socket.recv_from(&mut self.buffer) {
+                Ok((length, sender)) => self.sort(sender, length, true, now),
+                Err(error) if is_passing(error.kind()) => {
+                    *looked = now;
+                    return Ok(());
                 }
+                Err(error) => return Err(failed(error)),
             }
+        }
+        if let Some((_, looked)) = &mut self.commands {
+            *looked = Instant::START + self.started.elapsed();
+        }
+        Ok(())
+    }
+
+    /// Sorts what the datagram in the buffer holds: packets, requests, or a reason to refuse it.
+    fn sort(&mut self, sender: SocketAddr, length: usize, on_own_port: bool, now: Instant) {
+        self.counters.datagrams += 1;
+        if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
+            refusal.count(&mut self.counters);
+            return self.log.not_admitted(now, sender, refusal);
+        }
+        let datagram = self.buffer.get(..length).unwrap_or_default();
+        let decoded = self.decoder.decode(datagram, self.received, &mut self.batch);
+        let wait = match decoded.and_then(|()| self.wait()) {
+            Ok(wait) => wait,
             Err(error) => {
                 error.count(&mut self.counters);
                 self.log.refused(now, sender, &error);
-                if let Some(address) = self.decoder.is_answered(&error) {
-                    let mut answer = std::mem::take(&mut self.answer);
-                    write_error(self.decoder.prefix(), address, &error.to_string(), &mut answer);
-                    self.answer(sender, &answer);
-                    self.answer = answer;
-                }
+                return self.answer_refusal(sender, on_own_port, &error, now);
+            }
+        };
+        if let Err(refusal) = self.admission.batch(sender, on_own_port, &self.batch, now) {
+            refusal.count(&mut self.counters);
+            return self.log.not_admitted(now, sender, refusal);
+        }
+        self.packets.extend(self.batch.packets.drain(..));
+        let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
+        self.counters.overflowed += self.batch.controls.len().saturating_sub(room) as u64;
+        for message in self.batch.controls.drain(..).take(room) {
+            let request = Request { message, sender: Some(sender) };
+            if wait.is_zero() {
+                self.requests.push_back(request);
+            } else {
+                self.timed.push(now + wait, request);
             }
         }
-        Ok(true)
     }
 
     /// How long the requests of the batch are to wait.
@@ -193,6 +255,22 @@ impl UdpSource {
         let Some(due) = self.batch.due else { return Ok(Duration::ZERO) };
         // Without a wall clock nothing can be waited for.
         OscTime::try_from(SystemTime::now()).map_or(Ok(Duration::ZERO), |clock| delay(due, clock))
+    }
+
+    /// Tells `sender` why its request was refused, if it may ask at all and does not ask too much.
+    fn answer_refusal(&mut self, sender: SocketAddr, on_own_port: bool, error: &WireError, now: Instant) {
+        let Some(address) = self.decoder.is_answered(error) else { return };
+        if !self.admission.is_answered(sender, on_own_port) {
+            return;
+        }
+        if let Err(refusal) = self.admission.request(sender, now) {
+            refusal.count(&mut self.counters);
+            return;
+        }
+        let mut answer = std::mem::take(&mut self.answer);
+        write_error(self.decoder.prefix(), address, &error.to_string(), &mut answer);
+        self.answer(sender, &answer);
+        self.answer = answer;
     }
 
     /// Sets how long the socket waits; zero means not at all. A system call only if it changes.
@@ -228,6 +306,9 @@ impl SensorSource for UdpSource {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let begun = self.now();
         self.read_drops(begun);
+        if self.commands.as_ref().is_some_and(|(_, looked)| begun.since(*looked) >= REQUESTS_EVERY) {
+            self.receive_commands()?;
+        }
         for looked_at in 1.. {
             if let Some(packet) = self.packets.pop_front() {
                 return Ok(Some(packet));
@@ -255,44 +336,16 @@ impl SensorSource for UdpSource {
 
     /// Whoever asked and went away hears nothing; that is not an error of this end.
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
-        if let Err(error) = self.socket.send_to(datagram, to) {
-            tracing::debug!(%to, "an answer could not be sent: {error}");
+        // From the port on which it was asked.
+        let socket = self.commands.as_ref().map_or(&self.socket, |(socket, _)| socket);
+        if let Err(error) = socket.send_to(datagram, to) {
+            let now = Instant::START + self.started.elapsed();
+            self.log.unanswered(now, to, &error);
         }
     }
 
     fn counters(&self) -> LinkCounters {
         self.counters
-    }
-}
-
-fn open(address: SocketAddr) -> std::io::Result<Socket> {
-    let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
-    // A smaller buffer than asked for works too; the granted size is reported.
-    let _ = socket.set_recv_buffer_size(BUFFER_BYTES);
-    socket.bind(&address.into())?;
-    Ok(socket)
-}
-
-/// One sentence for somebody whose floor program does not start.
-fn advice(address: SocketAddr, error: &std::io::Error) -> String {
-    let port = address.port();
-    match error.kind() {
-        ErrorKind::AddrInUse => {
-            let owner = proc_net::owner(address).unwrap_or_else(|| "another program".into());
-            let other = SocketAddr::new(address.ip(), if port == u16::MAX { port - 1 } else { port + 1 });
-            format!(
-                "UDP port {port} is in use by {owner}: stop it, or listen elsewhere with `--listen {other}` \
-                 and send there"
-            )
-        }
-        ErrorKind::AddrNotAvailable => format!(
-            "{ip} is no address of this machine: `--listen 0.0.0.0:{port}` takes packets on all of them",
-            ip = address.ip()
-        ),
-        ErrorKind::PermissionDenied => {
-            format!("UDP port {port} needs special rights: choose one above 1023 with `--listen`")
-        }
-        _ => format!("cannot listen on {address}: {error}"),
     }
 }
 

@@ -51,7 +51,7 @@ pub enum ControlMessage {
     Label {
         /// Which control.
         id: WidgetId,
-        /// At most [`MAX_LABEL`] characters.
+        /// At most [`MAX_LABEL`] characters, none of which controls a terminal or the direction of writing.
         text: String,
     },
     /// Switch the lamp.
@@ -316,6 +316,17 @@ pub const COMMANDS: [Command; 14] = [
     },
 ];
 
+/// Whether a character may stand in a label: not if it controls a terminal or turns the direction of what follows,
+/// with which one label can pass for another.
+///
+/// # Source
+/// Unicode Standard Annex 9, explicit and implicit directional marks; line and paragraph separators.
+fn is_shown(c: char) -> bool {
+    let turns =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !c.is_control() && !turns && !matches!(c, '\u{2028}' | '\u{2029}')
+}
+
 /// Why a message is not a command.
 pub(super) enum NoCommand {
     /// No command has such an address.
@@ -444,7 +455,7 @@ impl ArgumentKind {
                 _ => None,
             },
             (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
-                Some(Argument::Text(text.clone()))
+                Some(Argument::Text(text.chars().filter(|&c| is_shown(c)).collect()))
             }
             (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
             (Self::Switch, []) => Some(Argument::Flag(true)),

@@ -40,8 +40,10 @@ pub struct LinkCounters {
     pub unknown_address: u64,
     /// Messages for a board that don't carry what the floor says: missing sequence, wrong types, wrong count.
     pub wrong_shape: u64,
-    /// Datagrams from senders that are not on the list of allowed ones.
+    /// Datagrams from senders that may not send them: packets or requests.
     pub foreign: u64,
+    /// Datagrams beyond what one sender may send.
+    pub limited: u64,
     /// Single readings that were NaN, infinite or outside 0 to 65535.
     pub bad_readings: u64,
     /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
@@ -58,7 +60,7 @@ impl LinkCounters {
     /// Datagrams and messages that were refused, for whatever reason.
     #[must_use]
     pub const fn refused(&self) -> u64 {
-        self.malformed + self.unknown_address + self.wrong_shape + self.foreign
+        self.malformed + self.unknown_address + self.wrong_shape + self.foreign + self.limited
     }
 }
 
@@ -82,6 +84,7 @@ impl Add for LinkCounters {
             unknown_address: self.unknown_address + other.unknown_address,
             wrong_shape: self.wrong_shape + other.wrong_shape,
             foreign: self.foreign + other.foreign,
+            limited: self.limited + other.limited,
             bad_readings: self.bad_readings + other.bad_readings,
             overflowed: self.overflowed + other.overflowed,
             denied: self.denied + other.denied,

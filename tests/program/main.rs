@@ -14,3 +14,4 @@ mod input;
 mod output;
 mod page_commands;
 mod rack;
+mod senders;

@@ -10,8 +10,9 @@ pub struct Page {
     pub text: String,
 }
 
-/// What a fenced block may be, and who tries it: `ron` and `sh` are tested, `rust` is a doctest, the others are shown.
-const LANGUAGES: [&str; 7] = ["ron", "sh", "rust", "toml", "console", "text", "layers"];
+/// What a fenced block may be, and who tries it: `ron`, `sh` and `layers` are tested, `rust` is a doctest, the others
+/// are shown.
+const LANGUAGES: [&str; 7] = ["ron", "sh", "layers", "rust", "toml", "console", "text"];
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<Page> {

@@ -7,9 +7,9 @@ use std::time::Duration;
 use serde_json::json;
 use underfoot::schema;
 use underfoot::serve::{TareFailure, take_tare};
-use underfoot::source::UdpSource;
 
 use super::today;
+use crate::cli::doors::BoardArgs;
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{save_floor, saved_json};
 use crate::cli::number::patience;
@@ -25,8 +25,10 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
     /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "0.0.0.0:9000")]
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
     listen: SocketAddr,
+    #[command(flatten)]
+    boards: BoardArgs,
     /// How long to wait for the floor to be quiet.
     #[arg(long, value_name = "S", default_value = "5", value_parser = patience)]
     seconds: Duration,
@@ -41,7 +43,7 @@ pub(crate) struct Args {
 /// Takes the tare and keeps it, or says why not.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let mut floor = schema::load_floor(&args.floor)?;
-    let mut source = UdpSource::bind(args.listen, &floor)?;
+    let mut source = args.boards.bind(args.listen, &floor)?;
     errln!("Listening on {}; keep off the floor.", args.listen);
     floor.tare =
         take_tare(&mut source, &floor, args.seconds, args.accept_change).map_err(

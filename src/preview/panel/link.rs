@@ -111,6 +111,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 19] {
         ("refused: unknown address", counters.unknown_address, true),
         ("refused: wrong shape", counters.wrong_shape, true),
         ("refused: foreign sender", counters.foreign, true),
+        ("refused: too many of one sender", counters.limited, true),
         ("bad readings", counters.bad_readings, true),
         ("dropped by the system", counters.overflowed, true),
         ("sensors found in trouble", counters.sensor_troubles, true),

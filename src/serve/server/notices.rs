@@ -27,7 +27,9 @@ impl Server {
                     "nothing usable from any board for 100 ms: what was held is cancelled".into()
                 }),
                 LinkState::Partial => {
-                    self.notices.link.warn(self.source.now(), || "nothing usable comes from some boards".into());
+                    self.notices
+                        .link
+                        .warn(self.source.now(), || "nothing usable comes from some boards".into());
                 }
                 LinkState::Live => {
                     self.notices.link.info(self.source.now(), || "packets arrive from every board".into());

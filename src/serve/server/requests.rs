@@ -1,7 +1,5 @@
 //! What a server does with requests: done, answered, and told to all.
 
-use tracing::warn;
-
 use super::Server;
 use crate::engine::PageShown;
 use crate::outgoing::{write_control, write_error, write_mute, write_page};

@@ -1,50 +1,75 @@
 //! Warnings about refused datagrams, at a limited rate.
 
-use std::net::SocketAddr;
+use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
+use super::admission::Refusal;
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 use crate::wire::WireError;
 
-/// How often one kind of refusal is written about.
+/// How often one kind of refusal, or one sender, is written about.
 const QUIET: Duration = Duration::from_secs(60);
 
-/// Warnings about refused datagrams: the first of each kind, then one a minute with the number in between.
+/// Senders that are named each for itself.
+const NAMED: usize = 16;
+
+/// Warnings about refused datagrams: the first of each kind, then one a minute with the number in between. Senders
+/// that may not send are named one by one, as far as there are few.
 #[derive(Debug)]
 pub(super) struct RefusalLog {
     malformed: RateLimit,
     unknown: RateLimit,
     shape: RateLimit,
-    foreign: RateLimit,
+    unanswered: RateLimit,
+    named: Vec<(IpAddr, RateLimit)>,
+    others: RateLimit,
 }
 
 impl Default for RefusalLog {
     fn default() -> Self {
         let limit = RateLimit::new(1, QUIET);
-        Self { malformed: limit, unknown: limit, shape: limit, foreign: limit }
+        Self {
+            malformed: limit,
+            unknown: limit,
+            shape: limit,
+            unanswered: limit,
+            named: Vec::new(),
+            others: limit,
+        }
     }
 }
 
 impl RefusalLog {
     pub(super) fn refused(&mut self, now: Instant, sender: SocketAddr, error: &WireError) {
-        let warned = match error {
+        let limit = match error {
             WireError::Malformed(_) => &mut self.malformed,
             WireError::UnknownAddress { .. } => &mut self.unknown,
             WireError::WrongShape { .. } | WireError::TooEarly { .. } => &mut self.shape,
         };
-        if let Some(others) = warned.take(now) {
+        if let Some(others) = limit.take(now) {
             tracing::warn!(%sender, others_like_it = others, "datagram refused: {error}");
         }
     }
 
-    pub(super) fn foreign(&mut self, now: Instant, sender: SocketAddr) {
-        if let Some(others) = self.foreign.take(now) {
-            tracing::warn!(
-                %sender,
-                others_like_it = others,
-                "datagram refused: the sender is not among the allowed ones"
-            );
+    pub(super) fn not_admitted(&mut self, now: Instant, sender: SocketAddr, refusal: Refusal) {
+        let ip = sender.ip().to_canonical();
+        let limit = match self.named.iter().position(|(named, _)| *named == ip) {
+            Some(index) => self.named.get_mut(index).map(|(_, limit)| limit),
+            None if self.named.len() < NAMED => {
+                self.named.push((ip, RateLimit::new(1, QUIET)));
+                self.named.last_mut().map(|(_, limit)| limit)
+            }
+            None => None,
+        };
+        if let Some(others) = limit.unwrap_or(&mut self.others).take(now) {
+            tracing::warn!(%sender, others_like_it = others, "datagram refused: {refusal}");
+        }
+    }
+
+    pub(super) fn unanswered(&mut self, now: Instant, to: SocketAddr, error: &std::io::Error) {
+        if let Some(others) = self.unanswered.take(now) {
+            tracing::debug!(%to, others_like_it = others, "an answer could not be sent: {error}");
         }
     }
 }

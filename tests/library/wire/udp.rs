@@ -130,13 +130,46 @@ fn messages_nobody_takes_are_kept_up_to_a_thousand_and_counted_beyond() {
 fn senders_not_on_the_list_are_counted_and_not_heard() {
     let elsewhere = IpAddr::V4(Ipv4Addr::new(127, 0, 0, 9));
     for (allowed, accepted) in [(elsewhere, false), (ANY_PORT.ip(), true)] {
-        let mut source = UdpSource::bind(ANY_PORT, &floor()).unwrap().allowing([allowed]);
+        let mut source = UdpSource::bind(ANY_PORT, &floor()).unwrap().allowing([allowed.into()]);
         let sender = UdpSocket::bind(ANY_PORT).unwrap();
         sender.send_to(&datagram(&packet(0, 1)), source.local_addr().unwrap()).unwrap();
         let patience = if accepted { SOON } else { Duration::from_millis(50) };
         assert_eq!(source.next(patience).unwrap().is_some(), accepted);
         assert_eq!(source.counters().foreign, u64::from(!accepted));
     }
+}
+
+#[test]
+fn labels_lose_what_controls_terminals_and_turns_the_direction_of_writing() {
+    let (mut source, sender) = link();
+    let text = "Al\u{202e}arm\u{1b}[31m \u{2067}o\u{200f}ff\n\u{7}".to_owned();
+    let label = message("/underfoot/widget/zoom/label", vec![OscType::String(text)]);
+    sender.send(&encoder::encode(&label).unwrap()).unwrap();
+    sender.send(&datagram(&packet(0, 1))).unwrap();
+    assert!(source.next(SOON).unwrap().is_some());
+    let asked = asked(&mut source);
+    assert!(
+        matches!(&asked[..], [ControlMessage::Label { text, .. }] if text == "Alarm[31m off"),
+        "{asked:?}"
+    );
+}
+
+#[test]
+fn a_flood_of_one_sender_takes_nothing_from_another() {
+    let (mut source, board) = link();
+    let loud = UdpSocket::bind(ANY_PORT).unwrap();
+    let mut packets = 0;
+    for sequence in 0..200 {
+        for _ in 0..250 {
+            loud.send_to(b"rubbish", source.local_addr().unwrap()).unwrap();
+        }
+        board.send(&datagram(&packet(0, sequence))).unwrap();
+        packets += u32::from(source.next(SOON).unwrap().is_some());
+    }
+    assert_eq!(packets, 200);
+    let counters = source.counters();
+    assert!(counters.limited > 0, "{counters:?}");
+    assert_eq!(counters.limited + counters.malformed, 50_000);
 }
 
 // N14

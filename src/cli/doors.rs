@@ -1,0 +1,55 @@
+//! Options for who may send: boards their packets, apps their requests.
+
+use std::net::SocketAddr;
+
+use underfoot::floor::{Floor, Network};
+use underfoot::source::UdpSource;
+
+use super::failure::Failure;
+
+/// Which boards are heard.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct BoardArgs {
+    /// Take sensor packets from this address or range, such as 192.168.1.20 or 192.168.1.0/24; several may be given.
+    /// Without it, from where the floor file says, and else from this machine only.
+    #[arg(long, value_name = "CIDR")]
+    allow: Vec<Network>,
+    /// Hold each board to the address from which it is first heard.
+    #[arg(long)]
+    pin: bool,
+}
+
+/// Which apps are heard.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct CommandArgs {
+    /// Take apps' requests on this port of their own; without it, on the sensors' port from this machine only.
+    #[arg(long, value_name = "ADDR")]
+    commands: Option<SocketAddr>,
+    /// Take requests from this address or range; several may be given. Without it, from this machine only.
+    #[arg(long, value_name = "CIDR", requires = "commands")]
+    allow_commands: Vec<Network>,
+}
+
+impl BoardArgs {
+    /// Listens for the boards of `floor`.
+    pub(crate) fn bind(&self, listen: SocketAddr, floor: &Floor) -> Result<UdpSource, Failure> {
+        let mut source = UdpSource::bind(listen, floor)?;
+        if !self.allow.is_empty() {
+            source = source.allowing(self.allow.iter().copied());
+        } else if floor.allow.is_empty() && !listen.ip().is_loopback() {
+            errln!(
+                "Packets of this machine only are taken on {listen}: name the boards with --allow or in the floor file."
+            );
+        }
+        Ok(if self.pin { source.pinned() } else { source })
+    }
+}
+
+impl CommandArgs {
+    /// Opens the port of apps, if there is to be one.
+    pub(crate) fn open(&self, source: UdpSource) -> Result<UdpSource, Failure> {
+        let Some(address) = self.commands else { return Ok(source) };
+        let apps = if self.allow_commands.is_empty() { &Network::LOOPBACK[..] } else { &self.allow_commands };
+        Ok(source.with_commands(address, apps.iter().copied())?)
+    }
+}

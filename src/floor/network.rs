@@ -1,0 +1,108 @@
+//! Networks by their addresses, as in `192.168.1.0/24`.
+
+use std::fmt;
+use std::net::{IpAddr, Ipv4Addr, Ipv6Addr};
+use std::str::FromStr;
+
+use thiserror::Error;
+
+/// One address or a range of them, in CIDR notation (RFC 4632).
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Network {
+    ip: IpAddr,
+    /// How many leading bits count: at most 32, or 128 for IPv6.
+    bits: u8,
+}
+
+/// Why a text is not a network.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+#[error("write an address or a range of them, like 192.168.1.20 or 192.168.1.0/24")]
+pub struct NotANetwork;
+
+impl Network {
+    /// The addresses of this machine itself: 127.0.0.0/8 and ::1.
+    pub const LOOPBACK: [Self; 2] = [
+        Self { ip: IpAddr::V4(Ipv4Addr::new(127, 0, 0, 0)), bits: 8 },
+        Self { ip: IpAddr::V6(Ipv6Addr::LOCALHOST), bits: 128 },
+    ];
+
+    /// Whether `ip` belongs to it; an IPv4 address written as IPv6 counts as IPv4.
+    #[must_use]
+    pub fn contains(&self, ip: IpAddr) -> bool {
+        match (self.ip, ip.to_canonical()) {
+            (IpAddr::V4(own), IpAddr::V4(other)) => {
+                let differs = (own.to_bits() ^ other.to_bits()).leading_zeros();
+                differs >= u32::from(self.bits)
+            }
+            (IpAddr::V6(own), IpAddr::V6(other)) => {
+                let differs = (own.to_bits() ^ other.to_bits()).leading_zeros();
+                differs >= u32::from(self.bits)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl From<IpAddr> for Network {
+    /// The one address.
+    fn from(ip: IpAddr) -> Self {
+        let ip = ip.to_canonical();
+        Self { ip, bits: if ip.is_ipv4() { 32 } else { 128 } }
+    }
+}
+
+impl FromStr for Network {
+    type Err = NotANetwork;
+
+    /// Reads `192.168.1.20`, `192.168.1.0/24`, `::1` or `fd00::/8`; bits of the address behind the range don't count.
+    fn from_str(text: &str) -> Result<Self, NotANetwork> {
+        let (ip, bits) = match text.split_once('/') {
+            Some((ip, bits)) => (ip, Some(bits.parse::<u8>().map_err(|_| NotANetwork)?)),
+            None => (text, None),
+        };
+        let ip: IpAddr = ip.parse().map_err(|_| NotANetwork)?;
+        let most = if ip.is_ipv4() { 32 } else { 128 };
+        match bits {
+            None => Ok(ip.into()),
+            Some(bits) if bits <= most => Ok(Self { ip, bits }),
+            Some(_) => Err(NotANetwork),
+        }
+    }
+}
+
+impl fmt::Display for Network {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let is_one = self.bits == if self.ip.is_ipv4() { 32 } else { 128 };
+        if is_one { write!(f, "{}", self.ip) } else { write!(f, "{}/{}", self.ip, self.bits) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contains(network: &str, ip: &str) -> bool {
+        network.parse::<Network>().unwrap().contains(ip.parse().unwrap())
+    }
+
+    #[test]
+    fn a_network_holds_what_begins_with_its_bits() {
+        assert!(contains("192.168.1.0/24", "192.168.1.255") && !contains("192.168.1.0/24", "192.168.2.0"));
+        assert!(contains("192.168.1.77/24", "192.168.1.3"), "bits behind the range don't count");
+        assert!(contains("10.1.2.3", "10.1.2.3") && !contains("10.1.2.3", "10.1.2.2"));
+        assert!(contains("0.0.0.0/0", "203.0.113.9") && !contains("0.0.0.0/0", "2001:db8::1"));
+        assert!(contains("fd00::/8", "fdff::1") && !contains("fd00::/8", "fe80::1"));
+        assert!(contains("127.0.0.0/8", "::ffff:127.0.0.1"), "IPv4 within IPv6 is IPv4");
+    }
+
+    #[test]
+    fn texts_are_read_and_written() {
+        for text in ["192.168.1.0/24", "10.0.0.1", "::1", "fd00::/8", "0.0.0.0/0"] {
+            assert_eq!(text.parse::<Network>().unwrap().to_string(), text);
+        }
+        for bad in ["", "10.0.0.0/33", "::/129", "10.0.0/8", "10.0.0.0/", "10.0.0.0/-1", "lab", "1.2.3.4/8/8"]
+        {
+            assert_eq!(bad.parse::<Network>(), Err(NotANetwork), "{bad}");
+        }
+    }
+}

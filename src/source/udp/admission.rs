@@ -1,0 +1,175 @@
+//! Who may send what: networks, limits for each sender, boards that stay where they first were.
+
+use std::fmt;
+use std::net::{IpAddr, SocketAddr};
+use std::time::Duration;
+
+use super::senders::Senders;
+use crate::floor::{Floor, Network};
+use crate::units::Instant;
+use crate::wire::{Batch, LinkCounters};
+
+/// Frames that a board sends in a second.
+const FRAMES_PER_SECOND: u32 = 1000;
+
+/// Requests of one app that are taken in a second, and at once: ten controls at the rate of a screen, and the state of
+/// every control of a large layout.
+const REQUEST_EVERY: Duration = Duration::from_millis(1);
+const REQUEST_BURST: u32 = 2000;
+
+/// Why a datagram of a known form is not taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Refusal {
+    /// Nothing is taken from there.
+    Foreign,
+    /// Sensor packets are not taken from there.
+    Packets,
+    /// Requests are not taken from there, or not on this port.
+    Requests,
+    /// The board was first heard from this other address.
+    Elsewhere(u16, IpAddr),
+    /// More than a sender may send.
+    TooMany,
+}
+
+impl Refusal {
+    pub(super) fn count(self, counters: &mut LinkCounters) {
+        match self {
+            Self::TooMany => counters.limited += 1,
+            Self::Foreign | Self::Packets | Self::Requests | Self::Elsewhere(..) => counters.foreign += 1,
+        }
+    }
+}
+
+impl fmt::Display for Refusal {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Foreign | Self::Packets => {
+                write!(f, "sensor packets are not taken from there; `--allow` with its address takes them")
+            }
+            Self::Requests => {
+                write!(
+                    f,
+                    "requests are not taken from there; `--commands` and `--allow-commands` open a port"
+                )
+            }
+            Self::Elsewhere(board, known) => write!(f, "board {board} was first heard from {known}"),
+            Self::TooMany => write!(f, "it sends more than a sender may"),
+        }
+    }
+}
+
+/// The rules of one source.
+#[derive(Debug)]
+pub(super) struct Admission {
+    boards: Vec<Network>,
+    /// Who may ask something; on the sensors' port unless requests have one of their own.
+    apps: Vec<Network>,
+    has_own_port: bool,
+    datagrams: Senders,
+    requests: Senders,
+    /// Where each board was first heard, if boards are held to that.
+    homes: Option<Vec<Option<IpAddr>>>,
+}
+
+impl Admission {
+    /// Boards as the floor says, or on this machine; apps on this machine.
+    pub(super) fn new(floor: &Floor) -> Self {
+        let boards = u32::try_from(floor.boards.len()).unwrap_or(u32::MAX).max(1);
+        // Twice what boards send, from each sender: one computer may send for all of them.
+        let every = Duration::from_micros((500_u64 / u64::from(boards)).max(1));
+        let burst = boards.saturating_mul(FRAMES_PER_SECOND);
+        Self {
+            boards: if floor.allow.is_empty() { Network::LOOPBACK.into() } else { floor.allow.clone() },
+            apps: Network::LOOPBACK.into(),
+            has_own_port: false,
+            datagrams: Senders::new(burst, every),
+            requests: Senders::new(REQUEST_BURST, REQUEST_EVERY),
+            homes: None,
+        }
+    }
+
+    pub(super) fn set_boards(&mut self, boards: Vec<Network>) {
+        self.boards = boards;
+    }
+
+    /// Requests come on a port of their own, from `apps`.
+    pub(super) fn set_apps(&mut self, apps: Vec<Network>) {
+        self.apps = apps;
+        self.has_own_port = true;
+    }
+
+    /// Holds `boards` boards to where they are first heard.
+    pub(super) fn pin(&mut self, boards: usize) {
+        self.homes = Some(vec![None; boards]);
+    }
+
+    fn is_app(&self, ip: IpAddr) -> bool {
+        self.apps.iter().any(|network| network.contains(ip))
+    }
+
+    fn is_board(&self, ip: IpAddr) -> bool {
+        self.boards.iter().any(|network| network.contains(ip))
+    }
+
+    /// Whether a datagram from `sender` is looked into at all.
+    pub(super) fn datagram(
+        &mut self,
+        sender: SocketAddr,
+        on_own_port: bool,
+        now: Instant,
+    ) -> Result<(), Refusal> {
+        let takes_requests = on_own_port == self.has_own_port;
+        let is_known =
+            (!on_own_port && self.is_board(sender.ip())) || (takes_requests && self.is_app(sender.ip()));
+        match (is_known, on_own_port) {
+            (false, true) => Err(Refusal::Requests),
+            (false, false) => Err(Refusal::Foreign),
+            (true, true) => Ok(()),
+            (true, false) => self.datagrams.take(sender, now).then_some(()).ok_or(Refusal::TooMany),
+        }
+    }
+
+    /// Whether `batch`, which came from `sender`, is taken; it is as a whole or not at all.
+    pub(super) fn batch(
+        &mut self,
+        sender: SocketAddr,
+        on_own_port: bool,
+        batch: &Batch,
+        now: Instant,
+    ) -> Result<(), Refusal> {
+        if !batch.packets.is_empty() && (on_own_port || !self.is_board(sender.ip())) {
+            return Err(Refusal::Packets);
+        }
+        if !batch.controls.is_empty() && (on_own_port != self.has_own_port || !self.is_app(sender.ip())) {
+            return Err(Refusal::Requests);
+        }
+        for _ in &batch.controls {
+            self.request(sender, now)?;
+        }
+        let ip = sender.ip().to_canonical();
+        let Some(homes) = &mut self.homes else { return Ok(()) };
+        for packet in &batch.packets {
+            let home = homes.get(usize::from(packet.board)).copied().flatten();
+            if let Some(known) = home.filter(|known| *known != ip) {
+                return Err(Refusal::Elsewhere(packet.board, known));
+            }
+        }
+        for packet in &batch.packets {
+            if let Some(home) = homes.get_mut(usize::from(packet.board)) {
+                *home = Some(ip);
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether `sender` may ask one thing more; what it asked wrongly counts, too.
+    pub(super) fn request(&mut self, sender: SocketAddr, now: Instant) -> Result<(), Refusal> {
+        self.requests.take(sender, now).then_some(()).ok_or(Refusal::TooMany)
+    }
+
+    /// Whether `sender` hears why it was refused.
+    pub(super) fn is_answered(&self, sender: SocketAddr, on_own_port: bool) -> bool {
+        on_own_port == self.has_own_port && self.is_app(sender.ip())
+    }
+}

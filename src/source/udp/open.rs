@@ -1,0 +1,48 @@
+//! Opening a socket, and what to do where that fails.
+
+use std::io::ErrorKind;
+use std::net::{SocketAddr, UdpSocket};
+
+use socket2::{Domain, Protocol, Socket, Type};
+
+use super::proc_net;
+use crate::source::SourceError;
+
+/// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
+pub(super) const BUFFER_BYTES: usize = 8 << 20;
+
+/// A socket on `address` and its receive buffer in bytes; `option` is what chooses the address.
+pub(super) fn open(address: SocketAddr, option: &str) -> Result<(UdpSocket, usize), SourceError> {
+    let opened = || {
+        let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
+        // A smaller buffer than asked for works too; the granted size is reported.
+        let _ = socket.set_recv_buffer_size(BUFFER_BYTES);
+        socket.bind(&address.into())?;
+        let granted = socket.recv_buffer_size().unwrap_or(0);
+        Ok((UdpSocket::from(socket), granted))
+    };
+    opened().map_err(|source| SourceError::Socket { message: advice(address, option, &source), source })
+}
+
+/// One sentence for somebody whose floor program does not start.
+fn advice(address: SocketAddr, option: &str, error: &std::io::Error) -> String {
+    let port = address.port();
+    match error.kind() {
+        ErrorKind::AddrInUse => {
+            let owner = proc_net::owner(address).unwrap_or_else(|| "another program".into());
+            let other = SocketAddr::new(address.ip(), if port == u16::MAX { port - 1 } else { port + 1 });
+            format!(
+                "UDP port {port} is in use by {owner}: stop it, or listen elsewhere with `{option} {other}` \
+                 and send there"
+            )
+        }
+        ErrorKind::AddrNotAvailable => format!(
+            "{ip} is no address of this machine: `{option} 0.0.0.0:{port}` takes packets on all of them",
+            ip = address.ip()
+        ),
+        ErrorKind::PermissionDenied => {
+            format!("UDP port {port} needs special rights: choose one above 1023 with `{option}`")
+        }
+        _ => format!("cannot listen on {address}: {error}"),
+    }
+}
