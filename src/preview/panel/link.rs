@@ -95,7 +95,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 19] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
