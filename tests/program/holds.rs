@@ -46,6 +46,9 @@ fn believed_for(
     let took = begun.elapsed();
     if then == Then::Ends {
         assert!(run.child.wait().unwrap().success());
+    } else {
+        // Notices for people are looked after ten times a second.
+        std::thread::sleep(Duration::from_millis(300));
     }
     drop(boards);
     client.chatter = Some(run.end());
