@@ -18,11 +18,14 @@ use held::{BELIEVED_FOR, Held};
 /// How long something that is bound to happen may take.
 const AT_LAST: Duration = Duration::from_secs(30);
 
+/// An address and its arguments.
+type Heard = (String, Vec<OscType>);
+
 pub struct Client {
     osc: UdpSocket,
     tuio: UdpSocket,
     /// Every message but `alive`, `held` and `contact`, in order, and how often the last two of those came.
-    heard: Vec<(String, Vec<OscType>)>,
+    heard: Vec<Heard>,
     pub alive: Vec<i32>,
     held: Held,
     /// Whether the last TUIO frame had nobody in it.
@@ -156,7 +159,7 @@ impl Client {
             };
             assert_eq!((in_json("cancelled"), in_json("released")), (1, 0), "{after}: {id}");
         }
-        let changed = |(address, args): &(String, Vec<OscType>)| {
+        let changed = |(address, args): &Heard| {
             (address == "/underfoot/widget/zoom/changed").then(|| args[0].clone().float().unwrap())
         };
         let values: Vec<f32> = self.heard.iter().filter_map(changed).collect();
@@ -167,7 +170,7 @@ impl Client {
     /// As [`Client::expect_cancelled`], and then nobody was there any more.
     pub fn expect_an_orderly_end(&self, after: &str) {
         self.expect_cancelled(after);
-        let place = |wanted: &dyn Fn(&(String, Vec<OscType>)) -> bool| self.heard.iter().rposition(wanted);
+        let place = |wanted: &dyn Fn(&Heard) -> bool| self.heard.iter().rposition(wanted);
         let goodbye = place(&|(address, args)| {
             address == "/underfoot/contacts" && args.as_slice() == [OscType::Int(0)]
         });
