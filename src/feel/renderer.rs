@@ -14,7 +14,9 @@ use super::loudspeakers::Loudspeakers;
 use super::mix::{Mix, Output, Wiring};
 use super::rack::{Faults, Rack};
 use super::schedule::{Due, SampleClock, Schedule, WAITING};
-use super::scope::{ScopeReader, ScopeWriter, scope};
+use super::scope::ScopeWriter;
+#[cfg(any(feature = "internals", test))]
+use super::scope::{ScopeReader, scope};
 use super::sender::{CueSender, Shared, count};
 use super::voice::{Started, Voices};
 use super::{FeelCounters, SustainedCues};
@@ -224,7 +226,7 @@ impl Renderer {
     ///
     /// For a device that was away: nobody is to feel at once what happened meanwhile. Cues that are
     /// forgotten are counted as muted.
-    pub(crate) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         count(&self.shared.muted, self.schedule.forget_all());
         self.modes.clear();
         self.rack.clear();

@@ -1,9 +1,11 @@
 //! Every number of an effect by its name, for those who turn it by hand.
 
-use super::{Effect, EffectKind, Knob};
+#[cfg(any(feature = "internals", test))]
+use super::Knob;
+use super::{Effect, EffectKind};
 use crate::feel::Lasting;
-use crate::format::hand::Hand;
-use crate::format::{Record, Variants};
+#[cfg(any(feature = "internals", test))]
+use crate::format::{Record, Variants, hand::Hand};
 
 impl Effect {
     /// Shows every number of the effect to `visit`, which may change it within its range; then brings models to

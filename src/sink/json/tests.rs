@@ -187,7 +187,7 @@ fn contacts_are_written_on_request_100_times_a_second() {
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap().with_contacts();
     let foot = Contact { id: ContactId(3), force: Newtons(350.0), ..Contact::default() };
     for ms in 0..25 {
-        sink.contacts(Instant::from_millis(ms), &[foot.clone()]);
+        sink.contacts(Instant::from_millis(ms), std::slice::from_ref(&foot));
     }
     sink.link(Instant::from_millis(30), LinkState::Lost);
     for ms in 31..1200 {
