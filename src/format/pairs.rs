@@ -138,32 +138,26 @@ fn never_closed(open: &Open) -> Problem {
 /// `None` outside of all brackets. The brackets must pair up.
 pub(crate) fn entry_around(marks: &[Mark], offset: usize) -> Option<Range<usize>> {
     let here = marks.partition_point(|mark| mark.at < offset);
-    let mut depth = 0;
-    let before = marks[..here].iter().rev().find(|mark| match mark.character {
-        b')' | b']' => {
-            depth += 1;
-            false
-        }
-        b',' => depth == 0,
-        _ if depth == 0 => true,
-        _ => {
-            depth -= 1;
-            false
-        }
-    })?;
-    let after = marks[here..].iter().find(|mark| match mark.character {
-        b'(' | b'[' => {
-            depth += 1;
-            false
-        }
-        b',' => depth == 0,
-        _ if depth == 0 => true,
-        _ => {
-            depth -= 1;
-            false
-        }
-    })?;
+    let before = end_of_entry(marks[..here].iter().rev(), *b")]")?;
+    let after = end_of_entry(marks[here..].iter(), *b"([")?;
     Some(before.at + 1..after.at + usize::from(after.character == b','))
+}
+
+/// The first comma or bracket that ends an entry on the way along `marks`, past pairs that begin with one of `inner`.
+fn end_of_entry<'m>(mut marks: impl Iterator<Item = &'m Mark>, inner: [u8; 2]) -> Option<&'m Mark> {
+    let mut depth = 0;
+    marks.find(|mark| match mark.character {
+        character if inner.contains(&character) => {
+            depth += 1;
+            false
+        }
+        b',' => depth == 0,
+        _ if depth == 0 => true,
+        _ => {
+            depth -= 1;
+            false
+        }
+    })
 }
 
 #[cfg(test)]

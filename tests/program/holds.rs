@@ -8,7 +8,7 @@ use std::process::Command;
 use std::time::{Duration, Instant};
 
 use self::client::Client;
-use self::site::{Boards, Mishap, Run, Site};
+use self::site::{BoardFault, Boards, Run, Site};
 
 /// How long a client may still believe that something is held.
 const SOON: Duration = Duration::from_millis(150);
@@ -105,14 +105,14 @@ fn a_program_that_is_gone_or_stands_still_is_no_longer_believed() {
 #[test]
 fn boards_that_fall_silent_stand_still_or_jump_end_what_is_held() {
     let site = Site::new();
-    for (mishap, said) in [
-        (Mishap::Silent, "nothing usable"),
-        (Mishap::Frozen, "board 0: all its readings have stood still"),
-        (Mishap::Jumped, "its load jumped by"),
+    for (fault, said) in [
+        (BoardFault::Silent, "nothing usable"),
+        (BoardFault::Frozen, "board 0: all its readings have stood still"),
+        (BoardFault::Jumped, "its load jumped by"),
     ] {
-        let mut client = soon(&site, &[], Then::IsEnded, |_, boards| boards.suffer(mishap));
-        client.expect_cancelled(&format!("{mishap:?}"));
+        let mut client = soon(&site, &[], Then::IsEnded, |_, boards| boards.suffer(fault));
+        client.expect_cancelled(&format!("{fault:?}"));
         let chatter = client.chatter.take().unwrap();
-        assert!(chatter.iter().any(|line| line.contains(said)), "{mishap:?}: {chatter:?}");
+        assert!(chatter.iter().any(|line| line.contains(said)), "{fault:?}: {chatter:?}");
     }
 }

@@ -7,7 +7,7 @@ use tracing::{info, warn};
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 
-/// The notices of a server that somebody else can make repeat: apps, cables, sensors.
+/// The notices of a server that apps, cables and sensors can make repeat.
 #[derive(Debug)]
 pub(super) struct Notices {
     /// Requests that could not be met.

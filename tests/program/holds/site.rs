@@ -106,7 +106,7 @@ impl Drop for Run {
 /// What happens to the boards.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
-pub enum Mishap {
+pub enum BoardFault {
     /// Nothing.
     Well,
     /// No packet comes through.
@@ -119,38 +119,38 @@ pub enum Mishap {
 
 /// The boards: real datagrams, a millisecond's every millisecond, until dropped.
 pub struct Boards {
-    mishap: Arc<AtomicU8>,
+    fault: Arc<AtomicU8>,
     thread: Option<JoinHandle<()>>,
 }
 
-/// Set in place of a mishap to end it all.
+/// Set in place of a fault to end it all.
 const OVER: u8 = u8::MAX;
 
 impl Boards {
     pub fn start(site: &Site, target: SocketAddr) -> Self {
-        let mishap = Arc::new(AtomicU8::new(Mishap::Well as u8));
-        let (floor, mut sim, suffered) = (site.floor.clone(), site.sim.clone(), Arc::clone(&mishap));
+        let fault = Arc::new(AtomicU8::new(BoardFault::Well as u8));
+        let (floor, mut sim, suffered) = (site.floor.clone(), site.sim.clone(), Arc::clone(&fault));
         let thread = thread::spawn(move || {
             let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
             let socket = any_port();
             let begun = HostInstant::now();
             let mut frozen: Option<Vec<Readings>> = None;
             for sequence in 0.. {
-                let mishap = suffered.load(Ordering::Relaxed);
-                if mishap == OVER {
+                let fault = suffered.load(Ordering::Relaxed);
+                if fault == OVER {
                     return;
                 }
                 let mut all: Vec<Readings> = sim.step(&feet(sequence)).to_vec();
-                if mishap == Mishap::Frozen as u8 {
+                if fault == BoardFault::Frozen as u8 {
                     all.clone_from(frozen.get_or_insert(all.clone()));
-                } else if mishap == Mishap::Jumped as u8
+                } else if fault == BoardFault::Jumped as u8
                     && let Some(Readings::Counts(counts)) = all.first_mut()
                 {
                     counts.fill(Some(60_000));
                 }
                 for (board, readings) in (0..).zip(all) {
                     let packet = SensorPacket { board, sequence, received: Instant::START, readings };
-                    if mishap != Mishap::Silent as u8 {
+                    if fault != BoardFault::Silent as u8 {
                         // Whoever listened may be gone.
                         let _ = socket.send_to(encoder.encode(&packet).unwrap(), target);
                     }
@@ -159,17 +159,17 @@ impl Boards {
                 thread::sleep(due.saturating_sub(begun.elapsed()));
             }
         });
-        Self { mishap, thread: Some(thread) }
+        Self { fault, thread: Some(thread) }
     }
 
-    pub fn suffer(&self, mishap: Mishap) {
-        self.mishap.store(mishap as u8, Ordering::Relaxed);
+    pub fn suffer(&self, fault: BoardFault) {
+        self.fault.store(fault as u8, Ordering::Relaxed);
     }
 }
 
 impl Drop for Boards {
     fn drop(&mut self) {
-        self.mishap.store(OVER, Ordering::Relaxed);
+        self.fault.store(OVER, Ordering::Relaxed);
         if let Some(thread) = self.thread.take() {
             thread.join().unwrap();
         }

@@ -1,0 +1,112 @@
+//! Records within records.
+
+use super::Codec;
+use crate::format::describe::{FieldDescription, FieldType};
+use crate::format::fields::Fields;
+use crate::format::hand::Hand;
+use crate::format::node::Node;
+use crate::format::record::{Record, Variants};
+use crate::format::text::{Entry, Text as RonText};
+
+/// A record of its own.
+pub(crate) struct Rec;
+
+impl<T: Record> Codec<T> for Rec {
+    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
+        node.record(base)
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        let mut entries = Vec::new();
+        value.write_fields(&mut entries);
+        RonText::Fields("", entries)
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Record(T::describe)
+    }
+
+    fn stand_in(&self) -> T {
+        T::stand_in()
+    }
+
+    fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
+        // An entry of a list has been named by its number.
+        if name.is_empty() {
+            value.turn_fields(hand);
+        } else {
+            hand.part(name, |hand| value.turn_fields(hand));
+        }
+    }
+}
+
+/// A record whose fields stand among those of the record around it.
+pub(crate) struct Flat;
+
+impl<T: Record> Codec<T> for Flat {
+    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
+        node.record(base)
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        Rec.write(value)
+    }
+
+    fn shape(&self) -> FieldType {
+        Codec::<T>::shape(&Rec)
+    }
+
+    fn stand_in(&self) -> T {
+        T::stand_in()
+    }
+
+    fn turn(&self, value: &mut T, _: &'static str, hand: &mut Hand<'_>) {
+        value.turn_fields(hand);
+    }
+
+    fn read_field(&self, fields: &mut Fields<'_>, _: &'static str, base: Option<&T>, _: Option<T>) -> T {
+        T::read_fields(fields, base)
+    }
+
+    fn write_field(&self, value: &T, _: &'static str, _: Option<T>, entries: &mut Vec<Entry>) {
+        value.write_fields(entries);
+    }
+
+    fn describe_field(&self, _: &'static str, _: &[&str], _: Option<T>, fields: &mut Vec<FieldDescription>) {
+        fields.extend(T::describe().fields);
+    }
+}
+
+/// One of several records, by its name; its name alone says nothing of its fields.
+pub(crate) struct OneOf;
+
+impl<T: Variants + Default> Codec<T> for OneOf {
+    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
+        let (name, mut fields) = node.variant(T::NAMES)?;
+        let read = T::read_fields(name, &mut fields, base);
+        let all = fields.are_read();
+        fields.finish();
+        read.filter(|_| all)
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        let mut entries = Vec::new();
+        value.write_fields(&mut entries);
+        match entries.as_slice() {
+            [] => RonText::Plain(value.variant().to_owned()),
+            _ => RonText::Fields(value.variant(), entries),
+        }
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Variants(T::describe)
+    }
+
+    fn stand_in(&self) -> T {
+        T::default()
+    }
+
+    fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {
+        hand.part(name, |hand| value.turn_fields(hand));
+    }
+}
