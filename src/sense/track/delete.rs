@@ -4,7 +4,7 @@ use super::params::delete::{
     EMPTY_N, FAINT_S, FAR_M, GONE_SHARE, LIGHT_N, LIGHT_SHARE, MISPLACED, NOTICED_N, OWN_M, RECOVERS, RIM_M,
     RIM_SHARE, SURE,
 };
-use super::params::state::SHOE_M;
+use super::params::state::{LANDS_S, SHOE_M};
 use super::state::{FORCE, Track};
 use super::{Tracker, first_of_least};
 use crate::sense::loaded::LoadedTiles;
@@ -46,7 +46,10 @@ impl Tracker {
         if foot.force() + SURE * sigma < EMPTY_N {
             return true;
         }
-        self.stands_on_nothing(foot, list, all)
+        // Of three that share tiles, the division is anybody's guess: the light one is the price of a wrong one.
+        let crowd = self.mates(foot).nth(1).is_some();
+        crowd && foot.age > LANDS_S && foot.force() < GONE_SHARE * all
+            || self.stands_on_nothing(foot, list, all)
     }
 
     /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.

@@ -16,9 +16,8 @@
 
 use super::params::explanation::{
     ACCOMPANIED, ACROSS_M, ACROSS_SPREAD_M, ALONG_M, ALONG_SPREAD_M, BIRTH, HALF_STANCE_M, LONE, MOST, ROLL,
-    ROLL_M, SPREAD_N, STANDING, STANDING_S, SWAY_M, WINDOW_S,
+    ROLL_M, SPREAD_N, STANDING, STANDING_S, STOPPED, STOPPED_S, SWAY_M, WINDOW_S,
 };
-use super::params::state::BODY_N;
 use super::params::stillness::STANDS_S;
 use glam::DVec2;
 
@@ -109,7 +108,7 @@ impl Explanation {
         dt: f64,
     ) -> Option<Second> {
         // A light contact far from all others is a foot that taps; a body stands on one foot or on two.
-        let lone = !foot.accompanied && (foot.bears() || seen.force > BODY_N);
+        let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
         let prior = if lone { LONE } else { ACCOMPANIED };
         let mut spread = Spread::default();
         if seen.force > SPREAD_N && foot.tiles.len() > 1 {
@@ -117,11 +116,11 @@ impl Explanation {
         }
         let mut evidence = prior + spread.evidence();
         let mut shift = DVec2::ZERO;
-        if alone && foot.anchored_s > 0.0 && seen.force > BODY_N {
+        if alone && foot.anchored_s > 0.0 && seen.force > foot.body_n {
             if foot.anchored_s > STANDS_S {
-                if !foot.accompanied {
-                    evidence += STANDING * ((foot.anchored_s - STANDS_S) / STANDING_S).min(1.0);
-                }
+                let (standing, after_s) =
+                    if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
+                evidence += standing * ((foot.anchored_s - STANDS_S) / after_s).min(1.0);
                 shift = seen.middle - foot.anchor;
                 let deviation = SWAY_M.hypot(0.5 * seen.doubt);
                 evidence += (0.5 * (shift.length() / deviation).powi(2)).min(MOST);

@@ -41,7 +41,9 @@ mod strips;
 mod tests;
 mod touchdown;
 
-use self::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, NIS_S, SEEN_S, STRIDE_M, THROWN_M};
+use self::params::tracker::{
+    FIRST_STEP_M, LANDING_S, MOST_MORE_N, MOST_SHARE, NIS_S, SEEN_S, STRIDE_M, THROWN_M,
+};
 use glam::DVec2;
 
 use self::joint::{Joint, MOST_FEET};
@@ -178,6 +180,9 @@ impl Tracker {
                 .filter(|&(distance, _)| distance < STRIDE_M)
                 .min_by(first_of_least);
             if let Some((_, other)) = nearest {
+                if self.tracks[which].age < LANDING_S {
+                    self.tracks[which].body_n = self.tracks[other].body_of_owner();
+                }
                 self.tracks[which].partner = Some((self.tracks[other].centre(), 0.0));
                 self.tracks[which].accompanied = true;
             }

@@ -31,6 +31,12 @@ pub(super) mod explanation {
 
     pub(in crate::sense::track) const STANDING_S: f64 = 0.2;
 
+    /// The same of a foot that another one was near to before: who stops walking puts the other foot beside it, and may have
+    /// done so where it cannot be told from sway.
+    pub(in crate::sense::track) const STOPPED: f64 = 4.8;
+
+    pub(in crate::sense::track) const STOPPED_S: f64 = 0.6;
+
     /// Sway of somebody who stands on one leg, as a standard deviation in metres.
     pub(in crate::sense::track) const SWAY_M: f64 = 0.010;
 
@@ -231,6 +237,13 @@ pub(super) mod state {
 
     /// The least that a foot bears that somebody stands on, in newtons: more than a leg of somebody who sits.
     pub(in crate::sense::track) const BODY_N: f64 = 350.0;
+
+    /// Which share of what somebody's foot has borne in a step tells their body from a foot that works a control: a body
+    /// that stands bears nine tenths of it (recorded steps). Children walk with less than [`BODY_N`], at the least so many
+    /// newtons (six years, our choice).
+    pub(in crate::sense::track) const BODY_SHARE: f64 = 0.75;
+
+    pub(in crate::sense::track) const LEAST_BODY_N: f64 = 140.0;
 }
 
 /// Standing and swaying.
@@ -415,6 +428,9 @@ pub(super) mod tracker {
 
     /// How little is known of the place of a foot that the filter has thrown about, as a standard deviation in metres.
     pub(in crate::sense::track) const THROWN_M: f64 = 0.05;
+
+    /// How long a foot that lands beside another one learns whose it is, in seconds: until the other one lifts off.
+    pub(in crate::sense::track) const LANDING_S: f64 = 0.05;
 
     /// How long a foot must have been down to be somebody's partner, in seconds.
     pub(in crate::sense::track) const SEEN_S: f64 = 0.03;

@@ -1,6 +1,7 @@
 //! One foot: what is known of it, and how that changes with time.
 
-use super::params::state::{BODY_N, CALM_S, HALF_REST, PARTNER_S};
+use super::params::explanation::ROLL_M;
+use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N, PARTNER_S};
 use super::params::stillness::SWAY_MOST_M;
 use arrayvec::ArrayVec;
 use glam::DVec2;
@@ -40,6 +41,8 @@ pub(super) struct Track {
     pub empty_s: f64,
     /// The most it has pressed with.
     pub peak: f64,
+    /// From which force on it bears a body: that of whom it belongs to, as far as they have been seen to walk.
+    pub body_n: f64,
     /// Seconds for which another foot alone has been enough.
     pub enough_s: f64,
     /// Seconds for which not even a slow shift of weight is.
@@ -108,6 +111,7 @@ impl Track {
             tiles: SmallVec::new(),
             empty_s: 0.0,
             peak: 0.0,
+            body_n: BODY_N,
             enough_s: 0.0,
             suppressed_s: 0.0,
             group: 0,
@@ -171,7 +175,13 @@ impl Track {
 
     /// Whether it has borne the weight of a body.
     pub(super) fn bears(&self) -> bool {
-        self.peak >= BODY_N
+        self.peak >= self.body_n
+    }
+
+    /// From which force on the feet of whom it belongs to bear their body: light people are known by their steps.
+    pub(super) fn body_of_owner(&self) -> f64 {
+        let stepped = self.travel > ROLL_M && self.peak > LEAST_BODY_N;
+        if stepped { self.body_n.min((BODY_SHARE * self.peak).max(LEAST_BODY_N)) } else { self.body_n }
     }
 
     pub(super) fn force(&self) -> f64 {
