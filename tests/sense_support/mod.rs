@@ -317,7 +317,8 @@ impl Score {
     /// Runs `method` over `scene` and adds what comes out.
     pub fn add(&mut self, scene: &Scene, method: Method) {
         // What is known of these sensors is how they were made.
-        let uncertainty = SensorUncertainty { offset_n: 0.5, gain: 0.05, ..SensorUncertainty::without_memory() };
+        let uncertainty =
+            SensorUncertainty { offset_n: 0.5, gain: 0.05, ..SensorUncertainty::without_memory() };
         let config = SensingConfig { uncertainty, ..SensingConfig::default() };
         let mut sensing = Sensing::with_config(scene.geometry, method, config);
         let mut last: HashMap<usize, u32> = HashMap::new();

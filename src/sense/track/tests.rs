@@ -309,3 +309,40 @@ fn a_foot_never_heard_of_again_is_gone_after_five_seconds() {
     };
     assert_eq!(count(&mut floor, 6000), ids[..1]);
 }
+
+#[test]
+fn a_child_who_stops_on_one_tile_is_no_foot_that_slides() {
+    // 21 kg: one step that rolls, one that stays, and the first foot again, 14 cm beside it.
+    let weight = 206.0;
+    let mut floor = Floor::new();
+    for milli in 0..2200_u16 {
+        let milli = f32::from(milli);
+        let (second, stand) = (smooth(450.0, 560.0, milli), 0.5 * smooth(1050.0, 1400.0, milli));
+        let rolls = Sole::new(Vec2::new(0.42, 1.14), 0.0, weight * smooth(0.0, 60.0, milli) * (1.0 - second));
+        let stays = Sole::new(Vec2::new(0.78, 1.0), 0.0, weight * second * (1.0 - stand));
+        let beside = Sole::new(stays.at + Vec2::Y * 0.14, 0.0, weight * stand);
+        floor.feel(&[Sole { ball: smooth(50.0, 500.0, milli), ..rolls }, stays, beside], 1);
+    }
+    let contacts = floor.sensing.contacts();
+    assert!(contacts.len() == 2 || contacts.iter().all(|contact| contact.ambiguous), "{contacts:?}");
+}
+
+#[test]
+fn who_stops_walking_and_stands_on_one_contact_may_stand_on_two() {
+    let mut floor = Floor::new();
+    let stands = |milli: f32| {
+        let second = smooth(450.0, 560.0, milli);
+        let rolls = Sole::new(Vec2::new(0.42, 1.14), 0.0, 700.0 * smooth(0.0, 60.0, milli) * (1.0 - second));
+        vec![
+            Sole { ball: smooth(50.0, 500.0, milli), ..rolls },
+            Sole::new(Vec2::new(0.78, 1.06), 0.0, 700.0 * second),
+        ]
+    };
+    for milli in 0..2500_u16 {
+        let contacts = floor.feel(&stands(milli.into()), 1);
+        assert!(milli < 600 || contacts.len() == 1, "{milli} ms: {contacts:?}");
+        assert!(milli > 1000 || contacts.iter().all(|contact| !contact.ambiguous), "a step: {milli} ms");
+    }
+    let contact = &floor.sensing.contacts()[0];
+    assert!(contact.ambiguous && contact.covariance.xx.sqrt() > 0.04, "{contact:?}");
+}
