@@ -19,10 +19,10 @@ use underfoot::preview::{
     ScopeFeed,
 };
 use underfoot::schema;
-use underfoot::sense::{Contact, Method};
+use underfoot::sense::Method;
 use underfoot::serve::{Command, Server};
 use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
-use underfoot::sink::{EventSink, Fanout};
+use underfoot::sink::{EventSink, Fanout, Report};
 use underfoot::source::{Pace, SensorSource, SimulatedSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::WidgetEvent;
@@ -367,15 +367,13 @@ struct ToWindow {
 }
 
 impl EventSink for ToWindow {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        for event in events {
-            if let Err(TrySendError::Full(_)) = self.events.try_send(event.clone()) {
-                self.missed += 1;
-            }
+    fn report(&mut self, report: Report<'_>) {
+        if let Report::Event(event) = report
+            && let Err(TrySendError::Full(_)) = self.events.try_send(event.clone())
+        {
+            self.missed += 1;
         }
     }
-
-    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
 
     fn dropped(&self) -> u64 {
         self.missed

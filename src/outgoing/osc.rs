@@ -5,7 +5,7 @@ use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType};
 use crate::engine::{ControlState, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
-use crate::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use crate::widget::{Detail, Value, WidgetEvent, WidgetId};
 use crate::wire::{LinkState, Prefix, write};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
@@ -21,22 +21,10 @@ const CONTACTS_PER_DATAGRAM: usize = 20;
 /// of the id that OSC addresses may not have are written as `_`.
 pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
     let mut args = Vec::with_capacity(5);
-    match event.kind {
-        EventKind::Changed(value) => write_value(value, &mut args),
-        EventKind::Swiped(direction) => args.push(OscType::String(direction.name().into())),
-        EventKind::Pressed
-        | EventKind::Released
-        | EventKind::Clicked
-        | EventKind::DoubleTapped
-        | EventKind::LongPressed
-        | EventKind::HardPressed
-        | EventKind::HardReleased
-        | EventKind::Cancelled
-        | EventKind::Ticked
-        | EventKind::Armed
-        | EventKind::Disarmed
-        | EventKind::Warned
-        | EventKind::Refused => {}
+    match event.kind.detail() {
+        Some(Detail::Value(value)) => write_value(value, &mut args),
+        Some(Detail::Direction(direction)) => args.push(OscType::String(direction.name().into())),
+        None => {}
     }
     args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
     let address = of_widget(prefix, &event.id, event.kind.name());
@@ -231,7 +219,7 @@ mod tests {
     use crate::sense::Trouble;
     use crate::sense::{ContactId, Covariance, Quality, TileLoad};
     use crate::units::{Instant, Newtons};
-    use crate::widget::Direction;
+    use crate::widget::{Direction, EventKind};
     use crate::wire::{Limits, check};
 
     fn event(kind: EventKind) -> WidgetEvent {

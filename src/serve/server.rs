@@ -1,33 +1,36 @@
 //! The server: one turn per packet, and all that follows from it.
 
 mod end;
+mod haptics;
 mod heartbeat;
 mod limited;
-mod mute;
-mod notices;
+mod link;
+mod outputs;
 mod requests;
+mod sensors;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use tracing::warn;
 use triple_buffer::Input;
 
-use self::heartbeat::Heartbeat;
-use self::limited::Notices;
-use super::changes::ChangeLimiter;
+use self::haptics::Haptics;
+use self::link::LinkWatch;
+use self::outputs::Outputs;
+use self::requests::Answers;
+use self::sensors::SensorWatch;
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
-use crate::feel::{CueSender, DeviceStatus, Effect, FeelCounters, Gesture, Muted};
-use crate::floor::{Floor, SensorId};
+use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
+use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, SensorHealth, Tare, TareOutcome, Trouble};
-use crate::sink::{ActuatorSink, EventSink, LatencyStages};
+use crate::sense::{Assembler, Method, Tare};
+use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{ControlMessage, LinkCounters, LinkState, Prefix};
+use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
 const PATIENCE: Duration = Duration::from_millis(5);
@@ -76,52 +79,15 @@ pub struct Server {
     source: Box<dyn SensorSource>,
     assembler: Assembler,
     engine: Engine,
-    feel: Option<CueSender>,
-    /// What somebody has muted.
-    muted: Muted,
-    /// An effect that somebody tries.
-    trial: Option<Trial>,
-    actuators: Option<Box<dyn ActuatorSink>>,
-    events: Option<Box<dyn EventSink>>,
-    changes: ChangeLimiter,
-    snapshots: Option<Input<Snapshot>>,
     commands: Option<Receiver<Command>>,
-    link: LinkState,
-    /// Since when only some boards have reported.
-    partial_since: Option<Instant>,
-    tare: TareOutcome,
-    /// Sensors known to be in trouble, and how often that had changed.
-    troubles: Vec<(SensorId, Trouble)>,
-    trouble_changes: u64,
-    /// Sensors without calibration, as far as that has been said.
-    uncalibrated: usize,
-    /// Boards that stood still and loads that jumped, as far as that has been said.
-    frozen: u64,
-    jumps: u64,
-    next_jumps: Instant,
-    /// What was last told of the sensors, and when; `None` before the first time.
-    told: Option<(Instant, SensorHealth)>,
-    /// How they are, for comparing.
-    health: SensorHealth,
-    /// How the device is doing, if there is one, and what was last told of it.
-    device: Option<DeviceStatus>,
-    device_told: Option<(Instant, DeviceStatus)>,
-    /// Measures latency, if wanted, and when the last packet was taken.
-    latency: Option<(LatencyStages, Instant)>,
-    /// Until when nothing new is reported.
-    next_check: Instant,
-    /// Whether it has been said that this seems to be another floor.
-    said_foreign: bool,
+    haptics: Haptics,
+    outputs: Outputs,
+    answers: Answers,
+    link: LinkWatch,
+    sensors: SensorWatch,
+    snapshots: Option<Input<Snapshot>>,
+    /// When the snapshot was last renewed.
     shown: Instant,
-    /// What addresses in answers begin with.
-    prefix: Prefix,
-    /// The answer being written.
-    answer: Vec<u8>,
-    /// Requests that could not be met.
-    denied: u64,
-    heartbeat: Heartbeat,
-    /// How often notices are repeated.
-    notices: Notices,
 }
 
 impl Server {
@@ -134,65 +100,43 @@ impl Server {
             source,
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
             engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
-            feel: None,
-            muted: Muted::default(),
-            trial: None,
-            actuators: None,
-            events: None,
-            changes: ChangeLimiter::default(),
-            snapshots: None,
             commands: None,
-            link: LinkState::Waiting,
-            partial_since: None,
-            tare: TareOutcome::FromFloor,
-            troubles: Vec::new(),
-            trouble_changes: 0,
-            uncalibrated: 0,
-            frozen: 0,
-            jumps: 0,
-            next_jumps: Instant::START,
-            told: None,
-            health: SensorHealth::default(),
-            device: None,
-            device_told: None,
-            latency: None,
-            next_check: Instant::START,
-            said_foreign: false,
+            haptics: Haptics::default(),
+            outputs: Outputs::default(),
+            answers: Answers::default(),
+            link: LinkWatch::default(),
+            sensors: SensorWatch::default(),
+            snapshots: None,
             shown: Instant::START,
-            prefix: Prefix::default(),
-            answer: Vec::new(),
-            denied: 0,
-            heartbeat: Heartbeat::default(),
-            notices: Notices::default(),
         }
     }
 
     /// Begins the addresses of its answers with `prefix`; its source and sinks have prefixes of their own.
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
-        self.prefix = prefix;
+        self.answers.prefix = prefix;
         self
     }
 
     /// Sends cues through `feel` to the renderer that `actuators` plays.
     #[must_use]
     pub fn with_feel(mut self, feel: CueSender, actuators: Box<dyn ActuatorSink>) -> Self {
-        self.feel = Some(feel);
-        self.actuators = Some(actuators);
+        self.haptics.feel = Some(feel);
+        self.haptics.actuators = Some(actuators);
         self
     }
 
     /// Measures in `stages` how long packets take to become cues; what follows is the sink's to measure.
     #[must_use]
     pub fn with_latency(mut self, stages: LatencyStages) -> Self {
-        self.latency = Some((stages, Instant::START));
+        self.haptics.latency = Some((stages, Instant::START));
         self
     }
 
     /// Tells `events` what happens.
     #[must_use]
     pub fn with_events(mut self, events: Box<dyn EventSink>) -> Self {
-        self.events = Some(events);
+        self.outputs.sink = Some(events);
         self
     }
 
@@ -219,30 +163,30 @@ impl Server {
     /// What came in and what was refused, from the socket to the frames.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
-        let own = LinkCounters { denied: self.denied, ..LinkCounters::default() };
+        let own = LinkCounters { denied: self.answers.denied, ..LinkCounters::default() };
         self.source.counters() + self.assembler.counters() + own
     }
 
     /// What could not be felt as it should so far, or was not to be.
     #[must_use]
     pub fn feel_counters(&self) -> FeelCounters {
-        self.feel.as_ref().map(CueSender::counters).unwrap_or_default()
+        self.haptics.counters()
     }
 
     /// Events that other programs could not be told so far.
     #[must_use]
     pub fn unsent_events(&self) -> u64 {
-        self.events.as_ref().map_or(0, |events| events.dropped())
+        self.outputs.dropped()
     }
 
     /// Writes everything there is to see into `snapshot`.
     pub fn snapshot(&self, snapshot: &mut Snapshot) {
         self.engine.snapshot(snapshot);
-        snapshot.link = self.link;
+        snapshot.link = self.link.state();
         snapshot.counters = self.counters();
         self.assembler.health(&mut snapshot.health);
-        snapshot.device.clone_from(&self.device);
-        snapshot.muted.clone_from(&self.muted);
+        snapshot.device = self.haptics.device().cloned();
+        snapshot.muted.clone_from(self.haptics.muted());
         snapshot.feel = self.feel_counters();
         snapshot.unsent_events = self.unsent_events();
     }
@@ -253,7 +197,7 @@ impl Server {
     /// # Errors
     /// What [`Server::turn`] gives.
     pub fn run(&mut self, stop: &AtomicBool) -> Result<(), SourceError> {
-        self.update_mute();
+        self.haptics.update_mute(self.link.is_lost());
         let served = loop {
             if stop.load(Ordering::Relaxed) {
                 break Ok(());
@@ -277,19 +221,17 @@ impl Server {
         self.process_commands();
         match self.source.next(PATIENCE) {
             Ok(Some(packet)) => {
-                if let Some((_, taken)) = &mut self.latency {
-                    *taken = self.source.now();
-                }
+                self.haptics.note_packet(self.source.now());
                 self.assembler.take(&packet);
             }
             Ok(None) => {
                 let now = self.source.now();
                 self.assembler.poll(now);
-                self.play_until(now.before(IDLE_LAG));
+                self.haptics.play_until(now.before(IDLE_LAG));
             }
             Err(SourceError::Ended) => {
                 self.cancel_all();
-                self.play_until(self.source.now() + TAIL);
+                self.haptics.play_until(self.source.now() + TAIL);
                 return Ok(Ended::Yes);
             }
             Err(error) => return Err(error),
@@ -297,9 +239,8 @@ impl Server {
         self.note_link();
         while self.step() {}
         self.beat();
-        self.poll();
-        self.note_troubles();
-        self.note_health();
+        self.outputs.poll(self.link.is_lost(), self.source.now());
+        self.note_sensors();
         Ok(Ended::No)
     }
 
@@ -308,62 +249,48 @@ impl Server {
         let Some(frame) = self.assembler.ready() else { return false };
         let at = frame.at;
         let step = self.engine.step(frame);
-        if let Some(feel) = &mut self.feel {
-            if let Some((stages, taken)) = self.latency.as_ref().filter(|_| !step.cues.is_empty()) {
-                let now = self.source.now();
-                feel.note_time(now);
-                for cue in step.cues {
-                    stages.link.record(taken.since(cue.received));
-                    stages.engine.record(now.since(*taken));
-                }
-            }
-            for cue in step.cues {
-                // What could not be sent is counted by the sender.
-                feel.send(cue);
-            }
-            match &mut self.trial {
-                Some(trial) => {
-                    if !trial.step(at, step.sustained, feel) {
-                        self.trial = None;
-                    }
-                }
-                None => feel.sustain(step.sustained),
-            }
-        }
-        if let Some(events) = &mut self.events {
-            events.events(self.changes.thin(step.events, at));
-            if let Some(page) = step.page {
-                events.page(page);
-            }
-            if !step.grounds.is_empty() {
-                events.ground(step.grounds);
-            }
-            events.contacts(at, step.contacts);
-        }
-        self.play_until(at + FRAME);
+        self.haptics.send(&step, at, self.source.now());
+        self.outputs.step(&step, at);
+        self.haptics.play_until(at + FRAME);
         self.show(at);
         true
     }
 
-    /// Tells what had to wait, also while no frames come.
-    fn poll(&mut self) {
+    /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
+    fn note_link(&mut self) {
         let now = self.source.now();
-        if let Some(events) = &mut self.events {
-            // Otherwise frames give the time, so that the same frames tell the same.
-            if self.link == LinkState::Lost {
-                events.events(self.changes.thin(&[], now));
-            }
-            events.poll(now);
+        let Some(state) = self.link.update(&self.assembler, now) else { return };
+        self.haptics.update_mute(self.link.is_lost());
+        self.outputs.report(Report::Link(now, state));
+        // A lost floor has no frames that would show it.
+        self.show_now();
+    }
+
+    /// Says how sensors and device are doing, where that has changed.
+    fn note_sensors(&mut self) {
+        let now = self.source.now();
+        self.sensors.note_troubles(&self.assembler, now);
+        if !self.sensors.is_due(now) {
+            return;
+        }
+        if let Some(status) = self.haptics.device_news(now) {
+            self.outputs.report(Report::Device(now, status));
+        }
+        let (counters, link) = (self.counters(), self.link.state());
+        if let Some(health) = self.sensors.health_news(&self.assembler, &counters, link, now) {
+            self.outputs.report(Report::Health(now, health));
         }
     }
 
-    fn play_until(&mut self, now: Instant) {
-        if let Some(actuators) = &mut self.actuators
-            && let Err(error) = actuators.advance(now)
-        {
-            warn!("the actuators are dropped: {error}");
-            self.actuators = None;
-        }
+    /// Reports what is held if that has changed or is due, and that the server lives.
+    fn beat(&mut self) {
+        self.outputs.beat(self.engine.held(), self.source.now());
+    }
+
+    /// Renews the snapshot whatever its age.
+    fn show_now(&mut self) {
+        self.shown = Instant::START;
+        self.show(self.source.now());
     }
 
     fn show(&mut self, at: Instant) {
@@ -388,7 +315,7 @@ impl Server {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
                 Command::Control(message) => self.process_request(message.into()),
                 Command::Audition { effect, gesture, tile } => {
-                    self.trial = Some(Trial::new(effect, *gesture, tile));
+                    self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
                 }
             }
         }

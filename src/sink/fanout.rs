@@ -1,13 +1,7 @@
 //! Several event sinks as one.
 
-use super::{EventSink, HeldReport};
-use crate::engine::{ControlState, PageShown};
-use crate::feel::{DeviceStatus, Muted};
-use crate::ground::GroundEvent;
-use crate::sense::{Contact, SensorHealth};
+use super::{EventSink, Report};
 use crate::units::Instant;
-use crate::widget::WidgetEvent;
-use crate::wire::LinkState;
 
 /// Several event sinks as one; each gets everything, in the order they were added.
 #[derive(Default)]
@@ -42,48 +36,8 @@ impl std::fmt::Debug for Fanout {
 }
 
 impl EventSink for Fanout {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        self.sinks.iter_mut().for_each(|sink| sink.events(events));
-    }
-
-    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
-        self.sinks.iter_mut().for_each(|sink| sink.contacts(at, contacts));
-    }
-
-    fn page(&mut self, page: &PageShown) {
-        self.sinks.iter_mut().for_each(|sink| sink.page(page));
-    }
-
-    fn ground(&mut self, events: &[GroundEvent]) {
-        self.sinks.iter_mut().for_each(|sink| sink.ground(events));
-    }
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.sinks.iter_mut().for_each(|sink| sink.link(at, state));
-    }
-
-    fn health(&mut self, at: Instant, health: &SensorHealth) {
-        self.sinks.iter_mut().for_each(|sink| sink.health(at, health));
-    }
-
-    fn device(&mut self, at: Instant, status: &DeviceStatus) {
-        self.sinks.iter_mut().for_each(|sink| sink.device(at, status));
-    }
-
-    fn held(&mut self, report: &HeldReport) {
-        self.sinks.iter_mut().for_each(|sink| sink.held(report));
-    }
-
-    fn alive(&mut self, sequence: u32) {
-        self.sinks.iter_mut().for_each(|sink| sink.alive(sequence));
-    }
-
-    fn muted(&mut self, at: Instant, muted: &Muted) {
-        self.sinks.iter_mut().for_each(|sink| sink.muted(at, muted));
-    }
-
-    fn control(&mut self, at: Instant, state: &ControlState) {
-        self.sinks.iter_mut().for_each(|sink| sink.control(at, state));
+    fn report(&mut self, report: Report<'_>) {
+        self.sinks.iter_mut().for_each(|sink| sink.report(report));
     }
 
     fn poll(&mut self, now: Instant) {
@@ -100,32 +54,17 @@ mod tests {
     use std::sync::mpsc::{Sender, channel};
 
     use super::*;
+    use crate::wire::LinkState;
 
     struct Tell(&'static str, Sender<String>);
 
     impl EventSink for Tell {
-        fn events(&mut self, events: &[WidgetEvent]) {
-            self.1.send(format!("{} {} events", self.0, events.len())).unwrap();
+        fn report(&mut self, report: Report<'_>) {
+            self.1.send(format!("{} {report:?}", self.0)).unwrap();
         }
 
-        fn contacts(&mut self, at: Instant, _: &[Contact]) {
-            self.1.send(format!("{} contacts at {}", self.0, at.micros())).unwrap();
-        }
-
-        fn link(&mut self, _: Instant, state: LinkState) {
-            self.1.send(format!("{} {state:?}", self.0)).unwrap();
-        }
-
-        fn health(&mut self, _: Instant, health: &SensorHealth) {
-            self.1.send(format!("{} {health}", self.0)).unwrap();
-        }
-
-        fn held(&mut self, report: &HeldReport) {
-            self.1.send(format!("{} held {}", self.0, report.sequence)).unwrap();
-        }
-
-        fn alive(&mut self, sequence: u32) {
-            self.1.send(format!("{} alive {sequence}", self.0)).unwrap();
+        fn poll(&mut self, now: Instant) {
+            self.1.send(format!("{} polled at {}", self.0, now.micros())).unwrap();
         }
 
         fn dropped(&self) -> u64 {
@@ -134,20 +73,17 @@ mod tests {
     }
 
     #[test]
-    fn everybody_hears_everything() {
+    fn everybody_hears_everything_in_order() {
         let (tell, received) = channel();
         let mut fanout = Fanout::new().with(Tell("a", tell.clone())).with(Tell("b", tell));
-        fanout.events(&[]);
-        fanout.contacts(Instant::from_micros(5), &[]);
-        fanout.link(Instant::START, LinkState::Live);
-        fanout.health(Instant::START, &SensorHealth { counts: [3, 0, 0, 1], ..SensorHealth::default() });
-        fanout.held(&HeldReport { sequence: 7, ..HeldReport::default() });
-        fanout.alive(8);
+        let reports = [Report::Link(Instant::START, LinkState::Live), Report::Alive(Instant::START, 8)];
+        reports.into_iter().for_each(|report| fanout.report(report));
+        fanout.poll(Instant::from_micros(5));
         assert_eq!(fanout.dropped(), 6);
         drop(fanout);
-        let expected = ["a 0 events", "b 0 events", "a contacts at 5", "b contacts at 5", "a Live", "b Live"];
-        let sick = ["a 1 faulty, 3 live", "b 1 faulty, 3 live"];
-        let beats = ["a held 7", "b held 7", "a alive 8", "b alive 8"];
-        assert_eq!(received.iter().collect::<Vec<_>>(), [&expected[..], &sick, &beats].concat());
+        let told = reports.iter().map(|report| format!("{report:?}"));
+        let told =
+            told.chain(["polled at 5".into()]).flat_map(|what| ["a", "b"].map(|to| format!("{to} {what}")));
+        assert_eq!(received.iter().collect::<Vec<_>>(), told.collect::<Vec<_>>());
     }
 }

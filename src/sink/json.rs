@@ -5,21 +5,19 @@ mod line;
 mod tests;
 
 use std::io::{self, Write};
+use std::mem::{Discriminant, discriminant};
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant as HostInstant};
 
 use self::line::Line;
 use super::backlog::{Backlog, Gap, Worth};
-use super::crack_rate::{CrackNews, CrackRateLimiter};
+use super::crack_rate::CrackRateLimiter;
 use super::periodic::PeriodicSender;
+use super::report::OwnedReport;
 use super::worker::Worker;
-use super::{EventSink, HeldReport, SinkError};
-use crate::engine::{ControlState, PageShown};
-use crate::feel::{DeviceStatus, Muted};
-use crate::ground::GroundEvent;
-use crate::sense::{Contact, SensorHealth};
+use super::{EventSink, Report, SinkError};
 use crate::units::Instant;
-use crate::widget::{EventKind, WidgetEvent, WidgetId};
+use crate::widget::{EventKind, WidgetId};
 use crate::wire::LinkState;
 
 /// Writes one JSON object per event and line.
@@ -65,17 +63,8 @@ pub struct JsonSink {
 
 #[derive(Debug)]
 enum Job {
-    Event(WidgetEvent),
-    Link(Instant, LinkState),
-    Page(PageShown),
-    Crack(CrackNews),
-    Health(Instant, SensorHealth),
-    Device(Instant, DeviceStatus),
-    Muted(Instant, Muted),
-    Held(HeldReport),
+    Told(OwnedReport),
     Gap(Gap),
-    Control(Instant, Box<ControlState>),
-    Contacts(Instant, Vec<Contact>),
 }
 
 impl From<Gap> for Job {
@@ -88,39 +77,30 @@ impl From<Gap> for Job {
 #[derive(Clone, Debug, PartialEq)]
 enum Key {
     Event(WidgetId, &'static str),
-    Link,
-    Page,
-    Health,
-    Device,
-    Muted,
-    Held,
     Control(WidgetId),
-    Contacts,
+    /// Of each other kind of report there is one state only.
+    State(Discriminant<OwnedReport>),
 }
 
-impl Job {
-    /// When it happened, and how much it matters to a reader that has been away.
-    fn worth(&self) -> (Instant, Worth<Key>) {
-        match self {
-            Self::Event(event) => {
-                let key = Key::Event(event.id.clone(), event.kind.name());
-                let worth = match event.kind {
-                    EventKind::Changed(_) | EventKind::Ticked => Worth::Latest(key),
-                    _ => Worth::Each(key),
-                };
-                (event.at, worth)
+/// How much a report matters to a reader that has been away.
+fn worth(told: &OwnedReport) -> Worth<Key> {
+    match told {
+        OwnedReport::Event(event) => {
+            let key = Key::Event(event.id.clone(), event.kind.name());
+            match event.kind {
+                EventKind::Changed(_) | EventKind::Ticked => Worth::Latest(key),
+                _ => Worth::Each(key),
             }
-            Self::Link(at, _) => (*at, Worth::Latest(Key::Link)),
-            Self::Page(shown) => (shown.at, Worth::Latest(Key::Page)),
-            Self::Crack(news) => (news.at, Worth::None),
-            Self::Health(at, _) => (*at, Worth::Latest(Key::Health)),
-            Self::Device(at, _) => (*at, Worth::Latest(Key::Device)),
-            Self::Muted(at, _) => (*at, Worth::Latest(Key::Muted)),
-            Self::Held(report) => (report.at, Worth::Latest(Key::Held)),
-            Self::Gap(gap) => (gap.at, Worth::None),
-            Self::Control(at, state) => (*at, Worth::Latest(Key::Control(state.id.clone()))),
-            Self::Contacts(at, _) => (*at, Worth::Latest(Key::Contacts)),
         }
+        OwnedReport::Crack(_) | OwnedReport::Alive(..) => Worth::None,
+        OwnedReport::Control(_, state) => Worth::Latest(Key::Control(state.id.clone())),
+        OwnedReport::Contacts(..)
+        | OwnedReport::Page(_)
+        | OwnedReport::Link(..)
+        | OwnedReport::Health(..)
+        | OwnedReport::Device(..)
+        | OwnedReport::Held(_)
+        | OwnedReport::Muted(..) => Worth::Latest(Key::State(discriminant(told))),
     }
 }
 
@@ -158,12 +138,13 @@ impl JsonSink {
         self
     }
 
-    fn put(&mut self, job: Job) {
+    fn put(&mut self, told: OwnedReport) {
         self.flush();
+        let job = Job::Told(told);
         let waits = if self.backlog.is_empty() { self.worker.hand(job) } else { Some(job) };
-        if let Some(job) = waits {
-            let (at, worth) = job.worth();
-            self.backlog.push(at, job, worth);
+        if let Some(Job::Told(told)) = waits {
+            let (at, worth) = (told.at(), worth(&told));
+            self.backlog.push(at, Job::Told(told), worth);
         }
     }
 
@@ -187,51 +168,22 @@ impl Drop for JsonSink {
 }
 
 impl EventSink for JsonSink {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        for event in events {
-            self.put(Job::Event(event.clone()));
-        }
-    }
-
-    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
-        self.flush();
-        if let Some(periodic) = self.contacts.as_mut().filter(|periodic| periodic.is_due(at, contacts)) {
-            periodic.reported(at, contacts);
-            self.put(Job::Contacts(at, contacts.to_vec()));
-        }
-    }
-
-    fn page(&mut self, page: &PageShown) {
-        self.put(Job::Page(page.clone()));
-    }
-
-    fn ground(&mut self, events: &[GroundEvent]) {
-        for event in events {
-            if let Some(news) = self.cracks.news(event) {
-                self.put(Job::Crack(news));
+    fn report(&mut self, report: Report<'_>) {
+        match report {
+            Report::Alive(..) => return,
+            Report::Contacts(at, contacts) => {
+                self.flush();
+                match self.contacts.as_mut().filter(|periodic| periodic.is_due(at, contacts)) {
+                    Some(periodic) => periodic.reported(at, contacts),
+                    None => return,
+                }
             }
+            Report::Link(_, state) => self.lost = matches!(state, LinkState::Lost | LinkState::Waiting),
+            _ => {}
         }
-    }
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.lost = matches!(state, LinkState::Lost | LinkState::Waiting);
-        self.put(Job::Link(at, state));
-    }
-
-    fn health(&mut self, at: Instant, health: &SensorHealth) {
-        self.put(Job::Health(at, health.clone()));
-    }
-
-    fn device(&mut self, at: Instant, status: &DeviceStatus) {
-        self.put(Job::Device(at, status.clone()));
-    }
-
-    fn muted(&mut self, at: Instant, muted: &Muted) {
-        self.put(Job::Muted(at, muted.clone()));
-    }
-
-    fn control(&mut self, at: Instant, state: &ControlState) {
-        self.put(Job::Control(at, Box::new(state.clone())));
+        if let Some(told) = OwnedReport::of(report, &mut self.cracks) {
+            self.put(told);
+        }
     }
 
     fn poll(&mut self, now: Instant) {
@@ -239,12 +191,8 @@ impl EventSink for JsonSink {
         let due = self.contacts.as_mut().filter(|periodic| self.lost && periodic.is_silence_due(now));
         if let Some(periodic) = due {
             periodic.reported(now, &[]);
-            self.put(Job::Contacts(now, Vec::new()));
+            self.put(OwnedReport::Contacts(now, Vec::new()));
         }
-    }
-
-    fn held(&mut self, report: &HeldReport) {
-        self.put(Job::Held(report.clone()));
     }
 
     fn dropped(&self) -> u64 {
@@ -267,7 +215,8 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write) -> io::Result<()> {
 }
 
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {
-    let mut line = serde_json::to_vec(&Line::of(job))?;
+    let Some(line) = Line::of(job) else { return Ok(()) };
+    let mut line = serde_json::to_vec(&line)?;
     line.push(b'\n');
     out.write_all(&line)
 }

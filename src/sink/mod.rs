@@ -15,6 +15,7 @@ mod mono;
 mod osc;
 mod periodic;
 mod priority;
+mod report;
 mod silent;
 mod tuio;
 mod udp;
@@ -24,13 +25,8 @@ mod worker;
 
 use thiserror::Error;
 
-use crate::engine::{ControlState, PageShown};
-use crate::feel::{DeviceStatus, Muted};
-use crate::ground::GroundEvent;
-use crate::sense::{Contact, SensorHealth};
+use crate::feel::DeviceStatus;
 use crate::units::Instant;
-use crate::widget::WidgetEvent;
-use crate::wire::LinkState;
 
 pub use crate::outgoing::{HeldReport, TuioProfiles};
 pub use channel_map::ChannelMap;
@@ -42,6 +38,7 @@ pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;
 pub use osc::OscSink;
+pub use report::Report;
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(feature = "wav")]
@@ -69,43 +66,13 @@ pub trait ActuatorSink {
 
 /// Something that tells other programs what happened; it never blocks its caller.
 pub trait EventSink: Send {
-    /// Takes the events of one frame, in order; may be empty.
-    fn events(&mut self, events: &[WidgetEvent]);
-
-    /// Takes the contacts of one frame; called for every frame, so a sink thins them out itself.
-    fn contacts(&mut self, at: Instant, contacts: &[Contact]);
-
-    /// Takes news of the page that has taken the place of another.
-    fn page(&mut self, _page: &PageShown) {}
-
-    /// Takes the ground events of one frame, in order; called for frames that have some.
-    fn ground(&mut self, _events: &[GroundEvent]) {}
-
-    /// Takes news of the floor's link; called when its state changes.
-    fn link(&mut self, _at: Instant, _state: LinkState) {}
-
-    /// Takes news of the floor's sensors; called when something has changed, once a second at most.
-    fn health(&mut self, _at: Instant, _health: &SensorHealth) {}
-
-    /// Takes news of the device that moves the actuators; called when something has changed, once a second at most.
-    fn device(&mut self, _at: Instant, _status: &DeviceStatus) {}
-
-    /// Takes which controls are held: at once when that changes, and 50 times a second while any is.
-    fn held(&mut self, _report: &HeldReport) {}
-
-    /// Takes a sign of life, numbered from 1; called ten times a second, also while no packets come.
-    fn alive(&mut self, _sequence: u32) {}
-
-    /// Takes news of what is muted; called when that changes.
-    fn muted(&mut self, _at: Instant, _muted: &Muted) {}
-
-    /// Takes news of how a control is; called when an app has asked for it or changed it.
-    fn control(&mut self, _at: Instant, _state: &ControlState) {}
+    /// Takes one report; they come in order.
+    fn report(&mut self, report: Report<'_>);
 
     /// Called every few milliseconds, also while no frames come: for what is told again and again, or had to wait.
     fn poll(&mut self, _now: Instant) {}
 
-    /// Events that could not be passed on, since the start: nobody took them fast enough, or at all.
+    /// Reports that could not be passed on, since the start: nobody took them fast enough, or at all.
     fn dropped(&self) -> u64 {
         0
     }

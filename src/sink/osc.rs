@@ -7,20 +7,16 @@ use std::sync::mpsc::Receiver;
 
 use super::crack_rate::{CrackNews, CrackRateLimiter};
 use super::periodic::{Latest, PeriodicSender};
+use super::report::OwnedReport;
 use super::udp::UdpOut;
 use super::worker::Worker;
-use super::{EventSink, HeldReport, SinkError};
-use crate::engine::{ControlState, PageShown};
-use crate::feel::{DeviceStatus, Muted};
-use crate::ground::GroundEvent;
+use super::{EventSink, Report, SinkError};
 use crate::outgoing::{
     write_alive, write_contacts, write_control, write_crack, write_device, write_event, write_health,
     write_held, write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
-use crate::widget::WidgetEvent;
-use crate::widget::WidgetId;
 use crate::wire::{LinkState, Prefix};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
@@ -38,22 +34,12 @@ pub struct OscSink {
     undelivered: Arc<AtomicU64>,
     periodic: PeriodicSender,
     cracks: CrackRateLimiter,
-    /// What was last reported of link and sensors: each message tells of both.
     link: LinkState,
-    health: SensorHealth,
 }
 
 #[derive(Debug)]
 enum Job {
-    Event(WidgetEvent),
-    Page(WidgetId),
-    Crack(CrackNews),
-    Health(LinkState, SensorHealth),
-    Device(DeviceStatus),
-    Muted(Muted),
-    Held(HeldReport),
-    Alive(u32),
-    Control(Box<ControlState>),
+    Told(OwnedReport),
     /// Whatever the latest contacts are when it is its turn.
     Contacts,
     /// Nobody is there any more, as far as anybody can tell.
@@ -77,7 +63,7 @@ impl OscSink {
         let out = UdpOut::new(target, "OSC")?;
         let undelivered = out.undelivered();
         let latest = Arc::new(Latest::default());
-        let sender = Sender { out, prefix, bytes: Vec::new() };
+        let sender = Sender { out, prefix, link: LinkState::default(), health: SensorHealth::default() };
         let worker = Worker::spawn("osc out", {
             let latest = latest.clone();
             move |jobs| sender.run(jobs, &latest)
@@ -86,15 +72,13 @@ impl OscSink {
             message: format!("cannot send OSC to {target}: {source}"),
             source,
         })?;
-        let (link, health) = (LinkState::default(), SensorHealth::default());
         Ok(Self {
             worker,
             latest,
             undelivered,
             periodic: PeriodicSender::default(),
             cracks: CrackRateLimiter::default(),
-            link,
-            health,
+            link: LinkState::default(),
         })
     }
 }
@@ -110,41 +94,29 @@ impl OscSink {
 }
 
 impl EventSink for OscSink {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        for event in events {
-            self.worker.offer(Job::Event(event.clone()));
+    fn report(&mut self, report: Report<'_>) {
+        if let Report::Contacts(at, contacts) = report {
+            let queue = || self.worker.try_offer(Job::Contacts);
+            if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+                self.periodic.reported(at, contacts);
+            }
+            return;
         }
-    }
-
-    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
-        let queue = || self.worker.try_offer(Job::Contacts);
-        if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
-            self.periodic.reported(at, contacts);
-        }
-    }
-
-    fn page(&mut self, page: &PageShown) {
-        self.worker.offer(Job::Page(page.page.clone()));
-    }
-
-    fn ground(&mut self, events: &[GroundEvent]) {
-        for event in events {
-            if let Some(news) = self.cracks.news(event) {
-                self.worker.offer(Job::Crack(news));
+        let Some(told) = OwnedReport::of(report, &mut self.cracks) else { return };
+        // A repetition may be missed; that something has ended may not.
+        let is_repeated = match report {
+            Report::Held(report) => report.ended.is_empty(),
+            Report::Alive(..) => true,
+            _ => false,
+        };
+        let job = Job::Told(told);
+        let _ = if is_repeated { self.worker.try_offer(job) } else { self.worker.offer(job) };
+        if let Report::Link(at, state) = report {
+            self.link = state;
+            if state == LinkState::Lost {
+                self.say_nobody_is_there(at);
             }
         }
-    }
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.link = state;
-        self.worker.offer(Job::Health(state, self.health.clone()));
-        if state == LinkState::Lost {
-            self.say_nobody_is_there(at);
-        }
-    }
-
-    fn control(&mut self, _at: Instant, state: &ControlState) {
-        self.worker.offer(Job::Control(Box::new(state.clone())));
     }
 
     fn poll(&mut self, now: Instant) {
@@ -152,29 +124,6 @@ impl EventSink for OscSink {
         if no_frames && self.periodic.is_silence_due(now) {
             self.say_nobody_is_there(now);
         }
-    }
-
-    fn health(&mut self, _at: Instant, health: &SensorHealth) {
-        self.health.clone_from(health);
-        self.worker.offer(Job::Health(self.link, health.clone()));
-    }
-
-    fn device(&mut self, _at: Instant, status: &DeviceStatus) {
-        self.worker.offer(Job::Device(status.clone()));
-    }
-
-    fn muted(&mut self, _at: Instant, muted: &Muted) {
-        self.worker.offer(Job::Muted(muted.clone()));
-    }
-
-    fn held(&mut self, report: &HeldReport) {
-        let job = Job::Held(report.clone());
-        // A repetition may be missed; that something has ended may not.
-        let _ = if report.ended.is_empty() { self.worker.try_offer(job) } else { self.worker.offer(job) };
-    }
-
-    fn alive(&mut self, sequence: u32) {
-        self.worker.try_offer(Job::Alive(sequence));
     }
 
     fn dropped(&self) -> u64 {
@@ -196,52 +145,52 @@ impl Drop for OscSink {
 struct Sender {
     out: UdpOut,
     prefix: Prefix,
-    bytes: Vec<u8>,
+    /// What was last reported of link and sensors: each message tells of both.
+    link: LinkState,
+    health: SensorHealth,
 }
 
 impl Sender {
-    fn run(self, jobs: &Receiver<Job>, latest: &Latest) {
-        let Self { out, prefix, mut bytes } = self;
+    fn run(mut self, jobs: &Receiver<Job>, latest: &Latest) {
+        let mut bytes = Vec::new();
         for job in jobs {
             match job {
-                Job::Event(event) => {
-                    write_event(&prefix, &event, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Page(page) => {
-                    write_page(&prefix, page.as_str(), &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
-                    write_crack(&prefix, seed, [energy_j, x_m, y_m], skipped, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Health(state, health) => {
-                    write_health(&prefix, state, &health, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Device(status) => {
-                    write_device(&prefix, &status, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Muted(muted) => {
-                    write_mute(&prefix, &muted, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Held(report) => write_held(&prefix, &report, &mut bytes, |datagram| out.send(datagram)),
-                Job::Alive(sequence) => {
-                    write_alive(&prefix, sequence, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Control(state) => {
-                    write_control(&prefix, &state, &mut bytes);
-                    out.send(&bytes);
-                }
-                Job::Contacts => {
-                    write_contacts(&prefix, &latest.fetch().1, &mut bytes, |datagram| out.send(datagram));
-                }
-                Job::Nobody => write_contacts(&prefix, &[], &mut bytes, |datagram| out.send(datagram)),
+                Job::Told(told) => self.tell(told, &mut bytes),
+                Job::Contacts => self.contacts(&latest.fetch().1, &mut bytes),
+                Job::Nobody => self.contacts(&[], &mut bytes),
             }
         }
+    }
+
+    fn contacts(&self, contacts: &[Contact], bytes: &mut Vec<u8>) {
+        write_contacts(&self.prefix, contacts, bytes, |datagram| self.out.send(datagram));
+    }
+
+    fn tell(&mut self, told: OwnedReport, bytes: &mut Vec<u8>) {
+        let prefix = &self.prefix;
+        match told {
+            OwnedReport::Event(event) => write_event(prefix, &event, bytes),
+            OwnedReport::Contacts(_, contacts) => return self.contacts(&contacts, bytes),
+            OwnedReport::Page(shown) => write_page(prefix, shown.page.as_str(), bytes),
+            OwnedReport::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
+                write_crack(prefix, seed, [energy_j, x_m, y_m], skipped, bytes);
+            }
+            OwnedReport::Link(_, state) => {
+                self.link = state;
+                write_health(prefix, state, &self.health, bytes);
+            }
+            OwnedReport::Health(_, health) => {
+                write_health(prefix, self.link, &health, bytes);
+                self.health = health;
+            }
+            OwnedReport::Device(_, status) => write_device(prefix, &status, bytes),
+            OwnedReport::Held(report) => {
+                return write_held(prefix, &report, bytes, |datagram| self.out.send(datagram));
+            }
+            OwnedReport::Alive(_, sequence) => write_alive(prefix, sequence, bytes),
+            OwnedReport::Muted(_, muted) => write_mute(prefix, &muted, bytes),
+            OwnedReport::Control(_, state) => write_control(prefix, &state, bytes),
+        }
+        self.out.send(bytes);
     }
 }

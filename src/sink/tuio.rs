@@ -11,12 +11,11 @@ use rosc::OscTime;
 use super::periodic::{Latest, PeriodicSender};
 use super::udp::UdpOut;
 use super::worker::Worker;
-use super::{EventSink, SinkError};
+use super::{EventSink, Report, SinkError};
 use crate::floor::Geometry;
 use crate::outgoing::{Tuio1, Tuio2, TuioProfiles, tuio_first_frame};
 use crate::sense::Contact;
 use crate::units::Instant;
-use crate::widget::WidgetEvent;
 use crate::wire::LinkState;
 
 /// How often a goodbye is sent: one datagram may be lost.
@@ -78,20 +77,22 @@ impl TuioSink {
 }
 
 impl EventSink for TuioSink {
-    fn events(&mut self, _events: &[WidgetEvent]) {}
-
-    fn contacts(&mut self, at: Instant, contacts: &[Contact]) {
-        let queue = || self.worker.try_offer(Job::Contacts);
-        if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
-            self.periodic.reported(at, contacts);
-        }
-    }
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.lost = matches!(state, LinkState::Lost | LinkState::Waiting);
-        if state == LinkState::Lost {
-            self.worker.offer(Job::Lost(at));
-            self.periodic.reported(at, &[]);
+    fn report(&mut self, report: Report<'_>) {
+        match report {
+            Report::Contacts(at, contacts) => {
+                let queue = || self.worker.try_offer(Job::Contacts);
+                if self.periodic.is_due(at, contacts) && self.latest.store(at, contacts, queue) {
+                    self.periodic.reported(at, contacts);
+                }
+            }
+            Report::Link(at, state) => {
+                self.lost = matches!(state, LinkState::Lost | LinkState::Waiting);
+                if state == LinkState::Lost {
+                    self.worker.offer(Job::Lost(at));
+                    self.periodic.reported(at, &[]);
+                }
+            }
+            _ => {}
         }
     }
 

@@ -152,6 +152,39 @@ impl EventKind {
     }
 }
 
+/// What an event says besides its name.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Detail {
+    /// The value that the control now holds.
+    Value(Value),
+    /// Where the foot went.
+    Direction(Direction),
+}
+
+impl EventKind {
+    /// What it says besides its name; `None` for most.
+    #[must_use]
+    pub const fn detail(self) -> Option<Detail> {
+        match self {
+            Self::Changed(value) => Some(Detail::Value(value)),
+            Self::Swiped(direction) => Some(Detail::Direction(direction)),
+            Self::Pressed
+            | Self::Released
+            | Self::Clicked
+            | Self::DoubleTapped
+            | Self::LongPressed
+            | Self::HardPressed
+            | Self::HardReleased
+            | Self::Cancelled
+            | Self::Ticked
+            | Self::Armed
+            | Self::Disarmed
+            | Self::Warned
+            | Self::Refused => None,
+        }
+    }
+}
+
 /// One event of one control, as it leaves the engine.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WidgetEvent {

@@ -40,7 +40,7 @@ mod track;
 pub use behaviour::Behaviour;
 pub use button::{ActsOn, ButtonSpec, Gestures, HardStage};
 pub use dial::DialSpec;
-pub use event::{Direction, EventKind, Value, WidgetEvent, WidgetId};
+pub use event::{Detail, Direction, EventKind, Value, WidgetEvent, WidgetId};
 pub use guard::{Confirm, Guard, HoldToRun};
 pub use hold::HoldSpec;
 pub use input::Indicator;

@@ -5,7 +5,7 @@ use std::time::Duration;
 
 use rosc::{OscMessage, OscType};
 use underfoot::sense::ContactId;
-use underfoot::sink::{EventSink, OscSink};
+use underfoot::sink::{EventSink, OscSink, Report};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
 
@@ -47,11 +47,13 @@ fn the_osc_listener_hears_controls_and_answers() {
         force: Newtons(120.0),
         position: underfoot::glam::Vec2::ONE,
     };
-    events.events(&[
+    for event in [
         event("zoom", EventKind::Changed(Value::Number(0.5))),
         event("satellite", EventKind::Changed(Value::Switch(true))),
         event("home", EventKind::Clicked),
-    ]);
+    ] {
+        events.report(Report::Event(&event));
+    }
     let answer_to = floor.local_addr().unwrap().to_string();
     let (mut received, mut held) = (Vec::new(), Held::default());
     while received.len() < 3 {

@@ -2,9 +2,10 @@
 
 use std::time::Duration;
 
-use super::Server;
 use crate::outgoing::HeldReport;
+use crate::sink::Report;
 use crate::units::Instant;
+use crate::widget::WidgetId;
 
 /// Time between two reports of what is held: five of them may be lost or late before 100 ms are over.
 const HELD_EVERY: Duration = Duration::from_millis(20);
@@ -21,13 +22,15 @@ pub(super) struct Heartbeat {
     alive_due: Instant,
 }
 
-impl Server {
+impl Heartbeat {
     /// Reports what is held if that has changed or is due, and that the server lives.
-    pub(super) fn beat(&mut self) {
-        let Some(events) = &mut self.events else { return };
-        let now = self.source.now();
-        let Heartbeat { report, held_due, alive, alive_due } = &mut self.heartbeat;
-        let held = self.engine.held();
+    pub(super) fn beat<'a>(
+        &mut self,
+        held: impl Iterator<Item = &'a WidgetId> + Clone,
+        now: Instant,
+        mut tell: impl FnMut(Report<'_>),
+    ) {
+        let Self { report, held_due, alive, alive_due } = self;
         let is_news =
             held.clone().count() != report.held.len() || held.clone().any(|id| !report.held.contains(id));
         if is_news || (!report.held.is_empty() && now >= *held_due) {
@@ -37,12 +40,12 @@ impl Server {
             report.sequence = report.sequence.wrapping_add(1);
             report.at = now;
             *held_due = next(*held_due, HELD_EVERY, now);
-            events.held(report);
+            tell(Report::Held(report));
         }
         if now >= *alive_due {
             *alive = alive.wrapping_add(1);
             *alive_due = next(*alive_due, ALIVE_EVERY, now);
-            events.alive(*alive);
+            tell(Report::Alive(now, *alive));
         }
     }
 }

@@ -7,34 +7,13 @@ use tracing::{info, warn};
 use crate::rate_limit::RateLimit;
 use crate::units::Instant;
 
-/// The notices of a server that apps, cables and sensors can make repeat.
-#[derive(Debug)]
-pub(super) struct Notices {
-    /// Requests that could not be met.
-    pub(super) denied: Limited,
-    /// Floors lost and found.
-    pub(super) link: Limited,
-    /// Sensors in trouble and out of it.
-    pub(super) troubles: Limited,
-}
-
-impl Default for Notices {
-    fn default() -> Self {
-        Self {
-            denied: Limited::new(5, Duration::from_secs(10)),
-            link: Limited::new(10, Duration::from_secs(10)),
-            // As many as a large board has channels: one that is unplugged is named sensor by sensor.
-            troubles: Limited::new(64, Duration::from_secs(2)),
-        }
-    }
-}
-
 /// One kind of notice.
 #[derive(Debug)]
 pub(super) struct Limited(RateLimit);
 
 impl Limited {
-    const fn new(burst: u32, every: Duration) -> Self {
+    /// At most `burst` at once, and in the long run one in each `every`.
+    pub(super) const fn new(burst: u32, every: Duration) -> Self {
         Self(RateLimit::new(burst, every))
     }
 

@@ -1,11 +1,35 @@
 //! What a server does with requests: done, answered, and told to all.
 
+use std::time::Duration;
+
 use super::Server;
+use super::haptics::MuteError;
+use super::limited::Limited;
 use crate::engine::PageShown;
 use crate::outgoing::{write_control, write_error, write_mute, write_page};
 use crate::serve::request;
+use crate::sink::Report;
 use crate::widget::WidgetId;
-use crate::wire::{ControlMessage, Request};
+use crate::wire::{ControlMessage, Prefix, Request};
+
+/// How requests are answered.
+#[derive(Debug)]
+pub(super) struct Answers {
+    /// What addresses in answers begin with.
+    pub(super) prefix: Prefix,
+    /// The answer being written.
+    bytes: Vec<u8>,
+    /// Requests that could not be met.
+    pub(super) denied: u64,
+    notices: Limited,
+}
+
+impl Default for Answers {
+    fn default() -> Self {
+        let notices = Limited::new(5, Duration::from_secs(10));
+        Self { prefix: Prefix::default(), bytes: Vec::new(), denied: 0, notices }
+    }
+}
 
 impl Server {
     /// Does what an app asks of one control, or of all that a pattern means.
@@ -25,20 +49,24 @@ impl Server {
     /// Does what an app asks; tells it what it wants to know or why it can't be done, and everybody what is new.
     fn handle_request(&mut self, request: &Request) {
         let done = match &request.message {
-            ControlMessage::Mute { on } => self.mute(*on).map_err(|error| error.to_string()),
+            ControlMessage::Mute { on } => {
+                let muted = self.haptics.mute(*on, self.link.is_lost());
+                self.tell_mute(muted).map_err(|error| error.to_string())
+            }
             ControlMessage::MuteTile { tile, on } => {
-                self.mute_tile(*tile, *on).map_err(|error| error.to_string())
+                let muted = self.haptics.mute_tile(*tile, *on, self.engine.geometry());
+                self.tell_mute(muted).map_err(|error| error.to_string())
             }
             message => request::apply(&mut self.engine, message).map_err(|error| error.to_string()),
         };
         match done {
             Ok(()) => self.tell(request),
             Err(why) => {
-                self.denied += 1;
-                let address = self.prefix.address(&request.message.path());
-                let now = self.source.now();
-                self.notices.denied.warn(now, || format!("{} refused: {why}", address.escape_debug()));
-                write_error(&self.prefix, &address, &why, &mut self.answer);
+                let Answers { prefix, bytes, denied, notices } = &mut self.answers;
+                *denied += 1;
+                let address = prefix.address(&request.message.path());
+                notices.warn(self.source.now(), || format!("{} refused: {why}", address.escape_debug()));
+                write_error(prefix, &address, &why, bytes);
                 self.send_answer(request);
             }
         }
@@ -73,35 +101,39 @@ impl Server {
 
     fn tell_control(&mut self, id: &WidgetId, asked: Option<&Request>) {
         let Some(state) = self.engine.control_state(id.as_str()) else { return };
-        if let Some(events) = &mut self.events {
-            events.control(self.source.now(), &state);
-        }
+        self.outputs.report(Report::Control(self.source.now(), &state));
         if let Some(request) = asked {
-            write_control(&self.prefix, &state, &mut self.answer);
+            write_control(&self.answers.prefix, &state, &mut self.answers.bytes);
             self.send_answer(request);
         }
     }
 
     fn tell_page(&mut self, request: &Request) {
         let page = self.engine.page().unwrap_or_default();
-        if let Some(events) = &mut self.events {
-            events.page(&PageShown { at: self.source.now(), page: WidgetId::new(page) });
-        }
-        write_page(&self.prefix, page, &mut self.answer);
+        let shown = PageShown { at: self.source.now(), page: WidgetId::new(page) };
+        self.outputs.report(Report::Page(&shown));
+        write_page(&self.answers.prefix, page, &mut self.answers.bytes);
         self.send_answer(request);
     }
 
     fn answer_mute(&mut self, request: &Request) {
-        if let Some(events) = &mut self.events {
-            events.muted(self.source.now(), &self.muted);
-        }
-        write_mute(&self.prefix, &self.muted, &mut self.answer);
+        self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
+        write_mute(&self.answers.prefix, self.haptics.muted(), &mut self.answers.bytes);
         self.send_answer(request);
+    }
+
+    /// Tells listeners that something else is muted now, and shows a window at once, also while no frames come.
+    fn tell_mute(&mut self, is_news: Result<bool, MuteError>) -> Result<(), MuteError> {
+        if is_news? {
+            self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
+            self.show_now();
+        }
+        Ok(())
     }
 
     fn send_answer(&mut self, request: &Request) {
         if let Some(sender) = request.sender {
-            self.source.answer(sender, &self.answer);
+            self.source.answer(sender, &self.answers.bytes);
         }
     }
 }

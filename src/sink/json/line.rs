@@ -4,13 +4,13 @@ use serde::Serialize;
 
 use super::Job;
 use crate::engine::{ControlState, ValueRange};
-use crate::feel::{DeviceStatus, Muted};
+use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
-use crate::outgoing::HeldReport;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
 use crate::sink::backlog::Gap;
 use crate::sink::crack_rate::CrackNews;
-use crate::widget::{EventKind, Scale, Value, WidgetEvent, WidgetId};
+use crate::sink::report::OwnedReport;
+use crate::widget::{Detail, Scale, Value, WidgetEvent, WidgetId};
 
 #[derive(Serialize)]
 pub(super) struct Line<'a> {
@@ -124,37 +124,44 @@ struct TroubleEntry {
 }
 
 impl<'a> Line<'a> {
-    pub(super) fn of(job: &'a Job) -> Self {
+    /// The line for `job`; `None` for what is not written.
+    pub(super) fn of(job: &'a Job) -> Option<Self> {
         let (at, body) = match job {
-            Job::Event(event) => (event.at, Body::control(event)),
-            Job::Page(shown) => (shown.at, Body::Page { page: shown.page.as_str() }),
-            Job::Crack(CrackNews { at, seed, energy_j, x_m, y_m, skipped }) => {
-                let (seed, energy_j, x_m, y_m) = (*seed, *energy_j, *x_m, *y_m);
-                (*at, Body::Crack { seed, energy_j, x_m, y_m, skipped: *skipped })
-            }
-            Job::Link(at, state) => (*at, Body::Link { state: state.name() }),
-            Job::Health(at, health) => (*at, Body::health(health)),
-            Job::Device(at, status) => (*at, Body::device(status)),
-            Job::Muted(at, Muted { all, tiles }) => {
-                let tiles = tiles.iter().map(|tile| [tile.column, tile.row]).collect();
-                (*at, Body::Mute { all: *all, tiles })
-            }
-            Job::Held(HeldReport { at, held, sequence, .. }) => {
-                let held = held.iter().map(WidgetId::as_str).collect();
-                (*at, Body::Held { held, sequence: *sequence })
-            }
-            Job::Control(at, state) => (*at, Body::state(state)),
-            Job::Contacts(at, contacts) => {
-                (*at, Body::Contacts { contacts: contacts.iter().map(ContactEntry::of).collect() })
-            }
             Job::Gap(Gap { at, dropped }) => (*at, Body::Gap { dropped: *dropped }),
+            Job::Told(told) => (told.at(), Body::of(told)?),
         };
         // Divided, not multiplied: so the nearest number to the decimal fraction is written, with six places at most.
-        Self { t_s: at.micros() as f64 / 1e6, body }
+        Some(Self { t_s: at.micros() as f64 / 1e6, body })
     }
 }
 
 impl<'a> Body<'a> {
+    fn of(told: &'a OwnedReport) -> Option<Self> {
+        Some(match told {
+            OwnedReport::Event(event) => Self::control(event),
+            OwnedReport::Contacts(_, contacts) => {
+                Self::Contacts { contacts: contacts.iter().map(ContactEntry::of).collect() }
+            }
+            OwnedReport::Page(shown) => Self::Page { page: shown.page.as_str() },
+            &OwnedReport::Crack(CrackNews { seed, energy_j, x_m, y_m, skipped, .. }) => {
+                Self::Crack { seed, energy_j, x_m, y_m, skipped }
+            }
+            OwnedReport::Link(_, state) => Self::Link { state: state.name() },
+            OwnedReport::Health(_, health) => Self::health(health),
+            OwnedReport::Device(_, status) => Self::device(status),
+            OwnedReport::Held(report) => {
+                let held = report.held.iter().map(WidgetId::as_str).collect();
+                Self::Held { held, sequence: report.sequence }
+            }
+            OwnedReport::Alive(..) => return None,
+            OwnedReport::Muted(_, muted) => {
+                let tiles = muted.tiles.iter().map(|tile| [tile.column, tile.row]).collect();
+                Self::Mute { all: muted.all, tiles }
+            }
+            OwnedReport::Control(_, state) => Self::state(state),
+        })
+    }
+
     fn health(health: &SensorHealth) -> Self {
         let SensorHealth { counts: [live, degraded, stale, faulty], uncalibrated, foreign, ref troubles } =
             *health;
@@ -206,23 +213,10 @@ impl<'a> Body<'a> {
     }
 
     fn control(event: &'a WidgetEvent) -> Self {
-        let value = match event.kind {
-            EventKind::Changed(value) => Some(value.into()),
-            EventKind::Swiped(direction) => Some(JsonValue::Word(direction.name())),
-            EventKind::Pressed
-            | EventKind::Released
-            | EventKind::Clicked
-            | EventKind::DoubleTapped
-            | EventKind::LongPressed
-            | EventKind::HardPressed
-            | EventKind::HardReleased
-            | EventKind::Cancelled
-            | EventKind::Ticked
-            | EventKind::Armed
-            | EventKind::Disarmed
-            | EventKind::Warned
-            | EventKind::Refused => None,
-        };
+        let value = event.kind.detail().map(|detail| match detail {
+            Detail::Value(value) => value.into(),
+            Detail::Direction(direction) => JsonValue::Word(direction.name()),
+        });
         Self::Control {
             event: event.kind.name(),
             id: event.id.as_str(),

@@ -5,10 +5,13 @@ use std::sync::mpsc::{Sender, channel};
 use glam::Vec2;
 
 use super::*;
+use crate::engine::ControlState;
+use crate::feel::{DeviceStatus, Muted};
 use crate::floor::SensorId;
-use crate::sense::{ContactId, Trouble};
+use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
+use crate::sink::HeldReport;
 use crate::units::Newtons;
-use crate::widget::{Direction, Value, WidgetId};
+use crate::widget::{Direction, Value, WidgetEvent, WidgetId};
 
 /// A writer whose other end tells what was flushed.
 struct Pipe {
@@ -39,13 +42,22 @@ fn event(kind: EventKind, contact: Option<ContactId>) -> WidgetEvent {
     }
 }
 
+fn tell(sink: &mut JsonSink, events: &[WidgetEvent]) {
+    events.iter().for_each(|event| sink.report(Report::Event(event)));
+}
+
 #[test]
 fn what_is_held_is_a_line_with_a_number_and_so_is_that_nothing_is() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     let (at, drive) = (Instant::from_millis(9900), WidgetId::new("drive"));
-    sink.held(&HeldReport { at, held: vec![drive.clone()], sequence: 4, ..HeldReport::default() });
-    sink.held(&HeldReport { at, ended: vec![drive], sequence: 5, ..HeldReport::default() });
+    sink.report(Report::Held(&HeldReport {
+        at,
+        held: vec![drive.clone()],
+        sequence: 4,
+        ..HeldReport::default()
+    }));
+    sink.report(Report::Held(&HeldReport { at, ended: vec![drive], sequence: 5, ..HeldReport::default() }));
     drop(sink);
     let text: String = lines.iter().collect();
     let expected = [r#"{"t_s":9.9,"held":["drive"],"sequence":4}"#, r#"{"t_s":9.9,"held":[],"sequence":5}"#];
@@ -57,17 +69,17 @@ fn each_event_is_a_line_of_its_own_written_before_the_end() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     let changed = |value| event(EventKind::Changed(value), Some(ContactId(3)));
-    sink.events(&[changed(Value::Number(0.5)), changed(Value::Switch(true))]);
+    tell(&mut sink, &[changed(Value::Number(0.5)), changed(Value::Switch(true))]);
     let swiped = EventKind::Swiped(Direction::North);
-    sink.events(&[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
-    sink.events(&[event(EventKind::Cancelled, None)]);
+    tell(&mut sink, &[changed(Value::Pair(Vec2::new(0.5, -1.0))), event(swiped, Some(ContactId(3)))]);
+    tell(&mut sink, &[event(EventKind::Cancelled, None)]);
     // Not without being asked for.
-    sink.contacts(Instant::START, &[Contact::default()]);
-    sink.link(Instant::from_millis(9876), LinkState::Lost);
+    sink.report(Report::Contacts(Instant::START, &[Contact::default()]));
+    sink.report(Report::Link(Instant::from_millis(9876), LinkState::Lost));
     let sensor = SensorId { tile: crate::floor::TileId::new(2, 1), corner: crate::floor::Corner::SouthWest };
     let troubles = vec![(sensor, Trouble::Stuck)];
     let sick = SensorHealth { counts: [143, 0, 0, 1], troubles, ..SensorHealth::default() };
-    sink.health(Instant::from_millis(9900), &sick);
+    sink.report(Report::Health(Instant::from_millis(9900), &sick));
     drop(sink);
     let text: String = lines.iter().collect();
     let rest = r#""force_n":120.5,"x_m":0.61,"y_m":1.2,"contact""#;
@@ -87,7 +99,7 @@ fn each_event_is_a_line_of_its_own_written_before_the_end() {
 fn lines_are_flushed_without_waiting_for_more() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
-    sink.events(&[event(EventKind::Pressed, None)]);
+    tell(&mut sink, &[event(EventKind::Pressed, None)]);
     let line = lines.recv_timeout(std::time::Duration::from_secs(5)).unwrap();
     assert!(line.contains("pressed") && line.ends_with('\n'));
     drop(sink);
@@ -99,7 +111,7 @@ fn a_reader_that_went_away_is_counted_and_harms_nobody() {
     drop(lines);
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     while sink.dropped() == 0 {
-        sink.events(&[event(EventKind::Pressed, None)]);
+        tell(&mut sink, &[event(EventKind::Pressed, None)]);
         std::thread::yield_now();
     }
 }
@@ -109,7 +121,7 @@ fn what_is_muted_is_told_by_column_and_row() {
     let (flushed, lines) = channel();
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap();
     let muted = Muted { all: true, tiles: vec![crate::floor::TileId::new(2, 1)] };
-    sink.muted(Instant::from_millis(9900), &muted);
+    sink.report(Report::Muted(Instant::from_millis(9900), &muted));
     drop(sink);
     let line: String = lines.iter().collect();
     assert_eq!(line.trim_end(), r#"{"t_s":9.9,"event":"mute","all":true,"tiles":[[2,1]]}"#);
@@ -122,7 +134,7 @@ fn a_device_that_is_lost_says_why() {
     let state = crate::feel::DeviceState::Lost;
     let why = "unplugged".into();
     let status = DeviceStatus { name: "Card".into(), state, why, channels: 36, ..DeviceStatus::default() };
-    sink.device(Instant::from_millis(9900), &status);
+    sink.report(Report::Device(Instant::from_millis(9900), &status));
     drop(sink);
     let line: String = lines.iter().collect();
     let start =
@@ -156,12 +168,12 @@ fn a_reader_that_stalls_misses_values_but_no_end_and_is_told_where() {
     let happened = |ms: u64, kind| WidgetEvent { at: Instant::from_millis(ms), ..event(kind, None) };
     // 27 presses of a second each, with 480 values in each: far more than may wait.
     for press in 0..27 {
-        sink.events(&[happened(1000 * press, EventKind::Pressed)]);
+        tell(&mut sink, &[happened(1000 * press, EventKind::Pressed)]);
         for value in 1..=480 {
             let kind = EventKind::Changed(Value::Number(value as f32));
-            sink.events(&[happened(1000 * press + 2 * value, kind)]);
+            tell(&mut sink, &[happened(1000 * press + 2 * value, kind)]);
         }
-        sink.events(&[happened(1000 * press + 970, EventKind::Released)]);
+        tell(&mut sink, &[happened(1000 * press + 970, EventKind::Released)]);
     }
     assert!(sink.dropped() > 10_000, "{}", sink.dropped());
     let dropped = sink.dropped();
@@ -187,9 +199,9 @@ fn contacts_are_written_on_request_100_times_a_second() {
     let mut sink = JsonSink::new(Pipe { pending: Vec::new(), flushed }).unwrap().with_contacts();
     let foot = Contact { id: ContactId(3), force: Newtons(350.0), ..Contact::default() };
     for ms in 0..25 {
-        sink.contacts(Instant::from_millis(ms), std::slice::from_ref(&foot));
+        sink.report(Report::Contacts(Instant::from_millis(ms), std::slice::from_ref(&foot)));
     }
-    sink.link(Instant::from_millis(30), LinkState::Lost);
+    sink.report(Report::Link(Instant::from_millis(30), LinkState::Lost));
     for ms in 31..1200 {
         sink.poll(Instant::from_millis(ms));
     }
@@ -222,7 +234,7 @@ fn a_control_that_an_app_changed_is_a_line_of_its_own() {
         label: "Zoom".into(),
         page: None,
     };
-    sink.control(Instant::from_millis(9900), &state);
+    sink.report(Report::Control(Instant::from_millis(9900), &state));
     drop(sink);
     let line: String = lines.iter().collect();
     let expected = r#"{"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}"#;

@@ -7,7 +7,7 @@ use rosc::{OscPacket, OscType};
 use underfoot::floor::TileId;
 use underfoot::glam::Vec2;
 use underfoot::sense::{Contact, ContactId, Covariance, Quality, SensorHealth, TileLoad};
-use underfoot::sink::{EventSink, OscSink};
+use underfoot::sink::{EventSink, OscSink, Report};
 use underfoot::units::{Instant, Newtons};
 use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
 use underfoot::wire::LinkState;
@@ -61,10 +61,13 @@ fn events_arrive_in_order_up_to_the_last() {
         force: Newtons::ZERO,
         position: Vec2::ZERO,
     };
-    sink.link(Instant::START, LinkState::Live);
-    sink.health(Instant::START, &SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() });
+    sink.report(Report::Link(Instant::START, LinkState::Live));
+    sink.report(Report::Health(
+        Instant::START,
+        &SensorHealth { counts: [143, 0, 0, 1], ..SensorHealth::default() },
+    ));
     for number in 0..100 {
-        sink.events(&[event(number)]);
+        sink.report(Report::Event(&event(number)));
     }
     drop(sink);
     // News of the link and news of the sensors both tell of both.
@@ -85,7 +88,7 @@ fn contacts_arrive_at_100_hz_and_end_with_none() {
     for ms in 0..300 {
         let here = (5..105).contains(&ms);
         let contacts = if here { vec![foot(ms as f32)] } else { vec![] };
-        sink.contacts(Instant::from_millis(ms), &contacts);
+        sink.report(Report::Contacts(Instant::from_millis(ms), &contacts));
         if ms == 0 {
             assert_eq!(hear(&listener), nobody, "who waits learns that the floor is there");
         }
@@ -108,19 +111,19 @@ fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
     let (listener, mut sink) = listen();
     let nobody = [("/underfoot/contacts".to_owned(), Some(OscType::Int(0)))];
     let health = |state: &str| [("/underfoot/health".to_owned(), Some(OscType::String(state.into())))];
-    sink.link(Instant::START, LinkState::Live);
+    sink.report(Report::Link(Instant::START, LinkState::Live));
     assert_eq!(hear(&listener), health("live"));
     for ms in 0..2500 {
         let now = Instant::from_millis(ms);
-        sink.contacts(now, &[]);
+        sink.report(Report::Contacts(now, &[]));
         sink.poll(now);
         if ms % 1000 == 0 {
             assert_eq!(hear(&listener), nobody);
         }
     }
-    sink.contacts(Instant::from_millis(2500), &[foot(0.5)]);
+    sink.report(Report::Contacts(Instant::from_millis(2500), &[foot(0.5)]));
     assert_eq!(hear(&listener).len(), 2);
-    sink.link(Instant::from_millis(2600), LinkState::Lost);
+    sink.report(Report::Link(Instant::from_millis(2600), LinkState::Lost));
     assert_eq!(hear(&listener), health("lost"));
     assert_eq!(hear(&listener), nobody, "at once");
     // No frames come: only the clock goes on.
@@ -137,7 +140,7 @@ fn that_nobody_is_there_is_said_every_second_on_an_empty_and_on_a_lost_floor() {
 #[test]
 fn a_sink_that_ends_under_a_foot_says_that_nobody_is_there() {
     let (listener, mut sink) = listen();
-    sink.contacts(Instant::START, &[foot(0.5)]);
+    sink.report(Report::Contacts(Instant::START, &[foot(0.5)]));
     assert_eq!(hear(&listener).len(), 2);
     drop(sink);
     assert_eq!(hear(&listener), [("/underfoot/contacts".into(), Some(OscType::Int(0)))]);

@@ -10,13 +10,13 @@ use underfoot::engine::Snapshot;
 use underfoot::feel::{Gesture, RendererConfig, renderer};
 use underfoot::floor::{Corner, Floor, SensorId, TileId};
 use underfoot::schema::Effects;
-use underfoot::sense::{Contact, Method, Quality, SensorHealth};
+use underfoot::sense::{Method, Quality};
 use underfoot::serve::{Command, Ended, Server};
 use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
-use underfoot::sink::{ActuatorSink, EventSink, ManualSink, SinkError};
+use underfoot::sink::{ActuatorSink, EventSink, ManualSink, Report, SinkError};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{Instant, Newtons};
-use underfoot::widget::{EventKind, Value, WidgetEvent, WidgetId};
+use underfoot::widget::{EventKind, Value, WidgetId};
 use underfoot::wire::{ControlMessage, LinkState, Request, SensorPacket};
 
 /// Packets of a foot on `home`, with silences in between: the clock goes on, nothing comes.
@@ -70,20 +70,14 @@ impl SensorSource for Visit {
 struct Notes(mpsc::Sender<(u64, String)>);
 
 impl EventSink for Notes {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        for event in events {
-            self.0.send((event.at.micros() / 1000, format!("{} {}", event.id, event.kind.name()))).unwrap();
-        }
-    }
-
-    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.0.send((at.micros() / 1000, format!("link {state:?}"))).unwrap();
-    }
-
-    fn health(&mut self, at: Instant, health: &SensorHealth) {
-        self.0.send((at.micros() / 1000, format!("health {health}"))).unwrap();
+    fn report(&mut self, report: Report<'_>) {
+        let (at, what) = match report {
+            Report::Event(event) => (event.at, format!("{} {}", event.id, event.kind.name())),
+            Report::Link(at, state) => (at, format!("link {state:?}")),
+            Report::Health(at, health) => (at, format!("health {health}")),
+            _ => return,
+        };
+        self.0.send((at.micros() / 1000, what)).unwrap();
     }
 }
 

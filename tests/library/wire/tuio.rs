@@ -8,7 +8,7 @@ use underfoot::floor::{Geometry, TileId};
 use underfoot::glam::Vec2;
 use underfoot::outgoing::{TUIO_CONTACTS, TUIO_DATAGRAM, Tuio1, Tuio2, TuioProfiles};
 use underfoot::sense::{Contact, ContactId, TileLoad};
-use underfoot::sink::{EventSink, TuioSink, TuioVersion};
+use underfoot::sink::{EventSink, Report, TuioSink, TuioVersion};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Limits, LinkState, check};
 
@@ -261,15 +261,15 @@ fn nobody_stays_behind_as_a_ghost() {
         let (listener, mut sink) = listen(version);
         let frame = || (0..per_frame).map(|_| alive(&listener)).collect::<Vec<_>>();
         // Also an empty floor is told of: a client that waits learns that somebody is there to speak.
-        sink.contacts(Instant::START, &[]);
+        sink.report(Report::Contacts(Instant::START, &[]));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
-        sink.contacts(Instant::from_millis(1), &[foot(1, 0.5, 0.5)]);
+        sink.report(Report::Contacts(Instant::from_millis(1), &[foot(1, 0.5, 0.5)]));
         assert_eq!(frame(), vec![vec![1]; per_frame]);
         // The floor falls silent: there are no more frames that would say so.
-        sink.link(Instant::from_millis(100), LinkState::Lost);
+        sink.report(Report::Link(Instant::from_millis(100), LinkState::Lost));
         assert_eq!(frame(), vec![Vec::<i32>::new(); per_frame]);
-        sink.link(Instant::from_millis(200), LinkState::Live);
-        sink.contacts(Instant::from_millis(201), &[foot(2, 0.5, 0.5)]);
+        sink.report(Report::Link(Instant::from_millis(200), LinkState::Live));
+        sink.report(Report::Contacts(Instant::from_millis(201), &[foot(2, 0.5, 0.5)]));
         assert_eq!(frame(), vec![vec![2]; per_frame]);
         // The program ends under a foot: goodbye, twice, for one may be lost.
         drop(sink);
@@ -282,7 +282,7 @@ fn nobody_stays_behind_as_a_ghost() {
 fn a_hundred_frames_a_second_at_most() {
     let (listener, mut sink) = listen(TuioVersion::Two);
     for ms in 0..100 {
-        sink.contacts(Instant::from_millis(ms), &[foot(1, 0.5, 0.001 * ms as f32)]);
+        sink.report(Report::Contacts(Instant::from_millis(ms), &[foot(1, 0.5, 0.001 * ms as f32)]));
         if ms % 10 == 0 {
             assert_eq!(alive(&listener), [1]);
         }

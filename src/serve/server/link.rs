@@ -1,0 +1,131 @@
+//! What a server says of its floor's link: lost, found, tared, frozen, calibrated.
+
+use std::time::Duration;
+
+use tracing::{info, warn};
+
+use super::limited::Limited;
+use crate::sense::{Assembler, TareOutcome};
+use crate::units::Instant;
+use crate::wire::LinkState;
+
+/// How long only some boards must have reported for this to be news; controls on the others are long released.
+const SETTLING: Duration = Duration::from_millis(100);
+
+/// What is known of the link, as far as that has been said.
+#[derive(Debug)]
+pub(super) struct LinkWatch {
+    state: LinkState,
+    /// Since when only some boards have reported.
+    partial_since: Option<Instant>,
+    tare: TareOutcome,
+    /// Sensors without calibration.
+    uncalibrated: usize,
+    /// Boards that stood still.
+    frozen: u64,
+    notices: Limited,
+}
+
+impl Default for LinkWatch {
+    fn default() -> Self {
+        Self {
+            state: LinkState::Waiting,
+            partial_since: None,
+            tare: TareOutcome::FromFloor,
+            uncalibrated: 0,
+            frozen: 0,
+            notices: Limited::new(10, Duration::from_secs(10)),
+        }
+    }
+}
+
+impl LinkWatch {
+    /// The state that was last told.
+    pub(super) const fn state(&self) -> LinkState {
+        self.state
+    }
+
+    /// Whether nothing usable comes any more.
+    pub(super) fn is_lost(&self) -> bool {
+        self.state == LinkState::Lost
+    }
+
+    /// Says what has changed; the link's state if it is another one.
+    pub(super) fn update(&mut self, assembler: &Assembler, now: Instant) -> Option<LinkState> {
+        self.note_frozen(assembler);
+        self.note_tare(assembler);
+        let state = self.settled(assembler.link_state(), now);
+        if state == self.state {
+            return None;
+        }
+        match state {
+            LinkState::Lost => self
+                .notices
+                .warn(now, || "nothing usable from any board for 100 ms: what was held is cancelled".into()),
+            LinkState::Partial => {
+                self.notices.warn(now, || "nothing usable comes from some boards".into());
+            }
+            LinkState::Live => self.notices.info(now, || "packets arrive from every board".into()),
+            LinkState::Waiting => {}
+        }
+        self.state = state;
+        self.note_uncalibrated(assembler);
+        Some(state)
+    }
+
+    /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
+    fn settled(&mut self, state: LinkState, now: Instant) -> LinkState {
+        if state != LinkState::Partial {
+            self.partial_since = None;
+            return state;
+        }
+        let since = *self.partial_since.get_or_insert(now);
+        if now.since(since) < SETTLING { self.state } else { state }
+    }
+
+    fn note_tare(&mut self, assembler: &Assembler) {
+        let tare = assembler.tare_outcome();
+        if tare == self.tare {
+            return;
+        }
+        match tare {
+            TareOutcome::Measuring => info!("measuring the tare: keep off the floor"),
+            TareOutcome::Taken => info!("tare measured"),
+            TareOutcome::Refused { sensor, mean, deviation } => warn!(
+                "the floor was never empty and quiet enough to tare: {sensor} read {:.1} N, scattered by {:.1} N; \
+                 going on with the floor file's tare",
+                mean.0, deviation.0
+            ),
+            TareOutcome::FromFloor => {}
+        }
+        self.tare = tare;
+    }
+
+    /// Says which boards read the same over and over under a load.
+    fn note_frozen(&mut self, assembler: &Assembler) {
+        let frozen = assembler.counters().frozen;
+        if std::mem::replace(&mut self.frozen, frozen) == frozen {
+            return;
+        }
+        let boards = (0_u16..).map_while(|board| Some((board, assembler.board(board)?)));
+        for (board, _) in boards.filter(|(_, status)| status.frozen) {
+            warn!(
+                "board {board}: all its readings have stood still for 100 ms under a load, which no converter does \
+                 that works; what was held on its tiles is cancelled. Look at its converters and their clock"
+            );
+        }
+    }
+
+    /// Says once how many sensors go by nominal gains.
+    fn note_uncalibrated(&mut self, assembler: &Assembler) {
+        let uncalibrated = assembler.uncalibrated();
+        if uncalibrated > self.uncalibrated {
+            self.uncalibrated = uncalibrated;
+            warn!(
+                "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
+                 a third; `underfoot calibrate curves` measures them. Until then controls with the guard HoldToRun \
+                 are off"
+            );
+        }
+    }
+}
