@@ -34,6 +34,7 @@
 //!
 //! | module | what is in it |
 //! |---|---|
+//! | [`runtime`] | a floor at work on a thread of its own, with a handle: events, what is held, controls by id |
 //! | [`engine`] | a frame of forces in, events, cues and a snapshot out; no clocks, threads or devices |
 //! | [`serve`] | a floor at work in one thread: packets in, events and samples out |
 //! | [`schema`] | layouts, kinds of controls, effects and floors as RON, with all problems at their places |
@@ -102,6 +103,7 @@ pub mod picture;
 #[cfg(feature = "preview")]
 pub mod preview;
 mod rate_limit;
+pub mod runtime;
 #[cfg(feature = "scene")]
 pub mod scene;
 pub mod schema;

@@ -1,10 +1,12 @@
 //! Options for samples: sound card, WAV file or silence, and the renderer that feeds them.
 
 use std::path::{Path, PathBuf};
+use std::sync::mpsc::Sender;
 use std::time::Duration;
 
 use underfoot::feel::{CueSender, Renderer, RendererConfig, renderer};
 use underfoot::floor::Floor;
+use underfoot::runtime::Actuators;
 use underfoot::sink::{
     ActuatorSink, LatencyProbe, LatencyStages, SilentSink, SinkError, WavOptions, WavSink,
 };
@@ -12,7 +14,6 @@ use underfoot::sink::{
 use underfoot::sink::{DeviceOptions, Mix, OutputDevice};
 use underfoot::units::{HostClock, Instant};
 
-use super::failure::Failure;
 use super::number::delay_ms;
 
 /// Where actuator samples go.
@@ -68,17 +69,8 @@ pub(crate) struct Actuation {
     pub(crate) feel: CueSender,
     /// What plays the samples; it stays on the thread that made it.
     pub(crate) sink: Box<dyn ActuatorSink>,
-    /// How long packets take to be felt.
-    pub(crate) latency: LatencyStages,
     /// Where the samples go, or why nobody hears them.
     pub(crate) notice: String,
-}
-
-/// A renderer and what plays it, before they are told apart.
-struct Playing {
-    feel: CueSender,
-    sink: Box<dyn ActuatorSink>,
-    notice: String,
 }
 
 impl ActuateArgs {
@@ -94,10 +86,10 @@ impl ActuateArgs {
         floor: &Floor,
         start: Instant,
         clock: &HostClock,
+        latency: LatencyStages,
         mut prepare: impl FnMut(&mut Renderer),
-    ) -> Result<Actuation, Failure> {
-        let latency = LatencyStages::default();
-        let probe = LatencyProbe::of_stages(latency.clone(), clock.clone());
+    ) -> Result<Actuation, SinkError> {
+        let probe = LatencyProbe::of_stages(latency, clock.clone());
         let playing = match &self.wav {
             Some(path) => {
                 let options = WavOptions::default().with_start(start).with_latency(probe);
@@ -108,7 +100,7 @@ impl ActuateArgs {
             }
             None => match self.on_sound_card(floor, &probe, clock, &mut prepare) {
                 Ok(playing) => playing,
-                Err(NoSound::Refused(error)) => return Err(error.into()),
+                Err(NoSound::Refused(error)) => return Err(error),
                 Err(NoSound::Silent(reason)) => {
                     self.playing(floor, self.file_rate(), reason, &mut prepare, |renderer| {
                         Ok(Box::new(SilentSink::new(renderer, start, Some(probe))))
@@ -116,8 +108,23 @@ impl ActuateArgs {
                 }
             },
         };
-        let Playing { feel, sink, notice } = playing;
-        Ok(Actuation { feel, sink, latency, notice })
+        Ok(playing)
+    }
+
+    /// What a session opens its actuators by; `notice` hears what is played by what.
+    pub(crate) fn opener(
+        &self,
+        latency: LatencyStages,
+        prepare: impl FnMut(&mut Renderer) + Send + 'static,
+        notice: Sender<String>,
+    ) -> impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static {
+        let args = self.clone();
+        move |floor, start, clock| {
+            let Actuation { feel, sink, notice: text } = args.start(floor, start, clock, latency, prepare)?;
+            // Who no longer listens need not know.
+            let _ = notice.send(text);
+            Ok(Actuators { feel, sink })
+        }
     }
 
     /// Where to record, if that was asked for.
@@ -145,11 +152,11 @@ impl ActuateArgs {
         notice: String,
         prepare: &mut dyn FnMut(&mut Renderer),
         sink: impl FnOnce(Renderer) -> Result<Box<dyn ActuatorSink>, SinkError>,
-    ) -> Result<Playing, SinkError> {
+    ) -> Result<Actuation, SinkError> {
         let config = RendererConfig::of(floor, rate).with_delay(self.delay_ms.unwrap_or_default());
         let (feel, mut renderer) = renderer(config);
         prepare(&mut renderer);
-        Ok(Playing { feel, sink: sink(renderer)?, notice })
+        Ok(Actuation { feel, sink: sink(renderer)?, notice })
     }
 
     #[cfg(not(feature = "audio"))]
@@ -159,7 +166,7 @@ impl ActuateArgs {
         _: &LatencyProbe,
         _: &HostClock,
         _: &mut dyn FnMut(&mut Renderer),
-    ) -> Result<Playing, NoSound> {
+    ) -> Result<Actuation, NoSound> {
         Err(NoSound::Silent("This program was built without sound.".into()))
     }
 
@@ -170,7 +177,7 @@ impl ActuateArgs {
         probe: &LatencyProbe,
         clock: &HostClock,
         prepare: &mut dyn FnMut(&mut Renderer),
-    ) -> Result<Playing, NoSound> {
+    ) -> Result<Actuation, NoSound> {
         let mixes: &[Mix] = match self.sound {
             Sound::Auto => &[Mix::PerActuator, Mix::Stereo],
             Sound::Tiles => &[Mix::PerActuator],

@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 
 use underfoot::picture::PictureError;
+use underfoot::runtime::StartError;
 use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sim::ScenarioError;
 use underfoot::sink::SinkError;
@@ -68,6 +69,16 @@ impl From<ScenarioError> for Failure {
 impl From<SourceError> for Failure {
     fn from(error: SourceError) -> Self {
         Self::Source(error)
+    }
+}
+
+impl From<StartError> for Failure {
+    fn from(error: StartError) -> Self {
+        match error {
+            StartError::Source(error) => error.into(),
+            StartError::Sink(error) => error.into(),
+            error => Self::Other(error.to_string()),
+        }
     }
 }
 

@@ -69,7 +69,7 @@ impl LayoutArgs {
         if let Some(folder) = &self.widgets {
             return Some(folder.clone());
         }
-        self.beside("widgets")
+        schema::folder_beside(self.path()?, "widgets")
     }
 
     /// The folder with the user's effects, if there is one.
@@ -77,12 +77,7 @@ impl LayoutArgs {
         // A built-in layout lies nowhere: what is here is the user's.
         let here =
             || Some(PathBuf::from("effects")).filter(|folder| self.path().is_none() && folder.is_dir());
-        self.effects.clone().or_else(|| self.beside("effects")).or_else(here)
-    }
-
-    /// The folder of this name beside the layout or beside its folder.
-    fn beside(&self, name: &str) -> Option<PathBuf> {
-        let home = std::path::absolute(self.path()?).ok()?;
-        home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
+        let beside = || schema::folder_beside(self.path()?, "effects");
+        self.effects.clone().or_else(beside).or_else(here)
     }
 }

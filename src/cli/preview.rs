@@ -3,13 +3,11 @@
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::PathBuf;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
-use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::engine::Snapshot;
 use underfoot::feel::{Renderer, ScopeReader};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam::Vec2;
@@ -18,23 +16,25 @@ use underfoot::preview::{
     self, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput, PreviewOptions,
     ScopeFeed,
 };
+use underfoot::runtime::{EndReason, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
-use underfoot::serve::{Command, Server};
+use underfoot::serve::Command;
 use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
-use underfoot::sink::{EventSink, Fanout, Report};
+use underfoot::sink::{EventSink, LatencyStages, Report};
 use underfoot::source::{Pace, SensorSource, SimulatedSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::WidgetEvent;
-use underfoot::wire::{ControlMessage, Prefix};
+use underfoot::wire::ControlMessage;
 
-use super::actuate::{ActuateArgs, Actuation};
+use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
+use super::run::end;
 use super::watch::Watch;
 
 /// What `underfoot preview` is asked to do.
@@ -89,56 +89,39 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let layout = args.layout.load(&floor.geometry)?;
     let stage = args.stage(&floor, &layout)?;
 
-    let (snapshot_input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
     let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
     let (news, layouts) = mpsc::channel();
     let (notice_sender, notices) = mpsc::channel();
-    let (commands, received) = mpsc::channel();
+    let (scope_sender, scopes) = mpsc::channel();
     let (wishes, wished) = mpsc::channel();
 
-    let desk = Desk::new(commands.clone(), news);
+    // Of several sound cards that are tried, the last one plays.
+    let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
+    let actuators = args.actuate.opener(LatencyStages::default(), watch_renderer, notice_sender.clone());
+    let session = Session::source(stage.source, stage.clock)
+        .floor(stage.floor.clone())
+        .layout(layout.clone())
+        .method(if args.eq4 { Method::Eq4 } else { Method::default() })
+        .prefix(args.outputs.prefix.osc_prefix.clone())
+        .sink(args.outputs.open(&floor.geometry)?)
+        .sink(ToWindow { events: event_sender, missed: 0 })
+        .actuators(actuators)
+        .start()?;
+
+    let desk = Desk { session: session.clone(), news };
     let _watch = watch(&args.layout, floor.geometry, &desk)?;
     let choices = args.choices();
-    let told = Obeyed {
-        files: args.layout.clone(),
-        choices: choices.clone(),
-        geometry: floor.geometry,
-        desk,
-        commands,
-    };
-    told.process_commands(wished, notice_sender.clone());
+    let told =
+        Obeyed { files: args.layout.clone(), choices: choices.clone(), geometry: floor.geometry, desk };
+    told.process_commands(wished, notice_sender);
 
-    let mut told = args.outputs.open(&floor.geometry)?;
-    told.push(ToWindow { events: event_sender, missed: 0 });
-    let served = Served {
-        floor: stage.floor.clone(),
-        layout: layout.clone(),
-        source: stage.source,
-        clock: stage.clock,
-        method: if args.eq4 { Method::Eq4 } else { Method::default() },
-        actuate: args.actuate.clone(),
-        told,
-        prefix: args.outputs.prefix.osc_prefix.clone(),
-        snapshots: snapshot_input,
-        received,
-        notices: notice_sender,
-    };
-    let stop = Arc::new(AtomicBool::new(false));
-    let (scope_sender, scopes) = mpsc::channel();
-    let server = {
-        let stop = Arc::clone(&stop);
-        thread::Builder::new()
-            .name("sensing".into())
-            .spawn(move || served.serve(&stop, &scope_sender))
-            .map_err(|error| Failure::Other(format!("no thread for sensing: {error}")))?
-    };
-    let scopes =
-        scopes.recv().ok().flatten().map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
+    let scopes = scopes.try_iter().last().flatten();
+    let scopes = scopes.map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
     let input = PreviewInput {
         floor: Arc::new(stage.floor),
         layout: Arc::new(layout),
         source: stage.name,
-        snapshots,
+        snapshots: session.take_snapshots(),
         events,
         layouts,
         notices,
@@ -150,11 +133,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     };
     // Also when the window fails, the floor ends in order first.
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &PreviewOptions::default())));
-    stop.store(true, Ordering::Relaxed);
-    let served =
-        server.join().unwrap_or_else(|_| Err(Failure::Other("sensing failed; please report it".into())));
+    session.stop();
+    let reason = end(&session);
     match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
-        Ok(()) => served,
+        Ok(()) => match reason {
+            EndReason::Failed(why) => Err(Failure::Other(why)),
+            EndReason::Panicked(_) => Err(Failure::Other("sensing failed; please report it".into())),
+            _ => Ok(()),
+        },
         Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
     }
 }
@@ -207,70 +193,24 @@ impl Args {
     }
 }
 
-/// Everything that the sensing thread owns.
-struct Served {
-    floor: Floor,
-    layout: Layout,
-    source: Box<dyn SensorSource>,
-    clock: HostClock,
-    method: Method,
-    actuate: ActuateArgs,
-    told: Fanout,
-    prefix: Prefix,
-    snapshots: triple_buffer::Input<Snapshot>,
-    received: Receiver<Command>,
-    notices: Sender<String>,
-}
-
-impl Served {
-    fn serve(self, stop: &AtomicBool, scopes: &Sender<Option<ScopeReader>>) -> Result<(), Failure> {
-        // Sound is made here because not every system lets a stream change threads.
-        let mut scope = None;
-        let watch = |renderer: &mut Renderer| scope = renderer.scope();
-        let Actuation { feel, sink, notice, .. } =
-            self.actuate.start(&self.floor, self.source.now(), &self.clock, watch)?;
-        // A window that is closed already needs neither.
-        let _ = scopes.send(scope);
-        let _ = self.notices.send(notice);
-        let mut server = Server::new(&self.floor, self.layout, self.method, self.source)
-            .with_feel(feel, sink)
-            .with_events(Box::new(self.told))
-            .with_prefix(self.prefix)
-            .with_snapshots(self.snapshots)
-            .with_commands(self.received);
-        Ok(server.run(stop)?)
-    }
-}
-
-/// Gives layouts to the engine and tells the window which.
+/// Gives layouts to the floor and tells the window which.
 #[derive(Clone)]
-struct Desk(Arc<Mutex<Counter>>);
-
-struct Counter {
-    commands: Sender<Command>,
+struct Desk {
+    session: Session,
     news: Sender<LayoutNews>,
-    given: u64,
 }
 
 impl Desk {
-    fn new(commands: Sender<Command>, news: Sender<LayoutNews>) -> Self {
-        Self(Arc::new(Mutex::new(Counter { commands, news, given: 0 })))
-    }
-
     fn take(&self, name: &str, read: Result<Layout, String>) {
-        let mut desk = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let name = name.to_string();
         let news = match read {
             Ok(layout) => {
-                desk.given += 1;
                 let loaded = Arc::new(layout.clone());
-                // The engine numbers the layouts it is given in the same way.
-                let _ = desk.commands.send(Command::SetLayout(Box::new(layout)));
-                LayoutNews::Loaded { layout: loaded, revision: desk.given, name }
+                LayoutNews::Loaded { layout: loaded, revision: self.session.set_layout(layout), name }
             }
             Err(diagnostics) => LayoutNews::Refused { name, diagnostics },
         };
-        let _ = desk.news.send(news);
+        let _ = self.news.send(news);
     }
 }
 
@@ -286,7 +226,6 @@ struct Obeyed {
     choices: Vec<String>,
     geometry: Geometry,
     desk: Desk,
-    commands: Sender<Command>,
 }
 
 impl Obeyed {
@@ -320,7 +259,7 @@ impl Obeyed {
                         Command::Audition { effect, gesture: Box::new(gesture), tile }
                     }
                 };
-                if self.commands.send(command).is_err() {
+                if !self.desk.session.send(command) {
                     break;
                 }
             }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::feel::{Click, Cue, CueSender, Mode, RendererConfig, Spot, SustainedCues, renderer};
 use underfoot::floor::{Floor, TileId};
-use underfoot::sink::{ActuatorSink, ChannelMap, WavOptions, WavSink, WhenFull};
+use underfoot::sink::{ActuatorSink, ChannelMap, LatencyStages, WavOptions, WavSink, WhenFull};
 use underfoot::units::{HostClock, Instant, Newtons};
 
 use super::actuate::{ActuateArgs, Actuation};
@@ -168,7 +168,13 @@ impl Walk {
     fn walk_on_device(&self, floor: &Floor, steps: &[(TileId, u16)]) -> Result<(), Failure> {
         let begun = HostInstant::now();
         let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
-        let actuation = self.actuate.for_wiring().start(floor, Instant::START, &clock, |_| {})?;
+        let actuation = self.actuate.for_wiring().start(
+            floor,
+            Instant::START,
+            &clock,
+            LatencyStages::default(),
+            |_| {},
+        )?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;
         errln!("{notice} Ctrl-C ends the walk.");
         let stop = stop_flag()?;

@@ -1,23 +1,21 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::SocketAddr;
-use std::panic::{self, AssertUnwindSafe};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::Duration;
 
 use tracing::info;
-use underfoot::engine::{Engine, Snapshot};
 use underfoot::feel::FeelCounters;
-use underfoot::ground::{GroundCounters, Material};
+use underfoot::ground::{GroundCounters, GroundState, Material};
+use underfoot::layout::Layout;
+use underfoot::runtime::{EndReason, Kind, Session, Snapshot};
 use underfoot::sense::Method;
-use underfoot::serve::{Command, Server};
-use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::SensorSource;
+use underfoot::sink::LatencyStages;
 use underfoot::wire::LinkCounters;
 
-use super::actuate::{ActuateArgs, Actuation};
+use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
@@ -64,17 +62,28 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let prefix = args.outputs.prefix.osc_prefix.clone();
     let source = args.boards.bind(args.listen, &floor)?.with_prefix(prefix.clone());
     let source = args.commands.open(source)?;
-    let (address, granted) = (source.local_addr(), source.granted_buffer());
-    let Actuation { feel, sink, latency, notice, .. } =
-        args.actuate.start(&floor, source.now(), &source.clock(), |_| {})?;
+    let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
     let stop = stop_flag()?;
     let panicked = panic_flag(&stop);
-    let (commands, received) = mpsc::channel();
-    let _watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
+    let latency = LatencyStages::default();
+    let (notice, noticed) = mpsc::channel();
+    let actuators = args.actuate.opener(latency.clone(), |_| {}, notice);
+    let session = Session::source(Box::new(source), clock)
+        .floor(floor.clone())
+        .layout(layout)
+        .method(if args.eq4 { Method::Eq4 } else { Method::default() })
+        .prefix(prefix)
+        .sink(args.outputs.open(&floor.geometry)?)
+        .actuators(actuators)
+        .latency(latency.clone())
+        .realtime()
+        .stop_flag(Arc::clone(&stop))
+        .start()?;
+    let told = session.clone();
+    let watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
         Ok(layout) => {
             info!("the changed layout is on the floor");
-            // A server that has ended needs no layout.
-            let _ = commands.send(Command::SetLayout(Box::new(layout)));
+            told.set_layout(layout);
         }
         Err(diagnostics) => {
             errln!("{diagnostics}The last good layout stays on the floor.");
@@ -82,37 +91,38 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     })?;
     if let Ok(address) = address {
         errln!(
-            "Listening on {address} with a receive buffer of {} KiB. {notice} Ctrl-C ends it.",
-            granted / 1024
+            "Listening on {address} with a receive buffer of {} KiB. {} Ctrl-C ends it.",
+            granted / 1024,
+            noticed.recv().unwrap_or_default()
         );
     }
     if let Some(seconds) = args.seconds {
-        stop_after(seconds, Arc::clone(&stop));
+        stop_after(seconds, stop);
     }
-    let method = if args.eq4 { Method::Eq4 } else { Method::default() };
-    let mut server = Server::new(&floor, layout, method, Box::new(source))
-        .with_feel(feel, sink)
-        .with_latency(latency.clone())
-        .with_events(Box::new(args.outputs.open(&floor.geometry)?))
-        .with_prefix(prefix)
-        .with_commands(received);
-    // Last, since threads inherit it. Where it is denied, the sound card's thread says what to do.
-    claim_priority(Rank::Sensing);
-    // What a panic leaves half done is only looked at to cancel what is held, and to count.
-    let served = panic::catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
-    let counters = server.counters();
-    let (dropped, felt) = (server.unsent_events(), server.feel_counters());
-    let grounds = grounds(server.engine());
-    // Ends the recording and sends what is still under way.
-    drop(server);
-    report(&counters, dropped);
-    report_felt(&felt);
-    grounds.iter().for_each(|ground| errln!("{ground}"));
+    let reason = end(&session);
+    drop(watch);
+    let Snapshot { layout, floor, .. } = session.snapshot();
+    report(&floor.counters, floor.unsent_events);
+    report_felt(&floor.feel);
+    grounds(&layout, &floor.grounds).iter().for_each(|ground| errln!("{ground}"));
     args.latency.tell(&latency)?;
     if panicked.load(Ordering::Relaxed) {
         return Err(Failure::Other("a part of the program failed; please report it".into()));
     }
-    served.map_or(Ok(()), |served| Ok(served?))
+    match reason {
+        EndReason::Failed(why) => Err(Failure::Other(why)),
+        _ => Ok(()),
+    }
+}
+
+/// Waits for the end; what else happens the sinks tell.
+pub(crate) fn end(session: &Session) -> EndReason {
+    loop {
+        let event = session.next_event_timeout(Duration::from_secs(3600));
+        if let Some(Kind::Ended(reason)) = event.map(|event| event.kind) {
+            return reason;
+        }
+    }
 }
 
 fn stop_after(span: Duration, stop: Arc<AtomicBool>) {
@@ -149,10 +159,8 @@ fn report_felt(felt: &FeelCounters) {
 }
 
 /// The ground events on each ground of the layout that is on the floor at the end, a line each.
-fn grounds(engine: &Engine) -> Vec<String> {
-    let mut snapshot = Snapshot::default();
-    engine.snapshot(&mut snapshot);
-    let grounds = engine.layout().grounds.iter().zip(&snapshot.grounds);
+fn grounds(layout: &Layout, states: &[GroundState]) -> Vec<String> {
+    let grounds = layout.grounds.iter().zip(states);
     grounds
         .map(|(ground, state)| {
             let GroundCounters { events, unfelt, evicted } = state.counters;

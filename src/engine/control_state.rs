@@ -1,6 +1,7 @@
 //! How a control is, for those who ask.
 
-use super::Engine;
+use super::{Engine, Snapshot};
+use crate::layout::Layout;
 use crate::widget::{Behaviour, Indicator, Scale, Value, WidgetId};
 
 /// How a control is, and what it can be.
@@ -58,6 +59,29 @@ impl ValueRange {
     }
 }
 
+impl ControlState {
+    /// How control number `index` of `layout` is in `snapshot`; `None` if there is none.
+    pub(crate) fn of(layout: &Layout, index: usize, snapshot: &Snapshot) -> Option<Self> {
+        let (widget, state) = (layout.widgets.get(index)?, snapshot.widgets.get(index)?);
+        let range = snapshot.ranges.iter().find(|(of, _)| *of == index);
+        let label = snapshot.labels.iter().find(|(of, _)| *of == index);
+        Some(Self {
+            id: widget.id.clone(),
+            value: state.value,
+            range: range
+                .map(|(_, scale)| ValueRange::Number(*scale))
+                .or_else(|| ValueRange::of(&widget.behaviour)),
+            enabled: !state.disabled && !state.uncalibrated,
+            locked: state.locked,
+            pressed: state.pressed,
+            armed: state.armed,
+            indicator: state.indicator,
+            label: label.map_or(widget.label.as_str(), |(_, label)| label).to_owned(),
+            page: widget.page_of(layout),
+        })
+    }
+}
+
 impl Engine {
     /// How the control named `id` is; `None` for an unknown name.
     #[must_use]
@@ -75,7 +99,7 @@ impl Engine {
             armed: control.is_armed(),
             indicator: control.indicator(),
             label: widget.label.clone(),
-            page: widget.page.and_then(|page| layout.pages.get(page)).map(|page| page.id.clone()),
+            page: widget.page_of(layout),
         })
     }
 }

@@ -9,7 +9,7 @@ use crate::units::Instant;
 use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent, WidgetId};
 
 use super::interact::Interaction;
-use super::labels::Labels;
+use super::overrides::Overrides;
 use super::response::{Now, Responses};
 use super::{PageShown, Snapshot, TileState, WidgetState};
 
@@ -31,7 +31,7 @@ pub struct Engine {
     /// A page that has come since the last step, and in it.
     page_shown: Option<PageShown>,
     page_told: Option<PageShown>,
-    labels: Labels,
+    overrides: Overrides,
     sensing: Sensing,
     interaction: Interaction,
     grounds: Grounds,
@@ -88,7 +88,7 @@ impl Engine {
             waiting_page: None,
             page_shown: None,
             page_told: None,
-            labels: Labels::default(),
+            overrides: Overrides::default(),
             responses,
             pending: Vec::with_capacity(CUES),
             events: Vec::with_capacity(CUES),
@@ -277,7 +277,28 @@ impl Engine {
     /// [`SetError::Unknown`] if the layout has no such control.
     pub fn set_label(&mut self, id: &str, label: &str) -> Result<(), SetError> {
         let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
-        self.labels.write(&mut self.layout, widget, label);
+        self.overrides.write_label(&mut self.layout, widget, label);
+        Ok(())
+    }
+
+    /// Gives the slider, dial or stepper named `id` the range from `least` to `greatest`, in place of what the layout
+    /// says, also of one given later; its value is brought into it, without an event.
+    ///
+    /// # Errors
+    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite, beyond
+    /// a million or narrower than the control's step; [`SetError::InUse`], [`SetError::Locked`].
+    pub fn set_range(&mut self, id: &str, least: f32, greatest: f32) -> Result<(), SetError> {
+        let widget = self.layout.widget_index(id).ok_or(SetError::Unknown)?;
+        let spec = self.layout.widgets.get_mut(widget).ok_or(SetError::Unknown)?;
+        spec.behaviour.scale().ok_or(SetError::WrongType)?;
+        let behaviour = spec.behaviour.with_range(least, greatest).ok_or(SetError::NoRange)?;
+        let control = self.interaction.control_mut(widget).ok_or(SetError::Unknown)?;
+        control.set_behaviour(&behaviour)?;
+        spec.behaviour = behaviour;
+        self.overrides.keep_range(spec.id.clone(), [least, greatest]);
+        if let Some(value) = control.value() {
+            self.responses.note(widget, &self.layout, value);
+        }
         Ok(())
     }
 
@@ -296,7 +317,9 @@ impl Engine {
         snapshot.feet.clear();
         snapshot.feet.extend(self.interaction.feet(self.last_frame.at));
         snapshot.labels.clear();
-        snapshot.labels.extend(self.labels.iter(&self.layout));
+        snapshot.labels.extend(self.overrides.labels(&self.layout));
+        snapshot.ranges.clear();
+        snapshot.ranges.extend(self.overrides.ranges(&self.layout));
         snapshot.page = self.interaction.page();
         snapshot.cursors.clear();
         snapshot.cursors.extend(self.interaction.cursors());
@@ -373,11 +396,12 @@ impl Engine {
         if self.interaction.is_engaged() {
             return;
         }
-        let Some((layout, revision)) = self.waiting_layout.take() else { return };
+        let Some((mut layout, revision)) = self.waiting_layout.take() else { return };
         // The page stays if the new layout has it too, and so does one that waits.
         let same_page = |page: usize| layout.page_index(self.layout.pages.get(page)?.id.as_str());
         let page = same_page(self.interaction.page()).unwrap_or(0);
         let waiting_page = self.waiting_page.and_then(same_page);
+        self.overrides.apply(&mut layout);
         let mut interaction = Interaction::new(&layout, &self.geometry, page);
         for (index, widget) in layout.widgets.iter().enumerate() {
             let old = self.layout.widget_index(widget.id.as_str());
@@ -398,7 +422,6 @@ impl Engine {
         self.waiting_page = waiting_page;
         self.interaction = interaction;
         self.layout = layout;
-        self.labels.apply(&mut self.layout);
         self.responses.begin(&self.layout, self.interaction.controls());
         self.layout_revision = revision;
     }

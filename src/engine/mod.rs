@@ -12,7 +12,7 @@ mod control_state;
 mod feet;
 mod floor_engine;
 mod interact;
-mod labels;
+mod overrides;
 mod page;
 mod people;
 mod region;

@@ -8,7 +8,7 @@ use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Indicator, Value};
+use crate::widget::{Indicator, Scale, Value};
 use crate::wire::{LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
@@ -32,6 +32,8 @@ pub struct Snapshot {
     pub page: usize,
     /// What apps have written on controls in place of what the layout says: the control's index and its label.
     pub labels: Vec<(usize, Arc<str>)>,
+    /// Ranges that apps have set in place of what the layout says: the control's index and its scale.
+    pub ranges: Vec<(usize, Scale)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
     /// One entry per ground, in the layout's order.

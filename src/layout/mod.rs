@@ -98,4 +98,9 @@ impl Widget {
     pub(crate) fn is_on(&self, page: usize) -> bool {
         self.page.is_none_or(|own| own == page)
     }
+
+    /// The name of the page of `layout` it is on; `None` if it is on all of them.
+    pub(crate) fn page_of(&self, layout: &Layout) -> Option<WidgetId> {
+        Some(layout.pages.get(self.page?)?.id.clone())
+    }
 }

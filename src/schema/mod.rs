@@ -57,7 +57,7 @@ pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 pub use kind::{Kind, Kinds};
-pub use page::{Loaded, load_layout, parse_layout};
+pub use page::{Loaded, folder_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};

@@ -1,6 +1,6 @@
 //! Layout files, from the text to the checked layout.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use super::area::{Area, Placed};
 use super::arrange;
@@ -43,6 +43,13 @@ pub struct Loaded {
 pub fn load_layout(path: &Path, kinds: &Kinds, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
     let text = read_text(path)?;
     parse_layout(&text, &path.display().to_string(), kinds, geometry)
+}
+
+/// The folder called `name` beside the file `path` or beside its folder, where a layout's own kinds and effects are.
+#[must_use]
+pub fn folder_beside(path: &Path, name: &str) -> Option<PathBuf> {
+    let home = std::path::absolute(path).ok()?;
+    home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
 }
 
 /// The layout that `text` describes, made of `kinds` and placed on a floor of this `geometry`.

@@ -163,7 +163,12 @@ impl Maker<'_> {
         for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
             // What only a foot can hold, no app can set.
             let settable = control.value().is_some_and(|value| control.clone().set_value(value).is_ok());
-            if command.argument != ArgumentKind::Value || settable {
+            let suits = match command.argument {
+                ArgumentKind::Value => settable,
+                ArgumentKind::Range => widget.behaviour.scale().is_some(),
+                _ => true,
+            };
+            if suits {
                 let arguments = taken(command, Some(widget), layout, &floor.geometry);
                 self.add(Direction::In, &command.path_of(id), arguments, command.says);
             }
@@ -227,6 +232,7 @@ fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
 fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: &Geometry) -> Vec<Argument> {
     match command.argument {
         ArgumentKind::Nothing => Vec::new(),
+        ArgumentKind::Range => ["least", "greatest"].map(|end| argument(end, "f|i", "")).into(),
         ArgumentKind::Label => vec![argument("label", "s", "64 characters at most")],
         ArgumentKind::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
         ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],

@@ -11,7 +11,7 @@ mod sensors;
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Receiver;
+use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::Duration;
 
 use triple_buffer::Input;
@@ -30,6 +30,7 @@ use crate::sense::{Assembler, Method, Tare};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
+use crate::widget::SetError;
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
@@ -54,6 +55,8 @@ pub enum Command {
     SetLayout(Box<Layout>),
     /// What an app may also ask over OSC.
     Control(ControlMessage),
+    /// Do what an app may also ask over OSC, but mute, and answer.
+    Ask(ControlMessage, SyncSender<Result<(), SetError>>),
     /// Play an effect on one tile as an imagined foot would, in place of what was being played so.
     Audition {
         /// What is felt.
@@ -288,7 +291,7 @@ impl Server {
     }
 
     /// Renews the snapshot whatever its age.
-    fn show_now(&mut self) {
+    pub(crate) fn show_now(&mut self) {
         self.shown = Instant::START;
         self.show(self.source.now());
     }
@@ -314,6 +317,7 @@ impl Server {
             match command {
                 Command::SetLayout(layout) => self.engine.set_layout(*layout),
                 Command::Control(message) => self.process_request(message.into()),
+                Command::Ask(message, answer) => self.answer(message, &answer),
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
                 }

@@ -13,7 +13,7 @@ const BURST: u32 = 10;
 
 /// Lets through as many crack events as other programs can follow; a stamp makes hundreds.
 #[derive(Debug, Default)]
-pub(super) struct CrackRateLimiter {
+pub(crate) struct CrackRateLimiter {
     /// The time up to which messages are paid for.
     paid: Instant,
     /// Events left out since the last message.
@@ -39,7 +39,7 @@ pub struct CrackNews {
 
 impl CrackRateLimiter {
     /// What is to be told of `event`; `None` if it opened no crack, or has to wait its turn and is only counted.
-    pub(super) fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
+    pub(crate) fn news(&mut self, event: &GroundEvent) -> Option<CrackNews> {
         let seed = event.seed?;
         let earliest = event.at.before(PERIOD * BURST);
         self.paid = self.paid.max(earliest);

@@ -30,6 +30,7 @@ use crate::units::Instant;
 
 pub use crate::outgoing::{HeldReport, TuioProfiles};
 pub use channel_map::ChannelMap;
+pub(crate) use crack_rate::CrackRateLimiter;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
 pub use fanout::Fanout;
@@ -38,11 +39,13 @@ pub use manual::ManualSink;
 #[cfg(feature = "wav")]
 pub use mono::write_mono;
 pub use osc::OscSink;
+pub(crate) use report::OwnedReport;
 pub use report::Report;
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
+pub(crate) use worker::Worker;
 
 internal! {
     use crack_rate::{CrackNews};

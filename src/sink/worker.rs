@@ -1,9 +1,9 @@
 //! A thread that does what may block, behind a bounded queue.
 
 use std::io;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
@@ -15,17 +15,18 @@ const SHUTDOWN_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// A thread that does what may block, so that its owner never does.
 #[derive(Debug)]
-pub(super) struct Worker<T> {
+pub(crate) struct Worker<T> {
     /// `None` only while being dropped.
     jobs: Option<SyncSender<T>>,
-    finished: Receiver<()>,
+    /// Locked by nobody but who drops it: several threads may share a worker.
+    finished: Mutex<Receiver<()>>,
     thread: Option<JoinHandle<()>>,
     dropped: Arc<AtomicU64>,
 }
 
 impl<T: Send + 'static> Worker<T> {
     /// Starts a thread that runs `work` until the jobs end; what waits when it ends earlier is dropped.
-    pub(super) fn spawn(name: &str, work: impl FnOnce(&Receiver<T>) + Send + 'static) -> io::Result<Self> {
+    pub(crate) fn spawn(name: &str, work: impl FnOnce(&Receiver<T>) + Send + 'static) -> io::Result<Self> {
         let (jobs, queue) = sync_channel(QUEUE);
         let (finish, finished) = channel();
         let dropped = Arc::new(AtomicU64::new(0));
@@ -36,11 +37,12 @@ impl<T: Send + 'static> Worker<T> {
             // Whoever waits for the end may be gone.
             let _ = finish.send(());
         })?;
+        let finished = Mutex::new(finished);
         Ok(Self { jobs: Some(jobs), finished, thread: Some(thread), dropped })
     }
 
     /// Gives the thread a job; false, and counted, if too many wait or the thread has ended.
-    pub(super) fn offer(&self, job: T) -> bool {
+    pub(crate) fn offer(&self, job: T) -> bool {
         let taken = self.try_offer(job);
         if !taken {
             self.dropped.fetch_add(1, Ordering::Relaxed);
@@ -49,7 +51,7 @@ impl<T: Send + 'static> Worker<T> {
     }
 
     /// Gives the thread a job; gives it back if too many wait. A thread that has ended takes no more: that is counted.
-    pub(super) fn hand(&self, job: T) -> Option<T> {
+    pub(crate) fn hand(&self, job: T) -> Option<T> {
         match self.jobs.as_ref()?.try_send(job) {
             Ok(()) => None,
             Err(TrySendError::Full(job)) => Some(job),
@@ -61,12 +63,12 @@ impl<T: Send + 'static> Worker<T> {
     }
 
     /// Gives the thread a job that does not matter if it does not fit.
-    pub(super) fn try_offer(&self, job: T) -> bool {
+    pub(crate) fn try_offer(&self, job: T) -> bool {
         self.jobs.as_ref().is_some_and(|jobs| jobs.try_send(job).is_ok())
     }
 
     /// Jobs that were offered in vain.
-    pub(super) fn dropped(&self) -> u64 {
+    pub(crate) fn dropped(&self) -> u64 {
         self.dropped.load(Ordering::Relaxed)
     }
 }
@@ -75,7 +77,8 @@ impl<T> Drop for Worker<T> {
     /// Lets the thread finish what was offered, but not for ever.
     fn drop(&mut self) {
         self.jobs = None;
-        if self.finished.recv_timeout(SHUTDOWN_TIMEOUT).is_ok()
+        let finished = self.finished.get_mut().unwrap_or_else(PoisonError::into_inner);
+        if finished.recv_timeout(SHUTDOWN_TIMEOUT).is_ok()
             && let Some(thread) = self.thread.take()
             && thread.join().is_err()
         {

@@ -1,5 +1,6 @@
 //! What a control does: one of ten behaviours with its settings.
 
+use super::scale::ENDS;
 use super::{
     ButtonSpec, DialSpec, HoldSpec, LeanSpec, PadSpec, PedalSpec, Scale, SelectorSpec, SliderSpec,
     StepperSpec, SwitchSpec, Thresholds, Value,
@@ -89,6 +90,26 @@ impl Behaviour {
             Self::Stepper(spec) => Some(&spec.scale),
             _ => None,
         }
+    }
+
+    /// The same control with another range, its value to begin with brought into it; `None` if it can't have it.
+    ///
+    /// What takes one number from an app can have any that is finite, not beyond a million and no narrower than its step.
+    #[must_use]
+    pub(crate) fn with_range(&self, least: f32, greatest: f32) -> Option<Self> {
+        let mut other = self.clone();
+        let (scale, initial) = match &mut other {
+            Self::Slider(spec) => (&mut spec.scale, &mut spec.initial),
+            Self::Dial(spec) => (&mut spec.scale, &mut spec.initial),
+            Self::Stepper(spec) => (&mut spec.scale, &mut spec.initial),
+            _ => return None,
+        };
+        let fits = [least, greatest].into_iter().all(|end| ENDS.contains(&end))
+            && least < greatest
+            && scale.step <= greatest - least;
+        (scale.min, scale.max) = (least, greatest);
+        *initial = initial.clamp(least, greatest.max(least));
+        fits.then_some(other)
     }
 
     /// What the control holds before anybody has touched it; `None` for a button.

@@ -54,23 +54,11 @@ impl Control {
     /// A control of `size` metres at rest with its initial value; a foot already on it must lift before it works.
     #[must_use]
     pub fn new(behaviour: &Behaviour, size: Vec2) -> Self {
-        let state = match behaviour {
-            Behaviour::Button(spec) => State::Button(Button::new(*spec)),
-            Behaviour::Hold(_) => State::Hold(Hold::default()),
-            Behaviour::Switch(spec) => State::Switch(Switch::new(*spec)),
-            Behaviour::Selector(spec) => State::Selector(Selector::new(spec)),
-            Behaviour::Slider(spec) => State::Slider(Slider::new(*spec)),
-            Behaviour::Pedal(spec) => State::Pedal(Pedal::new(*spec)),
-            Behaviour::Pad(spec) => State::Pad(Pad::new(*spec)),
-            Behaviour::Dial(spec) => State::Dial(Dial::new(*spec)),
-            Behaviour::Stepper(spec) => State::Stepper(Stepper::new(*spec)),
-            Behaviour::Lean(spec) => State::Lean(Lean::new(*spec)),
-        };
         let thresholds = behaviour.thresholds();
         Self {
             press: Press::new(thresholds),
             guard: Guarding::new(thresholds.guard),
-            state,
+            state: State::new(behaviour),
             size,
             now: Instant::START,
             disabled: false,
@@ -197,6 +185,22 @@ impl Control {
         self.state.machine_mut().set(value)
     }
 
+    /// Goes on as a control of this behaviour, of the same kind with another range; its number is brought into it.
+    ///
+    /// # Errors
+    /// [`SetError::InUse`] and [`SetError::Locked`]; it stays as it was.
+    pub(crate) fn set_behaviour(&mut self, behaviour: &Behaviour) -> Result<(), SetError> {
+        if self.is_engaged() {
+            return Err(SetError::InUse);
+        }
+        if self.locked {
+            return Err(SetError::Locked);
+        }
+        let value = self.value();
+        self.state = State::new(behaviour);
+        value.map_or(Ok(()), |value| self.state.machine_mut().set(value))
+    }
+
     /// Whether a foot has it pressed.
     #[must_use]
     pub fn is_engaged(&self) -> bool {
@@ -248,6 +252,22 @@ fn refusal(outcome: Option<Outcome>) -> Emitted {
 }
 
 impl State {
+    /// As a control of this behaviour begins.
+    fn new(behaviour: &Behaviour) -> Self {
+        match behaviour {
+            Behaviour::Button(spec) => Self::Button(Button::new(*spec)),
+            Behaviour::Hold(_) => Self::Hold(Hold::default()),
+            Behaviour::Switch(spec) => Self::Switch(Switch::new(*spec)),
+            Behaviour::Selector(spec) => Self::Selector(Selector::new(spec)),
+            Behaviour::Slider(spec) => Self::Slider(Slider::new(*spec)),
+            Behaviour::Pedal(spec) => Self::Pedal(Pedal::new(*spec)),
+            Behaviour::Pad(spec) => Self::Pad(Pad::new(*spec)),
+            Behaviour::Dial(spec) => Self::Dial(Dial::new(*spec)),
+            Behaviour::Stepper(spec) => Self::Stepper(Stepper::new(*spec)),
+            Behaviour::Lean(spec) => Self::Lean(Lean::new(*spec)),
+        }
+    }
+
     fn machine(&self) -> &dyn Machine {
         match self {
             Self::Button(button) => button,

@@ -58,6 +58,36 @@ pub enum Value {
     Pair(Vec2),
 }
 
+impl From<bool> for Value {
+    fn from(on: bool) -> Self {
+        Self::Switch(on)
+    }
+}
+
+impl From<f32> for Value {
+    fn from(number: f32) -> Self {
+        Self::Number(number)
+    }
+}
+
+impl From<f64> for Value {
+    fn from(number: f64) -> Self {
+        Self::Number(number as f32)
+    }
+}
+
+impl From<i32> for Value {
+    fn from(number: i32) -> Self {
+        Self::Number(number as f32)
+    }
+}
+
+impl From<Vec2> for Value {
+    fn from(pair: Vec2) -> Self {
+        Self::Pair(pair)
+    }
+}
+
 /// Where a foot went.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {

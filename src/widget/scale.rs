@@ -7,6 +7,9 @@ use crate::format::{Follow, Num, num, record};
 /// Values of controls: as far as `f32` still resolves a tenth.
 pub(super) const VALUES: Num = num(-1e6..=1e6);
 
+/// The same for what apps give.
+pub(super) const ENDS: std::ops::RangeInclusive<f32> = -1e6..=1e6;
+
 /// A value to begin with.
 pub(super) const INITIAL: Follow<Num> = Follow { explicit: VALUES, otherwise: "the least" };
 

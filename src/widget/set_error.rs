@@ -17,6 +17,9 @@ pub enum SetError {
     /// A selector has no option of that number.
     #[error("the selector has no such option")]
     NoSuchChoice,
+    /// The range is empty, not finite, beyond a million, or narrower than the control's step.
+    #[error("the control can't have such a range")]
+    NoRange,
     /// The control acts only while a foot holds it.
     #[error("only a foot can work this control, for as long as it holds it")]
     Momentary,

@@ -61,6 +61,15 @@ pub enum ControlMessage {
         /// What it shows.
         indicator: Indicator,
     },
+    /// Have this range, in place of what the layout says.
+    SetRange {
+        /// Which control.
+        id: WidgetId,
+        /// The least value; finite.
+        least: f32,
+        /// The greatest value; finite.
+        greatest: f32,
+    },
     /// Tell the sender how the control is.
     Get {
         /// Which control.
@@ -102,6 +111,7 @@ impl ControlMessage {
             | Self::Unlock { id }
             | Self::Label { id, .. }
             | Self::Indicate { id, .. }
+            | Self::SetRange { id, .. }
             | Self::Get { id } => Some(id),
             Self::ShowPage { .. }
             | Self::GetPage
@@ -123,6 +133,7 @@ impl ControlMessage {
             Self::Unlock { id } => ("unlock", id),
             Self::Label { id, .. } => ("label", id),
             Self::Indicate { id, .. } => ("indicator", id),
+            Self::SetRange { id, .. } => ("range/set", id),
             Self::Get { id } => ("get", id),
             Self::ShowPage { .. } => return "page/set".into(),
             Self::GetPage => return "page/get".into(),
@@ -162,6 +173,8 @@ pub enum ArgumentKind {
     Label,
     /// A string: `off`, `on`, `busy` or `attention`; or 0 or 1.
     Indicator,
+    /// Two numbers: the least, and the greatest.
+    Range,
     /// A string: the id of a page.
     Page,
     /// 0 or 1, or OSC true or false.
@@ -190,12 +203,13 @@ enum Argument {
     Value(Value),
     Text(String),
     Indicator(Indicator),
+    Range(f32, f32),
     Flag(bool),
     TileFlag(TileId, bool),
 }
 
 /// Everything that apps may ask.
-pub const COMMANDS: [Command; 14] = [
+pub const COMMANDS: [Command; 15] = [
     Command {
         path: "get",
         argument: ArgumentKind::Nothing,
@@ -272,6 +286,15 @@ pub const COMMANDS: [Command; 14] = [
         says: "Switch the lamp.",
         make: |id, argument| match argument {
             Argument::Indicator(indicator) => Some(ControlMessage::Indicate { id, indicator }),
+            _ => None,
+        },
+    },
+    Command {
+        path: "widget/<id>/range/set",
+        argument: ArgumentKind::Range,
+        says: "Have this range, also in layouts that come later; the value is brought into it.",
+        make: |id, argument| match argument {
+            Argument::Range(least, greatest) => Some(ControlMessage::SetRange { id, least, greatest }),
             _ => None,
         },
     },
@@ -454,6 +477,10 @@ impl ArgumentKind {
                 (Value::Number(x), Value::Number(y)) => Some(Argument::Value(Value::Pair(Vec2::new(x, y)))),
                 _ => None,
             },
+            (Self::Range, [least, greatest]) => match (value(least)?, value(greatest)?) {
+                (Value::Number(least), Value::Number(greatest)) => Some(Argument::Range(least, greatest)),
+                _ => None,
+            },
             (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
                 Some(Argument::Text(text.chars().filter(|&c| is_shown(c)).collect()))
             }
@@ -483,6 +510,7 @@ impl ArgumentKind {
             Self::Value => "one finite number, true or false, or two numbers for a pair",
             Self::Label => "one string of at most 64 characters",
             Self::Indicator => "off, on, busy or attention, or 0 or 1",
+            Self::Range => "two numbers: the least, and the greatest",
             Self::Page => "one string: the id of a page",
             Self::Flag => "0 or 1, or true or false",
             Self::Switch => "no argument, 0 or 1, or true or false",

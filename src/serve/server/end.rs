@@ -7,9 +7,10 @@ use tracing::error;
 use super::Server;
 
 impl Server {
-    /// Cancels what feet hold, tells so, and lets the actuators fade out; a second time changes nothing.
+    /// Cancels what feet hold, tells and shows so, and lets the actuators fade out; a second time changes nothing.
     pub(super) fn end(&mut self) {
         self.cancel_all();
+        self.show_now();
         self.haptics.fade_out(self.source.now());
     }
 

@@ -1,5 +1,6 @@
 //! What a server does with requests: done, answered, and told to all.
 
+use std::sync::mpsc::SyncSender;
 use std::time::Duration;
 
 use super::Server;
@@ -9,7 +10,7 @@ use crate::engine::PageShown;
 use crate::outgoing::{write_control, write_error, write_mute, write_page};
 use crate::serve::request;
 use crate::sink::Report;
-use crate::widget::WidgetId;
+use crate::widget::{SetError, WidgetId};
 use crate::wire::{ControlMessage, Prefix, Request};
 
 /// How requests are answered.
@@ -32,6 +33,16 @@ impl Default for Answers {
 }
 
 impl Server {
+    /// Does what the program's own app asks, and gives it the answer.
+    pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), SetError>>) {
+        let done = request::apply(&mut self.engine, &message);
+        if done.is_ok() {
+            self.tell(&message.into());
+        }
+        // Who no longer waits for it need not know.
+        let _ = to.try_send(done);
+    }
+
     /// Does what an app asks of one control, or of all that a pattern means.
     pub(super) fn process_request(&mut self, mut request: Request) {
         let meant = request.message.id_mut().map(|id| request::meant(&self.engine, id)).unwrap_or_default();
@@ -82,7 +93,8 @@ impl Server {
             | ControlMessage::Lock { id }
             | ControlMessage::Unlock { id }
             | ControlMessage::Label { id, .. }
-            | ControlMessage::Indicate { id, .. } => self.tell_control(id, None),
+            | ControlMessage::Indicate { id, .. }
+            | ControlMessage::SetRange { id, .. } => self.tell_control(id, None),
             ControlMessage::GetPage => self.tell_page(request),
             ControlMessage::GetMute => self.answer_mute(request),
             ControlMessage::GetAll => {

@@ -1,0 +1,315 @@
+//! What a session is made of.
+
+use std::net::ToSocketAddrs;
+use std::path::Path;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{channel, sync_channel};
+use std::sync::{Arc, Mutex};
+use std::thread::Builder as ThreadBuilder;
+
+use thiserror::Error;
+use triple_buffer::triple_buffer;
+
+use super::app_sink::{AppSink, HeldNow, Waker};
+use super::held::HeldWatch;
+use super::queue::{Queue, QueueInput};
+use super::session::{Inner, Session};
+use super::snapshot::Shown;
+use super::thread::{self, Actuators, OpenActuators, Plan, Told};
+use crate::engine;
+use crate::floor::{Floor, Geometry};
+use crate::layout::Layout;
+use crate::schema::{self, Diagnostics, Effects, Kinds};
+use crate::sense::Method;
+use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
+use crate::source::{SensorSource, SourceError, UdpSource};
+use crate::units::{HostClock, Instant};
+use crate::wire::Prefix;
+
+/// What a session is made of, before it starts.
+pub struct SessionBuilder {
+    feed: Feed,
+    floor: Floor,
+    layout: Option<(Layout, Geometry)>,
+    method: Method,
+    prefix: Prefix,
+    sinks: Fanout,
+    actuators: Option<OpenActuators>,
+    latency: Option<LatencyStages>,
+    wake: Option<Box<dyn FnMut() + Send>>,
+    every_change: bool,
+    realtime: bool,
+    stop: Arc<AtomicBool>,
+}
+
+/// Where packets come from.
+enum Feed {
+    Listen(String),
+    Given(Box<dyn SensorSource>, HostClock),
+    #[cfg(feature = "sim")]
+    Simulated(Box<dyn crate::sim::FootDriver>),
+}
+
+/// Why a session can't start.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum StartError {
+    /// The address is not one of this machine with a port.
+    #[error("can't listen on {address}: write it like 127.0.0.1:9000 ({source})")]
+    Address {
+        /// As it was given.
+        address: String,
+        /// What is wrong with it.
+        source: std::io::Error,
+    },
+    /// Packets can't be had.
+    #[error(transparent)]
+    Source(#[from] SourceError),
+    /// The actuators can't be played.
+    #[error(transparent)]
+    Sink(#[from] SinkError),
+    /// No layout was given, or it was checked for a floor that was given later.
+    #[error("name the layout, after the floor that it lies on")]
+    NoLayout,
+    /// The simulated floor can't be calibrated.
+    #[error("the simulated floor can't be calibrated: {0}")]
+    Simulation(String),
+    /// The system gives no thread.
+    #[error("the system gives no thread: {0}")]
+    Thread(std::io::Error),
+}
+
+impl SessionBuilder {
+    fn new(feed: Feed) -> Self {
+        Self {
+            feed,
+            floor: Floor::default(),
+            layout: None,
+            method: Method::default(),
+            prefix: Prefix::default(),
+            sinks: Fanout::new(),
+            actuators: None,
+            latency: None,
+            wake: None,
+            every_change: false,
+            realtime: false,
+            stop: Arc::default(),
+        }
+    }
+
+    pub(super) fn listening(address: String) -> Self {
+        Self::new(Feed::Listen(address))
+    }
+
+    pub(super) fn fed_by(source: Box<dyn SensorSource>, clock: HostClock) -> Self {
+        Self::new(Feed::Given(source, clock))
+    }
+
+    #[cfg(feature = "sim")]
+    pub(super) fn simulated(driver: Box<dyn crate::sim::FootDriver>) -> Self {
+        Self::new(Feed::Simulated(driver))
+    }
+
+    /// The floor's hardware; without it, the paper's 6 x 6 tiles. To be given before the layout.
+    #[must_use]
+    pub fn floor(mut self, floor: Floor) -> Self {
+        self.floor = floor;
+        self
+    }
+
+    /// The floor's hardware as a file describes it. To be given before the layout.
+    ///
+    /// # Errors
+    /// Everything wrong with the file.
+    pub fn floor_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
+        Ok(self.floor(schema::load_floor(path.as_ref())?))
+    }
+
+    /// The page of controls that a file describes, made of the kinds and effects in folders `widgets` and `effects`
+    /// beside it or beside its folder. Warnings are logged.
+    ///
+    /// # Errors
+    /// Everything wrong with the file, its kinds and its effects.
+    pub fn layout_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
+        let path = path.as_ref();
+        let mut effects = Effects::builtin();
+        if let Some(folder) = schema::folder_beside(path, "effects") {
+            effects.read_folder(&folder)?;
+        }
+        let mut kinds = Kinds::shipped(effects)?;
+        if let Some(folder) = schema::folder_beside(path, "widgets") {
+            kinds.read_folder(&folder)?;
+        }
+        let loaded = schema::load_layout(path, &kinds, &self.floor.geometry)?;
+        if !loaded.warnings.is_empty() {
+            tracing::warn!("{}", loaded.warnings);
+        }
+        Ok(self.layout(loaded.layout))
+    }
+
+    /// The page of controls, checked for the floor given before.
+    #[must_use]
+    pub fn layout(mut self, layout: Layout) -> Self {
+        self.layout = Some((layout, self.floor.geometry));
+        self
+    }
+
+    /// How feet are told apart.
+    #[must_use]
+    pub fn method(mut self, method: Method) -> Self {
+        self.method = method;
+        self
+    }
+
+    /// What OSC addresses begin with in requests and answers; sinks have prefixes of their own.
+    #[must_use]
+    pub fn prefix(mut self, prefix: Prefix) -> Self {
+        self.prefix = prefix;
+        self
+    }
+
+    /// Also tells `sink`, such as [`crate::sink::OscSink`] or [`crate::sink::JsonSink`]; may be called several times.
+    #[must_use]
+    pub fn sink(mut self, sink: impl EventSink + 'static) -> Self {
+        self.sinks.push(sink);
+        self
+    }
+
+    /// Lets what happens be felt. `open` is called on the sensing thread, which keeps the actuators, with the floor,
+    /// the present on its sample clock, and that clock.
+    #[must_use]
+    pub fn actuators(
+        mut self,
+        open: impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static,
+    ) -> Self {
+        self.actuators = Some(Box::new(open));
+        self
+    }
+
+    /// Measures in `stages` how long packets take to become cues.
+    #[cfg(feature = "internals")]
+    #[must_use]
+    pub fn latency(mut self, stages: LatencyStages) -> Self {
+        self.latency = Some(stages);
+        self
+    }
+
+    /// Calls `wake` when there are new events, for apps that sleep until something happens, such as
+    /// `move || context.request_repaint()`.
+    ///
+    /// It is called on a thread of its own; several events may make one call. If it panics, that is logged, and
+    /// sensing goes on. The end waits for a call that is under way, for two seconds at most. It must not own a
+    /// [`Session`], which then would never be dropped.
+    #[must_use]
+    pub fn wake(mut self, wake: impl FnMut() + Send + 'static) -> Self {
+        self.wake = Some(Box::new(wake));
+        self
+    }
+
+    /// Keeps every value that was told while the app took no events; without it, only the latest of each control.
+    #[must_use]
+    pub fn every_change(mut self) -> Self {
+        self.every_change = true;
+        self
+    }
+
+    /// Asks the system to let the sensing thread go before others, as `underfoot run` does.
+    #[must_use]
+    pub fn realtime(mut self) -> Self {
+        self.realtime = true;
+        self
+    }
+
+    /// Also ends when somebody sets `stop`, such as a signal handler.
+    #[must_use]
+    pub fn stop_flag(mut self, stop: Arc<AtomicBool>) -> Self {
+        self.stop = stop;
+        self
+    }
+
+    /// Starts the floor; snapshots are there when this returns.
+    ///
+    /// # Errors
+    /// [`StartError`] says what is missing or can't be had; nothing runs then.
+    pub fn start(mut self) -> Result<Session, StartError> {
+        let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
+        let (layout, _) = given.ok_or(StartError::NoLayout)?;
+        let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
+        let waker = self.wake.map(Waker::start).transpose().map_err(StartError::Thread)?.map(Arc::new);
+        let queue = Arc::new(Queue::new(self.every_change));
+        let (held_input, held) = triple_buffer(&HeldNow::default());
+        let held = Arc::new(HeldWatch::new(held));
+        let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
+        let shown = Arc::new(Shown::new(latest, layout.clone()));
+        let (commands, received) = channel();
+        let sinks = self.sinks.with(AppSink {
+            events: QueueInput::new(Arc::clone(&queue), self.every_change),
+            held: held_input,
+            waker: waker.clone(),
+            cracks: CrackRateLimiter::default(),
+        });
+        let plan = Plan {
+            floor,
+            layout,
+            method: self.method,
+            source,
+            clock,
+            prefix: self.prefix,
+            sinks,
+            actuators: self.actuators,
+            latency: self.latency,
+            realtime: self.realtime,
+            commands: received,
+            snapshots,
+            stop: Arc::clone(&self.stop),
+        };
+        let told = Told { queue: Arc::clone(&queue), held: Arc::clone(&held), waker };
+        let (ready, is_ready) = sync_channel(1);
+        let sensing = ThreadBuilder::new()
+            .name("sensing".into())
+            .spawn(move || thread::run(plan, &told, &ready))
+            .map_err(StartError::Thread)?;
+        let thread = Mutex::new(Some(sensing));
+        let session = Session::new(Inner { queue, held, shown, commands, stop: self.stop, thread });
+        match is_ready.recv() {
+            // A thread that panicked before it was ready says so in its last event.
+            Ok(Ok(())) | Err(_) => Ok(session),
+            Ok(Err(error)) => Err(error),
+        }
+    }
+}
+
+impl Feed {
+    /// The source, the clock that stamps its packets, and the floor as the source makes it.
+    fn open(
+        self,
+        floor: Floor,
+        prefix: &Prefix,
+    ) -> Result<(Box<dyn SensorSource>, HostClock, Floor), StartError> {
+        match self {
+            Self::Listen(address) => {
+                let unknown = |source| StartError::Address { address: address.clone(), source };
+                let none = || std::io::Error::from(std::io::ErrorKind::AddrNotAvailable);
+                let found = address.to_socket_addrs().map_err(unknown)?.next();
+                let source = UdpSource::bind(found.ok_or_else(|| unknown(none()))?, &floor)?;
+                let source = source.with_prefix(prefix.clone());
+                let clock = source.clock();
+                Ok((Box::new(source), clock, floor))
+            }
+            Self::Given(source, clock) => Ok((source, clock, floor)),
+            #[cfg(feature = "sim")]
+            Self::Simulated(driver) => {
+                use crate::sim::{SimConfig, SimFloor, calibrated};
+                use crate::source::{Pace, SimulatedSource};
+                /// Which floor of its kind.
+                const SEED: u64 = 1;
+                let sim = SimFloor::new(&floor, SimConfig::default(), SEED);
+                let floor = calibrated(&floor, &sim, SEED)
+                    .map_err(|error| StartError::Simulation(error.to_string()))?;
+                let begun = std::time::Instant::now();
+                let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
+                Ok((Box::new(SimulatedSource::new(sim, driver, Pace::RealTime)), clock, floor))
+            }
+        }
+    }
+}

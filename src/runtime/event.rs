@@ -1,0 +1,147 @@
+//! What an app hears.
+
+use std::fmt;
+
+use glam::Vec2;
+
+use crate::engine::ControlState;
+use crate::feel::{DeviceStatus, Muted};
+use crate::sense::{ContactId, SensorHealth};
+use crate::sink::OwnedReport;
+use crate::units::{Instant, Newtons};
+use crate::widget::{EventKind, WidgetEvent, WidgetId};
+use crate::wire::LinkState;
+
+/// One thing that happened on a floor.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Event {
+    /// When, on the floor's sample clock.
+    pub at: Instant,
+    /// What.
+    pub kind: Kind,
+    /// The contact that did it; `None` if no foot did.
+    pub contact: Option<ContactId>,
+    /// Force of that contact, last known; 0 without one.
+    pub force: Newtons,
+    /// Where it happened, in floor metres; the floor's origin where it has no place.
+    pub position: Vec2,
+    id: Option<WidgetId>,
+}
+
+/// What happened.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Kind {
+    /// A foot did something to the control [`Event::id`].
+    Control(EventKind),
+    /// An app has changed or asked for the control [`Event::id`]: how it is now. Also told to the app that did it.
+    State(Box<ControlState>),
+    /// This page is shown.
+    Page(WidgetId),
+    /// Whether sensor packets arrive. [`LinkState::Lost`] has cancelled what was held.
+    Link(LinkState),
+    /// How the sensors are doing, once a second at most.
+    Health(Box<SensorHealth>),
+    /// How the device that moves the actuators is doing, once a second at most.
+    Device(Box<DeviceStatus>),
+    /// What is muted.
+    Muted(Muted),
+    /// A ground cracked at [`Event::position`]; 200 a second at most are told.
+    Crack {
+        /// The seed of its cracks.
+        seed: u32,
+        /// The energy it took, in joules.
+        energy_j: f32,
+    },
+    /// The session is over: nothing is held, and nothing more will come.
+    Ended(EndReason),
+}
+
+/// Why a session is over.
+#[derive(Clone, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum EndReason {
+    /// It was asked to stop.
+    Stopped,
+    /// The simulated floor's feet, or the recording, have come to their end.
+    SourceEnded,
+    /// The source failed: what it said.
+    Failed(String),
+    /// The sensing thread panicked: what it said.
+    Panicked(String),
+}
+
+impl fmt::Display for EndReason {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Stopped => f.write_str("stopped"),
+            Self::SourceEnded => f.write_str("the source has ended"),
+            Self::Failed(why) => f.write_str(why),
+            Self::Panicked(why) => write!(f, "sensing failed: {why}"),
+        }
+    }
+}
+
+impl Event {
+    /// The control it is about; empty where it is about the floor.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        self.id.as_ref().map_or("", WidgetId::as_str)
+    }
+
+    /// What there is to hear of `told`; `None` for what [`super::Session::held`] and snapshots show.
+    pub(super) fn of(told: OwnedReport) -> Option<Self> {
+        let at = told.at();
+        let (id, kind) = match told {
+            OwnedReport::Event(WidgetEvent { id, kind, contact, force, position, .. }) => {
+                return Some(Self { at, kind: Kind::Control(kind), contact, force, position, id: Some(id) });
+            }
+            OwnedReport::Control(_, state) => (Some(state.id.clone()), Kind::State(state)),
+            OwnedReport::Page(shown) => (None, Kind::Page(shown.page)),
+            OwnedReport::Link(_, state) => (None, Kind::Link(state)),
+            OwnedReport::Health(_, health) => (None, Kind::Health(Box::new(health))),
+            OwnedReport::Device(_, status) => (None, Kind::Device(Box::new(status))),
+            OwnedReport::Muted(_, muted) => (None, Kind::Muted(muted)),
+            OwnedReport::Crack(news) => {
+                let kind = Kind::Crack { seed: news.seed, energy_j: news.energy_j };
+                return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
+            }
+            OwnedReport::Contacts(..) | OwnedReport::Held(_) | OwnedReport::Alive(..) => return None,
+        };
+        Some(Self::new(at, id, kind))
+    }
+
+    pub(super) fn ended(at: Instant, reason: EndReason) -> Self {
+        Self::new(at, None, Kind::Ended(reason))
+    }
+
+    fn new(at: Instant, id: Option<WidgetId>, kind: Kind) -> Self {
+        Self { at, kind, contact: None, force: Newtons::ZERO, position: Vec2::ZERO, id }
+    }
+
+    /// Whether it is the new value of a control.
+    pub(super) const fn is_change(&self) -> bool {
+        matches!(self.kind, Kind::Control(EventKind::Changed(_)))
+    }
+
+    /// Whether an app that misses it may believe something that is no longer so: the end of a press, and every state.
+    pub(super) const fn must_be_known(&self) -> bool {
+        match self.kind {
+            Kind::Control(kind) => {
+                matches!(kind, EventKind::Released | EventKind::Cancelled | EventKind::Disarmed)
+            }
+            Kind::Crack { .. } => false,
+            _ => true,
+        }
+    }
+
+    /// Whether `later` says all that this one says.
+    pub(super) fn is_outdated_by(&self, later: &Self) -> bool {
+        let kinds = match (&self.kind, &later.kind) {
+            (Kind::Control(kind), Kind::Control(later)) => kind.name() == later.name(),
+            (kind, later) => std::mem::discriminant(kind) == std::mem::discriminant(later),
+        };
+        kinds && self.id == later.id
+    }
+}

@@ -1,0 +1,181 @@
+//! The handle.
+
+use std::fmt;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{RecvTimeoutError, Sender, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::JoinHandle;
+use std::time::Duration;
+
+use super::builder::SessionBuilder;
+use super::control::{Control, Refusal};
+use super::event::Event;
+use super::held::{Held, HeldWatch};
+use super::queue::Queue;
+use super::snapshot::{Shown, Snapshot};
+use crate::layout::Layout;
+use crate::serve::Command;
+use crate::source::SensorSource;
+use crate::units::HostClock;
+use crate::widget::{SetError, WidgetId};
+use crate::wire::ControlMessage;
+
+/// How long an answer of the sensing thread is waited for.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// A floor at work on a thread of its own; see [the module](super).
+///
+/// Clones are handles on the same floor: events go to whoever takes them first.
+#[derive(Clone)]
+pub struct Session(Arc<Inner>);
+
+pub(super) struct Inner {
+    pub(super) queue: Arc<Queue>,
+    pub(super) held: Arc<HeldWatch>,
+    pub(super) shown: Arc<Shown>,
+    pub(super) commands: Sender<Command>,
+    pub(super) stop: Arc<AtomicBool>,
+    pub(super) thread: Mutex<Option<JoinHandle<()>>>,
+}
+
+impl Drop for Inner {
+    fn drop(&mut self) {
+        self.held.end();
+        self.stop.store(true, Ordering::Relaxed);
+        let thread = self.thread.lock().unwrap_or_else(PoisonError::into_inner).take();
+        // A sink that holds the last handle is dropped by the sensing thread, which can't wait for itself.
+        if let Some(thread) = thread.filter(|thread| thread.thread().id() != std::thread::current().id()) {
+            // How it ended has been said in the last event.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl fmt::Debug for Session {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Session").field("ended", &self.has_ended()).finish_non_exhaustive()
+    }
+}
+
+impl Session {
+    /// A session whose boards send their packets to `address`, such as `127.0.0.1:9000`; port 0 takes a free one.
+    #[must_use]
+    pub fn listen(address: impl Into<String>) -> SessionBuilder {
+        SessionBuilder::listening(address.into())
+    }
+
+    /// A session fed by any source. `clock` is the one that stamps its packets; actuators keep time by it.
+    #[must_use]
+    pub fn source(source: Box<dyn SensorSource>, clock: HostClock) -> SessionBuilder {
+        SessionBuilder::fed_by(source, clock)
+    }
+
+    /// A session on a simulated floor that was calibrated in the lab, with the feet that `driver` moves.
+    #[cfg(feature = "sim")]
+    #[must_use]
+    pub fn simulated(driver: Box<dyn crate::sim::FootDriver>) -> SessionBuilder {
+        SessionBuilder::simulated(driver)
+    }
+
+    pub(super) fn new(inner: Inner) -> Self {
+        Self(Arc::new(inner))
+    }
+
+    /// The next event, if there is one; never waits for one.
+    ///
+    /// The last event is [`super::Kind::Ended`], whatever the end was, also a panic of the sensing thread.
+    /// A value that waits to be taken makes room for a newer one of the same control
+    /// ([`SessionBuilder::every_change`]). Beyond 1024 events the oldest that need not be known are dropped
+    /// and counted ([`Session::dropped`]), never the last end of a press.
+    #[must_use]
+    pub fn next_event(&self) -> Option<Event> {
+        self.0.queue.next()
+    }
+
+    /// The next event, if there is one within `patience`; `None` at once when there will be no more.
+    #[must_use]
+    pub fn next_event_timeout(&self, patience: Duration) -> Option<Event> {
+        self.0.queue.next_timeout(patience)
+    }
+
+    /// Events that were dropped because nobody took them; values that newer ones replaced are not counted.
+    #[must_use]
+    pub fn dropped(&self) -> u64 {
+        self.0.queue.dropped()
+    }
+
+    /// Whether the control named `id` is held, to be asked again and again; see [`Held::is_fresh`].
+    #[must_use]
+    pub fn held(&self, id: &str) -> Held {
+        Held::new(Arc::clone(&self.0.held), WidgetId::new(id))
+    }
+
+    /// How the floor is: from the first moment on as the layout says, later as of the last 5 ms.
+    #[must_use]
+    pub fn snapshot(&self) -> Snapshot {
+        self.0.shown.read()
+    }
+
+    /// The end of the buffer that [`Session::snapshot`] reads, for one reader that looks all the time; afterwards
+    /// that method gives what was taken last.
+    #[cfg(feature = "internals")]
+    #[must_use]
+    pub fn take_snapshots(&self) -> triple_buffer::Output<crate::engine::Snapshot> {
+        self.0.shown.take()
+    }
+
+    /// The control named `id`.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such control.
+    pub fn control(&self, id: &str) -> Result<Control<'_>, Refusal> {
+        let known = self.snapshot().layout.widget_index(id).is_some();
+        if known { Ok(Control::new(self, id)) } else { Err(SetError::Unknown.into()) }
+    }
+
+    /// Shows another page, as soon as no foot is engaged; an event tells when.
+    ///
+    /// # Errors
+    /// [`SetError::Unknown`] if the layout has no such page.
+    pub fn set_page(&self, id: &str) -> Result<(), Refusal> {
+        self.ask(ControlMessage::ShowPage { page: WidgetId::new(id) })
+    }
+
+    /// Gives the floor another layout, which must have been checked for its geometry; values stay.
+    ///
+    /// With a foot on a control it waits until the foot has let go. Gives the
+    /// [`crate::engine::Snapshot::layout_revision`] from which on snapshots belong to it.
+    pub fn set_layout(&self, layout: Layout) -> u64 {
+        self.0.shown.give(layout, |layout| {
+            self.send(Command::SetLayout(Box::new(layout)));
+        })
+    }
+
+    /// Asks for anything else, without an answer; whether somebody is there to do it.
+    pub fn send(&self, command: Command) -> bool {
+        self.0.commands.send(command).is_ok()
+    }
+
+    /// Ends the floor: what is held is cancelled, and [`super::Kind::Ended`] follows. Does not wait for it.
+    pub fn stop(&self) {
+        self.0.stop.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether the floor has ended; events may still wait.
+    #[must_use]
+    pub fn has_ended(&self) -> bool {
+        self.0.held.has_ended()
+    }
+
+    pub(super) fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
+        let (answer, answered) = sync_channel(1);
+        if !self.send(Command::Ask(message, answer)) {
+            return Err(Refusal::Ended);
+        }
+        match answered.recv_timeout(PATIENCE) {
+            Ok(done) => Ok(done?),
+            Err(RecvTimeoutError::Timeout) => Err(Refusal::NoAnswer),
+            Err(RecvTimeoutError::Disconnected) => Err(Refusal::Ended),
+        }
+    }
+}

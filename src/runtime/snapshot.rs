@@ -1,0 +1,88 @@
+//! How a floor is at one instant, by the names of its controls.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use triple_buffer::Output;
+
+use crate::engine::{self, ControlState};
+use crate::layout::Layout;
+use crate::widget::Value;
+
+/// How a floor is at one instant, by the names of its controls; renewed every 5 ms.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Snapshot {
+    /// The layout that is on the floor.
+    pub layout: Arc<Layout>,
+    /// All that there is to see, in the order of the layout.
+    pub floor: engine::Snapshot,
+}
+
+impl Snapshot {
+    /// How the control named `id` is; `None` for an unknown name.
+    #[must_use]
+    pub fn control(&self, id: &str) -> Option<ControlState> {
+        ControlState::of(&self.layout, self.layout.widget_index(id)?, &self.floor)
+    }
+
+    /// What the control named `id` holds; `None` for a button or an unknown name.
+    #[must_use]
+    pub fn value(&self, id: &str) -> Option<Value> {
+        self.floor.widgets.get(self.layout.widget_index(id)?)?.value
+    }
+
+    /// The name of the page that is shown; `None` in a layout without pages.
+    #[must_use]
+    pub fn page(&self) -> Option<&str> {
+        self.layout.pages.get(self.floor.page).map(|page| page.id.as_str())
+    }
+}
+
+/// The latest state that the sensing thread has written, and the layouts that it may belong to.
+#[derive(Debug)]
+pub(super) struct Shown(Mutex<State>);
+
+#[derive(Debug)]
+struct State {
+    latest: Output<engine::Snapshot>,
+    /// The layout that is shown.
+    layout: Arc<Layout>,
+    /// Those that were given later, with their revisions.
+    later: VecDeque<(u64, Arc<Layout>)>,
+    /// How many were given.
+    given: u64,
+}
+
+impl Shown {
+    pub(super) fn new(latest: Output<engine::Snapshot>, layout: Layout) -> Self {
+        Self(Mutex::new(State { latest, layout: Arc::new(layout), later: VecDeque::new(), given: 0 }))
+    }
+
+    /// Notes a layout and gives it to the engine by `give`, so that both number layouts alike.
+    pub(super) fn give(&self, layout: Layout, give: impl FnOnce(Layout)) -> u64 {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        state.given += 1;
+        let given = state.given;
+        state.later.push_back((given, Arc::new(layout.clone())));
+        give(layout);
+        given
+    }
+
+    #[cfg(feature = "internals")]
+    pub(super) fn take(&self) -> Output<engine::Snapshot> {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let (_, last) = triple_buffer::triple_buffer(&state.latest.read().clone());
+        std::mem::replace(&mut state.latest, last)
+    }
+
+    pub(super) fn read(&self) -> Snapshot {
+        let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        let State { latest, layout, later, .. } = &mut *state;
+        let floor = latest.read().clone();
+        while let Some((_, next)) = later.pop_front_if(|(revision, _)| *revision <= floor.layout_revision) {
+            *layout = next;
+        }
+        Snapshot { layout: Arc::clone(layout), floor }
+    }
+}

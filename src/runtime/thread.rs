@@ -1,0 +1,125 @@
+//! The sensing thread: makes the server, runs it, and says how it ended, whatever happened.
+
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::{Receiver, SyncSender};
+
+use super::app_sink::Waker;
+use super::builder::StartError;
+use super::event::{EndReason, Event};
+use super::held::HeldWatch;
+use super::queue::Queue;
+use crate::engine;
+use crate::feel::CueSender;
+use crate::floor::Floor;
+use crate::layout::Layout;
+use crate::sense::Method;
+use crate::serve::{Command, Server};
+use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
+use crate::source::SensorSource;
+use crate::units::{HostClock, Instant};
+use crate::wire::Prefix;
+
+/// Cues in, samples out: what a session's feet feel.
+pub struct Actuators {
+    /// Takes cues to the renderer.
+    pub feel: CueSender,
+    /// Plays what the renderer makes of them.
+    pub sink: Box<dyn ActuatorSink>,
+}
+
+/// Opens the actuators on the sensing thread, which they stay on: not every system lets a stream change threads. It is
+/// given the floor, the present, and the clock that stamps packets.
+pub(super) type OpenActuators =
+    Box<dyn FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send>;
+
+/// Everything that the sensing thread owns.
+pub(super) struct Plan {
+    pub(super) floor: Floor,
+    pub(super) layout: Layout,
+    pub(super) method: Method,
+    pub(super) source: Box<dyn SensorSource>,
+    pub(super) clock: HostClock,
+    pub(super) prefix: Prefix,
+    pub(super) sinks: Fanout,
+    pub(super) actuators: Option<OpenActuators>,
+    pub(super) latency: Option<LatencyStages>,
+    pub(super) realtime: bool,
+    pub(super) commands: Receiver<Command>,
+    pub(super) snapshots: triple_buffer::Input<engine::Snapshot>,
+    pub(super) stop: Arc<AtomicBool>,
+}
+
+/// Whom the end is told.
+pub(super) struct Told {
+    pub(super) queue: Arc<Queue>,
+    pub(super) held: Arc<HeldWatch>,
+    pub(super) waker: Option<Arc<Waker>>,
+}
+
+/// Serves until the end; `ready` hears when the first snapshot is there, or why it can't begin.
+pub(super) fn run(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
+    let clock = Arc::clone(&plan.clock);
+    // What a panic leaves half done is only looked at to cancel what is held.
+    let served = catch_unwind(AssertUnwindSafe(|| serve(plan, told, ready)));
+    told.held.end();
+    let reason = served.unwrap_or_else(|panic| EndReason::Panicked(text(panic.as_ref())));
+    told.queue.end(Event::ended(clock(), reason));
+    if let Some(waker) = &told.waker {
+        waker.wake();
+    }
+}
+
+fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) -> EndReason {
+    let stop = Arc::clone(&plan.stop);
+    let realtime = plan.realtime;
+    let mut server = match server(plan) {
+        Ok(server) => server,
+        Err(error) => {
+            // Whoever started this waits for the answer.
+            let _ = ready.send(Err(error.into()));
+            return EndReason::Stopped;
+        }
+    };
+    server.show_now();
+    let _ = ready.send(Ok(()));
+    if realtime {
+        // Last, since threads inherit it.
+        claim_priority(Rank::Sensing);
+    }
+    let served = catch_unwind(AssertUnwindSafe(|| server.run(&stop)));
+    // Also while the outputs say goodbye, which may take a while.
+    told.held.end();
+    drop(server);
+    match served {
+        Ok(Ok(())) if stop.load(std::sync::atomic::Ordering::Relaxed) => EndReason::Stopped,
+        Ok(Ok(())) => EndReason::SourceEnded,
+        Ok(Err(error)) => EndReason::Failed(error.to_string()),
+        Err(panic) => EndReason::Panicked(text(panic.as_ref())),
+    }
+}
+
+fn server(plan: Plan) -> Result<Server, SinkError> {
+    let Plan { floor, layout, method, source, clock, prefix, sinks, actuators, latency, .. } = plan;
+    let actuators = actuators.map(|open| open(&floor, source.now(), &clock)).transpose()?;
+    let mut server = Server::new(&floor, layout, method, source)
+        .with_events(Box::new(sinks))
+        .with_prefix(prefix)
+        .with_snapshots(plan.snapshots)
+        .with_commands(plan.commands);
+    if let Some(Actuators { feel, sink }) = actuators {
+        server = server.with_feel(feel, sink);
+    }
+    if let Some(latency) = latency {
+        server = server.with_latency(latency);
+    }
+    Ok(server)
+}
+
+/// What a panic said.
+fn text(panic: &(dyn Any + Send)) -> String {
+    let words = panic.downcast_ref::<&str>().map(|text| (*text).to_owned());
+    words.or_else(|| panic.downcast_ref::<String>().cloned()).unwrap_or_else(|| "without a word".into())
+}
