@@ -127,5 +127,10 @@ static ALLOCATOR: assert_no_alloc::AllocDisabler = assert_no_alloc::AllocDisable
 
 /// The Rust of the page for apps is a doctest.
 #[cfg(doctest)]
+#[doc = include_str!("../docs/rust-app.md")]
+struct RustApp;
+
+/// The same of the page about the engine.
+#[cfg(doctest)]
 #[doc = include_str!("../docs/in-your-app.md")]
 struct InYourApp;

@@ -16,7 +16,7 @@ use underfoot::preview::{
     self, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput, PreviewOptions,
     ScopeFeed,
 };
-use underfoot::runtime::{EndReason, Session};
+use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::Command;
@@ -134,11 +134,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // Also when the window fails, the floor ends in order first.
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &PreviewOptions::default())));
     session.stop();
-    let reason = end(&session);
+    let end = end(&session);
     match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
-        Ok(()) => match reason {
-            EndReason::Failed(why) => Err(Failure::Other(why)),
-            EndReason::Panicked(_) => Err(Failure::Other("sensing failed; please report it".into())),
+        Ok(()) => match end.kind {
+            Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
+            Kind::Ended(EndReason::Panicked) => {
+                Err(Failure::Other("sensing failed; please report it".into()))
+            }
             _ => Ok(()),
         },
         Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),

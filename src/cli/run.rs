@@ -10,7 +10,7 @@ use tracing::info;
 use underfoot::feel::FeelCounters;
 use underfoot::ground::{GroundCounters, GroundState, Material};
 use underfoot::layout::Layout;
-use underfoot::runtime::{EndReason, Kind, Session, Snapshot};
+use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
 use underfoot::wire::LinkCounters;
@@ -99,7 +99,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }
-    let reason = end(&session);
+    let end = end(&session);
     drop(watch);
     let Snapshot { layout, floor, .. } = session.snapshot();
     report(&floor.counters, floor.unsent_events);
@@ -109,18 +109,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if panicked.load(Ordering::Relaxed) {
         return Err(Failure::Other("a part of the program failed; please report it".into()));
     }
-    match reason {
-        EndReason::Failed(why) => Err(Failure::Other(why)),
+    match end.kind {
+        Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
         _ => Ok(()),
     }
 }
 
-/// Waits for the end; what else happens the sinks tell.
-pub(crate) fn end(session: &Session) -> EndReason {
+/// Waits for the last event; what else happens the sinks tell.
+pub(crate) fn end(session: &Session) -> Event {
     loop {
         let event = session.next_event_timeout(Duration::from_secs(3600));
-        if let Some(Kind::Ended(reason)) = event.map(|event| event.kind) {
-            return reason;
+        if let Some(event) = event.filter(|event| matches!(event.kind, Kind::Ended(_))) {
+            return event;
         }
     }
 }

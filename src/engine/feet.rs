@@ -49,7 +49,7 @@ const AT_ONCE: f32 = 0.85;
 const SUPPORT_N: f32 = 100.0;
 
 /// A foot as light as this has as good as left the floor, in newtons: below the release of any control.
-const AS_GOOD_AS_LIFTED_N: f32 = 8.0;
+pub(super) const AS_GOOD_AS_LIFTED_N: f32 = 8.0;
 
 /// Least sum of somebody's contacts from which shares of it say anything, in newtons.
 const SUM_N: f32 = 250.0;
@@ -138,6 +138,11 @@ impl FootHistory {
     /// Whether it has been left on the floor and counts as an object.
     pub(super) fn is_object(&self) -> bool {
         self.still.is_object()
+    }
+
+    /// Whether it stands in a stance zone.
+    pub(super) fn is_in_stance(&self) -> bool {
+        self.in_stance
     }
 
     /// Whether it may be a cursor: neither a standing foot in its zone nor an object.

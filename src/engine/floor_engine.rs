@@ -8,6 +8,7 @@ use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
 use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent, WidgetId};
 
+use super::ignored::IgnoredPress;
 use super::interact::Interaction;
 use super::overrides::Overrides;
 use super::response::{Now, Responses};
@@ -55,6 +56,8 @@ pub struct Step<'a> {
     pub cues: &'a [Cue],
     /// Feet sliding on controls now.
     pub sustained: &'a SustainedCues,
+    /// Presses that no control answered, as their feet left.
+    pub ignored: &'a [IgnoredPress],
     /// Ground events of the frame; their cues are among `cues`.
     pub grounds: &'a [GroundEvent],
     /// The feet on the floor.
@@ -142,6 +145,7 @@ impl Engine {
             page: self.page_told.as_ref(),
             cues: &self.cues,
             sustained: &self.sustained,
+            ignored: self.interaction.ignored().new_ones(),
             grounds: self.grounds.events(),
             contacts: given.unwrap_or_else(|| self.sensing.contacts()),
         }
@@ -340,6 +344,8 @@ impl Engine {
             indicator: control.indicator(),
             pending: control.pending(),
         }));
+        snapshot.ignored.clear();
+        snapshot.ignored.extend(self.interaction.ignored().latest().cloned());
         self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;

@@ -4,7 +4,8 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::feet::{FootHistories, FootHistory, PressMode};
+use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
+use super::ignored::{Ignored, IgnoredPresses};
 use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
@@ -37,6 +38,7 @@ pub(super) struct Interaction {
     awake: Vec<usize>,
     feet: FootHistories,
     rises: Rises,
+    ignored: IgnoredPresses,
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
     /// Whether what acts while it is held is off, since the floor is not calibrated.
@@ -84,6 +86,7 @@ impl Interaction {
             controls,
             feet: FootHistories::default(),
             rises: Rises::default(),
+            ignored: IgnoredPresses::default(),
             running: false,
             inhibited: false,
         }
@@ -93,6 +96,8 @@ impl Interaction {
     pub(super) fn inherit(&mut self, other: &mut Self) {
         self.feet = std::mem::take(&mut other.feet);
         self.rises = std::mem::take(&mut other.rises);
+        self.ignored = std::mem::take(&mut other.ignored);
+        self.ignored.forget();
     }
 
     pub(super) fn controls(&self) -> &[Control] {
@@ -101,6 +106,11 @@ impl Interaction {
 
     pub(super) fn control_mut(&mut self, widget: usize) -> Option<&mut Control> {
         self.controls.get_mut(widget)
+    }
+
+    /// Presses that no control answered.
+    pub(super) fn ignored(&self) -> &IgnoredPresses {
+        &self.ignored
     }
 
     /// The page that is shown.
@@ -219,11 +229,13 @@ impl Interaction {
         let at = Moment { frame, contacts, layout };
         self.feet.update(contacts, &layout.stances, at.now());
         self.rises.update(contacts, at.now());
+        self.ignored.begin();
         self.inhibit(&at, events);
         self.lose_unsensed(&at, events);
         for index in 0..self.regions.len() {
             self.step_region(index, &at, events);
         }
+        self.note_ignored(&at);
         self.rest(&at, events);
     }
 
@@ -316,16 +328,34 @@ impl Interaction {
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let unbelieved = contact.force >= thresholds.press && !may_start(contact, at.frame);
-        let input = if foot.is_some_and(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
-            Input::Stepping { force: contact.force }
-        } else if slid_on || unbelieved {
-            Input::SlidOn { force: contact.force }
-        } else {
-            let risen = self.rises.has_risen(contact) || contact.force < thresholds.press;
-            let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
-            self::foot(contact, spec, at.frame, weight, risen && meant && !rivals)
-        };
+        let (input, why) =
+            if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
+                let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
+                (Input::Stepping { force: contact.force }, Some(why))
+            } else if slid_on || unbelieved {
+                let why = if slid_on { Ignored::SlidOn } else { Ignored::Unbelieved };
+                (Input::SlidOn { force: contact.force }, Some(why))
+            } else {
+                let presses = contact.force >= thresholds.press;
+                let risen = self.rises.has_risen(contact) || !presses;
+                let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
+                let why = [
+                    (control.needs_lift(), Ignored::NotSeenUnloaded),
+                    (!risen, Ignored::Unbelieved),
+                    (!meant, Ignored::Guard),
+                    (rivals, Ignored::OtherRuns),
+                ];
+                let why = why.into_iter().find(|(is_so, _)| presses && *is_so).map(|(_, why)| why);
+                (self::foot(contact, spec, at.frame, weight, risen && meant && !rivals), why)
+            };
+        let why = switched_off(control).or(why);
         let emitted = control.step(now, input);
+        if contact.force.0 >= AS_GOOD_AS_LIFTED_N {
+            self.ignored.note(contact.id, widget, contact.force, why);
+        }
+        if control.is_engaged() || !emitted.is_empty() {
+            self.ignored.note_answer(contact.id, widget);
+        }
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
         if control.is_engaged() {
             finger.held = Some(held);
@@ -351,6 +381,7 @@ impl Interaction {
             finger.held = None;
             return;
         };
+        self.ignored.note_answer(held.contact, held.widget);
         let foot = self.feet.of(held.contact);
         let input = match at.contact(held.contact) {
             Some(contact) => {
@@ -382,6 +413,45 @@ impl Interaction {
         finger.held = control.is_engaged().then_some(held);
         report(at.layout, at.now(), held.widget, Some(held), &emitted, events);
         self.wake(held.widget);
+    }
+
+    /// Notes the contacts that lie on controls and work none, and closes the visits that are over.
+    fn note_ignored(&mut self, at: &Moment<'_>) {
+        for contact in at.contacts.iter().filter(|contact| contact.force.0 >= AS_GOOD_AS_LIFTED_N) {
+            let Some(widget) = self.hits.widget_at(at.layout, self.page, contact.centroid) else { continue };
+            let (Some(spec), Some(control)) = (at.layout.widgets.get(widget), self.controls.get(widget))
+            else {
+                continue;
+            };
+            if self.ignored.is_noted(contact.id) {
+                continue;
+            }
+            let foot = self.feet.of(contact.id);
+            let is = |so: fn(&FootHistory) -> bool| foot.is_some_and(so);
+            let in_region = at
+                .layout
+                .regions
+                .get(spec.region)
+                .is_some_and(|region| region.area.contains(contact.centroid));
+            let why = if is(FootHistory::is_in_stance) {
+                Ignored::Stance
+            } else if is(FootHistory::is_object) {
+                Ignored::Object
+            } else if !in_region {
+                Ignored::OutsideRegion
+            } else if foot.is_some_and(|foot| foot.is_step_on(PressMode::of(spec), at.now())) {
+                Ignored::Step
+            } else {
+                Ignored::OtherFoot
+            };
+            let why = switched_off(control).unwrap_or(why);
+            self.ignored.note(contact.id, widget, contact.force, Some(why));
+        }
+        let press = |widget: usize| {
+            let spec = at.layout.widgets.get(widget)?;
+            Some((spec.id.clone(), spec.behaviour.thresholds().press))
+        };
+        self.ignored.end(at.now(), press);
     }
 
     /// Controls with no foot on them come to rest.
@@ -469,6 +539,15 @@ fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<N
         && may_start(contact, frame)
         && may;
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
+}
+
+/// Why `control` answers nobody, if it is off.
+fn switched_off(control: &Control) -> Option<Ignored> {
+    match (control.is_disabled(), control.is_inhibited()) {
+        (true, _) => Some(Ignored::Disabled),
+        (false, true) => Some(Ignored::Uncalibrated),
+        (false, false) => None,
+    }
 }
 
 /// Whether `widget` acts only while it is held.

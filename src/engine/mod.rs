@@ -11,6 +11,7 @@
 mod control_state;
 mod feet;
 mod floor_engine;
+mod ignored;
 mod interact;
 mod overrides;
 mod page;
@@ -25,6 +26,7 @@ mod weight;
 
 pub use control_state::{ControlState, ValueRange};
 pub use floor_engine::{Engine, Step};
+pub use ignored::{Ignored, IgnoredPress};
 pub use page::PageShown;
 pub use snapshot::{FootRole, FootState, Snapshot, TileState, WidgetState};
 

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
+use super::ignored::IgnoredPress;
 use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
@@ -36,6 +37,8 @@ pub struct Snapshot {
     pub ranges: Vec<(usize, Scale)>,
     /// One entry per control, in the layout's order.
     pub widgets: Vec<WidgetState>,
+    /// The latest presses that no control answered, oldest first; 16 at most.
+    pub ignored: Vec<IgnoredPress>,
     /// One entry per ground, in the layout's order.
     pub grounds: Vec<GroundState>,
     /// Whether sensor packets arrive.

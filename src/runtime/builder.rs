@@ -242,12 +242,14 @@ impl SessionBuilder {
         let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
         let shown = Arc::new(Shown::new(latest, layout.clone()));
         let (commands, received) = channel();
-        let sinks = self.sinks.with(AppSink {
+        // The app hears first, also where another sink fails.
+        let sinks = Fanout::new().with(AppSink {
             events: QueueInput::new(Arc::clone(&queue), self.every_change),
             held: held_input,
             waker: waker.clone(),
             cracks: CrackRateLimiter::default(),
         });
+        let sinks = sinks.with(self.sinks);
         let plan = Plan {
             floor,
             layout,

@@ -4,9 +4,7 @@ use std::fmt;
 
 use glam::Vec2;
 
-use crate::engine::ControlState;
-use crate::feel::{DeviceStatus, Muted};
-use crate::sense::{ContactId, SensorHealth};
+use crate::sense::ContactId;
 use crate::sink::OwnedReport;
 use crate::units::{Instant, Newtons};
 use crate::widget::{EventKind, WidgetEvent, WidgetId};
@@ -27,26 +25,27 @@ pub struct Event {
     /// Where it happened, in floor metres; the floor's origin where it has no place.
     pub position: Vec2,
     id: Option<WidgetId>,
+    message: String,
 }
 
-/// What happened.
-#[derive(Clone, Debug, PartialEq)]
+/// What happened. Of states it says that they are others now: [`super::Session::snapshot`] has them already.
+#[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {
     /// A foot did something to the control [`Event::id`].
     Control(EventKind),
-    /// An app has changed or asked for the control [`Event::id`]: how it is now. Also told to the app that did it.
-    State(Box<ControlState>),
-    /// This page is shown.
-    Page(WidgetId),
+    /// An app has changed or asked for the control [`Event::id`]; also told to the app that did it.
+    State,
+    /// The page [`Event::id`] is shown.
+    Page,
     /// Whether sensor packets arrive. [`LinkState::Lost`] has cancelled what was held.
     Link(LinkState),
     /// How the sensors are doing, once a second at most.
-    Health(Box<SensorHealth>),
+    Health,
     /// How the device that moves the actuators is doing, once a second at most.
-    Device(Box<DeviceStatus>),
+    Device,
     /// What is muted.
-    Muted(Muted),
+    Muted,
     /// A ground cracked at [`Event::position`]; 200 a second at most are told.
     Crack {
         /// The seed of its cracks.
@@ -59,35 +58,41 @@ pub enum Kind {
 }
 
 /// Why a session is over.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum EndReason {
     /// It was asked to stop.
     Stopped,
     /// The simulated floor's feet, or the recording, have come to their end.
     SourceEnded,
-    /// The source failed: what it said.
-    Failed(String),
-    /// The sensing thread panicked: what it said.
-    Panicked(String),
+    /// The source failed; [`Event::message`] says what it said.
+    Failed,
+    /// The sensing thread panicked; [`Event::message`] says what it said.
+    Panicked,
 }
 
 impl fmt::Display for EndReason {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Stopped => f.write_str("stopped"),
-            Self::SourceEnded => f.write_str("the source has ended"),
-            Self::Failed(why) => f.write_str(why),
-            Self::Panicked(why) => write!(f, "sensing failed: {why}"),
-        }
+        f.write_str(match self {
+            Self::Stopped => "stopped",
+            Self::SourceEnded => "the source has ended",
+            Self::Failed => "the source has failed",
+            Self::Panicked => "sensing has failed",
+        })
     }
 }
 
 impl Event {
-    /// The control it is about; empty where it is about the floor.
+    /// The control or page it is about; empty where it is about the floor.
     #[must_use]
     pub fn id(&self) -> &str {
         self.id.as_ref().map_or("", WidgetId::as_str)
+    }
+
+    /// What was said at the end that was a failure; empty otherwise.
+    #[must_use]
+    pub fn message(&self) -> &str {
+        &self.message
     }
 
     /// What there is to hear of `told`; `None` for what [`super::Session::held`] and snapshots show.
@@ -95,14 +100,15 @@ impl Event {
         let at = told.at();
         let (id, kind) = match told {
             OwnedReport::Event(WidgetEvent { id, kind, contact, force, position, .. }) => {
-                return Some(Self { at, kind: Kind::Control(kind), contact, force, position, id: Some(id) });
+                let event = Self::new(at, Some(id), Kind::Control(kind));
+                return Some(Self { contact, force, position, ..event });
             }
-            OwnedReport::Control(_, state) => (Some(state.id.clone()), Kind::State(state)),
-            OwnedReport::Page(shown) => (None, Kind::Page(shown.page)),
+            OwnedReport::Control(_, state) => (Some(state.id.clone()), Kind::State),
+            OwnedReport::Page(shown) => (Some(shown.page), Kind::Page),
             OwnedReport::Link(_, state) => (None, Kind::Link(state)),
-            OwnedReport::Health(_, health) => (None, Kind::Health(Box::new(health))),
-            OwnedReport::Device(_, status) => (None, Kind::Device(Box::new(status))),
-            OwnedReport::Muted(_, muted) => (None, Kind::Muted(muted)),
+            OwnedReport::Health(..) => (None, Kind::Health),
+            OwnedReport::Device(..) => (None, Kind::Device),
+            OwnedReport::Muted(..) => (None, Kind::Muted),
             OwnedReport::Crack(news) => {
                 let kind = Kind::Crack { seed: news.seed, energy_j: news.energy_j };
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
@@ -112,12 +118,13 @@ impl Event {
         Some(Self::new(at, id, kind))
     }
 
-    pub(super) fn ended(at: Instant, reason: EndReason) -> Self {
-        Self::new(at, None, Kind::Ended(reason))
+    pub(super) fn ended(at: Instant, reason: EndReason, message: String) -> Self {
+        Self { message, ..Self::new(at, None, Kind::Ended(reason)) }
     }
 
     fn new(at: Instant, id: Option<WidgetId>, kind: Kind) -> Self {
-        Self { at, kind, contact: None, force: Newtons::ZERO, position: Vec2::ZERO, id }
+        let (force, position, message) = (Newtons::ZERO, Vec2::ZERO, String::new());
+        Self { at, kind, contact: None, force, position, id, message }
     }
 
     /// Whether it is the new value of a control.

@@ -210,7 +210,7 @@ mod tests {
             input.put(event(ms, id, end));
         }
         drop(input);
-        queue.end(Event::ended(Instant::START, EndReason::Stopped));
+        queue.end(Event::ended(Instant::START, EndReason::Stopped, String::new()));
         let dropped = queue.dropped();
         let told: Vec<Event> = std::iter::from_fn(|| queue.next()).collect();
         assert!(told.len() <= WAITING + 1, "{}", told.len());

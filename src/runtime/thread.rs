@@ -3,7 +3,7 @@
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender};
 
 use super::app_sink::Waker;
@@ -65,14 +65,14 @@ pub(super) fn run(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartEr
     // What a panic leaves half done is only looked at to cancel what is held.
     let served = catch_unwind(AssertUnwindSafe(|| serve(plan, told, ready)));
     told.held.end();
-    let reason = served.unwrap_or_else(|panic| EndReason::Panicked(text(panic.as_ref())));
-    told.queue.end(Event::ended(clock(), reason));
+    let (reason, message) = served.unwrap_or_else(|panic| (EndReason::Panicked, text(panic.as_ref())));
+    told.queue.end(Event::ended(clock(), reason, message));
     if let Some(waker) = &told.waker {
         waker.wake();
     }
 }
 
-fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) -> EndReason {
+fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) -> (EndReason, String) {
     let stop = Arc::clone(&plan.stop);
     let realtime = plan.realtime;
     let mut server = match server(plan) {
@@ -80,7 +80,7 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
         Err(error) => {
             // Whoever started this waits for the answer.
             let _ = ready.send(Err(error.into()));
-            return EndReason::Stopped;
+            return (EndReason::Stopped, String::new());
         }
     };
     server.show_now();
@@ -94,10 +94,10 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
     told.held.end();
     drop(server);
     match served {
-        Ok(Ok(())) if stop.load(std::sync::atomic::Ordering::Relaxed) => EndReason::Stopped,
-        Ok(Ok(())) => EndReason::SourceEnded,
-        Ok(Err(error)) => EndReason::Failed(error.to_string()),
-        Err(panic) => EndReason::Panicked(text(panic.as_ref())),
+        Ok(Ok(())) if stop.load(Ordering::Relaxed) => (EndReason::Stopped, String::new()),
+        Ok(Ok(())) => (EndReason::SourceEnded, String::new()),
+        Ok(Err(error)) => (EndReason::Failed, error.to_string()),
+        Err(panic) => (EndReason::Panicked, text(panic.as_ref())),
     }
 }
 

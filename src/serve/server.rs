@@ -14,6 +14,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender};
 use std::time::Duration;
 
+use tracing::debug;
 use triple_buffer::Input;
 
 use self::haptics::Haptics;
@@ -253,6 +254,9 @@ impl Server {
         let at = frame.at;
         let step = self.engine.step(frame);
         self.haptics.send(&step, at, self.source.now());
+        for press in step.ignored {
+            debug!("{press}");
+        }
         self.outputs.step(&step, at);
         self.haptics.play_until(at + FRAME);
         self.show(at);
@@ -264,9 +268,9 @@ impl Server {
         let now = self.source.now();
         let Some(state) = self.link.update(&self.assembler, now) else { return };
         self.haptics.update_mute(self.link.is_lost());
-        self.outputs.report(Report::Link(now, state));
         // A lost floor has no frames that would show it.
         self.show_now();
+        self.outputs.report(Report::Link(now, state));
     }
 
     /// Says how sensors and device are doing, where that has changed.

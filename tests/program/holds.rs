@@ -2,6 +2,7 @@
 //! between them has failed, in whatever way.
 
 mod client;
+mod session;
 mod site;
 
 use std::process::Command;

@@ -6,6 +6,7 @@ mod pages;
 #[path = "../support/sender.rs"]
 mod sender;
 
+mod app;
 mod calibrate;
 mod clients;
 mod end_to_end;

@@ -4,7 +4,7 @@
 use std::time::Duration;
 
 use glam::Vec2;
-use underfoot::engine::{Engine, Snapshot};
+use underfoot::engine::{Engine, Ignored, Snapshot};
 use underfoot::feel::{Cue, SustainedCue, SustainedCues};
 use underfoot::floor::{Floor, Geometry};
 use underfoot::glam;
@@ -196,6 +196,13 @@ impl Walker {
         for _ in 0..millis {
             self.tick();
         }
+    }
+
+    /// The latest presses that no control answered: control and reason.
+    pub fn ignored(&self) -> Vec<(String, Ignored)> {
+        let mut snapshot = Snapshot::default();
+        self.engine.snapshot(&mut snapshot);
+        snapshot.ignored.into_iter().map(|press| (press.id.to_string(), press.why)).collect()
     }
 
     /// What happened since the last call: control and kind.

@@ -113,6 +113,8 @@ impl Server {
 
     fn tell_control(&mut self, id: &WidgetId, asked: Option<&Request>) {
         let Some(state) = self.engine.control_state(id.as_str()) else { return };
+        // Whoever is told so finds it in the snapshot.
+        self.show_now();
         self.outputs.report(Report::Control(self.source.now(), &state));
         if let Some(request) = asked {
             write_control(&self.answers.prefix, &state, &mut self.answers.bytes);
@@ -137,8 +139,8 @@ impl Server {
     /// Tells listeners that something else is muted now, and shows a window at once, also while no frames come.
     fn tell_mute(&mut self, is_news: Result<bool, MuteError>) -> Result<(), MuteError> {
         if is_news? {
-            self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
             self.show_now();
+            self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
         }
         Ok(())
     }

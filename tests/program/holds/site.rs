@@ -37,8 +37,8 @@ fn any_port() -> UdpSocket {
 }
 
 pub struct Site {
-    folder: tempfile::TempDir,
-    floor: Floor,
+    pub folder: tempfile::TempDir,
+    pub floor: Floor,
     sim: SimFloor,
 }
 
