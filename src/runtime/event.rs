@@ -28,7 +28,7 @@ pub struct Event {
     message: String,
 }
 
-/// What happened. Of states it says that they are others now: [`super::Session::snapshot`] has them already.
+/// What happened. Of states it says that they are others now: [`super::Session::snapshot`] has them within 5 ms.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum Kind {

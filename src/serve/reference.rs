@@ -232,7 +232,9 @@ fn argument(name: &str, tag: &'static str, range: &str) -> Argument {
 fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: &Geometry) -> Vec<Argument> {
     match command.argument {
         ArgumentKind::Nothing => Vec::new(),
-        ArgumentKind::Range => ["least", "greatest"].map(|end| argument(end, "f|i", "")).into(),
+        ArgumentKind::Range => {
+            ["least", "greatest"].map(|end| argument(end, "f|i", "-1000000 to 1000000")).into()
+        }
         ArgumentKind::Label => vec![argument("label", "s", "64 characters at most")],
         ArgumentKind::Indicator => vec![argument("indicator", "s|i", &format!("{}; 0 or 1", indicators()))],
         ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],

@@ -92,6 +92,8 @@ pub struct Server {
     snapshots: Option<Input<Snapshot>>,
     /// When the snapshot was last renewed.
     shown: Instant,
+    /// Whether it must be, although no frame may come.
+    is_stale: bool,
 }
 
 impl Server {
@@ -112,6 +114,7 @@ impl Server {
             sensors: SensorWatch::default(),
             snapshots: None,
             shown: Instant::START,
+            is_stale: false,
         }
     }
 
@@ -296,15 +299,15 @@ impl Server {
 
     /// Renews the snapshot whatever its age.
     pub(crate) fn show_now(&mut self) {
-        self.shown = Instant::START;
+        self.is_stale = true;
         self.show(self.source.now());
     }
 
     fn show(&mut self, at: Instant) {
-        if at.since(self.shown) < SNAPSHOT_EVERY {
+        if !self.is_stale && at.since(self.shown) < SNAPSHOT_EVERY {
             return;
         }
-        self.shown = at;
+        (self.shown, self.is_stale) = (at, false);
         let mut snapshots = self.snapshots.take();
         if let Some(snapshots) = &mut snapshots {
             self.snapshot(snapshots.input_buffer_mut());
@@ -313,19 +316,26 @@ impl Server {
         self.snapshots = snapshots;
     }
 
+    /// Does what is asked; whatever that changes is shown together.
     fn process_commands(&mut self) {
         while let Some(request) = self.source.take_request() {
             self.process_request(request);
         }
         while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
             match command {
-                Command::SetLayout(layout) => self.engine.set_layout(*layout),
+                Command::SetLayout(layout) => {
+                    self.engine.set_layout(*layout);
+                    self.is_stale = true;
+                }
                 Command::Control(message) => self.process_request(message.into()),
                 Command::Ask(message, answer) => self.answer(message, &answer),
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
                 }
             }
+        }
+        if self.is_stale {
+            self.show_now();
         }
     }
 }

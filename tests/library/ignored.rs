@@ -55,7 +55,7 @@ fn a_foot_that_carries_a_body() {
     let mut walker = ready("map");
     walker.step_at(Vec2::new(0.15, 1.2), Newtons(650.0));
     walker.wait(400);
-    walker.slide_to(Vec2::new(0.15, 0.76), 2.0);
+    walker.slide_to(Vec2::new(0.15, 0.76), 0.5);
     assert_eq!(why(&mut walker), one("home", Ignored::Step));
 }
 
@@ -74,7 +74,9 @@ fn a_control_that_was_not_seen_unloaded() {
     let mut walker = ready("map");
     walker.step_onto("home", Newtons(150.0));
     walker.wait(100);
-    walker.leave_floor(300);
+    walker.connected = false;
+    walker.wait(300);
+    walker.connected = true;
     walker.wait(300);
     assert_eq!(why(&mut walker), one("home", Ignored::NotSeenUnloaded));
 }

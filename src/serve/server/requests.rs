@@ -38,6 +38,8 @@ impl Server {
         let done = request::apply(&mut self.engine, &message);
         if done.is_ok() {
             self.tell(&message.into());
+            // Who reads what was written finds it.
+            self.show_now();
         }
         // Who no longer waits for it need not know.
         let _ = to.try_send(done);
@@ -113,8 +115,7 @@ impl Server {
 
     fn tell_control(&mut self, id: &WidgetId, asked: Option<&Request>) {
         let Some(state) = self.engine.control_state(id.as_str()) else { return };
-        // Whoever is told so finds it in the snapshot.
-        self.show_now();
+        self.is_stale = true;
         self.outputs.report(Report::Control(self.source.now(), &state));
         if let Some(request) = asked {
             write_control(&self.answers.prefix, &state, &mut self.answers.bytes);
@@ -136,10 +137,10 @@ impl Server {
         self.send_answer(request);
     }
 
-    /// Tells listeners that something else is muted now, and shows a window at once, also while no frames come.
+    /// Tells listeners that something else is muted now, and shows it with this turn, also while no frames come.
     fn tell_mute(&mut self, is_news: Result<bool, MuteError>) -> Result<(), MuteError> {
         if is_news? {
-            self.show_now();
+            self.is_stale = true;
             self.outputs.report(Report::Muted(self.source.now(), self.haptics.muted()));
         }
         Ok(())

@@ -124,6 +124,8 @@ impl Desk {
 fn examples(argument: &Argument) -> [OscType; 2] {
     match (argument.tag, argument.name.as_str()) {
         ("i|f|T|F", _) => [OscType::Int(0), OscType::Bool(true)],
+        ("f|i", "least") => [OscType::Int(2), OscType::Float(1.0)],
+        ("f|i", "greatest") => [OscType::Float(4.0), OscType::Int(9)],
         ("f|i", "choice") => [OscType::Int(0), OscType::Float(1.0)],
         ("f|i", _) => {
             let words: Vec<&str> = argument.range.split([' ', ',']).collect();
@@ -166,7 +168,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
                 entry.arguments.iter().map(|argument| examples(argument)[which].clone()).collect();
             desk.send(&entry.address, args.clone());
             let path = prefix.path(&entry.address).unwrap();
-            let verb = path.rsplit('/').next().unwrap();
+            let verb = if path.ends_with("/range/set") { "range" } else { path.rsplit('/').next().unwrap() };
             *tried.entry(verb.to_owned()).or_insert(0) += 1;
             check(&mut desk, &prefix, path, verb, &args, &entry.address);
         }
@@ -181,6 +183,7 @@ fn every_address_in_is_understood_and_does_what_it_says() {
         ("indicator", 32),
         ("label", 32),
         ("lock", 32),
+        ("range", 6),
         ("set", 16),
         ("tile", 2),
         ("unlock", 32),
@@ -235,6 +238,13 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
             Value::Choice(choice) => assert_eq!(f32::from(choice), number(&args[0]), "{address}"),
             Value::Pair(pair) => assert_eq!(pair, Vec2::new(number(&args[0]), number(&args[1])), "{address}"),
         },
+        "range" => {
+            let widget = engine.layout().widget_index(id).unwrap();
+            let scale = engine.layout().widgets[widget].behaviour.scale().unwrap();
+            assert_eq!([scale.min, scale.max], [&args[0], &args[1]].map(number), "{address}");
+            let Some(Value::Number(value)) = control.value() else { panic!("{address}") };
+            assert!((scale.min..=scale.max).contains(&value), "{address}");
+        }
         "enable" | "disable" => {
             assert_eq!(control.is_disabled(), (verb == "disable") == (number(&args[0]) == 1.0), "{address}");
         }
@@ -297,7 +307,8 @@ fn reading_back_gives_what_was_set() {
 fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
     let string = |text: &str| vec![OscType::String(text.into())];
-    let cases: [(&str, Vec<OscType>, &str); 15] = [
+    let range = |least, greatest| vec![OscType::Float(least), OscType::Float(greatest)];
+    let cases: [(&str, Vec<OscType>, &str); 18] = [
         // Wrong types: refused by the decoder.
         ("widget/slider/set", string("full"), "takes one finite number"),
         ("widget/slider/set", vec![OscType::Float(f32::NAN)], "takes one finite number"),
@@ -305,6 +316,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/slider/enable", vec![OscType::Int(2)], "takes no argument, 0 or 1"),
         ("widget/slider/label", vec![OscType::Int(1)], "takes one string"),
         ("widget/slider/indicator", string("purple"), "takes off, on, busy or attention"),
+        ("widget/slider/range/set", range(0.0, f32::NAN), "takes two numbers"),
         ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
         ("mute/tile", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
         // Understood, and can't be done: refused by the engine.
@@ -312,6 +324,8 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("widget/button/set", vec![OscType::Int(1)], "does not hold that type of value"),
         ("widget/slider/set", vec![OscType::Bool(true)], "does not hold that type of value"),
         ("widget/run/set", vec![OscType::Int(1)], "only a foot"),
+        ("widget/slider/range/set", range(4.0, 2.0), "can't have such a range"),
+        ("widget/selector/range/set", range(0.0, 1.0), "does not hold that type of value"),
         ("widget/selector/set", vec![OscType::Int(7)], "no such option"),
         ("page/set", string("nowhere"), "there is no such"),
         ("mute/tile", vec![OscType::Int(0), OscType::Int(6), OscType::Int(1)], "the floor has no such tile"),
@@ -327,7 +341,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         assert!(why.contains(reason), "{address}: {why}");
     }
     let counters = desk.server.counters();
-    assert_eq!((counters.wrong_shape, counters.denied), (8, 7));
+    assert_eq!((counters.wrong_shape, counters.denied), (9, 9));
 
     for address in ["/underfoot/widget/slider/explode", "/underfoot/page/hide", "/underfoot/widget/no*"] {
         desk.send(address, vec![]);
