@@ -44,7 +44,7 @@ pub struct LinkCounters {
     pub foreign: u64,
     /// Datagrams beyond what one sender may send.
     pub limited: u64,
-    /// Single readings that were NaN, infinite or outside 0 to 65535.
+    /// Single readings that were NaN, infinite, outside 0 to 65535, or more than 50 kN.
     pub bad_readings: u64,
     /// Datagrams that the kernel dropped because the receive buffer was full, where it tells,
     /// and messages from apps that nobody took in time.

@@ -6,8 +6,9 @@ use arrayvec::ArrayVec;
 use rosc::{OscMessage, OscPacket, OscTime, OscType};
 use thiserror::Error;
 
-use super::command::{self, ControlMessage, NoCommand};
+use super::command::{self, NoCommand};
 use super::guard::{self, Limits, Malformed};
+use super::message::ControlMessage;
 use super::{LinkCounters, MAX_CHANNELS, Prefix, Readings, SensorPacket};
 use crate::floor::Floor;
 use crate::units::Instant;
@@ -381,6 +382,7 @@ mod tests {
         }
     }
 
+    // P11
     #[test]
     fn hostile_addresses_match_nothing() {
         for address in
@@ -396,6 +398,7 @@ mod tests {
         }
     }
 
+    // P4
     #[test]
     fn one_bad_element_spoils_the_whole_datagram() {
         let good = message("/underfoot/board/0", ints(&[9, 1, 2, 3, 4]));

@@ -338,6 +338,7 @@ mod tests {
         assert_eq!(tags(b"T"), Err(Malformed::Text { at: 4 }));
     }
 
+    // P3
     #[test]
     fn every_prefix_of_a_good_datagram_is_refused() {
         let whole =
@@ -389,6 +390,7 @@ mod tests {
         assert_eq!(blob(u32::MAX), Err(Malformed::CutShort { at: 8 }));
     }
 
+    // P5
     #[test]
     fn too_much_of_anything_is_refused() {
         let limits = Limits::default();

@@ -4,6 +4,7 @@
 //! read whole or refused whole by [`Decoder`]. [`SensorEncoder`] is the way
 //! back, for simulated boards.
 
+mod argument;
 mod command;
 #[cfg(any(feature = "internals", test))]
 pub mod corrupt;
@@ -12,20 +13,22 @@ mod decode;
 mod encode;
 mod guard;
 mod link;
+mod message;
 mod packet;
 mod pattern;
 mod prefix;
 
-pub use command::{ControlMessage, Request};
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
 pub use link::LinkState;
+pub use message::{ControlMessage, Request};
 pub use packet::{Readings, SensorPacket};
 pub(crate) use pattern::{is_pattern, matches};
 pub use prefix::{BadPrefix, Prefix};
 
 internal! {
-    use command::{ArgumentKind, COMMANDS, Command, MAX_LABEL};
+    use argument::{ArgumentKind, MAX_LABEL};
+    use command::{COMMANDS, Command};
     use decode::{Batch, Decoder, WireError};
     use encode::{EncodeError, SensorEncoder, SensorFormat};
     use guard::{Limits, Malformed, check};

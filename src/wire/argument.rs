@@ -1,0 +1,137 @@
+//! The arguments of what apps may ask.
+
+use glam::Vec2;
+use rosc::OscType;
+
+use crate::floor::TileId;
+use crate::widget::{Indicator, Value};
+
+/// Most characters of a label, as in layouts.
+pub const MAX_LABEL: usize = 64;
+
+/// What a command takes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum ArgumentKind {
+    /// No argument.
+    Nothing,
+    /// What the control holds: one number (or OSC true or false), two for a pair.
+    Value,
+    /// A string of at most [`MAX_LABEL`] characters.
+    Label,
+    /// A string: `off`, `on`, `busy` or `attention`; or 0 or 1.
+    Indicator,
+    /// Two numbers: the least, and the greatest.
+    Range,
+    /// A string: the id of a page.
+    Page,
+    /// 0 or 1, or OSC true or false.
+    Flag,
+    /// Nothing, which means 1; or 0 or 1, or OSC true or false.
+    Switch,
+    /// Two whole numbers, column and row of a tile, and then 0 or 1, or OSC true or false.
+    TileFlag,
+}
+
+/// An argument as read.
+pub(super) enum Argument {
+    Nothing,
+    Value(Value),
+    Text(String),
+    Indicator(Indicator),
+    Range(f32, f32),
+    Flag(bool),
+    TileFlag(TileId, bool),
+}
+
+/// Whether a character may stand in a label: not if it controls a terminal or turns the direction of what follows,
+/// with which one label can pass for another.
+///
+/// # Source
+/// Unicode Standard Annex 9, explicit and implicit directional marks; line and paragraph separators.
+fn is_shown(c: char) -> bool {
+    let turns =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    !c.is_control() && !turns && !matches!(c, '\u{2028}' | '\u{2029}')
+}
+
+impl ArgumentKind {
+    pub(super) fn read(self, args: &[OscType]) -> Option<Argument> {
+        match (self, args) {
+            (Self::Nothing, []) => Some(Argument::Nothing),
+            (Self::Value, [one]) => value(one).map(Argument::Value),
+            (Self::Value, [x, y]) => match (value(x)?, value(y)?) {
+                (Value::Number(x), Value::Number(y)) => Some(Argument::Value(Value::Pair(Vec2::new(x, y)))),
+                _ => None,
+            },
+            (Self::Range, [least, greatest]) => match (value(least)?, value(greatest)?) {
+                (Value::Number(least), Value::Number(greatest)) => Some(Argument::Range(least, greatest)),
+                _ => None,
+            },
+            (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
+                Some(Argument::Text(text.chars().filter(|&c| is_shown(c)).collect()))
+            }
+            (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
+            (Self::Switch, []) => Some(Argument::Flag(true)),
+            (Self::Flag | Self::Switch, [on]) => flag(on).map(Argument::Flag),
+            (Self::TileFlag, [column, row, on]) => {
+                let tile = TileId::new(index(column)?, index(row)?);
+                flag(on).map(|on| Argument::TileFlag(tile, on))
+            }
+            (Self::Indicator, [OscType::String(text)]) => {
+                let found = Indicator::ALL.into_iter().find(|indicator| indicator.name() == text);
+                found.map(Argument::Indicator)
+            }
+            (Self::Indicator, [one]) => {
+                let lamp = if flag(one)? { Indicator::On } else { Indicator::Off };
+                Some(Argument::Indicator(lamp))
+            }
+            _ => None,
+        }
+    }
+
+    /// What is expected, for those who sent something else.
+    pub(super) const fn expected(self) -> &'static str {
+        match self {
+            Self::Nothing => "no argument",
+            Self::Value => "one finite number, true or false, or two numbers for a pair",
+            Self::Label => "one string of at most 64 characters",
+            Self::Indicator => "off, on, busy or attention, or 0 or 1",
+            Self::Range => "two numbers: the least, and the greatest",
+            Self::Page => "one string: the id of a page",
+            Self::Flag => "0 or 1, or true or false",
+            Self::Switch => "no argument, 0 or 1, or true or false",
+            Self::TileFlag => "three numbers: column and row of a tile, and 0 or 1",
+        }
+    }
+}
+
+/// On or off.
+fn flag(argument: &OscType) -> Option<bool> {
+    match value(argument)? {
+        Value::Switch(true) | Value::Number(1.0) => Some(true),
+        Value::Switch(false) | Value::Number(0.0) => Some(false),
+        _ => None,
+    }
+}
+
+/// A column or a row.
+fn index(argument: &OscType) -> Option<u16> {
+    match value(argument)? {
+        Value::Number(number) if number.fract() == 0.0 && (0.0..=f32::from(u16::MAX)).contains(&number) => {
+            Some(number as u16)
+        }
+        _ => None,
+    }
+}
+
+fn value(argument: &OscType) -> Option<Value> {
+    let number = match *argument {
+        OscType::Bool(on) => return Some(Value::Switch(on)),
+        OscType::Int(number) => number as f32,
+        OscType::Long(number) => number as f32,
+        OscType::Float(number) => number,
+        OscType::Double(number) => number as f32,
+        _ => return None,
+    };
+    number.is_finite().then_some(Value::Number(number))
+}
