@@ -21,6 +21,8 @@ pub(super) struct ScenarioDefinition {
     pub(super) steps: Vec<Step>,
     #[serde(default)]
     pub(super) others: Vec<Other>,
+    #[serde(default)]
+    pub(super) faults: Vec<String>,
 }
 
 /// Somebody else on the same floor.

@@ -40,6 +40,8 @@ use crate::widget::Behaviour;
 ///         Leave(to: East),
 ///     ],
 ///     // More people at the same time; each has a person and steps of its own.
+///     // What goes wrong on the way of the packets, as the option `--fault` has it.
+///     faults: ["loss=1%", "board=2:10s..12s"],
 ///     others: [(person: (mass_kg: 55), steps: [Stand(at: (5, 5), facing: South), Wait(ms: 9000)])],
 /// )
 /// ```
@@ -55,6 +57,7 @@ pub struct Scenario {
     title: String,
     file: String,
     cast: Vec<Performer>,
+    faults: Vec<String>,
 }
 
 #[derive(Clone, Debug)]
@@ -107,20 +110,26 @@ impl Scenario {
     pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
         let (definition, places) =
             read(text).map_err(|problems| ScenarioError { file: file.into(), problems })?;
-        let ScenarioDefinition { title, person, steps, others } = definition;
+        let ScenarioDefinition { title, person, steps, others, faults } = definition;
         let cast = std::iter::once((person, steps))
             .chain(others.into_iter().map(|other| (other.person, other.steps)));
         let cast = cast
             .zip(places)
             .map(|((body, steps), places)| Performer { body, steps: steps.into_iter().zip(places).collect() })
             .collect();
-        Ok(Self { title, file: file.into(), cast })
+        Ok(Self { title, file: file.into(), cast, faults })
     }
 
     /// What people call it.
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// What goes wrong with the packets meanwhile, as `--fault` has it.
+    #[must_use]
+    pub fn faults(&self) -> &[String] {
+        &self.faults
     }
 
     /// The scenario played on this layout and floor.

@@ -1,7 +1,13 @@
 //! Faults on the way of packets: losses, repetitions, delays, damage, outages.
 
+mod nemesis;
+mod spec;
+#[cfg(test)]
+mod tests;
+
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
+use std::net::SocketAddr;
 use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
@@ -9,7 +15,9 @@ use rand_pcg::Pcg64Mcg;
 
 use super::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{LinkCounters, Readings, SensorPacket};
+use crate::wire::{LinkCounters, Readings, Request, SensorPacket};
+
+pub use self::spec::BadFault;
 
 /// What goes wrong on the way from the boards; the default is nothing.
 ///
@@ -31,6 +39,12 @@ pub struct Faults {
     pub damage: f64,
     /// Times at which boards are unplugged.
     pub outages: Vec<Outage>,
+    /// Times at which boards send the same readings over and over.
+    pub frozen: Vec<Outage>,
+    /// When the thread that takes packets panics, as by a mistake of ours.
+    pub panic_at: Option<Instant>,
+    /// Pairs of boards that send under each other's address.
+    pub swapped: Vec<(u16, u16)>,
     /// Times at which nothing arrives, to come all at once at the end.
     pub stalls: Vec<Stall>,
 }
@@ -44,7 +58,7 @@ pub struct Bursts {
     pub length: Duration,
 }
 
-/// A time during which one board, or the whole floor, is unplugged.
+/// A time during which something is wrong with one board, or with the whole floor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Outage {
     /// Which board; `None` for all.
@@ -72,6 +86,8 @@ pub struct FaultInjector<S> {
     rng: Pcg64Mcg,
     /// Packets on the way, the next to arrive first.
     on_the_way: BinaryHeap<Reverse<OnTheWay>>,
+    /// What each frozen board goes on sending.
+    stuck: Vec<(u16, Readings)>,
     admitted: u64,
     now: Instant,
 }
@@ -81,7 +97,15 @@ impl<S: SensorSource> FaultInjector<S> {
     #[must_use]
     pub fn new(inner: S, faults: Faults, seed: u64) -> Self {
         let rng = Pcg64Mcg::seed_from_u64(seed);
-        Self { inner, faults, rng, on_the_way: BinaryHeap::new(), admitted: 0, now: Instant::START }
+        Self {
+            inner,
+            faults,
+            rng,
+            on_the_way: BinaryHeap::new(),
+            stuck: Vec::new(),
+            admitted: 0,
+            now: Instant::START,
+        }
     }
 
     /// The source behind the faults.
@@ -102,13 +126,21 @@ impl<S: SensorSource> FaultInjector<S> {
         let delayed = self.chance(self.faults.delay);
         let damaged = self.chance(self.faults.damage);
         let delay = self.faults.delay_up_to.mul_f64(self.rng.random());
-        let within = |from: Instant, until: Instant| from <= at && at < until;
-        let unplugged = self.faults.outages.iter().any(|outage| {
-            outage.board.is_none_or(|board| board == packet.board) && within(outage.from, outage.until)
-        });
+        for &(one, other) in &self.faults.swapped {
+            packet.board = if packet.board == one {
+                other
+            } else if packet.board == other {
+                one
+            } else {
+                packet.board
+            };
+        }
+        let board = packet.board;
+        let unplugged = self.faults.outages.iter().any(|outage| outage.hits(board, at));
         if lost || unplugged || self.faults.bursts.is_some_and(|bursts| bursts.hit(at)) {
             return;
         }
+        self.freeze(&mut packet);
         if damaged {
             self.damage(&mut packet);
         }
@@ -127,6 +159,26 @@ impl<S: SensorSource> FaultInjector<S> {
     fn send(&mut self, due: Instant, packet: SensorPacket) {
         self.admitted += 1;
         self.on_the_way.push(Reverse(OnTheWay { due, order: self.admitted, packet }));
+    }
+
+    #[expect(clippy::panic, reason = "it is what was asked for")]
+    fn panic_if_due(&self, now: Instant) {
+        if self.faults.panic_at.is_some_and(|at| now >= at) {
+            panic!("a panic that was asked for, to rehearse one");
+        }
+    }
+
+    /// Gives a board that stands still what it read when that began.
+    fn freeze(&mut self, packet: &mut SensorPacket) {
+        let (board, at) = (packet.board, packet.received);
+        let known = self.stuck.iter().position(|(stuck, _)| *stuck == board);
+        let is_frozen = self.faults.frozen.iter().any(|outage| outage.hits(board, at));
+        match (is_frozen, known) {
+            (true, Some(known)) => packet.readings.clone_from(&self.stuck[known].1),
+            (true, None) => self.stuck.push((board, packet.readings.clone())),
+            (false, Some(known)) => drop(self.stuck.swap_remove(known)),
+            (false, None) => {}
+        }
     }
 
     fn damage(&mut self, packet: &mut SensorPacket) {
@@ -159,6 +211,7 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
     /// ends arrives before the end.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let begun = self.now();
+        self.panic_if_due(begun);
         loop {
             if let Some(packet) = self.arrive() {
                 return Ok(Some(packet));
@@ -191,8 +244,23 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
         self.now.max(self.inner.now())
     }
 
+    fn take_request(&mut self) -> Option<Request> {
+        self.inner.take_request()
+    }
+
+    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
+        self.inner.answer(to, datagram);
+    }
+
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
+    }
+}
+
+impl Outage {
+    /// Whether it concerns what `board` sends at `at`.
+    fn hits(&self, board: u16, at: Instant) -> bool {
+        self.board.is_none_or(|concerned| concerned == board) && self.from <= at && at < self.until
     }
 }
 
@@ -231,111 +299,3 @@ impl PartialEq for OnTheWay {
 }
 
 impl Eq for OnTheWay {}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Two boards, a packet each per millisecond, for a second.
-    struct Boards(std::vec::IntoIter<SensorPacket>, Instant);
-
-    fn boards() -> Boards {
-        let packets: Vec<_> = (0..1000).flat_map(|ms| (0..2).map(move |board| packet(board, ms))).collect();
-        Boards(packets.into_iter(), Instant::START)
-    }
-
-    fn packet(board: u16, ms: u32) -> SensorPacket {
-        let readings = Readings::Counts([Some(7); 4].into_iter().collect());
-        SensorPacket { board, sequence: ms, received: Instant::from_millis(ms.into()), readings }
-    }
-
-    impl SensorSource for Boards {
-        fn next(&mut self, _: Duration) -> Result<Option<SensorPacket>, SourceError> {
-            let packet = self.0.next().ok_or(SourceError::Ended)?;
-            self.1 = packet.received;
-            Ok(Some(packet))
-        }
-
-        fn now(&self) -> Instant {
-            self.1
-        }
-    }
-
-    /// All packets that get through, and how often the source found none within 10 ms.
-    fn through(faults: Faults, seed: u64) -> (Vec<SensorPacket>, usize) {
-        let mut source = FaultInjector::new(boards(), faults, seed);
-        let (mut packets, mut silences) = (Vec::new(), 0);
-        loop {
-            match source.next(Duration::from_millis(10)) {
-                Ok(Some(packet)) => packets.push(packet),
-                Ok(None) => silences += 1,
-                Err(SourceError::Ended) => return (packets, silences),
-                Err(error) => panic!("{error}"),
-            }
-        }
-    }
-
-    #[test]
-    fn without_faults_nothing_changes() {
-        let (packets, silences) = through(Faults::default(), 1);
-        assert_eq!(packets, boards().0.collect::<Vec<_>>());
-        assert_eq!(silences, 0);
-    }
-
-    #[test]
-    fn a_fifth_is_lost_and_another_seed_loses_others() {
-        let lossy = Faults { loss: 0.2, ..Faults::default() };
-        let (packets, _) = through(lossy.clone(), 1);
-        assert!((1520..1680).contains(&packets.len()), "{}", packets.len());
-        assert_eq!(packets, through(lossy.clone(), 1).0);
-        assert_ne!(packets, through(lossy, 2).0);
-    }
-
-    #[test]
-    fn delayed_packets_are_overtaken_and_stamped_when_they_arrive() {
-        let slow = Faults { delay: 0.3, delay_up_to: Duration::from_millis(5), ..Faults::default() };
-        let (packets, _) = through(slow, 1);
-        assert_eq!(packets.len(), 2000);
-        assert!(packets.is_sorted_by_key(|packet| packet.received));
-        assert!(!packets.is_sorted_by_key(|packet| packet.sequence));
-        let longest = packets.iter().map(|p| p.received.micros() - u64::from(p.sequence) * 1000).max();
-        assert!((4000..=5000).contains(&longest.unwrap()));
-    }
-
-    #[test]
-    fn an_unplugged_board_leaves_the_other_and_an_unplugged_floor_silence() {
-        let during = |board| Faults {
-            outages: vec![Outage {
-                board,
-                from: Instant::from_millis(100),
-                until: Instant::from_millis(300),
-            }],
-            ..Faults::default()
-        };
-        let (packets, silences) = through(during(Some(1)), 1);
-        assert_eq!((packets.len(), silences), (1800, 0));
-        let (packets, silences) = through(during(None), 1);
-        assert_eq!(packets.len(), 1600);
-        assert!((19..=21).contains(&silences), "{silences} times 10 ms");
-    }
-
-    #[test]
-    fn a_stall_holds_everything_back_and_lets_it_go_at_once() {
-        let until = Instant::from_millis(300);
-        let faults =
-            Faults { stalls: vec![Stall { from: Instant::from_millis(100), until }], ..Faults::default() };
-        let (packets, _) = through(faults, 1);
-        assert_eq!(packets.len(), 2000);
-        assert_eq!(packets.iter().filter(|packet| packet.received == until).count(), 402);
-    }
-
-    #[test]
-    fn bursts_doubles_and_damage_do_what_they_say() {
-        let bursts = Some(Bursts { every: Duration::from_millis(100), length: Duration::from_millis(20) });
-        assert_eq!(through(Faults { bursts, ..Faults::default() }, 1).0.len(), 2000 - 9 * 2 * 20);
-        assert_eq!(through(Faults { duplicate: 1.0, ..Faults::default() }, 1).0.len(), 4000);
-        let (damaged, _) = through(Faults { damage: 1.0, ..Faults::default() }, 1);
-        let whole: Vec<_> = boards().0.collect();
-        assert!(damaged.iter().zip(&whole).all(|(damaged, whole)| damaged != whole));
-    }
-}

@@ -7,7 +7,7 @@ mod simulated;
 mod udp;
 
 #[cfg(any(feature = "internals", test))]
-pub use fault::{Bursts, FaultInjector, Faults, Outage, Stall};
+pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
 #[cfg(feature = "sim")]
 pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;

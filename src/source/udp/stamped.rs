@@ -115,6 +115,7 @@ mod tests {
         }
     }
 
+    // N9
     #[test]
     fn a_wall_clock_that_was_set_is_not_believed() {
         assert_eq!(waited_since(Duration::ZERO), Duration::ZERO);

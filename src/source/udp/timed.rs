@@ -54,6 +54,7 @@ mod tests {
     use super::*;
     use crate::wire::ControlMessage;
 
+    // P10
     #[test]
     fn a_time_tag_is_waited_for_up_to_a_second() {
         let clock = OscTime { seconds: 3_900_000_000, fractional: 1 << 31 };
