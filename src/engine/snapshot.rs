@@ -9,7 +9,7 @@ use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Indicator, Scale, Value};
+use crate::widget::{Indicator, Scale, Value, WidgetId};
 use crate::wire::{LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
@@ -41,8 +41,14 @@ pub struct Snapshot {
     pub ignored: Vec<IgnoredPress>,
     /// One entry per ground, in the layout's order.
     pub grounds: Vec<GroundState>,
+    /// The controls that a foot holds pressed, in no order.
+    pub held: Vec<WidgetId>,
     /// Whether sensor packets arrive.
     pub link: LinkState,
+    /// Boards that this floor has.
+    pub boards: u32,
+    /// Boards of which usable packets arrive.
+    pub boards_live: u32,
     /// What came in and what was refused.
     pub counters: LinkCounters,
     /// How the sensors are doing.

@@ -5,6 +5,7 @@ mod clock;
 mod presence;
 mod sequence;
 mod stream;
+mod swap;
 mod tare;
 
 use std::time::Duration;
@@ -15,6 +16,7 @@ pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
+use self::swap::Swaps;
 use super::health::{Health, SensorHealth, Trouble};
 use super::{ForceFrame, Quality};
 use crate::floor::{Floor, SensorId, TileId};
@@ -99,6 +101,7 @@ pub struct Assembler {
     started: bool,
     frame: ForceFrame,
     health: Health,
+    swaps: Swaps,
     counters: LinkCounters,
     /// Space for sorting the boards' delays.
     delays: Vec<(i64, usize)>,
@@ -151,6 +154,7 @@ impl Assembler {
         Self {
             floor_tiles: floor.geometry.tile_count(),
             delays: Vec::with_capacity(boards.len()),
+            swaps: Swaps::new(boards.len()),
             boards,
             clock: None,
             now_ns: 0,
@@ -240,6 +244,14 @@ impl Assembler {
         }
     }
 
+    /// Of how many boards usable packets arrive, as of the last packet or poll, and how many the floor has.
+    #[must_use]
+    pub fn boards_live(&self) -> (u32, u32) {
+        let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        let live = self.boards.iter().filter(|board| board.stream.presence.is_live());
+        (count(live.count()), count(self.boards.len()))
+    }
+
     /// How board `number` is doing, as of the last packet or poll; `None` if the floor has no such board.
     #[must_use]
     pub fn board(&self, number: u16) -> Option<BoardStatus> {
@@ -292,6 +304,13 @@ impl Assembler {
     #[must_use]
     pub fn is_foreign(&self) -> bool {
         self.health.is_foreign()
+    }
+
+    /// The pairs of boards that read what the floor file has of each other's empty tiles, and how often they have
+    /// changed: their cables or addresses are swapped. Their sensors are [`Quality::Faulty`] until that is mended.
+    /// Found only where the floor's tare comes from its file.
+    pub fn swapped(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
+        self.swaps.pairs()
     }
 
     /// Writes how the sensors are doing, as of the last frame, into `health`.
@@ -445,6 +464,8 @@ impl Assembler {
             board.stream.deliver(self.now_ns);
         }
         self.counters.packets += 1;
+        self.swaps.note(number, &packet.readings, &self.boards);
+        self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
 
     /// Makes room for `slot` at `place` among the waiting ones.
@@ -490,7 +511,7 @@ impl Assembler {
             self.frame.received = received;
             self.health.inspect(&mut self.frame);
             self.frame.calibrated =
-                !self.health.is_foreign() && !self.boards.iter().any(BoardTrack::is_uncalibrated);
+                !self.health.is_foreign() && !self.boards.iter().any(BoardTrack::casts_doubt);
             self.boards.iter_mut().for_each(|board| board.stream.presence.show());
         }
         self.started

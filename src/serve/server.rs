@@ -189,7 +189,10 @@ impl Server {
     /// Writes everything there is to see into `snapshot`.
     pub fn snapshot(&self, snapshot: &mut Snapshot) {
         self.engine.snapshot(snapshot);
+        snapshot.held.clear();
+        snapshot.held.extend(self.engine.held().cloned());
         snapshot.link = self.link.state();
+        (snapshot.boards_live, snapshot.boards) = self.assembler.boards_live();
         snapshot.counters = self.counters();
         self.assembler.health(&mut snapshot.health);
         snapshot.device = self.haptics.device().cloned();
@@ -235,6 +238,7 @@ impl Server {
                 let now = self.source.now();
                 self.assembler.poll(now);
                 self.haptics.play_until(now.before(IDLE_LAG));
+                self.show(now);
             }
             Err(SourceError::Ended) => {
                 self.cancel_all();

@@ -1,5 +1,7 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
+use smallvec::SmallVec;
+
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
@@ -17,6 +19,9 @@ const NOTHING: u16 = 327;
 /// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
 const RESTS_N: f32 = 1.0;
 
+/// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
+const MOST_N: f32 = 50_000.0;
+
 /// One board: its stream, its wiring, and what it read in the slots that wait.
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
@@ -31,6 +36,8 @@ pub(super) struct BoardTrack {
     sends_counts: bool,
     /// Whether nobody has calibrated some of its sensors.
     has_nominal: bool,
+    /// Whether it sends under another board's address.
+    is_swapped: bool,
     tare: TareState,
 }
 
@@ -109,6 +116,7 @@ impl BoardTrack {
             repeats: false,
             sends_counts: false,
             has_nominal,
+            is_swapped: false,
             tare,
         }
     }
@@ -166,9 +174,41 @@ impl BoardTrack {
         if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
-    /// Whether it sends counts of which some are taken for a nominal part's.
-    pub(super) const fn is_uncalibrated(&self) -> bool {
-        self.sends_counts && self.has_nominal
+    /// Whether newtons made of what it sends may be wrong: some of its counts are taken for a nominal part's, or it has
+    /// changed places with another board.
+    pub(super) const fn casts_doubt(&self) -> bool {
+        (self.sends_counts && self.has_nominal) || self.is_swapped
+    }
+
+    pub(super) const fn set_swapped(&mut self, swapped: bool) {
+        self.is_swapped = swapped;
+    }
+
+    /// Whether the floor file says what its sensors read on the empty floor.
+    pub(super) const fn has_known_tare(&self) -> bool {
+        matches!(self.tare, TareState::FromFloor)
+    }
+
+    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `means`, channel by
+    /// channel; `None` if these are not for its channels.
+    pub(super) fn misfit(&self, means: &[f32], is_counts: bool) -> Option<f32> {
+        if means.len() != self.channels.len() {
+            return None;
+        }
+        let force = |channel: &Channel, mean: f32| {
+            if is_counts { channel.calibration.force(mean.round() as u16).0 } else { mean }
+        };
+        let channels = self.channels.iter().zip(means);
+        let mut misses: SmallVec<[f32; 32]> = channels
+            .filter_map(|(channel, mean)| Some((channel.as_ref()?, *mean)))
+            .filter(|(_, mean)| mean.is_finite())
+            .map(|(channel, mean)| (force(channel, mean) - channel.tare).abs())
+            .collect();
+        if misses.is_empty() {
+            return None;
+        }
+        let middle = misses.len() / 2;
+        Some(*misses.select_nth_unstable_by(middle, f32::total_cmp).1)
     }
 
     /// How far all of its values can be trusted.
@@ -247,8 +287,11 @@ impl BoardTrack {
         let mut put = |channel: &Channel, force: f32, end: End, law: Law| {
             let (tile, corner) = (channel.tile as usize, channel.corner.index());
             let force = force - channel.tare - health.zero(tile, corner);
-            let own = if !force.is_finite() {
+            // NaN is not within any range.
+            let own = if !(-MOST_N..=MOST_N).contains(&force) {
                 bad += 1;
+                Quality::Faulty
+            } else if self.is_swapped {
                 Quality::Faulty
             } else {
                 frame.forces[tile][corner] = force;

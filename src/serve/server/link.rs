@@ -21,8 +21,9 @@ pub(super) struct LinkWatch {
     tare: TareOutcome,
     /// Sensors without calibration.
     uncalibrated: usize,
-    /// Boards that stood still.
+    /// Boards that stood still, and changes of boards that are swapped.
     frozen: u64,
+    swaps: u64,
     notices: Limited,
 }
 
@@ -34,6 +35,7 @@ impl Default for LinkWatch {
             tare: TareOutcome::FromFloor,
             uncalibrated: 0,
             frozen: 0,
+            swaps: 0,
             notices: Limited::new(10, Duration::from_secs(10)),
         }
     }
@@ -53,6 +55,7 @@ impl LinkWatch {
     /// Says what has changed; the link's state if it is another one.
     pub(super) fn update(&mut self, assembler: &Assembler, now: Instant) -> Option<LinkState> {
         self.note_frozen(assembler);
+        self.note_swapped(assembler);
         self.note_tare(assembler);
         let state = self.settled(assembler.link_state(), now);
         if state == self.state {
@@ -71,6 +74,25 @@ impl LinkWatch {
         self.state = state;
         self.note_uncalibrated(assembler);
         Some(state)
+    }
+
+    /// Says which boards have changed places.
+    fn note_swapped(&mut self, assembler: &Assembler) {
+        let (changes, pairs) = assembler.swapped();
+        if std::mem::replace(&mut self.swaps, changes) == changes {
+            return;
+        }
+        let mut pairs = pairs.peekable();
+        if pairs.peek().is_none() {
+            warn!("the boards fit the floor file again");
+        }
+        for (one, other) in pairs {
+            warn!(
+                "boards {one} and {other} are swapped: each reads what the floor file says of the other's empty tiles. \
+                 Nothing on their tiles works until that is mended, nor do controls with the guard HoldToRun: exchange \
+                 their cables or addresses, or let `underfoot wiring` find which board is where"
+            );
+        }
     }
 
     /// The link's state; boards that come back one after the other don't make the floor look half dead for a moment.
