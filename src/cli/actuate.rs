@@ -1,6 +1,8 @@
 //! Options for samples: sound card, WAV file or silence, and the renderer that feeds them.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::Sender;
 use std::time::Duration;
 
@@ -87,12 +89,14 @@ impl ActuateArgs {
         start: Instant,
         clock: &HostClock,
         latency: LatencyStages,
+        lost: &Arc<AtomicU64>,
         mut prepare: impl FnMut(&mut Renderer),
     ) -> Result<Actuation, SinkError> {
         let probe = LatencyProbe::of_stages(latency, clock.clone());
         let playing = match &self.wav {
             Some(path) => {
-                let options = WavOptions::default().with_start(start).with_latency(probe);
+                let options =
+                    WavOptions::default().with_start(start).with_latency(probe).with_lost(Arc::clone(lost));
                 let notice = format!("Recording the actuators in {}.", path.display());
                 self.playing(floor, self.file_rate(), notice, &mut prepare, |renderer| {
                     Ok(Box::new(WavSink::create(path, renderer, options)?))
@@ -115,12 +119,13 @@ impl ActuateArgs {
     pub(crate) fn opener(
         &self,
         latency: LatencyStages,
+        lost: Arc<AtomicU64>,
         prepare: impl FnMut(&mut Renderer) + Send + 'static,
         notice: Sender<String>,
     ) -> impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static {
         let args = self.clone();
         move |floor, start, clock| {
-            let Actuation { feel, sink, notice: text } = args.start(floor, start, clock, latency, prepare)?;
+            let Actuation { feel, sink, notice: text } = args.start(floor, start, clock, latency, &lost, prepare)?;
             // Who no longer listens need not know.
             let _ = notice.send(text);
             Ok(Actuators { feel, sink })

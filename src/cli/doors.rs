@@ -1,9 +1,14 @@
 //! Options for who may send: boards their packets, apps their requests.
 
+use std::io::ErrorKind;
 use std::net::SocketAddr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread;
+use std::time::Duration;
 
+use tracing::warn;
 use underfoot::floor::{Floor, Network};
-use underfoot::source::UdpSource;
+use underfoot::source::{SourceError, UdpSource};
 
 use super::failure::Failure;
 
@@ -43,7 +48,34 @@ impl BoardArgs {
         }
         Ok(if self.pin { source.pinned() } else { source })
     }
+
+    /// As [`BoardArgs::bind`], but waits for an address that this machine has not got yet; an error if it is stopped
+    /// meanwhile.
+    pub(crate) fn bind_once_there(
+        &self,
+        listen: SocketAddr,
+        floor: &Floor,
+        stop: &AtomicBool,
+    ) -> Result<UdpSource, Failure> {
+        let mut is_told = false;
+        loop {
+            match self.bind(listen, floor) {
+                Err(Failure::Source(SourceError::Socket { source, .. }))
+                    if source.kind() == ErrorKind::AddrNotAvailable && !stop.load(Ordering::Relaxed) =>
+                {
+                    if !std::mem::replace(&mut is_told, true) {
+                        warn!("this machine has no address {} yet: waiting for it", listen.ip());
+                    }
+                    thread::sleep(AGAIN);
+                }
+                done => return done,
+            }
+        }
+    }
 }
+
+/// How often an address that is not there yet is tried.
+const AGAIN: Duration = Duration::from_millis(250);
 
 impl CommandArgs {
     /// Opens the port of apps, if there is to be one.

@@ -20,10 +20,11 @@ pub(crate) struct LatencyArgs {
 }
 
 impl LatencyArgs {
-    /// Tells what `stages` have gathered.
-    pub(crate) fn tell(&self, stages: &LatencyStages) -> Result<(), Failure> {
+    /// Tells what `stages` have gathered; beside JSON on standard output, on standard error.
+    pub(crate) fn tell(&self, stages: &LatencyStages, is_json: bool) -> Result<(), Failure> {
         match stages.whole.summary() {
             None => errln!("No cue was played."),
+            Some(_) if self.latency && is_json => errln!("{}", report(stages)),
             Some(_) if self.latency => outln!("{}", report(stages)),
             Some(summary) => errln!("From packet to first sample handed on: {summary}."),
         }

@@ -12,10 +12,12 @@ mod calibrate;
 #[cfg(feature = "lab")]
 mod capacity;
 mod check;
+mod console;
 mod doors;
 #[cfg(feature = "lab")]
 mod experiment;
 mod failure;
+mod fault_args;
 #[cfg(feature = "lab")]
 mod feel;
 mod floor_args;
@@ -36,6 +38,9 @@ mod session;
 mod simulate;
 mod stop;
 mod watch;
+#[cfg(unix)]
+mod watchdog;
+mod wiring;
 
 use std::process::ExitCode;
 
@@ -82,6 +87,8 @@ enum Command {
     Render(render::Args),
     /// The actuators and what plays them: a walk from tile to tile, the devices, the channel map.
     Rack(rack::Args),
+    /// Find which board reads which tiles, by stepping from board to board.
+    Wiring(wiring::Args),
     /// Contacts and cursor from a force table, one JSON line per instant.
     Sense(sense::SenseArgs),
     /// Calibrate a floor: sensor curves, tare, position maps.
@@ -141,6 +148,7 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Feel(args)) => feel::run(&args),
         Some(Command::Render(args)) => render::run(&args),
         Some(Command::Rack(args)) => rack::run(&args),
+        Some(Command::Wiring(args)) => wiring::run(&args),
         Some(Command::Sense(args)) => sense::run(&args),
         Some(Command::Calibrate(args)) => calibrate::run(&args),
         Some(Command::Measure(args)) => measure::run(&args),
@@ -183,7 +191,7 @@ fn start_logging(verbose: u8) {
     let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
     tracing_subscriber::fmt()
         .with_env_filter(filter)
-        .with_writer(|| output::Log)
+        .with_writer(output::Logs)
         .with_ansi(output::colours())
         .with_target(false)
         .init();

@@ -12,6 +12,9 @@ use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use tracing::{Level, Metadata};
+use tracing_subscriber::fmt::MakeWriter;
+
 /// Prints a line on standard output.
 macro_rules! outln {
     () => { $crate::cli::output::print(format_args!("\n")) };
@@ -49,9 +52,14 @@ static LEFT_OUT: AtomicU64 = AtomicU64::new(0);
 /// The first failure of standard output.
 static FAILED: OnceLock<io::Error> = OnceLock::new();
 
+/// Warnings and errors that were logged.
+static WARNINGS: AtomicU64 = AtomicU64::new(0);
+
 /// What the thread that writes standard error is handed.
 enum Job {
     Text(Vec<u8>),
+    /// The line below all texts from now on; empty for none.
+    Line(String),
     /// All before is written: say so.
     Flush(mpsc::Sender<()>),
 }
@@ -85,6 +93,17 @@ pub(crate) fn say(text: fmt::Arguments<'_>) {
     }
 }
 
+/// Shows `line` below everything that is said, in place of the one before; for terminals only. One that does not fit
+/// into the queue is left out: another comes soon.
+pub(crate) fn show_line(line: String) {
+    let _ = queue().try_send(Job::Line(line));
+}
+
+/// Warnings and errors logged so far.
+pub(crate) fn warnings() -> u64 {
+    WARNINGS.load(Ordering::Relaxed)
+}
+
 /// Whether somebody looks at standard error who sees colours; a file or a pipe gets none.
 pub(crate) fn colours() -> bool {
     anstream::stderr().current_choice() != anstream::ColorChoice::Never
@@ -96,11 +115,29 @@ pub(crate) fn finish() -> bool {
         note_failure(error);
     }
     if let Some(error) = FAILED.get().filter(|error| error.kind() != ErrorKind::BrokenPipe) {
-        say(format_args!("error: standard output: {error}; what was printed is not complete\n"));
+        say(format_args!("error: the output is not complete: {error}\n"));
     }
     let (done, written) = mpsc::channel();
     let is_written = queue().try_send(Job::Flush(done)).is_ok() && written.recv_timeout(PATIENCE).is_ok();
     is_written && !LOST.load(Ordering::Relaxed) && LEFT_OUT.load(Ordering::Relaxed) == 0
+}
+
+/// What is written through it is a result: a failure is noted for the exit status.
+pub(crate) struct Results<W>(pub(crate) W);
+
+impl<W: Write> Write for Results<W> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.0.write(bytes).inspect_err(|error| note_failure(copy(error)))
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.0.flush().inspect_err(|error| note_failure(copy(error)))
+    }
+}
+
+/// The same error once more.
+fn copy(error: &io::Error) -> io::Error {
+    error.raw_os_error().map_or_else(|| error.kind().into(), io::Error::from_raw_os_error)
 }
 
 /// Takes what is logged; never waits and never fails.
@@ -119,6 +156,24 @@ impl Write for Log {
     }
 }
 
+/// Makes a [`Log`] for each entry, and counts the warnings among them.
+pub(crate) struct Logs;
+
+impl MakeWriter<'_> for Logs {
+    type Writer = Log;
+
+    fn make_writer(&self) -> Log {
+        Log
+    }
+
+    fn make_writer_for(&self, entry: &Metadata<'_>) -> Log {
+        if *entry.level() <= Level::WARN {
+            WARNINGS.fetch_add(1, Ordering::Relaxed);
+        }
+        Log
+    }
+}
+
 /// The way to the thread that writes standard error, which is started when something is first said.
 fn queue() -> &'static SyncSender<Job> {
     static QUEUE: OnceLock<SyncSender<Job>> = OnceLock::new();
@@ -133,16 +188,26 @@ fn queue() -> &'static SyncSender<Job> {
 }
 
 fn write_all(jobs: &Receiver<Job>) {
-    let mut told = 0;
+    let (mut told, mut line) = (0, String::new());
     for job in jobs {
         let text = match job {
             Job::Text(text) => text,
+            Job::Line(next) => {
+                if next != line {
+                    draw(&next);
+                    line = next;
+                }
+                continue;
+            }
             Job::Flush(done) => {
                 // Who asked may have lost patience.
                 let _ = done.send(());
                 continue;
             }
         };
+        if !line.is_empty() {
+            draw("");
+        }
         let mut err = anstream::stderr().lock();
         let left_out = LEFT_OUT.load(Ordering::Relaxed);
         let missing = if left_out > told {
@@ -154,5 +219,20 @@ fn write_all(jobs: &Receiver<Job>) {
         if err.write_all(missing.as_bytes()).and_then(|()| err.write_all(&text)).is_err() {
             LOST.store(true, Ordering::Relaxed);
         }
+        drop(err);
+        if !line.is_empty() {
+            draw(&line);
+        }
+    }
+}
+
+/// Draws `line` in the terminal's last line, over what is there. The terminal cuts what is too long for it: wrapped, it
+/// could not be taken away again.
+fn draw(line: &str) {
+    let text =
+        if line.is_empty() { "\r\x1b[K".to_owned() } else { format!("\r\x1b[K\x1b[?7l{line}\x1b[?7h") };
+    let mut err = io::stderr().lock();
+    if err.write_all(text.as_bytes()).and_then(|()| err.flush()).is_err() {
+        LOST.store(true, Ordering::Relaxed);
     }
 }

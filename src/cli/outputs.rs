@@ -9,6 +9,7 @@ use underfoot::sink::{Fanout, JsonSink, OscSink, TuioSink, TuioVersion};
 use underfoot::wire::Prefix;
 
 use super::failure::Failure;
+use super::output::Results;
 
 /// Who is told what happens.
 #[derive(clap::Args, Clone, Debug)]
@@ -95,6 +96,11 @@ impl Default for OutputArgs {
 }
 
 impl OutputArgs {
+    /// Whether standard output has JSON lines.
+    pub(crate) const fn is_json(&self) -> bool {
+        self.json
+    }
+
     /// Everybody who is told.
     pub(crate) fn open(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
         let mut events = Fanout::new();
@@ -105,7 +111,7 @@ impl OutputArgs {
         }
         self.tuio.open(geometry, &mut events)?;
         if self.json {
-            let lines = JsonSink::new(io::stdout())?;
+            let lines = JsonSink::new(Results(io::stdout()))?;
             events.push(if self.json_contacts { lines.with_contacts() } else { lines });
         }
         Ok(events)

@@ -6,6 +6,7 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
 use underfoot::schema::read_bounded;
 use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
+use underfoot::source::Faults;
 
 use super::failure::Failure;
 
@@ -52,8 +53,13 @@ impl SimArgs {
 /// The largest scenario that is read: as large as layouts may be.
 const MOST_BYTES: u64 = 4 << 20;
 
-/// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll.
-pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) -> Result<Script, Failure> {
+/// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll. With it,
+/// what goes wrong meanwhile.
+pub(crate) fn script(
+    file: Option<&Path>,
+    layout: &Layout,
+    geometry: &Geometry,
+) -> Result<(Script, Faults), Failure> {
     let scenario = match file {
         Some(path) => {
             let text = read_bounded(path, MOST_BYTES).map_err(|error| Failure::File(path.into(), error))?;
@@ -62,5 +68,13 @@ pub(crate) fn script(file: Option<&Path>, layout: &Layout, geometry: &Geometry) 
         None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
         None => Scenario::parse("the built-in session", Scenario::SESSION)?,
     };
-    Ok(scenario.resolve(layout, geometry)?)
+    let mut faults = Faults::default();
+    for written in scenario.faults() {
+        let fault: Faults = written.parse().map_err(|error| {
+            let file = file.unwrap_or(Path::new("the built-in scenario")).display();
+            Failure::Other(format!("{file}: {error}"))
+        })?;
+        faults = faults.and(fault);
+    }
+    Ok((scenario.resolve(layout, geometry)?, faults))
 }

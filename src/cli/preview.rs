@@ -22,7 +22,7 @@ use underfoot::sense::Method;
 use underfoot::serve::Command;
 use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
 use underfoot::sink::{EventSink, LatencyStages, Report};
-use underfoot::source::{Pace, SensorSource, SimulatedSource};
+use underfoot::source::{Faults, Pace, SensorSource, SimulatedSource};
 use underfoot::units::{HostClock, Instant};
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::ControlMessage;
@@ -30,6 +30,7 @@ use underfoot::wire::ControlMessage;
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
+use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::outputs::OutputArgs;
@@ -97,7 +98,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     // Of several sound cards that are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
-    let actuators = args.actuate.opener(LatencyStages::default(), watch_renderer, notice_sender.clone());
+    let actuators = args.actuate.opener(LatencyStages::default(), Arc::default(), watch_renderer, notice_sender.clone());
     let session = Session::source(stage.source, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
@@ -169,9 +170,11 @@ impl Args {
                 feet: None,
             });
         }
+        let mut faults = Faults::default();
         let (driver, name, feet): (Box<dyn FootDriver>, _, Option<Box<dyn FootSink>>) =
             if self.session || self.scenario.is_some() {
-                let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+                let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+                faults = rehearsed;
                 (Box::new(LoopingScript::new(script, PAUSE)), "scenario on a simulated floor", None)
             } else {
                 let (handle, driver) = feet_by_hand();
@@ -181,7 +184,7 @@ impl Args {
         let begun = HostInstant::now();
         Ok(Stage {
             floor,
-            source: Box::new(SimulatedSource::new(sim, driver, Pace::RealTime)),
+            source: FaultArgs::default().wrap(SimulatedSource::new(sim, driver, Pace::RealTime), faults),
             clock: Arc::new(move || Instant::START + begun.elapsed()),
             name: name.into(),
             feet,

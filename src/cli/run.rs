@@ -1,7 +1,7 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
 use std::time::Duration;
@@ -13,11 +13,14 @@ use underfoot::layout::Layout;
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
+use underfoot::source::{Faults, SensorSource};
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;
+use super::console::Console;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
+use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
 use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
@@ -25,6 +28,8 @@ use super::number::lifetime;
 use super::outputs::OutputArgs;
 use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
+#[cfg(unix)]
+use super::watchdog::Watchdog;
 
 /// What `underfoot run` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -37,6 +42,9 @@ pub(crate) struct Args {
     /// address of the network card that they are on.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
     listen: SocketAddr,
+    /// Wait for that address if this machine has not got it yet, as when it starts before its network does.
+    #[arg(long)]
+    await_address: bool,
     #[command(flatten)]
     boards: BoardArgs,
     #[command(flatten)]
@@ -47,6 +55,8 @@ pub(crate) struct Args {
     actuate: ActuateArgs,
     #[command(flatten)]
     latency: LatencyArgs,
+    #[command(flatten)]
+    faults: FaultArgs,
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
@@ -60,20 +70,32 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
     let prefix = args.outputs.prefix.osc_prefix.clone();
-    let source = args.boards.bind(args.listen, &floor)?.with_prefix(prefix.clone());
-    let source = args.commands.open(source)?;
-    let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
     let stop = stop_flag()?;
     let panicked = panic_flag(&stop);
+    let source = if args.await_address {
+        args.boards.bind_once_there(args.listen, &floor, &stop)?
+    } else {
+        args.boards.bind(args.listen, &floor)?
+    };
+    let source = source.with_prefix(prefix.clone());
+    let source = args.commands.open(source)?;
+    let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
+    let source = args.faults.wrap(source, Faults::default());
     let latency = LatencyStages::default();
+    let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
-    let actuators = args.actuate.opener(latency.clone(), |_| {}, notice);
-    let session = Session::source(Box::new(source), clock)
+    let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
+    let mut outputs = args.outputs.open(&floor.geometry)?;
+    #[cfg(unix)]
+    if let Some(watchdog) = Watchdog::of_environment() {
+        outputs.push(watchdog);
+    }
+    let session = Session::source(source, clock)
         .floor(floor.clone())
         .layout(layout)
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
         .prefix(prefix)
-        .sink(args.outputs.open(&floor.geometry)?)
+        .sink(outputs)
         .actuators(actuators)
         .latency(latency.clone())
         .realtime()
@@ -89,7 +111,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             errln!("{diagnostics}The last good layout stays on the floor.");
         }
     })?;
-    if let Ok(address) = address {
+    if let Ok(address) = &address {
         errln!(
             "Listening on {address} with a receive buffer of {} KiB. {} Ctrl-C ends it.",
             granted / 1024,
@@ -99,20 +121,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }
+    let console = Console::start(address.as_ref().copied().unwrap_or(args.listen), session.clone())
+        .map_err(|error| Failure::Other(format!("the console can't be started: {error}")))?;
     let end = end(&session);
-    drop(watch);
+    drop((watch, console));
     let Snapshot { layout, floor, .. } = session.snapshot();
     report(&floor.counters, floor.unsent_events);
     report_felt(&floor.feel);
     grounds(&layout, &floor.grounds).iter().for_each(|ground| errln!("{ground}"));
-    args.latency.tell(&latency)?;
+    args.latency.tell(&latency, args.outputs.is_json())?;
     if panicked.load(Ordering::Relaxed) {
         return Err(Failure::Other("a part of the program failed; please report it".into()));
     }
-    match end.kind {
-        Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
-        _ => Ok(()),
+    if let Kind::Ended(EndReason::Failed) = end.kind {
+        return Err(Failure::Other(end.message().into()));
     }
+    // The last handle ends the recording.
+    drop(session);
+    whole(&lost)
 }
 
 /// Waits for the last event; what else happens the sinks tell.
@@ -130,6 +156,16 @@ fn stop_after(span: Duration, stop: Arc<AtomicBool>) {
         thread::sleep(span);
         stop.store(true, Ordering::Relaxed);
     });
+}
+
+/// Fails if a recording has gaps because the disk did not take it.
+pub(crate) fn whole(lost: &AtomicU64) -> Result<(), Failure> {
+    match lost.load(Ordering::Relaxed) {
+        0 => Ok(()),
+        lost => {
+            Err(Failure::Other(format!("the recording is not whole: {lost} frames could not be written")))
+        }
+    }
 }
 
 /// What was not felt as it should be; nothing is said if all was well.

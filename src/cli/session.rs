@@ -3,6 +3,8 @@
 use std::fs::File;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 use std::time::Duration;
 
 use underfoot::engine::Snapshot;
@@ -20,10 +22,13 @@ use underfoot::units::Instant;
 use underfoot::widget::Value;
 
 use super::failure::Failure;
+use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
+use super::run::whole;
 
 /// What `underfoot session` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -34,6 +39,8 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     sim: SimArgs,
+    #[command(flatten)]
+    faults: FaultArgs,
     #[command(flatten)]
     tuio: TuioArgs,
     #[command(flatten)]
@@ -70,6 +77,7 @@ impl Default for Args {
             sim: SimArgs::default(),
             tuio: TuioArgs::default(),
             prefix: PrefixArg::default(),
+            faults: FaultArgs::default(),
             osc: Vec::new(),
             scenario: None,
             calibrate: false,
@@ -84,7 +92,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let geometry = floor.geometry;
     let layout = args.layout.load(&geometry)?;
-    let script = play::script(args.scenario.as_deref(), &layout, &geometry)?;
+    let (script, rehearsed) = play::script(args.scenario.as_deref(), &layout, &geometry)?;
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
     let file = |name: &str| args.out.join(name);
     let (sim, floor) = if args.calibrate {
@@ -99,16 +107,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
+    let source = args.faults.wrap(source, rehearsed);
     let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
-    let options = WavOptions::default().with_when_full(WhenFull::Wait);
+    let lost = Arc::<AtomicU64>::default();
+    let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));
     let wav = WavSink::create(&sound, renderer, options)?;
     let events = File::create(&log).map_err(|error| Failure::File(log.clone(), error))?;
-    let mut told = Fanout::new().with(JsonSink::new(events)?);
+    let mut told = Fanout::new().with(JsonSink::new(Results(events))?);
     for &osc in &args.osc {
         told.push(OscSink::under(osc, args.prefix.osc_prefix.clone())?);
     }
     args.tuio.open(&geometry, &mut told)?;
-    let mut server = Server::new(&floor, layout, Method::default(), Box::new(source))
+    let mut server = Server::new(&floor, layout, Method::default(), source)
         .with_feel(feel, Box::new(wav))
         .with_events(Box::new(told));
     let mut camera = Camera::default();
@@ -118,6 +128,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let layout = server.engine().layout().clone();
     drop(server);
     camera.develop(&geometry, &layout, &script, &picture)?;
+    whole(&lost)?;
     outln!(
         "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
          What its controls did: {}",

@@ -10,10 +10,11 @@ use underfoot::layout::Layout;
 use underfoot::schema;
 use underfoot::sim::{self, Sensing, SimConfig, SimFloor};
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::source::{Pace, SimulatedSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use super::failure::Failure;
+use super::fault_args::FaultArgs;
 use super::floor_args::{FloorArgs, save_floor};
 use super::layout_args::LayoutArgs;
 use super::number::lifetime;
@@ -50,6 +51,8 @@ pub(crate) struct Args {
     /// Stop after so many seconds, although the scenario goes on.
     #[arg(long, value_name = "S", value_parser = lifetime)]
     seconds: Option<Duration>,
+    #[command(flatten)]
+    faults: FaultArgs,
     /// Play the scenario again and again.
     #[arg(long = "loop")]
     again: bool,
@@ -127,8 +130,9 @@ impl Args {
         claim_priority(Rank::Sensing);
         let mut sent = 0;
         loop {
-            let script = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
-            let mut source = SimulatedSource::new(sim.clone(), Box::new(script), Pace::RealTime);
+            let (script, rehearsed) = play::script(self.scenario.as_deref(), layout, &floor.geometry)?;
+            let source = SimulatedSource::new(sim.clone(), Box::new(script), Pace::RealTime);
+            let mut source = self.faults.wrap(source, rehearsed);
             loop {
                 if stop.load(Ordering::Relaxed) || until.is_some_and(|until| Instant::now() >= until) {
                     return Ok(sent);

@@ -284,6 +284,7 @@ fn shift_chooses_a_tile_and_presses_nothing() {
     assert!(room.says(&format!("Tile {}, {}", tile.column, tile.row)) && room.says("Follow the foot"));
 }
 
+// R5
 #[test]
 fn a_window_that_loses_the_keyboard_lifts_the_foot() {
     let mut room = Room::simulated();

@@ -4,6 +4,7 @@ use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 use tempfile::NamedTempFile;
 use thiserror::Error;
@@ -63,7 +64,7 @@ pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
 ///
 /// The text goes to a new file beside it, which takes its place when it is
 /// safely on the disk. What the file held before is kept as `name.bak`, or
-/// `name.bak2` and so on if there are such already. A symbolic link stays one:
+/// `name.bak2` and so on up to `name.bak10`, of which the oldest but the first then makes room. A symbolic link stays one:
 /// the file it points to is replaced.
 ///
 /// # Errors
@@ -87,7 +88,10 @@ pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
     let folder = target.parent().filter(|folder| !folder.as_os_str().is_empty());
     let folder = folder.unwrap_or(Path::new("."));
     // Removed by itself if anything below fails.
+    remove_left_over(folder);
     let mut file = fresh(folder).map_err(failed("making a file beside it"))?;
+    // Held while it is written, so that it is not taken for one that a killed process left.
+    let _ = file.as_file().try_lock();
     file.write_all(text.as_bytes()).map_err(failed("writing"))?;
     if let Some(old) = &old {
         file.as_file().set_permissions(old.permissions()).map_err(failed("setting its permissions"))?;
@@ -99,24 +103,62 @@ pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
     Ok(backup.map_or(Saved::New, |backup| Saved::Replaced { backup }))
 }
 
+/// What files are called until they take their place.
+const PREFIX: &str = ".underfoot-";
+const SUFFIX: &str = ".tmp";
+
+/// How old such a file must be to count as left over: its writer has locked it long since.
+const LEFT_OVER: Duration = Duration::from_secs(60);
+
+/// Removes what processes left in `folder` that were killed while they saved; what fails is left to the next save.
+fn remove_left_over(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        let name = entry.file_name();
+        let is_ours = name.to_str().is_some_and(|name| name.starts_with(PREFIX) && name.ends_with(SUFFIX));
+        let Ok(metadata) = entry.metadata() else { continue };
+        let age = metadata.modified().ok().and_then(|changed| changed.elapsed().ok());
+        if !is_ours || !metadata.is_file() || age.is_none_or(|age| age < LEFT_OVER) {
+            continue;
+        }
+        if File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// An empty file in `folder` with the permissions that any new file gets.
 fn fresh(folder: &Path) -> io::Result<NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".underfoot-").suffix(".tmp");
+    builder.prefix(PREFIX).suffix(SUFFIX);
     #[cfg(unix)]
     builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
     builder.tempfile_in(folder)
 }
 
-/// Keeps what `target` holds under a name that nothing has yet, and gives that name.
+/// Most backups of one file.
+const MOST_BACKUPS: u32 = 10;
+
+/// The name of backup `number` of `target`.
+fn backup_name(target: &Path, number: u32) -> PathBuf {
+    let mut name = OsString::from(target.as_os_str());
+    name.push(".bak");
+    if number > 1 {
+        name.push(number.to_string());
+    }
+    name.into()
+}
+
+/// Keeps what `target` holds under a name that nothing has yet, and gives that name. Of too many backups the oldest
+/// makes room; not the first, which holds what there was before this program changed anything.
 fn back_up(target: &Path) -> io::Result<PathBuf> {
-    for number in 1_u32.. {
-        let mut name = OsString::from(target.as_os_str());
-        name.push(".bak");
-        if number > 1 {
-            name.push(number.to_string());
+    let names = || (1..=MOST_BACKUPS).map(|number| backup_name(target, number));
+    if names().all(|name| name.exists()) {
+        let changed = |name: &PathBuf| fs::metadata(name).and_then(|metadata| metadata.modified()).ok();
+        if let Some(oldest) = names().skip(1).min_by_key(changed) {
+            fs::remove_file(oldest)?;
         }
-        let backup = PathBuf::from(name);
+    }
+    for backup in names() {
         let kept = match fs::hard_link(target, &backup) {
             // Some file systems know no links.
             Err(error) if error.kind() != ErrorKind::AlreadyExists => copied(target, &backup),
@@ -184,6 +226,60 @@ mod tests {
         );
     }
 
+    /// Row F8. Two editors have read the same file; each saves what it made of it.
+    #[test]
+    fn what_another_editor_saved_meanwhile_is_found_and_kept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.ron");
+        assert_eq!(save_text("as both have read it", &path).unwrap(), Saved::New);
+        assert!(matches!(save_text("the first one's", &path).unwrap(), Saved::Replaced { .. }));
+        let Saved::Replaced { backup } = save_text("the second one's", &path).unwrap() else {
+            panic!("it says that it replaced something")
+        };
+        assert_eq!(fs::read_to_string(backup).unwrap(), "the first one's");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "the second one's");
+    }
+
+    #[test]
+    fn backups_are_bounded_and_the_first_stays() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("floor.ron");
+        for number in 0..30_u64 {
+            save_text(&number.to_string(), &path).unwrap();
+            // Files that are written within one tick of the clock are equally old.
+            let day = std::time::UNIX_EPOCH + Duration::from_secs(86_400 * (number + 1));
+            File::options().write(true).open(&path).unwrap().set_modified(day).unwrap();
+        }
+        assert_eq!(names(folder.path()).len(), 1 + 10);
+        let mut kept: Vec<u32> = (1..=10)
+            .map(|number| fs::read_to_string(backup_name(&path, number)).unwrap().parse().unwrap())
+            .collect();
+        kept.sort_unstable();
+        assert_eq!(kept, [0, 20, 21, 22, 23, 24, 25, 26, 27, 28]);
+    }
+
+    // F2
+    #[test]
+    fn what_a_killed_save_left_is_removed_by_the_next_and_what_another_writes_is_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let make = |name: &str, age: Duration| {
+            let file = File::create(folder.path().join(name)).unwrap();
+            file.set_modified(std::time::SystemTime::now() - age).unwrap();
+            file
+        };
+        drop(make(".underfoot-left.tmp", 2 * LEFT_OVER));
+        drop(make(".underfoot-young.tmp", Duration::ZERO));
+        drop(make("other.tmp", 2 * LEFT_OVER));
+        let held = make(".underfoot-held.tmp", 2 * LEFT_OVER);
+        held.lock().unwrap();
+        save_text("one", &folder.path().join("floor.ron")).unwrap();
+        assert_eq!(
+            names(folder.path()),
+            [".underfoot-held.tmp", ".underfoot-young.tmp", "floor.ron", "other.tmp"]
+        );
+    }
+
+    // F3
     #[test]
     fn a_save_that_fails_leaves_everything_as_it_was() {
         let folder = tempfile::tempdir().unwrap();
@@ -209,6 +305,7 @@ mod tests {
     }
 
     #[cfg(unix)]
+    // F7
     #[test]
     fn a_link_stays_a_link_and_permissions_stay() {
         use std::os::unix::fs::PermissionsExt;

@@ -6,6 +6,8 @@ mod tests;
 
 use std::io::{self, Write};
 use std::mem::{Discriminant, discriminant};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
 use std::time::{Duration, Instant as HostInstant};
 
@@ -53,6 +55,8 @@ use crate::wire::LinkState;
 #[derive(Debug)]
 pub struct JsonSink {
     worker: Worker<Job>,
+    /// Lines that `out` did not take.
+    unwritten: Arc<AtomicU64>,
     backlog: Backlog<Job, Key>,
     /// When contacts are written, if they are.
     contacts: Option<PeriodicSender>,
@@ -109,21 +113,19 @@ const LAST_WAIT: Duration = Duration::from_secs(2);
 
 impl JsonSink {
     /// A sink that writes to `out`, which lives on a thread of its own from
-    /// now on. Lines are flushed as soon as no other waits. Once `out` fails,
-    /// what follows is dropped and counted.
+    /// now on. Lines are flushed as soon as no other waits. A line that `out`
+    /// does not take is dropped and counted; the first is told, and the next one is tried again.
     ///
     /// # Errors
     /// [`SinkError::Output`] if the system gives no thread.
     pub fn new(out: impl Write + Send + 'static) -> Result<Self, SinkError> {
         let failed = |source| SinkError::Output { message: format!("cannot write events: {source}"), source };
-        let worker = Worker::spawn("json out", move |jobs| {
-            if let Err(error) = write_all(jobs, out) {
-                tracing::warn!("events are no longer written: {error}");
-            }
-        })
-        .map_err(failed)?;
+        let unwritten = Arc::<AtomicU64>::default();
+        let counter = Arc::clone(&unwritten);
+        let worker = Worker::spawn("json out", move |jobs| write_all(jobs, out, &counter)).map_err(failed)?;
         Ok(Self {
             worker,
+            unwritten,
             backlog: Backlog::default(),
             contacts: None,
             lost: true,
@@ -196,22 +198,34 @@ impl EventSink for JsonSink {
     }
 
     fn dropped(&self) -> u64 {
-        self.worker.dropped() + self.backlog.dropped()
+        self.worker.dropped() + self.backlog.dropped() + self.unwritten.load(Ordering::Relaxed)
     }
 }
 
-fn write_all(jobs: &Receiver<Job>, mut out: impl Write) -> io::Result<()> {
+fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
+    let (mut is_told, mut is_torn) = (false, false);
     while let Ok(mut job) = jobs.recv() {
         loop {
-            write_line(&job, &mut out)?;
-            match jobs.try_recv() {
+            // What a full disk took of the last line must not run into this one.
+            let ended = if is_torn { out.write_all(b"\n") } else { Ok(()) };
+            let mut written = ended.and_then(|()| write_line(&job, &mut out));
+            let next = jobs.try_recv();
+            if next.is_err() {
+                written = written.and_then(|()| out.flush());
+            }
+            is_torn = written.is_err();
+            if let Err(error) = written {
+                unwritten.fetch_add(1, Ordering::Relaxed);
+                if !std::mem::replace(&mut is_told, true) {
+                    tracing::warn!("events are not written: {error}; each one is tried again");
+                }
+            }
+            match next {
                 Ok(next) => job = next,
                 Err(_) => break,
             }
         }
-        out.flush()?;
     }
-    Ok(())
 }
 
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {

@@ -1,14 +1,17 @@
 //! Samples in WAV files, written by a thread of their own.
 
-use std::fs::File;
-use std::io::{self, BufWriter};
-use std::path::{Path, PathBuf};
+mod files;
+
+use std::io;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::AtomicU64;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TrySendError, sync_channel};
 use std::thread::{self, JoinHandle};
 use std::time::{Duration, Instant as WallInstant};
 
-use hound::{SampleFormat, WavSpec, WavWriter};
-
+pub(super) use self::files::file_error;
+use self::files::{FILE_BYTES, Files};
 use super::lockstep::Lockstep;
 use super::{ActuatorSink, HandedOn, LatencyProbe, SinkError};
 use crate::feel::Renderer;
@@ -17,11 +20,8 @@ use crate::units::Instant;
 /// Blocks that may wait for the disk: two seconds of them when time passes in milliseconds.
 const WAITING: usize = 2000;
 
-/// How often the file's header is brought up to date, so that a killed process leaves a readable file.
-const FLUSH: Duration = Duration::from_secs(1);
-
-/// Bytes of samples after which another file is begun: a WAV file's sizes have 32 bits.
-const FILE_BYTES: u64 = u32::MAX as u64 - 4096;
+/// How often samples and the file's header go to the disk: what a killed process loses.
+const FLUSH: Duration = Duration::from_millis(100);
 
 /// How samples are written.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -55,6 +55,8 @@ pub struct WavOptions {
     pub when_full: WhenFull,
     /// Measures the latency of the cues, if wanted.
     pub latency: Option<LatencyProbe>,
+    /// Counts the frames that the disk did not take.
+    pub lost: Arc<AtomicU64>,
 }
 
 impl WavOptions {
@@ -74,6 +76,12 @@ impl WavOptions {
     #[must_use]
     pub fn with_when_full(self, when_full: WhenFull) -> Self {
         Self { when_full, ..self }
+    }
+
+    /// `lost` counts the frames that the disk did not take, also those that are found missing at the very end.
+    #[must_use]
+    pub fn with_lost(self, lost: Arc<AtomicU64>) -> Self {
+        Self { lost, ..self }
     }
 
     /// `latency` measures the cues.
@@ -96,7 +104,9 @@ pub struct WavSummary {
 
 /// Records the actuator channels in a WAV file, written by a thread of its own.
 ///
-/// The file can be read up to the last second whatever becomes of the process.
+/// The file can be read up to the last tenth of a second whatever becomes of the process. When the disk is full, what
+/// it took stays readable, what it doesn't take is counted, and the recording is tried again every second in a file
+/// of its own.
 /// A recording of more than 4 GB goes on in `NAME-2.wav`, `NAME-3.wav` and so on.
 #[derive(Debug)]
 pub struct WavSink {
@@ -130,7 +140,7 @@ impl WavSink {
         options: WavOptions,
     ) -> Result<Self, SinkError> {
         let path = path.into();
-        let files = Files::create(path.clone(), &renderer, options.format, FILE_BYTES)?;
+        let files = Files::create(path.clone(), &renderer, options.format, FILE_BYTES, options.lost)?;
         let (sender, receiver) = sync_channel(WAITING);
         let writer = thread::Builder::new()
             .name("wav".into())
@@ -151,7 +161,7 @@ impl WavSink {
     /// Ends the recording; the answer says what there is to find where.
     ///
     /// # Errors
-    /// [`SinkError::File`] if the file couldn't be written to its end.
+    /// [`SinkError::File`] if the disk did not take all of it: the first failure.
     pub fn finish(mut self) -> Result<WavSummary, SinkError> {
         self.close()
     }
@@ -260,178 +270,23 @@ fn write_all(mut files: Files, pieces: &Receiver<Piece>) -> Result<WavSummary, S
     let mut flushed = WallInstant::now();
     loop {
         match pieces.recv_timeout(FLUSH) {
-            Ok(Piece::Samples(samples)) => files.write(&samples)?,
-            Ok(Piece::Gap(frames)) => files.write_silence(frames)?,
+            Ok(Piece::Samples(samples)) => files.write(&samples),
+            Ok(Piece::Gap(frames)) => files.write_silence(frames),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return files.finish(),
         }
         if flushed.elapsed() >= FLUSH {
-            files.flush()?;
+            files.flush();
             flushed = WallInstant::now();
         }
     }
-}
-
-/// The file being written, and those that are full.
-struct Files {
-    first: PathBuf,
-    done: Vec<PathBuf>,
-    path: PathBuf,
-    writer: WavWriter<BufWriter<File>>,
-    frames_per_file: u64,
-    frames_in_file: u64,
-    frames: u64,
-}
-
-impl Files {
-    fn create(path: PathBuf, renderer: &Renderer, format: WavFormat, limit: u64) -> Result<Self, SinkError> {
-        let (bits_per_sample, sample_format) = match format {
-            WavFormat::Pcm24 => (24, SampleFormat::Int),
-            WavFormat::Float32 => (32, SampleFormat::Float),
-        };
-        // The format has 16 bits for the bytes of a frame and 32 for those of a second.
-        let frame_bytes = renderer.channels() as u64 * u64::from(bits_per_sample / 8);
-        let second_bytes = frame_bytes * u64::from(renderer.sample_rate());
-        if frame_bytes == 0 || frame_bytes > u64::from(u16::MAX) || second_bytes > u64::from(u32::MAX) {
-            let channels = renderer.channels();
-            let message = format!("a WAV file can't have {channels} channels at this rate");
-            let source = io::Error::new(io::ErrorKind::InvalidInput, message);
-            return Err(SinkError::File { path, source });
-        }
-        let spec = WavSpec {
-            channels: renderer.channels() as u16,
-            sample_rate: renderer.sample_rate(),
-            bits_per_sample,
-            sample_format,
-        };
-        let writer = open(&path, spec)?;
-        Ok(Self {
-            first: path.clone(),
-            done: Vec::new(),
-            path,
-            writer,
-            frames_per_file: (limit / frame_bytes).max(1),
-            frames_in_file: 0,
-            frames: 0,
-        })
-    }
-
-    fn write(&mut self, samples: &[f32]) -> Result<(), SinkError> {
-        let spec = self.writer.spec();
-        for frame in samples.chunks_exact(usize::from(spec.channels)) {
-            self.make_room(spec)?;
-            for sample in frame {
-                match spec.sample_format {
-                    SampleFormat::Float => self.writer.write_sample(*sample),
-                    SampleFormat::Int => self.writer.write_sample((sample * 8_388_607.0).round() as i32),
-                }
-                .map_err(|error| file_error(&self.path, error))?;
-            }
-            self.frames_in_file += 1;
-            self.frames += 1;
-        }
-        Ok(())
-    }
-
-    fn write_silence(&mut self, frames: u64) -> Result<(), SinkError> {
-        let frame = vec![0.0; usize::from(self.writer.spec().channels)];
-        (0..frames).try_for_each(|_| self.write(&frame))
-    }
-
-    /// Begins the next file if this one is full.
-    fn make_room(&mut self, spec: WavSpec) -> Result<(), SinkError> {
-        if self.frames_in_file < self.frames_per_file {
-            return Ok(());
-        }
-        let next = numbered(&self.first, self.done.len() + 2);
-        let full = std::mem::replace(&mut self.writer, open(&next, spec)?);
-        full.finalize().map_err(|error| file_error(&self.path, error))?;
-        self.done.push(std::mem::replace(&mut self.path, next));
-        self.frames_in_file = 0;
-        Ok(())
-    }
-
-    fn flush(&mut self) -> Result<(), SinkError> {
-        self.writer.flush().map_err(|error| file_error(&self.path, error))
-    }
-
-    fn finish(mut self) -> Result<WavSummary, SinkError> {
-        self.writer.finalize().map_err(|error| file_error(&self.path, error))?;
-        self.done.push(self.path);
-        Ok(WavSummary { files: self.done, frames: self.frames, left_out: 0 })
-    }
-}
-
-/// Begins a WAV file whose header is on the disk at once.
-fn open(path: &Path, spec: WavSpec) -> Result<WavWriter<BufWriter<File>>, SinkError> {
-    let mut writer = WavWriter::create(path, spec).map_err(|error| file_error(path, error))?;
-    writer.flush().map_err(|error| file_error(path, error))?;
-    Ok(writer)
-}
-
-/// `floor.wav` becomes `floor-2.wav`.
-fn numbered(path: &Path, number: usize) -> PathBuf {
-    let mut name = path.file_stem().unwrap_or_default().to_os_string();
-    name.push(format!("-{number}"));
-    if let Some(extension) = path.extension() {
-        name.push(".");
-        name.push(extension);
-    }
-    path.with_file_name(name)
-}
-
-pub(super) fn file_error(path: &Path, error: hound::Error) -> SinkError {
-    let source = match error {
-        hound::Error::IoError(source) => source,
-        other => io::Error::other(other),
-    };
-    SinkError::File { path: path.to_path_buf(), source }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::feel::{RendererConfig, renderer};
-    use crate::floor::{Floor, Geometry};
-
-    fn small_floor() -> Renderer {
-        let floor = Floor::of(Geometry::of_paper_tiles(3, 1).unwrap());
-        renderer(RendererConfig::of(&floor, 48_000)).1
-    }
-
-    fn read(path: &Path) -> Vec<f32> {
-        hound::WavReader::open(path).unwrap().samples::<f32>().map(Result::unwrap).collect()
-    }
-
-    /// What a process leaves that is killed between two flushes.
-    #[test]
-    fn the_file_is_readable_while_it_is_written() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("floor.wav");
-        let mut files = Files::create(path.clone(), &small_floor(), WavFormat::Float32, FILE_BYTES).unwrap();
-        assert!(read(&path).is_empty());
-        files.write(&[0.5, -0.25, 0.0]).unwrap();
-        files.flush().unwrap();
-        files.write(&[1.0, 1.0, 1.0]).unwrap();
-        assert_eq!(read(&path), [0.5, -0.25, 0.0]);
-        files.finish().unwrap();
-        assert_eq!(read(&path).len(), 6);
-    }
-
-    #[test]
-    fn a_recording_too_long_for_one_file_goes_on_in_the_next() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("floor.wav");
-        // Room for two frames of three 4-byte samples.
-        let mut files = Files::create(path, &small_floor(), WavFormat::Float32, 30).unwrap();
-        files.write(&[0.1, 0.1, 0.1, 0.2, 0.2, 0.2, 0.3, 0.3, 0.3]).unwrap();
-        files.write_silence(2).unwrap();
-        let summary = files.finish().unwrap();
-        assert_eq!(summary.frames, 5);
-        assert_eq!(summary.files, ["floor.wav", "floor-2.wav", "floor-3.wav"].map(|n| folder.path().join(n)));
-        assert_eq!(read(&summary.files[1]), [0.3, 0.3, 0.3, 0.0, 0.0, 0.0]);
-        assert_eq!(read(&summary.files[2]), [0.0; 3]);
-    }
+    use crate::floor::Floor;
 
     #[test]
     fn a_slow_disk_costs_samples_but_not_their_time() {

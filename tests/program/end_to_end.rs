@@ -122,7 +122,7 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/layouts/map.ron");
     let wav = folder.path().join("out.wav");
     let mut server = underfoot()
-        .args(["run", layout, "--listen", &address, "--json", "--no-osc", "--wav"])
+        .args(["run", layout, "--listen", &address, "--json", "--latency", "--no-osc", "--wav"])
         .arg(&wav)
         .stdout(Stdio::piped())
         .stderr(Stdio::piped())
@@ -143,7 +143,7 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     let lines = std::io::read_to_string(server.0.stdout.take().unwrap()).unwrap();
     assert!(server.0.wait().unwrap().success());
     let report = std::io::read_to_string(chatter).unwrap();
-    assert!(report.contains("From packet to first sample handed on"), "{report}");
+    assert!(report.contains("From packet to click"), "{report}");
 
     let session = underfoot().args(["session", "--out"]).arg(folder.path()).output().unwrap();
     assert!(session.status.success(), "{}", said(&session));
@@ -170,6 +170,7 @@ fn two_processes_over_udp_give_the_same_events_as_one() {
     assert!(peak(&channels[12]) > 0.05, "the click on `home` was recorded");
 }
 
+// N14
 #[test]
 fn what_cannot_work_is_said_in_one_sentence() {
     let taken = UdpSocket::bind("127.0.0.1:0").unwrap();
@@ -204,6 +205,7 @@ fn a_bad_layout_is_explained_and_exits_with_1() {
     assert!(found.contains_key("line") && found.contains_key("column"), "{found:?}");
 }
 
+// F1
 #[test]
 fn saving_the_layout_changes_the_floor_and_a_bad_one_is_refused() {
     let folder = tempfile::tempdir().unwrap();

@@ -59,7 +59,10 @@ fn a_full_disk_under_standard_output_is_said_and_fails() {
         let Some(out) = full() else { return };
         let (code, said) = status(arguments, folder.path(), out, None);
         assert_eq!(code, Some(1), "{arguments:?}: {said}");
-        assert!(said.contains("standard output") && !said.contains("panicked"), "{arguments:?}: {said}");
+        assert!(
+            said.contains("the output is not complete") && !said.contains("panicked"),
+            "{arguments:?}: {said}"
+        );
     }
 }
 
@@ -127,11 +130,12 @@ fn serve(err: Stdio) -> (Served, String) {
 }
 
 /// Ends the server politely and gives its exit status.
-fn ended(mut server: Served) -> Option<i32> {
+pub(super) fn ended(mut server: Served) -> Option<i32> {
     terminate(&server.0);
     server.0.wait().unwrap().code()
 }
 
+// P6
 #[test]
 fn a_flood_of_refused_requests_and_rubbish_leaves_a_short_log() {
     let (mut server, address) = serve(Stdio::piped());
@@ -145,6 +149,50 @@ fn a_flood_of_refused_requests_and_rubbish_leaves_a_short_log() {
     assert!(log.lines().count() < 60, "{} lines after {sent} datagrams:\n{log:.2000}", log.lines().count());
     assert!(log.contains("/underfoot/widget/nobody/get refused"), "{log}");
     assert!(!log.contains('\u{1b}'), "a pipe gets no colours: {log}");
+}
+
+/// What a process has used of memory, in kB, and of the processors, in ticks of the kernel.
+#[cfg(target_os = "linux")]
+fn used(process: &Child) -> (u64, u64) {
+    let read = |file: &str| std::fs::read_to_string(format!("/proc/{}/{file}", process.id())).unwrap();
+    let status = read("status");
+    let memory = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    let stat = read("stat");
+    let ticks = stat.rsplit(')').next().unwrap().split_whitespace().skip(11).take(2);
+    let memory = memory.trim().trim_end_matches(" kB").parse().unwrap();
+    (memory, ticks.map(|ticks| ticks.parse::<u64>().unwrap()).sum())
+}
+
+/// Row R4. A minute of whatever one sender gets out, beside nothing else: for an idle machine, in release form. With the
+/// log in a pipe, on a full disk, and with standard error closed.
+#[test]
+#[ignore = "takes three minutes"]
+#[cfg(target_os = "linux")]
+fn a_minute_of_floods_takes_no_memory_and_half_a_core() {
+    const TICKS_A_SECOND: f64 = 100.0;
+    for err in [None, full(), Some(closed())] {
+        let is_read = err.is_none();
+        let (mut server, address) = serve(err.unwrap_or_else(Stdio::piped));
+        let log = server.0.stderr.take();
+        let reader = std::thread::spawn(move || log.map(|log| std::io::read_to_string(log).unwrap()));
+        assert!(answers(&address));
+        flood(&address, Instant::now() + Duration::from_secs(5));
+        let (memory, ticks) = used(&server.0);
+        let begun = Instant::now();
+        let sent = flood(&address, begun + Duration::from_secs(60));
+        let seconds = begun.elapsed().as_secs_f64();
+        assert!(answers(&address), "after {sent} datagrams");
+        let (memory_after, ticks_after) = used(&server.0);
+        let core = (ticks_after - ticks) as f64 / TICKS_A_SECOND / seconds;
+        assert_eq!(ended(server), Some(i32::from(!is_read)));
+        let log = reader.join().unwrap().map_or(0, |log| log.len());
+        println!(
+            "{:.0} datagrams a second for {seconds:.0} s: {core:.2} of a core, memory {memory} -> {memory_after} kB, log \
+             {log} bytes",
+            sent as f64 / seconds
+        );
+        assert!(memory_after < memory + 1024 && core < 0.5 && log < 1_000_000);
+    }
 }
 
 /// Whatever becomes of standard error, the server senses on and its exit status tells.
@@ -177,4 +225,32 @@ fn a_reader_of_the_log_that_stalls_holds_up_nothing() {
     assert_eq!(ended(server), Some(1));
     drop(reader);
     filler.wait().unwrap();
+}
+
+/// Events that a full disk does not take are told, and the exit status tells; the server goes on.
+// F4
+#[test]
+fn events_on_a_full_disk_are_told_and_fail() {
+    let Some(out) = full() else { return };
+    let address = format!("127.0.0.1:{}", free_port());
+    let mut server = underfoot()
+        .args(["run", "map", "--json", "--no-osc", "--wav", "/dev/null", "--listen", &address])
+        .stdout(out)
+        .stderr(Stdio::piped())
+        .spawn()
+        .map(Served)
+        .unwrap();
+    assert!(answers(&address));
+    // The link's state is an event.
+    for sequence in 1..20 {
+        super::senders::packets(sequence).iter().for_each(|packet| {
+            UdpSocket::bind("127.0.0.1:0").unwrap().send_to(packet, &address).unwrap();
+        });
+    }
+    std::thread::sleep(Duration::from_millis(300));
+    assert!(answers(&address), "sensing goes on");
+    let err = server.0.stderr.take().unwrap();
+    assert_eq!(ended(server), Some(1));
+    let said = std::io::read_to_string(err).unwrap();
+    assert!(said.contains("events are not written") && said.contains("the output is not complete"), "{said}");
 }

@@ -35,7 +35,7 @@ fn asked(socket: &UdpSocket, port: u16, request: &[u8]) -> Vec<u8> {
 }
 
 /// A millisecond of every board of an empty floor.
-fn packets(sequence: u32) -> Vec<Vec<u8>> {
+pub(super) fn packets(sequence: u32) -> Vec<Vec<u8>> {
     let floor = Floor::default();
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
     let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
@@ -81,6 +81,7 @@ impl Floored {
     }
 }
 
+// P8, P12
 #[test]
 fn a_sender_that_is_not_allowed_has_no_effect_and_is_named() {
     let floor = serve(&["--allow", "127.0.0.2", "--allow-commands", "127.0.0.3/32"], "127.0.0.3", true);
@@ -119,6 +120,7 @@ fn a_sender_that_is_not_allowed_has_no_effect_and_is_named() {
     }
 }
 
+// P12
 #[test]
 fn without_options_this_machine_is_heard_on_one_port() {
     let floor = serve(&[], "127.0.0.1", false);
@@ -151,6 +153,7 @@ fn a_pinned_board_is_taken_from_where_it_was_first_heard() {
     assert!(said.contains("was first heard from 127.0.0.1"), "{said}");
 }
 
+// P6
 #[test]
 fn one_sender_s_flood_takes_nothing_from_another() {
     let floor = serve(&[], "127.0.0.1", false);

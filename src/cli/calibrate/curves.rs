@@ -33,7 +33,10 @@ pub(crate) struct Args {
     /// Also draw measurements and curves, tile by tile: PNG, or SVG if the name ends in .svg.
     #[arg(long, value_name = "FILE")]
     plot: Option<PathBuf>,
-    /// Also print how every law follows each sensor: what it leaves over, by how much its information criterion
+    /// Also print a line for each sensor: its law, what that leaves over, the verdict.
+    #[arg(long)]
+    sensors: bool,
+    /// As --sensors, and also print how every law follows each sensor: what it leaves over, by how much its information criterion
     /// exceeds the least one, or why it doesn't fit.
     #[arg(long)]
     laws: bool,
@@ -73,7 +76,11 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
         outln!("{}", json!({ "sensors": sensors, "maps_dropped": dropped, "saved": saved }));
     } else {
-        print(&judged, args.laws);
+        outln!("{}", summary(&judged));
+        if args.sensors || args.laws {
+            print(&judged, args.laws);
+        }
+        say_saturated(&judged);
         if saved.is_none() {
             errln!("Nothing is kept: say where with --out FLOOR.ron.");
         }
@@ -106,6 +113,21 @@ fn keep(floor: &mut Floor, judged: &[(&SensorLoads, Judgement)]) {
     }
 }
 
+/// How many parts there are of each verdict.
+fn summary(judged: &[(&SensorLoads, Judgement)]) -> String {
+    let number =
+        |verdict: Verdict| judged.iter().filter(|(_, judgement)| judgement.verdict == verdict).count();
+    let mut parts = vec![format!("{} good", number(Verdict::Good))];
+    for (verdict, words) in [(Verdict::Poor, "poor"), (Verdict::Unmeasured, "measured too little")] {
+        let number = number(verdict);
+        if number > 0 {
+            parts.push(format!("{number} {words}"));
+        }
+    }
+    parts.push(format!("{} to replace", number(Verdict::Replace)));
+    parts.join(", ")
+}
+
 fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
     let formula = |fit: &Result<Fit, FitError>| fit.map_or("-".to_owned(), |fit| fit.calibration.to_string());
     let shown = judged.iter().flat_map(|(_, judgement)| {
@@ -126,6 +148,9 @@ fn print(judged: &[(&SensorLoads, Judgement)], all_laws: bool) {
             print_law(candidate, wide);
         }
     }
+}
+
+fn say_saturated(judged: &[(&SensorLoads, Judgement)]) {
     let saturated: usize = judged.iter().map(|(loads, _)| loads.saturated).sum();
     if saturated > 0 {
         let readings = count(saturated, "reading");

@@ -1,0 +1,34 @@
+//! Options for faults that are rehearsed.
+
+use underfoot::source::{FaultInjector, Faults, SensorSource};
+
+/// What goes wrong between the boards and this program, so that people can see what becomes of it.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct FaultArgs {
+    /// Rehearse a fault on the way of the packets; several may be given. Times are seconds since the start:
+    /// loss=5%, duplicate=10%, delay=10%:20ms, damage=1%, bursts=1s:50ms, silent=10s..12s, board=3:10s..12s,
+    /// frozen=3:10s..12s, stall=10s..10.2s, swapped=0:1, panic=20s, nemesis=SEED:60s:BOARDS.
+    #[arg(long = "fault", value_name = "FAULT")]
+    faults: Vec<Faults>,
+    /// Which packets are hit follows from this number.
+    #[arg(long, value_name = "SEED", default_value_t = 1, requires = "faults")]
+    fault_seed: u64,
+}
+
+impl FaultArgs {
+    /// `source` with these faults and those of a scenario; says so, lest somebody takes them for real.
+    pub(crate) fn wrap<S: SensorSource + 'static>(
+        &self,
+        source: S,
+        scenario: Faults,
+    ) -> Box<dyn SensorSource> {
+        let faults = self.faults.iter().cloned().fold(scenario, Faults::and);
+        if faults == Faults::default() {
+            return Box::new(source);
+        }
+        errln!(
+            "This is a rehearsal: packets are lost or changed on purpose (--fault, or faults of the scenario)."
+        );
+        Box::new(FaultInjector::new(source, faults, self.fault_seed))
+    }
+}
