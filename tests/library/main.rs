@@ -16,6 +16,7 @@ mod accuracy;
 mod calibrate;
 mod controls;
 mod examples;
+mod fault_table;
 mod faults;
 mod feel;
 mod ground;

@@ -27,6 +27,7 @@ fn visit(geometry: Geometry, times: f32) -> (Vec<ForceFrame>, u64) {
     (frames, length)
 }
 
+// R4
 #[test]
 fn people_on_controls_allocate_nothing_by_any_cursor_rule() {
     let geometry = Geometry::default();

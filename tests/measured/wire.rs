@@ -6,6 +6,7 @@ use underfoot::sense::Assembler;
 use underfoot::units::Instant;
 use underfoot::wire::{Readings, SensorPacket};
 
+// R4
 #[test]
 fn assembling_frames_allocates_nothing() {
     let floor = Floor::default();

@@ -182,6 +182,7 @@ mod tests {
         heat
     }
 
+    // A9
     #[test]
     fn no_minute_takes_more_than_the_rating_not_even_one_that_begins_cold() {
         let (watts, begun) = driven(&mut paper(), 120);

@@ -87,6 +87,7 @@ fn what_is_below_the_band_is_taken_away_from_a_measured_plate_only() {
 }
 
 /// Somebody leans on a control that never stops ringing, for a minute.
+// A9
 #[test]
 fn no_coil_gets_more_than_80_w_over_a_minute() {
     let floor = two_tiles();

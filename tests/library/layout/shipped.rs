@@ -133,6 +133,7 @@ fn click(effect: Option<&Arc<Effect>>, releases: bool) -> Click {
 /// What a designer reads for each broken file is the file beside it that ends in `.stderr`.
 ///
 /// After a change of wording run this with `UPDATE_EXPECTED=1` and read the differences.
+// F6, F9
 #[test]
 fn every_broken_file_is_explained() {
     let update = std::env::var_os("UPDATE_EXPECTED").is_some();
@@ -206,6 +207,7 @@ fn spans_and_fields_name_what_is_wrong() {
     assert_eq!(json[0]["expected"], "expected 0.05 to 256 tiles, found 0 tiles");
 }
 
+// F7
 #[test]
 fn a_byte_order_mark_and_foreign_line_ends_change_nothing() {
     for name in builtin_layouts() {
@@ -216,6 +218,7 @@ fn a_byte_order_mark_and_foreign_line_ends_change_nothing() {
 }
 
 /// A file that is being saved while it is read.
+// F1
 #[test]
 fn every_prefix_of_every_shipped_layout_is_an_error_and_never_a_part_of_it() {
     let kinds = Kinds::builtin();
@@ -231,6 +234,7 @@ fn every_prefix_of_every_shipped_layout_is_an_error_and_never_a_part_of_it() {
     }
 }
 
+// F6
 #[test]
 fn limits_hold_before_memory_and_stack_are_used_up() {
     let page = |widgets: &str| {

@@ -150,18 +150,21 @@ fn fragments() -> impl Strategy<Value = Vec<u8>> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(4000))]
 
+    // P3
     #[test]
     fn random_bytes_never_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
         let _ = verdict(&bytes);
         guard_and_rosc_agree(&bytes)?;
     }
 
+    // P3, P11
     #[test]
     fn pieces_of_osc_in_any_order_never_panic(bytes in fragments()) {
         let _ = verdict(&bytes);
         guard_and_rosc_agree(&bytes)?;
     }
 
+    // P3
     #[test]
     fn damaged_packets_never_panic(seed: u64, blob: bool) {
         let format = if blob { SensorFormat::Blob } else { SensorFormat::Counts };

@@ -126,6 +126,7 @@ fn messages_nobody_takes_are_kept_up_to_a_thousand_and_counted_beyond() {
     assert_eq!(asked(&mut source).len(), 1024);
 }
 
+// P8
 #[test]
 fn senders_not_on_the_list_are_counted_and_not_heard() {
     let elsewhere = IpAddr::V4(Ipv4Addr::new(127, 0, 0, 9));
@@ -154,6 +155,7 @@ fn labels_lose_what_controls_terminals_and_turns_the_direction_of_writing() {
     );
 }
 
+// P6
 #[test]
 fn a_flood_of_one_sender_takes_nothing_from_another() {
     let (mut source, board) = link();
@@ -221,6 +223,7 @@ fn a_flood_of_rubbish_holds_no_call_for_long_and_lets_packets_through() {
 
 // N13
 #[cfg(target_os = "linux")]
+// N13
 #[test]
 fn what_the_kernel_drops_while_nobody_reads_is_counted() {
     let (mut source, sender) = link();

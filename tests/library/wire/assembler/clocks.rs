@@ -41,6 +41,7 @@ fn a_rebooted_board_is_stale_once_and_back_in_step() {
     assert_eq!((counters.restarts, counters.out_of_order), (1, 2));
 }
 
+// P9
 #[test]
 fn a_damaged_sequence_number_derails_nothing() {
     let clean = feed(&mut assembler(), steady(0, 400));

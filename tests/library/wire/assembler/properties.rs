@@ -65,6 +65,7 @@ proptest! {
         prop_assert_eq!(assembler.counters().duplicate, copies.iter().map(|&n| n as u64 - 1).sum::<u64>());
     }
 
+    // P7
     #[test]
     fn whatever_comes_time_runs_forward_and_forces_stay_finite(
         packets in prop::collection::vec((0u16..4, any::<u32>(), 0u64..500_000, any::<f32>(), any::<bool>()), 1..400),
