@@ -1,0 +1,106 @@
+//! The readers.
+
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::schema::{self, Kinds};
+use underfoot::sense::{Assembler, ForceTable, LoadTable, PressTable};
+use underfoot::sim::Scenario;
+use underfoot::source::Faults;
+use underfoot::units::Instant;
+use underfoot::wire::{Batch, Decoder};
+
+/// What can be tried.
+pub const NAMES: [&str; 8] = ["datagrams", "layouts", "effects", "floors", "scenarios", "csv", "ahap", "faults"];
+
+/// A reader with what it needs.
+pub struct Target {
+    name: &'static str,
+    floor: Floor,
+    kinds: Kinds,
+    page: Option<Layout>,
+    decoder: Decoder,
+    assembler: Assembler,
+    batch: Batch,
+    /// Datagrams so far: they come a tenth of a millisecond apart.
+    count: u64,
+}
+
+impl Target {
+    pub fn named(name: &str) -> Option<Self> {
+        let name = NAMES.into_iter().find(|known| *known == name)?;
+        let floor = Floor::default();
+        let kinds = Kinds::builtin();
+        let page = schema::builtin_layout("map")
+            .and_then(|text| schema::parse_layout(text, "map", &kinds, &floor.geometry).ok());
+        Some(Self {
+            name,
+            page: page.map(|loaded| loaded.layout),
+            decoder: Decoder::new(&floor),
+            assembler: Assembler::new(&floor),
+            batch: Batch::default(),
+            kinds,
+            floor,
+            count: 0,
+        })
+    }
+
+    pub const fn name(&self) -> &'static str {
+        self.name
+    }
+
+    /// The longest input: what a datagram carries, or a file that is read in a moment.
+    pub fn most_bytes(&self) -> usize {
+        if self.name == "datagrams" { 65_507 } else { 32 << 10 }
+    }
+
+    /// Reads `input`; whether it was taken.
+    pub fn read(&mut self, input: &[u8]) -> bool {
+        if self.name == "datagrams" {
+            return self.take(input);
+        }
+        let Ok(text) = std::str::from_utf8(input) else {
+            // Files that are not UTF-8 are refused before anything else.
+            return false;
+        };
+        let geometry = &self.floor.geometry;
+        match self.name {
+            "layouts" => schema::parse_layout(text, "it", &self.kinds, geometry).is_ok(),
+            "effects" => schema::parse_effect(text, "it", self.kinds.effects()).is_ok(),
+            "floors" => match schema::parse_floor(text, "it") {
+                Ok(floor) => {
+                    assert!(schema::parse_floor(&schema::write_floor(&floor), "again").is_ok(), "written and read");
+                    true
+                }
+                Err(_) => false,
+            },
+            "scenarios" => Scenario::parse("it", text).is_ok_and(|scenario| {
+                self.page.as_ref().is_some_and(|page| scenario.resolve(page, geometry).is_ok())
+            }),
+            "csv" => {
+                let forces = ForceTable::parse(text, geometry).is_ok();
+                let loads = LoadTable::parse(text, geometry)
+                    .map(|table| table.sensors.iter().for_each(|sensor| drop(sensor.judge())));
+                let presses = PressTable::parse(text, &self.floor);
+                forces || loads.is_ok() || presses.is_ok()
+            }
+            "ahap" => schema::read_ahap(text, "it").is_ok(),
+            _ => text.parse::<Faults>().is_ok(),
+        }
+    }
+
+    /// Everything behind the socket.
+    fn take(&mut self, input: &[u8]) -> bool {
+        self.count += 1;
+        let now = Instant::from_micros(self.count * 100);
+        let is_good = self.decoder.decode(input, now, &mut self.batch).is_ok();
+        if is_good {
+            self.batch.packets.iter().for_each(|packet| self.assembler.take(packet));
+        } else {
+            self.assembler.poll(now);
+        }
+        while let Some(frame) = self.assembler.ready() {
+            assert!(frame.forces.iter().flatten().all(|force| force.is_finite()), "forces stay finite");
+        }
+        is_good
+    }
+}
