@@ -125,7 +125,8 @@ impl ActuateArgs {
     ) -> impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static {
         let args = self.clone();
         move |floor, start, clock| {
-            let Actuation { feel, sink, notice: text } = args.start(floor, start, clock, latency, &lost, prepare)?;
+            let Actuation { feel, sink, notice: text } =
+                args.start(floor, start, clock, latency, &lost, prepare)?;
             // Who no longer listens need not know.
             let _ = notice.send(text);
             Ok(Actuators { feel, sink })

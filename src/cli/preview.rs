@@ -98,7 +98,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     // Of several sound cards that are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
-    let actuators = args.actuate.opener(LatencyStages::default(), Arc::default(), watch_renderer, notice_sender.clone());
+    let actuators =
+        args.actuate.opener(LatencyStages::default(), Arc::default(), watch_renderer, notice_sender.clone());
     let session = Session::source(stage.source, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())

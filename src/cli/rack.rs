@@ -173,6 +173,7 @@ impl Walk {
             Instant::START,
             &clock,
             LatencyStages::default(),
+            &Arc::default(),
             |_| {},
         )?;
         let Actuation { mut feel, mut sink, notice, .. } = actuation;

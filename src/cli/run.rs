@@ -13,7 +13,7 @@ use underfoot::layout::Layout;
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{Faults, SensorSource};
+use underfoot::source::Faults;
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;

@@ -6,10 +6,8 @@ use std::os::unix::net::{SocketAddr, UnixDatagram};
 use std::time::{Duration, Instant as HostInstant};
 
 use tracing::warn;
-use underfoot::sense::Contact;
-use underfoot::sink::EventSink;
+use underfoot::sink::{EventSink, Report};
 use underfoot::units::Instant;
-use underfoot::widget::WidgetEvent;
 
 /// From one sign to the next: half of the second that `WatchdogSec` should at least be.
 const EVERY: Duration = Duration::from_millis(500);
@@ -55,9 +53,7 @@ impl Watchdog {
 }
 
 impl EventSink for Watchdog {
-    fn events(&mut self, _: &[WidgetEvent]) {}
-
-    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
+    fn report(&mut self, _: Report<'_>) {}
 
     fn poll(&mut self, _: Instant) {
         match self.told {

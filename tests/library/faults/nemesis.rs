@@ -5,10 +5,10 @@ use std::time::Duration;
 
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::sense::{Contact, Method};
+use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot::sim::{self, Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
-use underfoot::sink::{EventSink, HeldReport};
+use underfoot::sink::{EventSink, Report};
 use underfoot::source::{FaultInjector, Faults, Pace, SimulatedSource};
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetEvent};
@@ -28,19 +28,14 @@ enum Told {
 struct Notes(Arc<Mutex<Vec<Told>>>);
 
 impl EventSink for Notes {
-    fn events(&mut self, events: &[WidgetEvent]) {
-        self.0.lock().unwrap().extend(events.iter().cloned().map(Told::Event));
-    }
-
-    fn contacts(&mut self, _: Instant, _: &[Contact]) {}
-
-    fn link(&mut self, at: Instant, state: LinkState) {
-        self.0.lock().unwrap().push(Told::Link(at, state));
-    }
-
-    fn held(&mut self, report: &HeldReport) {
-        let held = report.held.iter().map(ToString::to_string).collect();
-        self.0.lock().unwrap().push(Told::Held(report.at, held));
+    fn report(&mut self, report: Report<'_>) {
+        let told = match report {
+            Report::Event(event) => Told::Event(event.clone()),
+            Report::Link(at, state) => Told::Link(at, state),
+            Report::Held(held) => Told::Held(held.at, held.held.iter().map(ToString::to_string).collect()),
+            _ => return,
+        };
+        self.0.lock().unwrap().push(told);
     }
 }
 
