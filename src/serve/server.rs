@@ -249,6 +249,9 @@ impl Server {
         }
         self.note_link();
         while self.step() {}
+        if self.is_stale {
+            self.show_now();
+        }
         self.beat();
         self.outputs.poll(self.link.is_lost(), self.source.now());
         self.note_sensors();
@@ -275,9 +278,9 @@ impl Server {
         let now = self.source.now();
         let Some(state) = self.link.update(&self.assembler, now) else { return };
         self.haptics.update_mute(self.link.is_lost());
-        // A lost floor has no frames that would show it.
-        self.show_now();
         self.outputs.report(Report::Link(now, state));
+        // A lost floor has no frames that would show it; what it cancels comes with the frames of this turn.
+        self.is_stale = true;
     }
 
     /// Says how sensors and device are doing, where that has changed.
@@ -320,7 +323,7 @@ impl Server {
         self.snapshots = snapshots;
     }
 
-    /// Does what is asked; whatever that changes is shown together.
+    /// Does what is asked; what that changes is shown at the end of the turn.
     fn process_commands(&mut self) {
         while let Some(request) = self.source.take_request() {
             self.process_request(request);
@@ -337,9 +340,6 @@ impl Server {
                     self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
                 }
             }
-        }
-        if self.is_stale {
-            self.show_now();
         }
     }
 }
