@@ -229,6 +229,7 @@ impl Server {
     /// warning, for the controls go on working without it.
     pub fn turn(&mut self) -> Result<Ended, SourceError> {
         self.process_commands();
+        let mut is_silent = false;
         match self.source.next(PATIENCE) {
             Ok(Some(packet)) => {
                 self.haptics.note_packet(self.source.now());
@@ -238,7 +239,7 @@ impl Server {
                 let now = self.source.now();
                 self.assembler.poll(now);
                 self.haptics.play_until(now.before(IDLE_LAG));
-                self.show(now);
+                is_silent = true;
             }
             Err(SourceError::Ended) => {
                 self.cancel_all();
@@ -249,7 +250,8 @@ impl Server {
         }
         self.note_link();
         while self.step() {}
-        if self.is_stale {
+        // What silence changes no later frame would show.
+        if self.is_stale || is_silent {
             self.show_now();
         }
         self.beat();
@@ -279,7 +281,6 @@ impl Server {
         let Some(state) = self.link.update(&self.assembler, now) else { return };
         self.haptics.update_mute(self.link.is_lost());
         self.outputs.report(Report::Link(now, state));
-        // A lost floor has no frames that would show it; what it cancels comes with the frames of this turn.
         self.is_stale = true;
     }
 
