@@ -49,15 +49,17 @@ fn datagrams() -> Vec<Vec<u8>> {
     for format in [SensorFormat::Counts, SensorFormat::Newtons, SensorFormat::Blob] {
         let mut encoder = SensorEncoder::new(&floor, format);
         for (board, readings) in (0..).zip(sim.readings()) {
-            let packet = SensorPacket { board, sequence: 7, received: Instant::START, readings: readings.clone() };
+            let packet =
+                SensorPacket { board, sequence: 7, received: Instant::START, readings: readings.clone() };
             datagrams.extend(encoder.encode(&packet).map(<[u8]>::to_vec));
         }
     }
-    let bundled: Vec<u8> = datagrams.iter().take(6).fold(b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec(), |mut all, one| {
-        all.extend((one.len() as u32).to_be_bytes());
-        all.extend(one);
-        all
-    });
+    let bundled: Vec<u8> =
+        datagrams.iter().take(6).fold(b"#bundle\0\0\0\0\0\0\0\0\x01".to_vec(), |mut all, one| {
+            all.extend((one.len() as u32).to_be_bytes());
+            all.extend(one);
+            all
+        });
     datagrams.push(bundled);
     for (address, tags, arguments) in [
         ("/underfoot/widget/zoom/set", ",f", &[0x3f, 0, 0, 0][..]),
@@ -81,7 +83,8 @@ fn datagrams() -> Vec<Vec<u8>> {
 
 /// Floor files as they are written: plain, and calibrated.
 fn floors() -> Vec<Vec<u8>> {
-    let wired = Floor::of(underfoot::floor::Geometry::of_paper_tiles(3, 2).unwrap_or(Floor::default().geometry));
+    let wired =
+        Floor::of(underfoot::floor::Geometry::of_paper_tiles(3, 2).unwrap_or(Floor::default().geometry));
     let sim = SimFloor::new(&wired, SimConfig::default(), 1);
     let calibrated = sim::calibrated(&wired, &sim, 1).ok();
     [Some(Floor::default()), Some(wired), calibrated]
@@ -95,6 +98,7 @@ fn floors() -> Vec<Vec<u8>> {
 fn tables() -> Vec<Vec<u8>> {
     let floor = Floor::default();
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
-    let cut = |text: String| text.lines().take(60).fold(String::new(), |all, line| all + line + "\n").into_bytes();
+    let cut =
+        |text: String| text.lines().take(60).fold(String::new(), |all, line| all + line + "\n").into_bytes();
     vec![cut(sim::load_table(&sim, 1)), cut(sim::press_table(&floor, &sim, 1))]
 }

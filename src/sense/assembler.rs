@@ -154,7 +154,7 @@ impl Assembler {
         Self {
             floor_tiles: floor.geometry.tile_count(),
             delays: Vec::with_capacity(boards.len()),
-            swaps: Swaps::new(boards.len()),
+            swaps: Swaps::new(&boards),
             boards,
             clock: None,
             now_ns: 0,

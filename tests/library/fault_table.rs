@@ -2,7 +2,7 @@
 //!
 //! A test is marked by its name (`n3_a_silent_floor...`), by a comment (`// N3`, `// N1, N2`) or in its doc comment
 //! (`Row N3.`). With
-//! `UNDERFOOT_UPDATE=1` the page is written anew.
+//! `UPDATE_EXPECTED=1` the page is written anew.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -122,10 +122,10 @@ fn every_row_has_a_test_and_the_page_names_it() {
     for row in tests.keys() {
         assert!(rows.contains(row), "{row} is in no table, but marks {:?}", tests[row]);
     }
-    if std::env::var_os("UNDERFOOT_UPDATE").is_some() {
+    if std::env::var_os("UPDATE_EXPECTED").is_some() {
         std::fs::write(&path, &made).unwrap();
     }
-    assert!(page == made, "docs/faults.md is not what its tests are: write it anew with UNDERFOOT_UPDATE=1");
+    assert!(page == made, "docs/faults.md is not what its tests are: write it anew with UPDATE_EXPECTED=1");
 }
 
 #[test]

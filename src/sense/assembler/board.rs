@@ -1,7 +1,5 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
-use smallvec::SmallVec;
-
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
@@ -190,8 +188,8 @@ impl BoardTrack {
     }
 
     /// By how many newtons the middle one of this board's sensors would miss its tare if it read `means`, channel by
-    /// channel; `None` if these are not for its channels.
-    pub(super) fn misfit(&self, means: &[f32], is_counts: bool) -> Option<f32> {
+    /// channel; `None` if these are not for its channels. `misses` is space for sorting.
+    pub(super) fn misfit(&self, means: &[f32], is_counts: bool, misses: &mut Vec<f32>) -> Option<f32> {
         if means.len() != self.channels.len() {
             return None;
         }
@@ -199,11 +197,11 @@ impl BoardTrack {
             if is_counts { channel.calibration.force(mean.round() as u16).0 } else { mean }
         };
         let channels = self.channels.iter().zip(means);
-        let mut misses: SmallVec<[f32; 32]> = channels
+        let read = channels
             .filter_map(|(channel, mean)| Some((channel.as_ref()?, *mean)))
-            .filter(|(_, mean)| mean.is_finite())
-            .map(|(channel, mean)| (force(channel, mean) - channel.tare).abs())
-            .collect();
+            .filter(|(_, mean)| mean.is_finite());
+        misses.clear();
+        misses.extend(read.map(|(channel, mean)| (force(channel, mean) - channel.tare).abs()));
         if misses.is_empty() {
             return None;
         }

@@ -29,6 +29,8 @@ pub(super) struct Swaps {
     found: Vec<Option<u16>>,
     /// How often `found` has changed.
     changes: u64,
+    /// Space for sorting.
+    misses: Vec<f32>,
 }
 
 /// What one board reads, averaged.
@@ -44,8 +46,15 @@ struct Block {
 }
 
 impl Swaps {
-    pub(super) fn new(boards: usize) -> Self {
-        Self { blocks: vec![Block::default(); boards], found: vec![None; boards], changes: 0 }
+    pub(super) fn new(boards: &[BoardTrack]) -> Self {
+        let most = boards.iter().map(BoardTrack::channel_count).max().unwrap_or(0);
+        let block = |board: &BoardTrack| Block {
+            sums: Vec::with_capacity(board.channel_count()),
+            means: Vec::with_capacity(board.channel_count()),
+            ..Block::default()
+        };
+        let blocks = boards.iter().map(block).collect();
+        Self { blocks, found: vec![None; boards.len()], changes: 0, misses: Vec::with_capacity(most) }
     }
 
     /// Takes what board `number` reads.
@@ -78,10 +87,11 @@ impl Swaps {
     }
 
     /// The board whose tares board `number` fits, and which fits its own.
-    fn partner(&self, number: usize, boards: &[BoardTrack]) -> Option<u16> {
-        let misfit = |reader: usize, place: usize| {
-            let block = &self.blocks[reader];
-            boards[place].misfit(&block.means, block.is_counts)
+    fn partner(&mut self, number: usize, boards: &[BoardTrack]) -> Option<u16> {
+        let Self { blocks, misses, .. } = self;
+        let mut misfit = |reader: usize, place: usize| {
+            let block = &blocks[reader];
+            boards[place].misfit(&block.means, block.is_counts, misses)
         };
         let own = misfit(number, number).filter(|own| *own > LEAST_N)?;
         (0..boards.len()).filter(|other| *other != number).find_map(|other| {
