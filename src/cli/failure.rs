@@ -6,7 +6,6 @@ use std::path::PathBuf;
 use underfoot::picture::PictureError;
 use underfoot::runtime::StartError;
 use underfoot::schema::{Diagnostics, SaveError};
-use underfoot::sim::ScenarioError;
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
 
@@ -15,8 +14,6 @@ use underfoot::source::SourceError;
 pub(crate) enum Failure {
     /// A file of ours has problems.
     Diagnostics(Diagnostics),
-    /// A scenario cannot be played.
-    Scenario(ScenarioError),
     /// The packets' source failed.
     Source(SourceError),
     /// Samples or events can't be put out.
@@ -38,7 +35,6 @@ impl fmt::Display for Failure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Diagnostics(diagnostics) => write!(f, "{diagnostics}"),
-            Self::Scenario(error) => write!(f, "error: {error}"),
             Self::Source(error) => write!(f, "error: {error}"),
             Self::Sink(error) => write!(f, "error: {error}"),
             Self::Save(error) => write!(f, "error: {error}"),
@@ -57,12 +53,6 @@ impl fmt::Display for Failure {
 impl From<Diagnostics> for Failure {
     fn from(diagnostics: Diagnostics) -> Self {
         Self::Diagnostics(diagnostics)
-    }
-}
-
-impl From<ScenarioError> for Failure {
-    fn from(error: ScenarioError) -> Self {
-        Self::Scenario(error)
     }
 }
 

@@ -4,7 +4,6 @@ use std::path::Path;
 
 use underfoot::floor::{Floor, Geometry};
 use underfoot::layout::Layout;
-use underfoot::schema::read_bounded;
 use underfoot::sim::{self, Scenario, Script, SimConfig, SimFloor};
 use underfoot::source::Faults;
 
@@ -50,9 +49,6 @@ impl SimArgs {
     }
 }
 
-/// The largest scenario that is read: as large as layouts may be.
-const MOST_BYTES: u64 = 4 << 20;
-
 /// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll. With it,
 /// what goes wrong meanwhile.
 pub(crate) fn script(
@@ -61,10 +57,7 @@ pub(crate) fn script(
     geometry: &Geometry,
 ) -> Result<(Script, Faults), Failure> {
     let scenario = match file {
-        Some(path) => {
-            let text = read_bounded(path, MOST_BYTES).map_err(|error| Failure::File(path.into(), error))?;
-            Scenario::parse(&path.display().to_string(), &text)?
-        }
+        Some(path) => Scenario::load(path)?,
         None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
         None => Scenario::parse("the built-in session", Scenario::SESSION)?,
     };

@@ -154,7 +154,7 @@ impl PondWalk {
         pond.rest(200);
         pictures.push(("pond_before", pond.picture(&[])));
         let layout = shipped(&Geometry::default())?;
-        let refused = |error: crate::sim::ScenarioError| ExperimentError::Layout(error.to_string());
+        let refused = |error: crate::schema::Diagnostics| ExperimentError::Layout(error.to_string());
         let stroll = Scenario::parse("the built-in stroll", Scenario::STROLL).map_err(refused)?;
         let mut script = stroll.resolve(&layout, &Geometry::default()).map_err(refused)?;
         let mut feet = Vec::new();

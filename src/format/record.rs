@@ -52,6 +52,9 @@ pub(crate) trait Variants: Clone + PartialEq + 'static {
 
     /// All of them, in the order of [`Variants::NAMES`].
     fn describe() -> Vec<Description>;
+
+    /// Any value of its type, for the place of one that could not be read.
+    fn stand_in() -> Self;
 }
 
 impl Node<'_> {
@@ -216,6 +219,13 @@ macro_rules! choices {
                     &[$($about),*],
                     $crate::format::record::fields_of!($($record)?),
                 )),*]
+            }
+
+            fn stand_in() -> Self {
+                let all: &[fn() -> Self] = &[$(|| Self::$variant $((
+                    <$record as $crate::format::Record>::stand_in()
+                ))?),*];
+                all[0]()
             }
         }
     };

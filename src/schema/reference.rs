@@ -53,7 +53,8 @@ pub fn reference() -> Vec<Chapter> {
         EffectKind::describe(),
     );
     effects.common.extend(Manner::describe().fields);
-    vec![
+    #[cfg_attr(not(feature = "sim"), expect(unused_mut, reason = "scenarios are for simulated floors"))]
+    let mut chapters = vec![
         Chapter::new(
             "controls",
             "What a control does: `behaviour` of a kind, its settings beside it; a widget overrides what it writes.",
@@ -75,7 +76,20 @@ pub fn reference() -> Vec<Chapter> {
             "What the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
             ground::describe(),
         ),
-    ]
+    ];
+    #[cfg(feature = "sim")]
+    {
+        let (scenario, steps) = crate::sim::Scenario::describe();
+        let about =
+            "What people do on a simulated floor: a file, such as one for `underfoot session --scenario`.";
+        chapters.push(Chapter::new("scenarios", about, vec![scenario]));
+        chapters.push(Chapter::new(
+            "steps",
+            "What a person does in a scenario, one step after the other.",
+            steps,
+        ));
+    }
+    chapters
 }
 
 /// The reference as Markdown: all of it, or only the chapter or record called `name`.
@@ -93,10 +107,10 @@ pub fn write_reference(name: Option<&str>) -> Result<String, String> {
         }
         for record in chapter.records.iter().filter(|record| whole || is_meant(record.name)) {
             heading(&mut text, 3, record.name, &record.about, &record.fields);
-            parts(&mut text, record.name, &record.fields);
+            parts(&mut text, &chapters, record.name, &record.fields);
         }
         if whole {
-            parts(&mut text, chapter.name, &chapter.common);
+            parts(&mut text, &chapters, chapter.name, &chapter.common);
         }
     }
     if text.is_empty() {
@@ -111,13 +125,17 @@ pub fn write_reference(name: Option<&str>) -> Result<String, String> {
     Ok(text)
 }
 
-/// The records that `fields` of `owner` hold, and theirs.
-fn parts(text: &mut String, owner: &str, fields: &[FieldDescription]) {
+/// The records that `fields` of `owner` hold, and theirs, but for those that stand in a chapter of their own.
+fn parts(text: &mut String, chapters: &[Chapter], owner: &str, fields: &[FieldDescription]) {
+    let is_told = |part: &Description| {
+        let told = chapters.iter().flat_map(|chapter| &chapter.records);
+        told.into_iter().any(|record| (record.name, &record.about) == (part.name, &part.about))
+    };
     for field in fields {
-        for part in field.shape.parts().iter().filter(|part| !part.fields.is_empty()) {
+        for part in field.shape.parts().iter().filter(|part| !part.fields.is_empty() && !is_told(part)) {
             let name = format!("{} of {owner}: {}", field.name, part.name);
             heading(text, 4, &name, &part.about, &part.fields);
-            parts(text, part.name, &part.fields);
+            parts(text, chapters, part.name, &part.fields);
         }
     }
 }

@@ -1,69 +1,205 @@
-//! Scenario files as people write them, and where each step stands in the file.
+//! Scenario files as people write them, each record described once.
 
 use std::f32::consts::FRAC_PI_2;
-use std::ops::RangeInclusive;
+use std::time::Duration;
 
 use glam::Vec2;
-use ron::Options;
-use ron::extensions::Extensions;
-use ron2::ast::{Expr, StructBody, StructField, parse_document};
-use serde::Deserialize;
 
+use super::Person;
 use crate::floor::Rect;
+use crate::format::{Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choices, list, num, record};
+use crate::units::Newtons;
 
-/// A whole file.
-#[derive(Debug, Deserialize)]
-#[serde(rename = "Scenario", deny_unknown_fields)]
-pub(super) struct ScenarioDefinition {
-    pub(super) title: String,
-    #[serde(default)]
-    pub(super) person: PersonFields,
-    pub(super) steps: Vec<Step>,
-    #[serde(default)]
-    pub(super) others: Vec<Other>,
-    #[serde(default)]
-    pub(super) faults: Vec<String>,
+record! {
+    /// What people do on a floor, tied to a layout when it is played.
+    pub(super) struct ScenarioRecord = "Scenario";
+    /// What people call it.
+    pub(super) title: String = "title", Text(200);
+    /// Who does it.
+    pub(super) person: PersonRecord = "person", Rec => PersonRecord::of(&Person::default());
+    /// What they do, one after the other.
+    pub(super) steps: Vec<Step> = "steps", list("step", MOST_STEPS, OneOf);
+    /// Others on the floor at the same time.
+    pub(super) others: Vec<Other> = "others", list("other", MOST_OTHERS, Rec) => Vec::new();
+    /// What goes wrong on the way of the packets, each as the option `--fault` has it, such as "loss=1%".
+    pub(super) faults: Vec<String> = "faults", list("fault", MOST_FAULTS, Text(200)) => Vec::new();
 }
 
-/// Somebody else on the same floor.
-#[derive(Debug, Deserialize)]
-#[serde(rename = "Other", deny_unknown_fields)]
-pub(super) struct Other {
-    #[serde(default)]
-    pub(super) person: PersonFields,
-    pub(super) steps: Vec<Step>,
+record! {
+    /// Somebody else on the same floor.
+    pub(super) struct Other = "Other";
+    /// Who it is.
+    pub(super) person: PersonRecord = "person", Rec => PersonRecord::of(&Person::default());
+    /// What they do, one after the other.
+    pub(super) steps: Vec<Step> = "steps", list("step", MOST_STEPS, OneOf);
 }
 
-/// One problem and its place.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScenarioProblem {
-    /// Line, from 1.
-    pub line: usize,
-    /// Column, from 1.
-    pub column: usize,
-    /// What is wrong and what to do about it.
-    pub message: String,
+record! {
+    /// A person's measures.
+    pub(super) struct PersonRecord = "Person", Copy;
+    /// Body mass.
+    pub(super) mass_kg: f32 = "mass_kg", num(10.0..=300.0) => Person::default().mass_kg;
+    /// Length of the bare foot.
+    pub(super) foot_m: f32 = "foot_m", num(0.1..=0.4) => Person::default().foot_length_m;
+    /// Walking speed.
+    pub(super) speed_m_s: f32 = "speed_m_s", num(0.4..=2.0) => Person::default().speed_m_s;
 }
 
-/// A person's measures.
-#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
-#[serde(rename = "person", deny_unknown_fields, default)]
-pub(super) struct PersonFields {
-    pub(super) mass_kg: f32,
-    pub(super) foot_m: f32,
-    pub(super) speed_m_s: f32,
+choices! {
+    /// One step of a performance; each begins when the one before has ended.
+    pub(super) enum Step;
+    /// Lets time pass.
+    Wait(Wait),
+    /// Is on the floor from the first moment: the first step, or none.
+    Stand(Stand),
+    /// Walks on from beside the floor.
+    Enter(Enter),
+    /// Walks, and stops with the feet left and right of the place.
+    WalkTo(WalkTo),
+    /// Steps aside by small steps, looking where one looked before.
+    Sidestep(Sidestep),
+    /// Turns on the spot.
+    Turn(Turn),
+    /// Puts the ball of the nearer foot on the middle of a control.
+    Press(Press),
+    /// As Press, for a moment.
+    Tap(Tap),
+    /// Presses a slider and moves along its track.
+    Drag(Drag),
+    /// As Press, on a bare place.
+    Point(Point),
+    /// Walks off the floor.
+    Leave(Leave),
 }
 
-impl Default for PersonFields {
-    fn default() -> Self {
-        let person = super::Person::default();
-        Self { mass_kg: person.mass_kg, foot_m: person.foot_length_m, speed_m_s: person.speed_m_s }
-    }
+record! {
+    /// Lets time pass.
+    pub(super) struct Wait = "Wait", Copy;
+    /// How long, in milliseconds.
+    pub(super) time: Duration = "ms", MILLIS;
 }
+
+record! {
+    /// Is on the floor from the first moment.
+    pub(super) struct Stand = "Stand", Copy;
+    /// Where, in tiles.
+    pub(super) at: Vec2 = "at", PLACE;
+    /// Which way they look.
+    pub(super) facing: Side = "facing", Name => Side::North;
+}
+
+record! {
+    /// Walks on from beside the floor.
+    pub(super) struct Enter = "Enter", Copy;
+    /// From which side.
+    pub(super) from: Side = "from", Name;
+    /// Where they stop, in tiles.
+    pub(super) at: Vec2 = "at", PLACE;
+    /// Which way they look then; as they walked, unless it is written.
+    pub(super) facing: Option<Side> = "facing", Opt(Name) => None;
+}
+
+record! {
+    /// Walks somewhere.
+    pub(super) struct WalkTo = "WalkTo";
+    /// Where they stop, in tiles.
+    pub(super) at: Vec2 = "at", PLACE;
+    /// Places that they go by, in tiles.
+    pub(super) via: Vec<Vec2> = "via", list("via", MOST_STEPS, PLACE) => Vec::new();
+    /// Which way they look then; as they walked, unless it is written.
+    pub(super) facing: Option<Side> = "facing", Opt(Name) => None;
+}
+
+record! {
+    /// Steps aside.
+    pub(super) struct Sidestep = "Sidestep", Copy;
+    /// Where to, in tiles.
+    pub(super) at: Vec2 = "at", PLACE;
+}
+
+record! {
+    /// Turns on the spot.
+    pub(super) struct Turn = "Turn", Copy;
+    /// Which way they look then.
+    pub(super) to: Side = "to", Name;
+}
+
+record! {
+    /// Presses a control.
+    pub(super) struct Press = "Press";
+    /// Its id.
+    pub(super) widget: String = "widget", Text(64);
+    /// How hard.
+    pub(super) force: Newtons = "force_n", FORCE => PRESSING;
+    /// How long.
+    pub(super) hold: Duration = "hold_ms", MILLIS => HOLDING;
+}
+
+record! {
+    /// Presses a control for a moment.
+    pub(super) struct Tap = "Tap";
+    /// Its id.
+    pub(super) widget: String = "widget", Text(64);
+    /// How hard.
+    pub(super) force: Newtons = "force_n", FORCE => PRESSING;
+}
+
+record! {
+    /// Moves a slider.
+    pub(super) struct Drag = "Drag";
+    /// Its id.
+    pub(super) widget: String = "widget", Text(64);
+    /// Where the foot is put down, as a share of the track.
+    pub(super) from: f32 = "from", num(0.0..=1.0);
+    /// Where it lets go, as a share of the track.
+    pub(super) to: f32 = "to", num(0.0..=1.0);
+    /// How fast it goes.
+    pub(super) speed_m_s: f32 = "speed_m_s", num(0.01..=2.0) => 0.3;
+    /// How hard it presses.
+    pub(super) force: Newtons = "force_n", FORCE => Newtons(80.0);
+}
+
+record! {
+    /// Presses a bare place.
+    pub(super) struct Point = "Point", Copy;
+    /// Where, in tiles.
+    pub(super) at: Vec2 = "at", PLACE;
+    /// How hard.
+    pub(super) force: Newtons = "force_n", FORCE => PRESSING;
+    /// How long.
+    pub(super) hold: Duration = "hold_ms", MILLIS => HOLDING;
+}
+
+record! {
+    /// Walks off the floor.
+    pub(super) struct Leave = "Leave", Copy;
+    /// Over which side.
+    pub(super) to: Side = "to", Name;
+}
+
+/// Most steps of one person, and places of one way.
+pub(super) const MOST_STEPS: usize = 4096;
+
+/// Most people besides the first.
+pub(super) const MOST_OTHERS: usize = 64;
+
+/// Most faults of one scenario.
+const MOST_FAULTS: usize = 32;
+
+/// That places are on the floor is checked where the floor is known.
+const PLACE: Pair = Pair { each: num(-1e4..=1e4), pattern: "(east, north)", parts: ["east", "north"] };
+
+const FORCE: Num = num(0.0..=3000.0);
+
+/// At most ten minutes.
+const MILLIS: Num = num(0.0..=600_000.0).milli();
+
+const PRESSING: Newtons = Newtons(120.0);
+
+const HOLDING: Duration = Duration::from_millis(300);
 
 /// A side of the floor, or the way somebody looks.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
-#[serde(rename = "side")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Side {
     North,
     East,
@@ -71,138 +207,20 @@ pub(super) enum Side {
     West,
 }
 
-/// One step of a performance; each begins when the one before has ended.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
-#[serde(rename = "step", deny_unknown_fields)]
-pub(super) enum Step {
-    Wait {
-        ms: u32,
-    },
-    Stand {
-        at: (f32, f32),
-        #[serde(default = "north")]
-        facing: Side,
-    },
-    Enter {
-        from: Side,
-        at: (f32, f32),
-        #[serde(default)]
-        facing: Option<Side>,
-    },
-    WalkTo {
-        at: (f32, f32),
-        #[serde(default)]
-        via: Vec<(f32, f32)>,
-        #[serde(default)]
-        facing: Option<Side>,
-    },
-    Sidestep {
-        at: (f32, f32),
-    },
-    Turn {
-        to: Side,
-    },
-    Press {
-        widget: String,
-        #[serde(default = "pressing")]
-        force_n: f32,
-        #[serde(default = "holding")]
-        hold_ms: u32,
-    },
-    Tap {
-        widget: String,
-        #[serde(default = "pressing")]
-        force_n: f32,
-    },
-    Drag {
-        widget: String,
-        from: f32,
-        to: f32,
-        #[serde(default = "sliding")]
-        speed_m_s: f32,
-        #[serde(default = "dragging")]
-        force_n: f32,
-    },
-    Point {
-        at: (f32, f32),
-        #[serde(default = "pressing")]
-        force_n: f32,
-        #[serde(default = "holding")]
-        hold_ms: u32,
-    },
-    Leave {
-        to: Side,
-    },
+impl Named for Side {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("North", Self::North), ("East", Self::East), ("South", Self::South), ("West", Self::West)];
 }
 
-fn north() -> Side {
-    Side::North
-}
-
-fn pressing() -> f32 {
-    120.0
-}
-
-fn holding() -> u32 {
-    300
-}
-
-fn sliding() -> f32 {
-    0.3
-}
-
-fn dragging() -> f32 {
-    80.0
-}
-
-/// Longest wait or hold, in milliseconds: ten minutes.
-const LONGEST_MS: u32 = 600_000;
-
-/// Files larger than this are not scenarios, in bytes.
-const LARGEST_FILE: usize = 1 << 20;
-
-/// A number in a file, and what it may be.
-type Number = (&'static str, f32, RangeInclusive<f32>);
-
-impl PersonFields {
-    fn numbers(&self) -> [Number; 3] {
-        [
-            ("mass_kg", self.mass_kg, 10.0..=300.0),
-            ("foot_m", self.foot_m, 0.1..=0.4),
-            ("speed_m_s", self.speed_m_s, 0.4..=2.0),
-        ]
+impl PersonRecord {
+    fn of(person: &Person) -> Self {
+        Self { mass_kg: person.mass_kg, foot_m: person.foot_length_m, speed_m_s: person.speed_m_s }
     }
-}
 
-impl Step {
-    fn numbers(&self) -> Vec<Number> {
-        let force = |force_n: f32| ("force_n", force_n, 0.0..=3000.0);
-        let millis = |name, ms: u32| (name, ms as f32, 0.0..=LONGEST_MS as f32);
-        // That places are on the floor is checked where the floor is known.
-        let place = |name, (x, y): (f32, f32)| [(name, x, -1e4..=1e4), (name, y, -1e4..=1e4)];
-        match *self {
-            Self::Wait { ms } => vec![millis("ms", ms)],
-            Self::Stand { at, .. } | Self::Enter { at, .. } | Self::Sidestep { at } => place("at", at).into(),
-            Self::WalkTo { at, ref via, .. } => {
-                let mut numbers: Vec<Number> = via.iter().flat_map(|&point| place("via", point)).collect();
-                numbers.extend(place("at", at));
-                numbers
-            }
-            Self::Turn { .. } | Self::Leave { .. } => Vec::new(),
-            Self::Press { force_n, hold_ms, .. } => vec![force(force_n), millis("hold_ms", hold_ms)],
-            Self::Tap { force_n, .. } => vec![force(force_n)],
-            Self::Drag { from, to, speed_m_s, force_n, .. } => vec![
-                ("from", from, 0.0..=1.0),
-                ("to", to, 0.0..=1.0),
-                ("speed_m_s", speed_m_s, 0.01..=2.0),
-                force(force_n),
-            ],
-            Self::Point { at, force_n, hold_ms } => {
-                let mut numbers = vec![force(force_n), millis("hold_ms", hold_ms)];
-                numbers.extend(place("at", at));
-                numbers
-            }
-        }
+    /// The whole person.
+    pub(super) fn person(&self) -> Person {
+        let Self { mass_kg, foot_m, speed_m_s } = *self;
+        Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() }
     }
 }
 
@@ -234,113 +252,5 @@ impl Side {
             Self::South => Self::North,
             Self::West => Self::East,
         }
-    }
-}
-
-/// Line and column, from 1; columns count bytes.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Place {
-    pub(super) line: usize,
-    pub(super) column: usize,
-}
-
-impl Place {
-    pub(super) fn problem(self, message: String) -> ScenarioProblem {
-        ScenarioProblem { line: self.line, column: self.column, message }
-    }
-}
-
-/// Where one step stands: itself, and its fields' values.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Places {
-    step: Place,
-    fields: Vec<(String, Place)>,
-}
-
-impl Places {
-    /// The place of a field's value, or of the step if it doesn't have that field.
-    pub(super) fn of(&self, field: &str) -> Place {
-        self.fields.iter().find(|(name, _)| name == field).map_or(self.step, |(_, place)| *place)
-    }
-}
-
-/// A file read and each number in it checked, with the places of all steps: the first person's, then the others'.
-pub(super) fn read(text: &str) -> Result<(ScenarioDefinition, Vec<Vec<Places>>), Vec<ScenarioProblem>> {
-    if text.len() > LARGEST_FILE {
-        return Err(vec![Place { line: 1, column: 1 }.problem("the file is larger than 1 MB".into())]);
-    }
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let options = Options::default().with_default_extension(Extensions::IMPLICIT_SOME);
-    let definition: ScenarioDefinition = options.from_str(text).map_err(|error| {
-        let start = error.span.start;
-        vec![Place { line: start.line, column: start.col }.problem(error.code.to_string())]
-    })?;
-    let document = parse_document(text).map_err(|error| {
-        let start = error.span().start;
-        vec![Place { line: start.line, column: start.col }.problem(error.to_string())]
-    })?;
-    let root = document.value.as_ref().map(fields).unwrap_or_default();
-    let mut casts = vec![places_of_steps(root)];
-    let mut bodies = vec![(definition.person, places_of(field(root, "person")))];
-    let others = field(root, "others").map(items).unwrap_or_default();
-    for (other, expr) in definition.others.iter().zip(others) {
-        casts.push(places_of_steps(fields(expr)));
-        bodies.push((other.person, places_of(field(fields(expr), "person"))));
-    }
-    let mut problems = Vec::new();
-    for (body, places) in &bodies {
-        problems.extend(body.numbers().into_iter().filter_map(|number| out_of_range(number, places)));
-    }
-    let scripts =
-        std::iter::once(&definition.steps).chain(definition.others.iter().map(|other| &other.steps));
-    for (steps, places) in scripts.zip(&casts) {
-        for (step, places) in steps.iter().zip(places) {
-            problems.extend(step.numbers().into_iter().filter_map(|number| out_of_range(number, places)));
-        }
-    }
-    if problems.is_empty() { Ok((definition, casts)) } else { Err(problems) }
-}
-
-fn out_of_range((name, value, range): Number, places: &Places) -> Option<ScenarioProblem> {
-    let (low, high) = (range.start(), range.end());
-    (!range.contains(&value))
-        .then(|| places.of(name).problem(format!("{name} must be between {low} and {high}, not {value}")))
-}
-
-fn places_of_steps(performer: &[StructField<'_>]) -> Vec<Places> {
-    let steps = field(performer, "steps").map(items).unwrap_or_default();
-    steps.into_iter().map(|step| places_of(Some(step))).collect()
-}
-
-fn places_of(expr: Option<&Expr<'_>>) -> Places {
-    let Some(expr) = expr else { return Places::default() };
-    let named = |field: &StructField<'_>| (field.name.name.to_string(), place(&field.value));
-    Places { step: place(expr), fields: fields(expr).iter().map(named).collect() }
-}
-
-fn place(expr: &Expr<'_>) -> Place {
-    let start = expr.span().start;
-    Place { line: start.line, column: start.col }
-}
-
-fn fields<'a>(expr: &'a Expr<'a>) -> &'a [StructField<'a>] {
-    match expr {
-        Expr::AnonStruct(written) => &written.fields,
-        Expr::Struct(written) => match &written.body {
-            Some(StructBody::Fields(body)) => &body.fields,
-            _ => &[],
-        },
-        _ => &[],
-    }
-}
-
-fn field<'a>(fields: &'a [StructField<'a>], name: &str) -> Option<&'a Expr<'a>> {
-    fields.iter().find(|field| field.name.name == name).map(|field| &field.value)
-}
-
-fn items<'a>(expr: &'a Expr<'a>) -> Vec<&'a Expr<'a>> {
-    match expr {
-        Expr::Seq(written) => written.items.iter().map(|item| &item.expr).collect(),
-        _ => Vec::new(),
     }
 }

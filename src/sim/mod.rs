@@ -59,7 +59,6 @@ mod sway;
 mod track;
 mod way;
 
-pub use definition::ScenarioProblem;
 pub use floor::{Sensing, SimConfig, SimFloor};
 pub use foot::{Foot, FootDriver, Load};
 pub use footprint::{Cell, Print, shoe_size};
@@ -74,7 +73,7 @@ pub use person::{MoveError, Person};
 pub use plate::PlateConfig;
 pub use quality::{FloorQuality, UnknownQuality};
 pub use rolling::{Rolling, RollingHabit};
-pub use scenario::{Scenario, ScenarioError};
+pub use scenario::Scenario;
 pub use scene::{Body, Scene, SceneKind};
 pub use script::Script;
 pub use seam::SeamConfig;

@@ -1,15 +1,24 @@
 //! Scenarios: files that say what people do on a floor, tied to a layout and played.
 
-use std::fmt;
+use std::path::Path;
 use std::time::Duration;
 
 use glam::Vec2;
 
-use super::definition::{PersonFields, Places, ScenarioDefinition, ScenarioProblem, Side, Step, read};
+use super::definition::{MOST_OTHERS, MOST_STEPS, PersonRecord, ScenarioRecord, Side, Step};
 use super::performance::Performance;
-use super::person::{MoveError, Person};
+use super::person::MoveError;
 use super::script::Script;
 use crate::floor::{Geometry, Rect};
+use crate::format::describe::Description;
+use crate::format::diagnostic::Diagnostics;
+use crate::format::node::Node;
+use crate::format::pairs::Limits;
+use crate::format::problem::Problem;
+use crate::format::reader::Reader;
+use crate::format::source::{Source, read_text};
+use crate::format::suggest::did_you_mean;
+use crate::format::{Record, Variants};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
 use crate::widget::Behaviour;
@@ -52,40 +61,12 @@ use crate::widget::Behaviour;
 /// Who presses stands on the other foot, which stays where it is, so a control
 /// must lie within reach (about 0.85 m) and not under the feet. The foot comes
 /// back after each press; a press with nothing to wait for takes about two seconds.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    title: String,
     file: String,
-    cast: Vec<Performer>,
-    faults: Vec<String>,
+    text: String,
+    written: ScenarioRecord,
 }
-
-#[derive(Clone, Debug)]
-struct Performer {
-    body: PersonFields,
-    steps: Vec<(Step, Places)>,
-}
-
-/// Everything wrong with a scenario: a line for each problem, as `file:line:column: message`.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct ScenarioError {
-    /// The file, as it was named when it was read.
-    pub file: String,
-    /// At least one problem.
-    pub problems: Vec<ScenarioProblem>,
-}
-
-impl fmt::Display for ScenarioError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (index, ScenarioProblem { line, column, message }) in self.problems.iter().enumerate() {
-            let end = if index + 1 < self.problems.len() { "\n" } else { "" };
-            write!(f, "{}:{line}:{column}: {message}{end}", self.file)?;
-        }
-        Ok(())
-    }
-}
-
-impl std::error::Error for ScenarioError {}
 
 /// How far beside the floor people come from and go to, in metres: one and a half steps.
 const BESIDE_M: f32 = 1.0;
@@ -103,55 +84,66 @@ impl Scenario {
     /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of 6 x 5 tiles and more.
     pub const STROLL: &str = include_str!("scenarios/stroll.ron");
 
+    /// The scenario in the file at `path`.
+    ///
+    /// # Errors
+    /// Everything wrong with the file, or that it cannot be read.
+    pub fn load(path: &Path) -> Result<Self, Diagnostics> {
+        Self::parse(&path.display().to_string(), &read_text(path)?)
+    }
+
     /// The scenario written in `text`; `file` is what messages call it.
     ///
     /// # Errors
-    /// [`ScenarioError`] with the place of what is not RON, not a field, or out of range.
-    pub fn parse(file: &str, text: &str) -> Result<Self, ScenarioError> {
-        let (definition, places) =
-            read(text).map_err(|problems| ScenarioError { file: file.into(), problems })?;
-        let ScenarioDefinition { title, person, steps, others, faults } = definition;
-        let cast = std::iter::once((person, steps))
-            .chain(others.into_iter().map(|other| (other.person, other.steps)));
-        let cast = cast
-            .zip(places)
-            .map(|((body, steps), places)| Performer { body, steps: steps.into_iter().zip(places).collect() })
-            .collect();
-        Ok(Self { title, file: file.into(), cast, faults })
+    /// Everything wrong with the text.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Diagnostics> {
+        let source = Source::new(file, text)?;
+        let reader = Reader::new(&source, ScenarioRecord::NAME, Limits::LAYOUT);
+        let written = reader.root("scenario").and_then(|node| node.record(None));
+        let (written, _) = reader.conclude(written)?;
+        Ok(Self { file: file.into(), text: text.into(), written })
     }
 
     /// What people call it.
     #[must_use]
     pub fn title(&self) -> &str {
-        &self.title
+        &self.written.title
+    }
+
+    /// What is known of scenarios, and of their steps.
+    pub(crate) fn describe() -> (Description, Vec<Description>) {
+        (ScenarioRecord::describe(), Step::describe())
     }
 
     /// What goes wrong with the packets meanwhile, as `--fault` has it.
     #[must_use]
     pub fn faults(&self) -> &[String] {
-        &self.faults
+        &self.written.faults
     }
 
     /// The scenario played on this layout and floor.
     ///
     /// # Errors
-    /// [`ScenarioError`] with every control that the layout doesn't have and every
-    /// place that is not on the floor, and for each person the first move that nobody could make.
-    pub fn resolve(&self, layout: &Layout, geometry: &Geometry) -> Result<Script, ScenarioError> {
+    /// Every control that the layout doesn't have and every place that is not on the floor, and for each person the
+    /// first move that nobody could make, each where it is written.
+    pub fn resolve(&self, layout: &Layout, geometry: &Geometry) -> Result<Script, Diagnostics> {
         let stage = Stage { layout, geometry, bounds: geometry.bounds() };
-        let mut problems = Vec::new();
-        let mut performances = Vec::new();
-        for (number, performer) in self.cast.iter().enumerate() {
-            match stage.perform(performer, number as u64) {
-                Ok(performance) => performances.push(performance),
-                Err(found) => problems.extend(found),
-            }
-        }
-        if problems.is_empty() {
-            Ok(Script::new(performances, stage.bounds))
-        } else {
-            Err(ScenarioError { file: self.file.clone(), problems })
-        }
+        let source = Source::new(&self.file, &self.text)?;
+        let reader = Reader::new(&source, ScenarioRecord::NAME, Limits::LAYOUT);
+        let ScenarioRecord { person, steps, others, .. } = &self.written;
+        let cast = std::iter::once((person, steps));
+        let cast = cast.chain(others.iter().map(|other| (&other.person, &other.steps)));
+        let root = reader.root("scenario");
+        let other_nodes =
+            root.and_then(|node| node.peek(ScenarioRecord::NAME, "others")?.list("other", MOST_OTHERS));
+        let nodes = root.into_iter().chain(other_nodes.unwrap_or_default());
+        let performances: Vec<Option<Performance>> = (0..)
+            .zip(cast.zip(nodes))
+            .map(|(number, ((person, steps), node))| stage.perform(person, steps, node, number))
+            .collect();
+        let script = performances.into_iter().collect::<Option<_>>();
+        let (script, _) = reader.conclude(script.map(|all| Script::new(all, stage.bounds)))?;
+        Ok(script)
     }
 }
 
@@ -162,71 +154,90 @@ struct Stage<'a> {
     bounds: Rect,
 }
 
+/// Where a step is written.
+#[derive(Clone, Copy)]
+struct Written<'r> {
+    step: Node<'r>,
+    name: &'static str,
+}
+
+impl Written<'_> {
+    /// Reports what is wrong with the step's field of this name, or with all of it.
+    fn wrong(&self, field: &'static str, message: impl Into<String>, help: Option<String>) {
+        let at = self.step.peek(self.name, field).unwrap_or(self.step);
+        self.step.report(Problem::error(at.span(), message).help_if(help));
+    }
+}
+
 impl Stage<'_> {
-    fn perform(&self, performer: &Performer, number: u64) -> Result<Performance, Vec<ScenarioProblem>> {
-        let PersonFields { mass_kg, foot_m, speed_m_s } = performer.body;
-        let person = Person { mass_kg, foot_length_m: foot_m, speed_m_s, ..Person::default() };
-        let mut performance = Performance::new(person, number);
-        let mut problems = Vec::new();
+    /// What one person does; `None` after it has reported what nobody could do.
+    fn perform(
+        &self,
+        person: &PersonRecord,
+        steps: &[Step],
+        node: Node<'_>,
+        number: u64,
+    ) -> Option<Performance> {
+        let owner = if number == 0 { ScenarioRecord::NAME } else { super::definition::Other::NAME };
+        let nodes = node.peek(owner, "steps")?.list("step", MOST_STEPS)?;
+        let mut performance = Performance::new(person.person(), number);
         // After a move that cannot be made the later ones start from the wrong place: names are still checked.
         let mut lost = false;
-        for (index, (step, places)) in performer.steps.iter().enumerate() {
-            if index > 0 && matches!(step, Step::Stand { .. }) {
-                problems.push(places.of("").problem("Stand must be the first step; later on, Enter".into()));
+        for (index, (step, node)) in steps.iter().zip(nodes).enumerate() {
+            let written = Written { step: node, name: step.variant() };
+            if index > 0 && matches!(step, Step::Stand(_)) {
+                written.wrong("", "Stand must be the first step; later on, Enter", None);
                 lost = true;
             }
-            match self.ready(step, places) {
-                Err(problem) => {
-                    problems.push(problem);
-                    lost = true;
-                }
-                Ok(ready) if !lost => {
+            match self.ready(step, written) {
+                None => lost = true,
+                Some(ready) if !lost => {
                     if let Err(error) = self.act(&mut performance, &ready) {
-                        problems.push(places.of("").problem(error.to_string()));
+                        written.wrong("", error.to_string(), None);
                         lost = true;
                     }
                 }
-                Ok(_) => {}
+                Some(_) => {}
             }
         }
-        if problems.is_empty() { Ok(performance) } else { Err(problems) }
+        (!lost).then_some(performance)
     }
 
-    /// The step with its names and places looked up.
-    fn ready(&self, step: &Step, places: &Places) -> Result<Ready, ScenarioProblem> {
-        let widget = |id: &str| self.widget(id).map_err(|message| places.of("widget").problem(message));
-        let place = |at: (f32, f32)| self.place(at).map_err(|message| places.of("at").problem(message));
-        let hold = |ms: u32| Duration::from_millis(ms.into());
-        Ok(match step {
-            Step::Wait { ms } => Ready::Wait(hold(*ms)),
-            Step::Stand { at, facing } => Ready::Stand(place(*at)?, facing.heading()),
-            Step::Enter { from, at, facing } => Ready::Enter(*from, place(*at)?, facing.map(Side::heading)),
-            Step::WalkTo { at, via, facing } => {
-                let mut way = via
-                    .iter()
-                    .map(|point| self.place(*point).map_err(|message| places.of("via").problem(message)))
-                    .collect::<Result<Vec<Vec2>, _>>()?;
-                way.push(place(*at)?);
-                Ready::Walk(way, facing.map(Side::heading))
+    /// The step with its names and places looked up; `None` after it has reported what there is not.
+    fn ready(&self, step: &Step, written: Written<'_>) -> Option<Ready> {
+        let middle = |id: &str| Some(self.widget(id, written)?.area.centre());
+        let place = |at: Vec2| self.place(at, written.step.peek(written.name, "at")?);
+        Some(match step {
+            Step::Wait(step) => Ready::Wait(step.time),
+            Step::Stand(step) => Ready::Stand(place(step.at)?, step.facing.heading()),
+            Step::Enter(step) => Ready::Enter(step.from, place(step.at)?, step.facing.map(Side::heading)),
+            Step::WalkTo(step) => {
+                let via = written.step.peek(written.name, "via").and_then(|via| via.list("via", MOST_STEPS));
+                let via = step.via.iter().zip(via.unwrap_or_default());
+                let way: Vec<Option<Vec2>> = via
+                    .map(|(point, node)| self.place(*point, node))
+                    .chain(std::iter::once(place(step.at)))
+                    .collect();
+                Ready::Walk(way.into_iter().collect::<Option<_>>()?, step.facing.map(Side::heading))
             }
-            Step::Sidestep { at } => Ready::Sidestep(place(*at)?),
-            Step::Turn { to } => Ready::Turn(to.heading()),
-            Step::Press { widget: id, force_n, hold_ms } => {
-                Ready::Press(widget(id)?.area.centre(), Newtons(*force_n), hold(*hold_ms))
+            Step::Sidestep(step) => Ready::Sidestep(place(step.at)?),
+            Step::Turn(step) => Ready::Turn(step.to.heading()),
+            Step::Press(step) => Ready::Press(middle(&step.widget)?, step.force, step.hold),
+            Step::Tap(step) => Ready::Press(middle(&step.widget)?, step.force, TAP),
+            Step::Point(step) => Ready::Press(place(step.at)?, step.force, step.hold),
+            Step::Drag(step) => {
+                let widget = self.widget(&step.widget, written)?;
+                let Behaviour::Slider(slider) = &widget.behaviour else {
+                    let message = format!("Drag needs a slider, and \"{}\" is a {}", widget.id, widget.kind);
+                    written.wrong("widget", message, None);
+                    return None;
+                };
+                let size = widget.area.size();
+                let at = |share: f32| widget.area.min + slider.track.place_at(share, size) * size;
+                let (from, to) = (at(step.from), at(step.to));
+                Ready::Drag { from, to, speed_m_s: step.speed_m_s, force: step.force }
             }
-            Step::Tap { widget: id, force_n } => {
-                Ready::Press(widget(id)?.area.centre(), Newtons(*force_n), TAP)
-            }
-            Step::Point { at, force_n, hold_ms } => {
-                Ready::Press(place(*at)?, Newtons(*force_n), hold(*hold_ms))
-            }
-            Step::Drag { widget: id, from, to, speed_m_s, force_n } => {
-                let [from, to] = [*from, *to].map(|share| {
-                    along(widget(id)?, share).map_err(|message| places.of("widget").problem(message))
-                });
-                Ready::Drag { from: from?, to: to?, speed_m_s: *speed_m_s, force: Newtons(*force_n) }
-            }
-            Step::Leave { to } => Ready::Leave(*to),
+            Step::Leave(step) => Ready::Leave(step.to),
         })
     }
 
@@ -258,28 +269,27 @@ impl Stage<'_> {
         }
     }
 
-    fn place(&self, (x, y): (f32, f32)) -> Result<Vec2, String> {
-        let at = self.geometry.metres_from_tiles(Vec2::new(x, y));
-        if self.bounds.contains(at) {
-            Ok(at)
-        } else {
+    /// The place `at` in tiles, which is written at `node`, in floor metres.
+    fn place(&self, at: Vec2, node: Node<'_>) -> Option<Vec2> {
+        let metres = self.geometry.metres_from_tiles(at);
+        let is_there = self.bounds.contains(metres);
+        if !is_there {
             let (columns, rows) = (self.geometry.columns(), self.geometry.rows());
-            Err(format!("({x}, {y}) is not on this floor of {columns} x {rows} tiles"))
+            let message = format!("({}, {}) is not on this floor of {columns} x {rows} tiles", at.x, at.y);
+            node.report(Problem::error(node.span(), message));
         }
+        is_there.then_some(metres)
     }
 
-    fn widget(&self, id: &str) -> Result<&Widget, String> {
+    fn widget(&self, id: &str, written: Written<'_>) -> Option<&Widget> {
         let widgets = &self.layout.widgets;
-        widgets.iter().find(|widget| widget.id == id).ok_or_else(|| {
-            let likeness = |widget: &&Widget| strsim::jaro_winkler(widget.id.as_str(), id);
-            let nearest = widgets.iter().max_by(|a, b| likeness(a).total_cmp(&likeness(b)));
-            let hint = match nearest {
-                Some(nearest) if likeness(&nearest) > 0.7 => format!("; did you mean \"{}\"?", nearest.id),
-                Some(nearest) => format!("; it has \"{}\", for one", nearest.id),
-                None => "; it has no controls at all".into(),
-            };
-            format!("the layout has no control \"{id}\"{hint}")
-        })
+        let found = widgets.iter().find(|widget| widget.id == id);
+        if found.is_none() {
+            let ids: Vec<&str> = widgets.iter().map(|widget| widget.id.as_str()).collect();
+            let help = did_you_mean(id, &ids, '"').unwrap_or_else(|| "it has no controls at all".to_owned());
+            written.wrong("widget", format!("the layout has no control \"{id}\""), Some(help));
+        }
+        found
     }
 }
 
@@ -294,15 +304,6 @@ enum Ready {
     Press(Vec2, Newtons, Duration),
     Drag { from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons },
     Leave(Side),
-}
-
-/// The place a share of the way along a slider's track.
-fn along(widget: &Widget, share: f32) -> Result<Vec2, String> {
-    let Behaviour::Slider(slider) = widget.behaviour else {
-        return Err(format!("Drag needs a slider, and \"{}\" is a {}", widget.id, widget.kind));
-    };
-    let size = widget.area.size();
-    Ok(widget.area.min + slider.track.place_at(share, size) * size)
 }
 
 #[cfg(test)]
@@ -357,7 +358,7 @@ mod tests {
         }
     }
 
-    fn parse(steps: &str) -> Result<Scenario, ScenarioError> {
+    fn parse(steps: &str) -> Result<Scenario, Diagnostics> {
         Scenario::parse("test.ron", &format!("Scenario(title: \"Test\", steps: [\n{steps}\n])"))
     }
 
@@ -452,10 +453,32 @@ mod tests {
              WalkTo(at: (7, 2)),\nWalkTo(at: (1, 2), via: [(1, 1), (1, 9)]),",
         );
         insta::assert_snapshot!(told, @r#"
-        test.ron:3:17: the layout has no control "zom_in"; did you mean "zoom_in"?
-        test.ron:4:14: Drag needs a slider, and "layers" is a button
-        test.ron:5:12: (7, 2) is not on this floor of 6 x 6 tiles
-        test.ron:6:25: (1, 9) is not on this floor of 6 x 6 tiles
+        error: the layout has no control "zom_in"
+         --> test.ron:3:17
+          |
+        3 |   Press(widget: "zom_in"),
+          |                 ^^^^^^^^
+          = help: did you mean "zoom_in"?
+
+        error: Drag needs a slider, and "layers" is a button
+         --> test.ron:4:14
+          |
+        4 | Drag(widget: "layers", from: 0.1, to: 0.9),
+          |              ^^^^^^^^
+
+        error: (7, 2) is not on this floor of 6 x 6 tiles
+         --> test.ron:5:12
+          |
+        5 | WalkTo(at: (7, 2)),
+          |            ^^^^^^
+
+        error: (1, 9) is not on this floor of 6 x 6 tiles
+         --> test.ron:6:34
+          |
+        6 | WalkTo(at: (1, 2), via: [(1, 1), (1, 9)]),
+          |                                  ^^^^^^
+
+        test.ron: 4 errors
         "#);
     }
 
@@ -474,14 +497,65 @@ mod tests {
                 .to_string(),
         ];
         insta::assert_snapshot!(told.join("\n"), @r#"
-        test.ron:2:1: Unexpected variant named `Pres` in enum `step`, expected one of `Wait`, `Stand`, `Enter`, `WalkTo`, `Sidestep`, `Turn`, `Press`, `Tap`, `Drag`, `Point`, or `Leave` instead
-        test.ron:2:7: Unexpected field named `wiget` in `Press`, expected one of `widget`, `force_n`, or `hold_ms` instead
-        test.ron:2:35: force_n must be between 0 and 3000, not -5
-        test.ron:2:35: force_n must be between 0 and 3000, not NaN
-        test.ron:2:10: ms must be between 0 and 600000, not 700000
-        test.ron:3:1: Expected comma
-        test.ron:2:20: Stand must be the first step; later on, Enter
-        test.ron:1:42: mass_kg must be between 10 and 300, not 900
+        error: there is no `step` called Pres
+         --> test.ron:2:1
+          |
+        2 | Pres(widget: "zoom_in")
+          | ^^^^^^^^^^^^^^^^^^^^^^^ expected Wait, Stand, Enter, WalkTo, Sidestep, Turn, Press, Tap, Drag, Point or Leave
+          = help: did you mean Press?
+
+        test.ron: 1 error
+        error: unknown field `wiget`
+         --> test.ron:2:7
+          |
+        2 | Press(wiget: "zoom_in")
+          |       ^^^^^ a press has no such field
+          = help: did you mean `widget`?
+
+        test.ron: 1 error
+        error: `force_n` is out of range
+         --> test.ron:2:35
+          |
+        2 | Press(widget: "zoom_in", force_n: -5)
+          |                                   ^^ expected 0 to 3000 N, found -5 N
+
+        test.ron: 1 error
+        error: `force_n` must be an ordinary number
+         --> test.ron:2:35
+          |
+        2 | Press(widget: "zoom_in", force_n: NaN)
+          |                                   ^^^ expected 0 to 3000 N, found NaN
+
+        test.ron: 1 error
+        error: `ms` is out of range
+         --> test.ron:2:10
+          |
+        2 | Wait(ms: 700000)
+          |          ^^^^^^ expected 0 to 600000, found 700000
+
+        test.ron: 1 error
+        error: this `(` is never closed
+         --> test.ron:2:5
+          |
+        2 | Wait(ms: 5
+          |     ^ expected a `)` further down
+          = help: line 3 closes the `[` around it with `]`
+
+        test.ron: 1 error
+        error: Stand must be the first step; later on, Enter
+         --> test.ron:2:20
+          |
+        2 | Stand(at: (3, 1)), Stand(at: (3, 1))
+          |                    ^^^^^^^^^^^^^^^^^
+
+        test.ron: 1 error
+        error: `mass_kg` is out of range
+         --> test.ron:1:42
+          |
+        1 | Scenario(title: "Two", person: (mass_kg: 900), steps: [])
+          |                                          ^^^ expected 10 to 300 kg, found 900 kg
+
+        test.ron: 1 error
         "#);
     }
 
@@ -494,10 +568,34 @@ mod tests {
             messages("Stand(at: (3.0, 0.6)),\nPress(widget: \"zoom_in\", force_n: 1000)"),
         ];
         insta::assert_snapshot!(told.join("\n"), @r#"
-        test.ron:2:1: the person is not on the floor: let it Enter first
-        test.ron:3:1: the foot would have to reach 1.18 m from the one that stands, further than 0.85 m: WalkTo somewhere nearer first
-        test.ron:3:1: the other foot stands there, 0.09 m away: WalkTo beside the place first
-        test.ron:3:1: a person of 687 N cannot press with 1000 N
+        error: the person is not on the floor: let it Enter first
+         --> test.ron:2:1
+          |
+        2 | Press(widget: "zoom_in")
+          | ^^^^^^^^^^^^^^^^^^^^^^^^
+
+        test.ron: 1 error
+        error: the foot would have to reach 1.18 m from the one that stands, further than 0.85 m: WalkTo somewhere nearer first
+         --> test.ron:3:1
+          |
+        3 | Press(widget: "zoom_in")
+          | ^^^^^^^^^^^^^^^^^^^^^^^^
+
+        test.ron: 1 error
+        error: the other foot stands there, 0.09 m away: WalkTo beside the place first
+         --> test.ron:3:1
+          |
+        3 | Point(at: (3.02, 1.5))
+          | ^^^^^^^^^^^^^^^^^^^^^^
+
+        test.ron: 1 error
+        error: a person of 687 N cannot press with 1000 N
+         --> test.ron:3:1
+          |
+        3 | Press(widget: "zoom_in", force_n: 1000)
+          | ^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^^
+
+        test.ron: 1 error
         "#);
     }
 
@@ -526,7 +624,7 @@ mod tests {
     fn deep_nesting_and_huge_files_are_refused() {
         let deep = "(".repeat(100_000);
         assert!(parse(&deep).is_err());
-        let huge = format!("{}\n{}", Scenario::CROSSING, " ".repeat(1 << 20));
+        let huge = format!("{}\n{}", Scenario::CROSSING, " ".repeat(4 << 20));
         assert!(Scenario::parse("huge", &huge).is_err());
     }
 

@@ -132,13 +132,13 @@ impl Codec<[Resonance; 2]> for Resonances {
     }
 
     fn write(&self, both: &[Resonance; 2]) -> Text {
-        let [first, second] = both;
-        RESONANCES
-            .write_all([Some(first), Some(second).filter(|one| one.amplitude > 0.0)].into_iter().flatten())
+        let mut written = ArrayVec::from(*both);
+        written.truncate(if both[1].amplitude > 0.0 { 2 } else { 1 });
+        RESONANCES.write(&written)
     }
 
     fn shape(&self) -> FieldType {
-        RESONANCES.described::<Resonance>()
+        Codec::<ArrayVec<Resonance, 2>>::shape(&RESONANCES)
     }
 
     fn stand_in(&self) -> [Resonance; 2] {
@@ -146,7 +146,9 @@ impl Codec<[Resonance; 2]> for Resonances {
     }
 
     fn turn(&self, both: &mut [Resonance; 2], _: &'static str, hand: &mut Hand<'_>) {
-        RESONANCES.turn_all(both, hand);
+        let mut all = ArrayVec::from(*both);
+        RESONANCES.turn(&mut all, "", hand);
+        both.copy_from_slice(&all);
     }
 }
 

@@ -33,7 +33,7 @@ pub(super) struct Parts;
 impl Codec<Arc<[Part]>> for Parts {
     fn read(&self, node: Node<'_>, _: Option<&Arc<[Part]>>) -> Option<Arc<[Part]>> {
         let within = node.reader.within();
-        let written: Vec<PartRecord> = PARTS.read_all(node)?;
+        let written: Vec<PartRecord> = PARTS.read(node, None)?;
         let mut parts: Vec<Part> = written.into_iter().flat_map(|part| part.into_parts(within)).collect();
         if parts.len() > MAX_PARTS {
             let problem = Problem::error(node.span(), "this sequence has too many parts");
@@ -54,11 +54,11 @@ impl Codec<Arc<[Part]>> for Parts {
             let plays = Arc::new(Effect { kind, manner: Manner::PLAIN });
             PartRecord { at_s: part.at_s, level: 1.0, pitch: 1.0, plays }
         });
-        PARTS.write_all(&written.collect::<Vec<_>>())
+        PARTS.write(&written.collect::<Vec<_>>())
     }
 
     fn shape(&self) -> FieldType {
-        PARTS.described::<PartRecord>()
+        Codec::<Vec<PartRecord>>::shape(&PARTS)
     }
 
     fn stand_in(&self) -> Arc<[Part]> {

@@ -50,7 +50,7 @@ impl<C> List<C> {
     }
 
     /// All of the values, if each could be read.
-    pub(crate) fn read_all<T>(&self, node: Node<'_>) -> Option<Vec<T>>
+    fn read_all<T>(&self, node: Node<'_>) -> Option<Vec<T>>
     where
         C: Codec<T>,
     {
@@ -67,70 +67,88 @@ impl<C> List<C> {
         let read: Vec<Option<T>> = nodes.into_iter().map(|node| self.each.read(node, None)).collect();
         read.into_iter().collect()
     }
+}
 
-    pub(crate) fn write_all<'t, T: 't>(&self, values: impl IntoIterator<Item = &'t T>) -> RonText
-    where
-        C: Codec<T>,
-    {
-        RonText::List(values.into_iter().map(|value| self.each.write(value)).collect())
+/// What holds the values of a list.
+pub(crate) trait Listed {
+    /// One of them.
+    type Each;
+
+    /// The list of these.
+    fn of(values: Vec<Self::Each>) -> Self;
+
+    /// All of them.
+    fn all(&self) -> &[Self::Each];
+
+    /// All of them, to be turned; none where they are shared.
+    fn all_mut(&mut self) -> &mut [Self::Each] {
+        &mut []
+    }
+}
+
+impl<T> Listed for Vec<T> {
+    type Each = T;
+
+    fn of(values: Self) -> Self {
+        values
     }
 
-    pub(crate) fn described<T>(&self) -> FieldType
-    where
-        C: Codec<T>,
-    {
+    fn all(&self) -> &[T] {
+        self
+    }
+}
+
+impl<T, const N: usize> Listed for ArrayVec<T, N> {
+    type Each = T;
+
+    fn of(values: Vec<T>) -> Self {
+        values.into_iter().take(N).collect()
+    }
+
+    fn all(&self) -> &[T] {
+        self
+    }
+
+    fn all_mut(&mut self) -> &mut [T] {
+        self
+    }
+}
+
+impl<T> Listed for Arc<[T]> {
+    type Each = T;
+
+    fn of(values: Vec<T>) -> Self {
+        Self::from(values)
+    }
+
+    fn all(&self) -> &[T] {
+        self
+    }
+}
+
+impl<L: Listed, C: Codec<L::Each>> Codec<L> for List<C> {
+    fn read(&self, node: Node<'_>, _: Option<&L>) -> Option<L> {
+        self.read_all(node).map(L::of)
+    }
+
+    fn write(&self, values: &L) -> RonText {
+        RonText::List(values.all().iter().map(|value| self.each.write(value)).collect())
+    }
+
+    fn shape(&self) -> FieldType {
         let least = self.few.map_or(0, |(least, ..)| least);
         FieldType::List { count: (least, self.most), each: Box::new(self.each.shape()) }
     }
 
-    pub(crate) fn turn_all<T>(&self, values: &mut [T], hand: &mut Hand<'_>)
-    where
-        C: Codec<T>,
-    {
-        for (index, value) in values.iter_mut().enumerate().filter(|_| self.turns) {
+    fn stand_in(&self) -> L {
+        L::of(Vec::new())
+    }
+
+    fn turn(&self, values: &mut L, _: &'static str, hand: &mut Hand<'_>) {
+        for (index, value) in values.all_mut().iter_mut().enumerate().filter(|_| self.turns) {
             hand.part(&format!("{} {}", self.entry, index + 1), |hand| {
                 self.each.turn(value, "", hand);
             });
         }
-    }
-}
-
-impl<T, C: Codec<T>, const N: usize> Codec<ArrayVec<T, N>> for List<C> {
-    fn read(&self, node: Node<'_>, _: Option<&ArrayVec<T, N>>) -> Option<ArrayVec<T, N>> {
-        self.read_all(node).map(|read| read.into_iter().take(N).collect())
-    }
-
-    fn write(&self, values: &ArrayVec<T, N>) -> RonText {
-        self.write_all(values)
-    }
-
-    fn shape(&self) -> FieldType {
-        self.described()
-    }
-
-    fn stand_in(&self) -> ArrayVec<T, N> {
-        ArrayVec::new()
-    }
-
-    fn turn(&self, values: &mut ArrayVec<T, N>, _: &'static str, hand: &mut Hand<'_>) {
-        self.turn_all(values, hand);
-    }
-}
-
-impl<T, C: Codec<T>> Codec<Arc<[T]>> for List<C> {
-    fn read(&self, node: Node<'_>, _: Option<&Arc<[T]>>) -> Option<Arc<[T]>> {
-        self.read_all(node).map(Arc::from)
-    }
-
-    fn write(&self, values: &Arc<[T]>) -> RonText {
-        self.write_all(values.iter())
-    }
-
-    fn shape(&self) -> FieldType {
-        self.described()
-    }
-
-    fn stand_in(&self) -> Arc<[T]> {
-        Arc::from([])
     }
 }

@@ -80,7 +80,7 @@ impl<T: Record> Codec<T> for Flat {
 /// One of several records, by its name; its name alone says nothing of its fields.
 pub(crate) struct OneOf;
 
-impl<T: Variants + Default> Codec<T> for OneOf {
+impl<T: Variants> Codec<T> for OneOf {
     fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
         let (name, mut fields) = node.variant(T::NAMES)?;
         let read = T::read_fields(name, &mut fields, base);
@@ -103,7 +103,7 @@ impl<T: Variants + Default> Codec<T> for OneOf {
     }
 
     fn stand_in(&self) -> T {
-        T::default()
+        T::stand_in()
     }
 
     fn turn(&self, value: &mut T, name: &'static str, hand: &mut Hand<'_>) {

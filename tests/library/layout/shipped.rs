@@ -12,7 +12,7 @@ use underfoot::glam::Vec2;
 use underfoot::layout::{Colour, Layout, Shape, Widget};
 use underfoot::schema::{
     Diagnostics, Effects, Kinds, Loaded, builtin_layout, builtin_layouts, load_layout, parse_floor,
-    parse_layout,
+    parse_layout, write_floor, write_layout,
 };
 use underfoot::units::Newtons;
 use underfoot::widget::{Behaviour, Track};
@@ -31,6 +31,21 @@ fn ron_files(folder: &str) -> Vec<PathBuf> {
     files.retain(|path| path.extension().is_some_and(|extension| extension == "ron"));
     files.sort();
     files
+}
+
+/// Another program's reader of RON can read what is shipped and what is written.
+#[test]
+fn files_are_ordinary_ron() {
+    let options = ron::Options::default().with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+    let files = ["layouts", "widgets", "effects", "src/sim/scenarios"].into_iter().flat_map(ron_files);
+    let mut texts: Vec<String> = files.map(|path| fs::read_to_string(path).unwrap()).collect();
+    texts.push(write_layout(&shipped("all_controls")));
+    texts.push(write_floor(&Floor::default()));
+    assert!(texts.len() > 50);
+    for text in texts {
+        let read: Result<serde::de::IgnoredAny, _> = options.from_str(&text);
+        assert!(read.is_ok(), "{text}\n{read:?}");
+    }
 }
 
 #[test]
