@@ -1,15 +1,15 @@
 //! How a sensor's counts become newtons.
 
 use std::fmt;
-use std::ops::RangeInclusive;
 
-use super::laws::{Divider, Exponential, Linear, Power};
+use super::laws::{self, Divider, Exponential, Linear, Power};
 use super::significant::Significant;
+use crate::format::choices;
 use crate::units::Newtons;
 
-/// The law of one force sensor, with the part's own two numbers.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Calibration {
+choices! {
+    /// The law of one force sensor, with the part's own two numbers.
+    pub enum Calibration: Copy;
     /// `f = a exp(b v)`, the paper's.
     Exponential(Exponential),
     /// `f = a v^b`.
@@ -33,15 +33,6 @@ pub enum LawKind {
     Linear,
 }
 
-/// One of a law's two numbers, as floor files have it.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Parameter {
-    /// Its name in floor files, with its unit.
-    pub name: &'static str,
-    /// What a part may have; beyond it no force sensor is known, or single precision ends.
-    pub range: RangeInclusive<f64>,
-}
-
 impl Calibration {
     /// The part underfoot assumes where nothing was measured: exponential, 0.5 N at 0 V, 406 N at 5 V (our choice).
     pub const NOMINAL: Self = Self::Exponential(Exponential::NOMINAL);
@@ -58,7 +49,7 @@ impl Calibration {
         Self::Exponential(Exponential { a_n, b_per_volt })
     }
 
-    /// The law of this kind with its two numbers, in the order of [`LawKind::parameters`].
+    /// The law of this kind with its two numbers, in the order of [`LawKind::number_names`].
     #[must_use]
     pub const fn of(kind: LawKind, [a, b]: [f32; 2]) -> Self {
         match kind {
@@ -80,7 +71,7 @@ impl Calibration {
         }
     }
 
-    /// Its two numbers, in the order of [`LawKind::parameters`].
+    /// Its two numbers, in the order of [`LawKind::number_names`].
     #[must_use]
     pub const fn numbers(&self) -> [f32; 2] {
         match *self {
@@ -95,8 +86,13 @@ impl Calibration {
     /// full scale.
     #[must_use]
     pub(crate) fn is_plausible(&self) -> bool {
-        let within = |(parameter, number): (Parameter, f32)| parameter.range.contains(&f64::from(number));
-        self.kind().parameters().into_iter().zip(self.numbers()).all(within)
+        let ranges = match self {
+            Self::Exponential(_) => laws::EXPONENTIAL,
+            Self::Power(_) => laws::POWER,
+            Self::Divider(_) => laws::DIVIDER,
+            Self::Linear(_) => laws::LINEAR,
+        };
+        ranges.iter().zip(self.numbers()).all(|(range, number)| range.holds(number))
             && self.force(u16::MAX).is_finite()
     }
 
@@ -190,6 +186,17 @@ impl LawKind {
         }
     }
 
+    /// The names of its two numbers in floor files, in the order of the formula.
+    #[must_use]
+    pub const fn number_names(self) -> [&'static str; 2] {
+        match self {
+            Self::Exponential => ["a_n", "b_per_volt"],
+            Self::Power => ["a_n", "exponent"],
+            Self::Divider => ["a_n", "supply_v"],
+            Self::Linear => ["a_n_per_volt", "zero_v"],
+        }
+    }
+
     /// Its formula: newtons of volts.
     #[must_use]
     pub const fn formula(self) -> &'static str {
@@ -199,20 +206,6 @@ impl LawKind {
             Self::Divider => "f = a v / (s - v)",
             Self::Linear => "f = a (v - z)",
         }
-    }
-
-    /// Its two numbers, in the order of the formula.
-    #[must_use]
-    pub fn parameters(self) -> [Parameter; 2] {
-        let (a, b) = match self {
-            // Parts that are hardly moved at 0 V have a small a and a large b: 10 N at 5 V with b = 14 is 4e-30 N.
-            Self::Exponential => (("a_n", 1e-30..=1e3), ("b_per_volt", 1e-3..=20.0)),
-            Self::Power => (("a_n", 1e-30..=1e6), ("exponent", 1e-2..=50.0)),
-            // A supply far beyond the converter's range leaves a straight line.
-            Self::Divider => (("a_n", 1e-3..=1e6), ("supply_v", 0.1..=1e3)),
-            Self::Linear => (("a_n_per_volt", 1e-3..=1e6), ("zero_v", -100.0..=100.0)),
-        };
-        [a, b].map(|(name, range)| Parameter { name, range })
     }
 }
 

@@ -2,17 +2,18 @@
 
 use glam::Vec2;
 
+use crate::format::{num, record};
 use crate::units::Newtons;
 
-/// The amplifiers behind a floor's actuators and the coils they drive, all alike.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Drive {
+record! {
+    /// The amplifiers behind a floor's actuators and the coils they drive, all alike.
+    pub struct Drive = "Drive", Copy;
     /// Voltage at an amplifier's output for a full-scale sample, in volts; positive.
-    pub full_scale_v: f32,
+    pub full_scale_v: f32 = "full_scale_v", num(0.01..=1000.0).explicit() => Drive::default().full_scale_v;
     /// Resistance of an actuator's coil, in ohms; positive.
-    pub load_ohm: f32,
+    pub load_ohm: f32 = "load_ohm", num(0.1..=1000.0).explicit() => Drive::default().load_ohm;
     /// Power that a coil takes for ever, in watts; positive.
-    pub long_term_w: f32,
+    pub long_term_w: f32 = "long_term_w", num(0.01..=10_000.0).explicit() => Drive::default().long_term_w;
 }
 
 impl Drive {

@@ -7,6 +7,7 @@ use serde::Serialize;
 use thiserror::Error;
 
 use super::Rect;
+use crate::format::Named;
 
 /// One tile, by column (east) and row (north), both from 0 at the south-west.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
@@ -75,6 +76,11 @@ impl Corner {
             Self::NorthEast => "ne",
         }
     }
+}
+
+impl Named for Corner {
+    const ALL: &'static [(&'static str, Self)] =
+        &[("Sw", Self::SouthWest), ("Se", Self::SouthEast), ("Nw", Self::NorthWest), ("Ne", Self::NorthEast)];
 }
 
 impl fmt::Display for Corner {

@@ -1,52 +1,66 @@
 //! The laws that force sensors follow: what a voltage stands for, in newtons.
 
-/// `f = a exp(b v)`: the law of the paper's conditioned force-sensing resistors.
-///
-/// # Source
-/// Paper, section 2.2; v in volts, f in newtons.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exponential {
+use crate::format::{Num, num, record};
+
+record! {
+    /// `f = a exp(b v)`: the law of the paper's conditioned force-sensing resistors.
+    ///
+    /// # Source
+    /// Paper, section 2.2; v in volts, f in newtons.
+    pub struct Exponential = "Exponential", Copy;
     /// Factor a, the force at no voltage, in newtons; positive.
-    pub a_n: f32,
+    pub a_n: f32 = "a_n", EXPONENTIAL[0] => Exponential::NOMINAL.a_n;
     /// Exponent b, per volt; positive.
-    pub b_per_volt: f32,
+    pub b_per_volt: f32 = "b_per_volt", EXPONENTIAL[1] => Exponential::NOMINAL.b_per_volt;
 }
 
-/// `f = a v^b`: a force-sensing resistor whose conductance grows with a power of the force, behind an amplifier
-/// that measures its current.
-///
-/// # Source
-/// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR Integration
-/// Guide, force against resistance); the current through it, and the amplifier's voltage, are then a power of the force.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Power {
+record! {
+    /// `f = a v^b`: a force-sensing resistor whose conductance grows with a power of the force, behind an amplifier
+    /// that measures its current.
+    ///
+    /// # Source
+    /// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR Integration
+    /// Guide, force against resistance); the current through it, and the amplifier's voltage, are then a power of the force.
+    pub struct Power = "Power", Copy;
     /// Factor a, the force at one volt, in newtons; positive.
-    pub a_n: f32,
+    pub a_n: f32 = "a_n", POWER[0];
     /// Exponent b; positive.
-    pub exponent: f32,
+    pub exponent: f32 = "exponent", POWER[1];
 }
 
-/// `f = a v / (s - v)`: a resistor whose conductance is in proportion to the force, in a voltage divider.
-///
-/// # Source
-/// `v = s R_m / (R_m + R)` (Interlink Electronics, FSR Integration Guide, voltage divider), with the supply s, the
-/// measuring resistor `R_m`, and `R = k / f`: solved for the force, `f = a v / (s - v)` with `a = k / R_m`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Divider {
+record! {
+    /// `f = a v / (s - v)`: a resistor whose conductance is in proportion to the force, in a voltage divider.
+    ///
+    /// # Source
+    /// `v = s R_m / (R_m + R)` (Interlink Electronics, FSR Integration Guide, voltage divider), with the supply s, the
+    /// measuring resistor `R_m`, and `R = k / f`: solved for the force, `f = a v / (s - v)` with `a = k / R_m`.
+    pub struct Divider = "Divider", Copy;
     /// Factor a, the force at half of the supply, in newtons; positive.
-    pub a_n: f32,
+    pub a_n: f32 = "a_n", DIVIDER[0];
     /// Supply s of the divider, in volts; positive.
-    pub supply_v: f32,
+    pub supply_v: f32 = "supply_v", DIVIDER[1];
 }
 
-/// `f = a (v - z)`: a load cell behind its amplifier, or any part that is linear already.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Linear {
+record! {
+    /// `f = a (v - z)`: a load cell behind its amplifier, or any part that is linear already.
+    pub struct Linear = "Linear", Copy;
     /// Slope a, in newtons per volt; positive.
-    pub a_n_per_volt: f32,
+    pub a_n_per_volt: f32 = "a_n_per_volt", LINEAR[0];
     /// Zero z, the voltage at no force.
-    pub zero_v: f32,
+    pub zero_v: f32 = "zero_v", LINEAR[1];
 }
+
+// What a part may have; beyond it no force sensor is known, or single precision ends.
+
+/// Parts that are hardly moved at 0 V have a small a and a large b: 10 N at 5 V with b = 14 is 4e-30 N.
+pub(super) const EXPONENTIAL: [Num; 2] = [num(1e-30..=1e3).explicit(), num(1e-3..=20.0).explicit()];
+
+pub(super) const POWER: [Num; 2] = [num(1e-30..=1e6), num(1e-2..=50.0)];
+
+/// A supply far beyond the converter's range leaves a straight line.
+pub(super) const DIVIDER: [Num; 2] = [num(1e-3..=1e6), num(0.1..=1e3)];
+
+pub(super) const LINEAR: [Num; 2] = [num(1e-3..=1e6), num(-100.0..=100.0)];
 
 impl Exponential {
     /// The part underfoot assumes where nothing was measured: 0.5 N at 0 V, 406 N at 5 V (our choice).

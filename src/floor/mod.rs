@@ -16,7 +16,7 @@ mod record;
 mod rect;
 mod significant;
 
-pub use calibration::{Calibration, LawKind, Parameter};
+pub use calibration::{Calibration, LawKind};
 pub use contact_id::ContactId;
 pub use drive::{Drive, Loudspeaker, Response};
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
@@ -26,3 +26,4 @@ pub use network::{Network, NotANetwork};
 pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
+pub(crate) use {network::NETWORK, record::DAY};

@@ -6,6 +6,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::format::codec::Spelled;
+
 /// One address or a range of them, in CIDR notation (RFC 4632).
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct Network {
@@ -13,6 +15,16 @@ pub struct Network {
     /// How many leading bits count: at most 32, or 128 for IPv6.
     bits: u8,
 }
+
+/// A network as files write it.
+pub(crate) const NETWORK: Spelled<Network> = Spelled {
+    about: "an address or a range of them in quotes, \"192.168.1.0/24\"",
+    parse: |text| text.parse().ok(),
+    wrong: |_, text| format!("{text:?} is not a network"),
+    expected: "expected an address or a range of them",
+    help: |_| Some("write \"192.168.1.20\" or \"192.168.1.0/24\"".to_owned()),
+    stand_in: Network::LOOPBACK[0],
+};
 
 /// Why a text is not a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]

@@ -5,6 +5,8 @@ use std::str::FromStr;
 
 use thiserror::Error;
 
+use crate::format::codec::Spelled;
+
 /// A day of the calendar, in UTC; written `2026-11-20`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Day {
@@ -12,6 +14,16 @@ pub struct Day {
     month: u8,
     day: u8,
 }
+
+/// A day as files write it.
+pub(crate) const DAY: Spelled<Day> = Spelled {
+    about: "a day in quotes, \"2026-11-20\"",
+    parse: |text| text.parse().ok(),
+    wrong: |name, _| format!("`{name}` is no day"),
+    expected: "expected year-month-day",
+    help: |_| Some("write \"2026-11-20\"".to_owned()),
+    stand_in: Day { year: 1970, month: 1, day: 1 },
+};
 
 /// Something that is not a day.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]

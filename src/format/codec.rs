@@ -1,12 +1,16 @@
 //! What is written for one field, as a value that reads and writes it.
 
+mod distinct;
 mod list;
 mod nested;
 mod num;
+mod written;
 
+pub(crate) use self::distinct::{Distinct, Seen};
 pub(crate) use self::list::{List, list};
-pub(crate) use self::nested::{Flat, OneOf, Rec};
+pub(crate) use self::nested::{Beside, Flat, OneOf, Rec};
 pub(crate) use self::num::{Num, Scalar, num};
+pub(crate) use self::written::{At, Spelled, Written};
 use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;

@@ -58,6 +58,8 @@ pub enum FieldType {
     Record(fn() -> Description),
     /// One of several names, with named fields in round brackets.
     Variants(fn() -> Vec<Description>),
+    /// One of several names, whose fields stand beside it.
+    Beside(fn() -> Vec<Description>),
     /// What words say best.
     Words(&'static str),
 }
@@ -103,6 +105,10 @@ impl FieldType {
                 });
                 names.collect::<Vec<_>>().join(" | ")
             }
+            Self::Beside(describe) => {
+                let names: Vec<&str> = describe().iter().map(|variant| variant.name).collect();
+                format!("{}, its fields beside it", names.join(" | "))
+            }
             Self::Words(words) => (*words).to_owned(),
         }
     }
@@ -112,7 +118,7 @@ impl FieldType {
     pub fn parts(&self) -> Vec<Description> {
         match self {
             Self::Record(describe) => vec![describe()],
-            Self::Variants(describe) => describe(),
+            Self::Variants(describe) | Self::Beside(describe) => describe(),
             Self::List { each, .. } | Self::Pair(_, each) | Self::Optional(each) => each.parts(),
             Self::Number { .. } | Self::Flag | Self::Text(_) | Self::Names(_) | Self::Words(_) => Vec::new(),
         }

@@ -49,6 +49,20 @@ impl Faults {
         }
     }
 
+    /// Either of two `fields` must be written with the other one; `is` tells which are.
+    pub(crate) fn together(&mut self, fields: &'static [&'static str; 2], is: [bool; 2]) {
+        let (here, lacking) = match is {
+            [true, false] => (fields[0], fields[1]),
+            [false, true] => (fields[1], fields[0]),
+            _ => return,
+        };
+        self.error(
+            fields,
+            format!("`{here}` needs `{lacking}` beside it"),
+            format!("`{lacking}` is missing"),
+        );
+    }
+
     /// The first of two `fields` must not be less than the second.
     pub(crate) fn not_below(&mut self, fields: &'static [&'static str; 2], [high, low]: [f32; 2]) {
         let [high_name, low_name] = fields;

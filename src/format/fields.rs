@@ -33,6 +33,8 @@ pub(crate) struct Fields<'r> {
     failed: Vec<&'static str>,
     /// Those that follow from others.
     follow: Vec<&'static str>,
+    /// Whether it cannot be known which other fields are valid.
+    allows_unknown: bool,
 }
 
 struct FieldUse<'r> {
@@ -55,6 +57,7 @@ impl<'r> Fields<'r> {
             missing: Vec::new(),
             failed: Vec::new(),
             follow: Vec::new(),
+            allows_unknown: false,
         }
     }
 
@@ -122,6 +125,16 @@ impl<'r> Fields<'r> {
         self.follow.push(name);
     }
 
+    /// Whether nothing could be made of one of these fields.
+    pub(crate) fn have_failed(&self, names: &[&str]) -> bool {
+        self.failed.iter().any(|failed| names.contains(failed))
+    }
+
+    /// Notes that it cannot be known which other fields are valid.
+    pub(crate) fn allow_unknown(&mut self) {
+        self.allows_unknown = true;
+    }
+
     /// Whether something could be made of every field.
     pub(crate) fn are_read(&self) -> bool {
         self.failed.is_empty()
@@ -176,26 +189,19 @@ impl<'r> Fields<'r> {
     }
 
     /// Reports fields nobody asked for, and those that were asked for and are missing.
+    ///
+    /// Where it cannot be known which fields are valid, only those are reported that look like one that is missing.
     pub(crate) fn finish(mut self) {
         let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
         for written in unknown {
             let name = &*written.field.name.name;
+            let known = if self.allows_unknown { &self.missing } else { &self.known };
+            let meant = nearest(name, known.iter().copied());
             // A misspelt field is not missing as well.
-            if let Some(meant) = nearest(name, self.known.iter().copied()) {
-                self.missing.retain(|missing| *missing != meant);
-            }
-            self.report_unknown(written, did_you_mean(name, &self.known, '`'));
-        }
-        self.report_missing();
-    }
-
-    /// Like [`Fields::finish`] where it cannot be known which other fields are valid:
-    /// reports only fields that look like one that is missing.
-    pub(crate) fn finish_leniently(mut self) {
-        let unknown: Vec<&FieldUse<'r>> = self.written.iter().filter(|written| !written.taken).collect();
-        for written in unknown {
-            if let Some(meant) = nearest(&written.field.name.name, self.missing.iter().copied()) {
-                self.missing.retain(|missing| *missing != meant);
+            self.missing.retain(|missing| Some(*missing) != meant);
+            if !self.allows_unknown {
+                self.report_unknown(written, did_you_mean(name, &self.known, '`'));
+            } else if let Some(meant) = meant {
                 self.report_unknown(written, Some(format!("did you mean `{meant}`?")));
             }
         }

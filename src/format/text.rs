@@ -65,7 +65,8 @@ pub(crate) fn number(value: f32, scale: f64) -> String {
         return "0".to_owned();
     }
     if scale == 1.0 {
-        return format!("{value}");
+        let is_small = value != 0.0 && value.abs() < 1e-4;
+        return if is_small { format!("{value:e}") } else { format!("{value}") };
     }
     // Most are whole hundredths; those that are not need all digits, found by trying.
     let written = f64::from(value) * scale;

@@ -2,7 +2,7 @@
 
 /// The unit of a field, by the end of its name, with a space before it; empty if it has none.
 pub(crate) fn unit(field: &str) -> &'static str {
-    const UNITS: [(&str, &str); 19] = [
+    const UNITS: [(&str, &str); 21] = [
         ("_n_s_m", " N s/m"),
         ("_n_m", " N/m"),
         ("_kg", " kg"),
@@ -22,6 +22,8 @@ pub(crate) fn unit(field: &str) -> &'static str {
         ("_s", " s"),
         ("_db", " dB"),
         ("_v", " V"),
+        ("_ohm", " ohms"),
+        ("_w", " W"),
     ];
     UNITS.iter().find(|(end, _)| field.ends_with(end)).map_or("", |(_, unit)| unit)
 }

@@ -4,11 +4,8 @@ use super::Icon;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::format::describe::FieldType;
-use crate::format::node::Node;
-use crate::format::problem::Problem;
-use crate::format::text::Text;
-use crate::format::{Codec, Name, Named, Opt, record};
+use crate::format::codec::Spelled;
+use crate::format::{Name, Named, Opt, record};
 
 /// An opaque colour in sRGB, written `#rrggbb`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
@@ -97,11 +94,11 @@ record! {
     /// Outline of the face.
     pub shape: Shape = "shape", Name => Shape::Box;
     /// Face at rest.
-    pub face: Colour = "face", Hex => Look::PLAIN.face;
+    pub face: Colour = "face", HEX => Look::PLAIN.face;
     /// Face while pressed or on, and the filled part of a slider.
-    pub lit: Colour = "lit", Hex => Look::PLAIN.lit;
+    pub lit: Colour = "lit", HEX => Look::PLAIN.lit;
     /// Label and icon.
-    pub ink: Colour = "ink", Hex => Look::PLAIN.ink;
+    pub ink: Colour = "ink", HEX => Look::PLAIN.ink;
     /// Picture above the label, or instead of it.
     pub icon: Option<Icon> = "icon", Opt(Name) => None;
 }
@@ -118,17 +115,15 @@ impl Look {
 }
 
 /// A colour as files write it: `"#rrggbb"`.
-pub(crate) struct Hex;
-
-impl Codec<Colour> for Hex {
-    fn read(&self, node: Node<'_>, _: Option<&Colour>) -> Option<Colour> {
-        let text = node.text(64)?;
-        if let Ok(colour) = text.parse() {
-            return Some(colour);
-        }
+pub(crate) const HEX: Spelled<Colour> = Spelled {
+    about: "a colour in quotes, \"#rrggbb\"",
+    parse: |text| text.parse().ok(),
+    wrong: |name, _| format!("`{name}` must be a colour"),
+    expected: "expected \"#rrggbb\" with six hexadecimal digits",
+    help: |text| {
         let is_hex = |digits: &str| digits.bytes().all(|byte| byte.is_ascii_hexdigit());
         let digits = text.trim().trim_start_matches('#');
-        let help = match digits.len() {
+        match digits.len() {
             3 if is_hex(digits) => {
                 let doubled: String = digits.chars().flat_map(|digit| [digit, digit]).collect();
                 Some(format!("write all six digits: \"#{doubled}\""))
@@ -136,22 +131,7 @@ impl Codec<Colour> for Hex {
             6 if is_hex(digits) => Some(format!("write \"#{digits}\"")),
             8 if is_hex(digits) => Some("colours are opaque: leave out the last two digits".to_owned()),
             _ => None,
-        };
-        let message = format!("`{}` must be a colour", node.name);
-        let expected = "expected \"#rrggbb\" with six hexadecimal digits";
-        node.report(Problem::error(node.span(), message).expected(expected).help_if(help));
-        None
-    }
-
-    fn write(&self, colour: &Colour) -> Text {
-        Text::Plain(format!("\"{colour}\""))
-    }
-
-    fn shape(&self) -> FieldType {
-        FieldType::Words("a colour in quotes, \"#rrggbb\"")
-    }
-
-    fn stand_in(&self) -> Colour {
-        Colour::default()
-    }
-}
+        }
+    },
+    stand_in: Colour::rgb(0, 0, 0),
+};

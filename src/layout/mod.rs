@@ -12,7 +12,7 @@ mod region;
 
 pub use ground::Ground;
 pub use icon::Icon;
-pub(crate) use look::Hex;
+pub(crate) use look::HEX;
 pub use look::{Colour, Look, Shape};
 pub use page::Page;
 pub use region::{CursorRule, Region, Stance};

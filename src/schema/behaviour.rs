@@ -1,6 +1,5 @@
 //! What a control does, as its kind and its widget write it: the settings of its behaviour among their fields.
 
-use std::ops::RangeInclusive;
 use std::time::Duration;
 
 use super::fields::Fields;
@@ -44,9 +43,4 @@ fn check_guard(fields: &Fields<'_>, behaviour: &Behaviour) {
         let problem = Problem::warning(span, "a foot that walks across could run this control");
         fields.report(problem.expected("such a foot stays for up to 250 ms").help("write dwell_ms: 250"));
     }
-}
-
-/// A number of single precision within `range`.
-pub(super) fn single(node: Node<'_>, range: RangeInclusive<f64>) -> Option<f32> {
-    node.number(range).map(|number| number.single)
 }

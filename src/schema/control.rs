@@ -110,7 +110,8 @@ impl<'r> Grid<'r> {
             }
             // Which other fields it may have, only its kind could tell.
             None => {
-                fields.finish_leniently();
+                fields.allow_unknown();
+                fields.finish();
                 None
             }
         };

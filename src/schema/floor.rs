@@ -1,30 +1,21 @@
-//! Floor files: geometry and boards.
+//! Floor files: geometry, boards, sensors, actuators.
 
-use std::collections::HashMap;
-use std::ops::Range;
 use std::path::Path;
 
-use super::behaviour::single;
-use super::day;
 use super::diagnostic::Diagnostics;
-use super::fields::Fields;
-use super::floor_maps::maps;
-use super::floor_sensors::sensors;
-use super::floor_sound::sound;
+use super::floor_codecs::Measures;
+use super::floor_parts::{
+    ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
+};
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version;
-use crate::floor::{Board, Corner, Floor, Geometry, GeometryError, Network, SensorId, TileId};
-use crate::wire::MAX_CHANNELS;
-
-/// Most networks that boards may send from.
-const MAX_NETWORKS: usize = 256;
-
-/// Most boards of one floor.
-const MAX_BOARDS: usize = 16_384;
+use super::version::{self, FORMAT_VERSION, VERSION};
+use crate::floor::{Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
+use crate::format::codec::Distinct;
+use crate::format::{Flat, Opt, Rec, Record, list, record};
 
 /// The floor that the file at `path` describes.
 ///
@@ -43,8 +34,8 @@ pub fn load_floor(path: &Path) -> Result<Floor, Diagnostics> {
 /// Everything wrong with the text.
 pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
     let source = Source::new(name, text)?;
-    let reader = Reader::new(&source, "Floor", Limits::FLOOR);
-    if let Some(newer) = version::newer(&reader, "Floor") {
+    let reader = Reader::new(&source, FloorRecord::NAME, Limits::FLOOR);
+    if let Some(newer) = version::newer(&reader, FloorRecord::NAME) {
         return Err(newer);
     }
     let floor = reader.root("floor").and_then(floor);
@@ -52,304 +43,154 @@ pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
 }
 
 fn floor(node: Node<'_>) -> Option<Floor> {
-    let mut fields = node.fields("Floor")?;
-    fields.read("version", Some(1), version::read);
-    let geometry = geometry(&mut fields);
-    // A floor whose measures are wrong is read on as the paper's, but its tiles are not judged by that.
-    let mut floor = Floor::of(geometry.unwrap_or_default());
-    let grid = Grid { known: geometry };
-    let allow = fields.read("allow", Some(Vec::new()), allow);
-    let boards = fields.read("boards", Some(None), |node| boards(node, grid).map(Some));
-    let sensors = fields.read("sensors", Some(()), |node| sensors(node, grid, &mut floor));
-    let tared = fields.read("tared", Some(None), |node| day::read(node).map(Some));
-    let maps = fields.read("maps", Some(()), |node| maps(node, grid, &mut floor));
-    let sound = sound(&mut fields, grid, &mut floor);
+    let mut fields = node.fields(FloorRecord::NAME)?;
+    let record = FloorRecord::read_fields(&mut fields, None);
+    let good = fields.are_read();
     fields.finish();
-    geometry?;
-    sensors?;
-    maps?;
-    floor.tared = tared?;
-    floor.allow = allow?;
-    if let Some(boards) = boards? {
-        floor.boards = boards;
-    }
-    sound?;
-    Some(floor)
+    let floor = record.floor();
+    record.check_channels(node.reader, &floor);
+    good.then_some(floor)
 }
 
-fn geometry(fields: &mut Fields<'_>) -> Option<Geometry> {
-    let paper = Geometry::default();
-    let side = 1..=u32::from(Geometry::MAX_SIDE);
-    let columns = fields.read("columns", Some(paper.columns().into()), |node| node.whole(side.clone()));
-    let rows = fields.read("rows", Some(paper.rows().into()), |node| node.whole(side));
-    let tile = fields.read("tile_m", Some(paper.tile_m()), |node| single(node, 0.05..=5.0));
-    // Tiles of another size lie edge to edge unless told otherwise.
-    let pitch =
-        fields.read("pitch_m", Some(tile.unwrap_or(paper.pitch_m())), |node| single(node, 0.05..=10.0));
-    let inset = fields.read("sensor_inset_m", Some(paper.sensor_inset_m()), |node| single(node, 0.0..=2.5));
-    let built = Geometry::new(columns? as u16, rows? as u16, tile?, pitch?, inset?);
-    built
-        .map_err(|error| {
-            let field = match error {
-                GeometryError::Grid { .. } => "columns",
-                GeometryError::Tile(_) => "tile_m",
-                GeometryError::Pitch(_) => "pitch_m",
-                GeometryError::Inset(_) => "sensor_inset_m",
+record! {
+    /// A floor: where its tiles are and what is wired to them. Lengths are in metres, tiles are (column, row) from the
+    /// south-west.
+    pub(super) struct FloorRecord = "Floor";
+    /// The version of the format.
+    pub(super) version: u32 = "version", VERSION => FORMAT_VERSION;
+    /// Where tiles and sensors are.
+    pub(super) geometry: Geometry = "", Measures;
+    /// The boards; unless they are written, each row of tiles has its own, up to eight tiles a board.
+    pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
+    /// Networks that the boards' packets come from; this machine alone if there are none.
+    pub(super) allow: Vec<Network> = "allow", list("network", MAX_NETWORKS, NETWORK) => Vec::new();
+    /// When the floor was tared.
+    pub(super) tared: Option<Day> = "tared", Opt(DAY) => None;
+    /// What is known of sensors; those that are not listed are nominal.
+    pub(super) sensors: Vec<SensorRecord> = "sensors", SENSORS => Vec::new();
+    /// What pressed points taught of tiles.
+    pub(super) maps: Vec<MapEntry> = "maps", MAPS => Vec::new();
+    /// What drives the actuators.
+    pub(super) drive: Drive = "drive", Rec => Drive::default();
+    /// How strongly all actuators move that have no response of their own.
+    pub(super) response: ResponseRecord = "", Flat;
+    /// The actuators; unless they are written, each tile has one, channel by channel in tile order.
+    pub(super) actuators: Option<Vec<ActuatorRecord>> = "actuators", Opt(ACTUATORS) => None;
+    /// Loudspeakers beside the floor.
+    pub(super) loudspeakers: Vec<LoudspeakerRecord> = "loudspeakers", LOUDSPEAKERS => Vec::new();
+}
+
+/// Most networks that boards may send from.
+const MAX_NETWORKS: usize = 256;
+
+/// Most tiles of a floor.
+const TILES: usize = (Geometry::MAX_SIDE as usize).pow(2);
+
+const BOARDS: Distinct<BoardRecord> =
+    Distinct { entry: "board", most: 16_384, about: BoardRecord::told_apart };
+
+const SENSORS: Distinct<SensorRecord> = Distinct {
+    entry: "sensor",
+    most: TILES * Corner::ALL.len(),
+    about: |_, sensor, fields, seen| {
+        if !fields.have_failed(&["tile", "corner"]) {
+            seen.check(fields, format!("the sensor of {}", sensor.id()), fields.span("tile"));
+        }
+    },
+};
+
+const MAPS: Distinct<MapEntry> = Distinct {
+    entry: "map",
+    most: TILES,
+    about: |_, map, fields, seen| {
+        if !fields.have_failed(&["tile"]) {
+            seen.check(fields, format!("the map of tile {}", map.tile), fields.span("tile"));
+        }
+    },
+};
+
+const ACTUATORS: Distinct<ActuatorRecord> = Distinct {
+    entry: "actuator",
+    most: TILES,
+    about: |_, actuator, fields, seen| {
+        if !fields.have_failed(&["tile"]) {
+            seen.check(fields, format!("the actuator of tile {}", actuator.tile), fields.span("tile"));
+        }
+    },
+};
+
+const LOUDSPEAKERS: Distinct<LoudspeakerRecord> = Distinct {
+    entry: "loudspeaker",
+    most: Loudspeaker::MOST,
+    about: |_, loudspeaker, fields, seen| {
+        if !fields.have_failed(&["channel"]) {
+            let channel = &loudspeaker.channel;
+            seen.check(fields, format!("channel {}", channel.value), channel.at.clone());
+        }
+    },
+};
+
+impl FloorRecord {
+    /// The floor that it describes.
+    fn floor(&self) -> Floor {
+        let mut floor = Floor::of(self.geometry);
+        if let Some(boards) = &self.boards {
+            floor.boards = boards.iter().enumerate().map(|(number, board)| board.board(number)).collect();
+        }
+        self.sensors.iter().for_each(|sensor| sensor.apply(&mut floor));
+        self.maps.iter().for_each(|map| map.apply(&mut floor));
+        if let Some(actuators) = &self.actuators {
+            floor.actuators.fill(None);
+            actuators.iter().for_each(|actuator| actuator.apply(&mut floor));
+        }
+        for (own, actuator) in floor.responses.iter_mut().zip(&floor.actuators) {
+            if let (None, Some(actuator)) = (&own, actuator) {
+                *own = self.response.of(actuator.full_scale);
+            }
+        }
+        floor.tared = self.tared;
+        floor.allow.clone_from(&self.allow);
+        floor.drive = self.drive;
+        floor.loudspeakers = self.loudspeakers.iter().map(LoudspeakerRecord::loudspeaker).collect();
+        floor
+    }
+
+    /// The record of `floor`; what is as on [`Floor::of`] its geometry is left out.
+    pub(super) fn of(floor: &Floor) -> Self {
+        let usual = Floor::of(floor.geometry);
+        let boards = (floor.boards != usual.boards).then(|| {
+            (0..).zip(&floor.boards).map(|(number, board)| BoardRecord::of(board, number)).collect()
+        });
+        let (response, actuators) = all_actuators(floor);
+        let is_usual =
+            floor.actuators == usual.actuators && actuators.iter().all(|one| one.response.is_empty());
+        Self {
+            version: FORMAT_VERSION,
+            geometry: floor.geometry,
+            boards,
+            allow: floor.allow.clone(),
+            tared: floor.tared,
+            sensors: SensorRecord::all(floor),
+            maps: MapEntry::all(floor),
+            drive: floor.drive,
+            response,
+            actuators: (!is_usual).then_some(actuators),
+            loudspeakers: floor.loudspeakers.iter().map(LoudspeakerRecord::of).collect(),
+        }
+    }
+
+    /// Reports loudspeakers on the channels of actuators.
+    fn check_channels(&self, reader: &Reader<'_>, floor: &Floor) {
+        for channel in self.loudspeakers.iter().map(|loudspeaker| &loudspeaker.channel) {
+            let mut moved = floor.geometry.tiles().zip(&floor.actuators);
+            let is_taken = |(_, one): &(_, &Option<crate::floor::Actuator>)| {
+                one.is_some_and(|one| one.channel == channel.value)
             };
-            let problem = Problem::error(fields.span(field), error.to_string());
-            fields.report(problem.expected("no such floor can be built"));
-        })
-        .ok()
-}
-
-/// The tiles that a file may speak of; any if its geometry could not be read.
-#[derive(Clone, Copy)]
-pub(super) struct Grid {
-    pub(super) known: Option<Geometry>,
-}
-
-impl Grid {
-    /// The tile written as `(column, row)`.
-    pub(super) fn tile(self, node: Node<'_>) -> Option<TileId> {
-        let [column, row] = node.tuple("(column, row)")?;
-        self.tile_of(column, row)
-    }
-
-    fn tile_of(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
-        let most = u32::from(Geometry::MAX_SIDE);
-        let (columns, rows) =
-            self.known.map_or((most, most), |known| (known.columns().into(), known.rows().into()));
-        let column = Node { name: "column", ..column }.whole(0..=columns - 1);
-        let row = Node { name: "row", ..row }.whole(0..=rows - 1);
-        Some(TileId::new(column? as u16, row? as u16))
-    }
-}
-
-/// Where each of some things is first written.
-pub(super) struct Seen<T> {
-    first: HashMap<T, Range<usize>>,
-}
-
-impl<T: std::hash::Hash + Eq> Seen<T> {
-    pub(super) fn new() -> Self {
-        Self { first: HashMap::new() }
-    }
-
-    /// Reports that `thing`, which messages call `name`, has been written before.
-    pub(super) fn check(
-        &mut self,
-        reader: &Reader<'_>,
-        thing: T,
-        name: impl FnOnce() -> String,
-        span: Range<usize>,
-    ) {
-        match self.first.get(&thing) {
-            Some(first) => {
-                let problem = Problem::error(span, format!("{} comes twice", name()));
-                reader.report(problem.expected(format!("the first is on line {}", reader.line(first))));
-            }
-            None => {
-                self.first.insert(thing, span);
-            }
+            let Some((tile, _)) = moved.find(is_taken) else { continue };
+            let message = format!("channel {} moves tile {tile} already", channel.value);
+            let problem =
+                Problem::error(channel.at.clone(), message).expected("expected a channel of its own");
+            reader.report(problem.help(format!("channel {} is free", floor.channel_count())));
         }
-    }
-}
-
-/// Every element is read before the first that failed ends it, so that each is reported.
-fn all<T>(read: impl Iterator<Item = Option<T>>) -> Option<Vec<T>> {
-    let read: Vec<Option<T>> = read.collect();
-    read.into_iter().collect()
-}
-
-fn boards(node: Node<'_>, grid: Grid) -> Option<Vec<Board>> {
-    let nodes = node.list("board", MAX_BOARDS)?;
-    let mut addresses = Seen::new();
-    let mut wired = Seen::new();
-    all(nodes.into_iter().enumerate().map(|(number, node)| {
-        let mut fields = node.fields("Board")?;
-        let usual = usual_address(number);
-        let address = fields.read("address", Some(usual), address);
-        if let Some(address) = &address {
-            addresses.check(
-                node.reader,
-                address.clone(),
-                || format!("the address {address}"),
-                fields.span("address"),
-            );
-        }
-        let channels = match (fields.take("tiles"), fields.take("channels")) {
-            (Some(tiles), None) => tiles_of_board(tiles, grid),
-            (None, Some(channels)) => channels_of_board(channels, grid),
-            (None, None) => {
-                let problem = Problem::error(fields.start(), "this board has neither `tiles` nor `channels`");
-                let help = "add tiles: [(0, 0), (1, 0)]: four channels each, sw se nw ne";
-                fields.report(problem.expected("what does it measure?").help(help));
-                None
-            }
-            (Some(_), Some(_)) => {
-                let problem =
-                    Problem::error(fields.span("channels"), "a board has `tiles` or `channels`, not both");
-                fields.report(problem.expected("one too many"));
-                None
-            }
-        };
-        fields.finish();
-        let channels = channels?;
-        for (sensor, span) in channels.iter().flatten() {
-            wired.check(node.reader, *sensor, || format!("the sensor of {sensor}"), span.clone());
-        }
-        let channels = channels.into_iter().map(|channel| channel.map(|(sensor, _)| sensor)).collect();
-        Some(Board { address: address?, channels })
-    }))
-}
-
-/// The address of the board of this number, unless told otherwise.
-pub(super) fn usual_address(number: usize) -> String {
-    format!("/underfoot/board/{number}")
-}
-
-/// What each channel of a board measures, and where that is written.
-type Channels = Vec<Option<(SensorId, Range<usize>)>>;
-
-/// Tiles as `(column, row)`, each with its four sensors in the usual order.
-fn tiles_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
-    let tiles = node.list("tile", MAX_CHANNELS / Corner::ALL.len())?;
-    let sensors = all(tiles.into_iter().map(|node| {
-        let tile = grid.tile(node)?;
-        Some(Corner::ALL.map(|corner| Some((SensorId { tile, corner }, node.span()))))
-    }))?;
-    Some(sensors.into_iter().flatten().collect())
-}
-
-/// Sensors as `(column, row, Sw)`, or `None` for a channel without one.
-fn channels_of_board(node: Node<'_>, grid: Grid) -> Option<Channels> {
-    all(node.list("channel", MAX_CHANNELS)?.into_iter().map(|node| {
-        if node.is_none() {
-            return Some(None);
-        }
-        let [column, row, name] = node.tuple("(column, row, corner)")?;
-        let tile = grid.tile_of(column, row);
-        let corner = corner(Node { name: "corner", ..name });
-        Some(Some((SensorId { tile: tile?, corner: corner? }, node.span())))
-    }))
-}
-
-pub(super) fn corner(node: Node<'_>) -> Option<Corner> {
-    let [sw, se, nw, ne] = Corner::ALL;
-    node.choice(&[("Sw", sw), ("Se", se), ("Nw", nw), ("Ne", ne)])
-}
-
-/// Networks, such as `["192.168.1.0/24"]`.
-fn allow(node: Node<'_>) -> Option<Vec<Network>> {
-    all(node.list("network", MAX_NETWORKS)?.into_iter().map(|node| {
-        let text = node.text(64)?;
-        let read = text.parse();
-        if read.is_err() {
-            let problem = Problem::error(node.span(), format!("{text:?} is not a network"));
-            let expected = "expected an address or a range of them";
-            node.report(problem.expected(expected).help("write \"192.168.1.20\" or \"192.168.1.0/24\""));
-        }
-        read.ok()
-    }))
-}
-
-/// An OSC address that stands for itself: no pattern characters.
-fn address(node: Node<'_>) -> Option<String> {
-    let text = node.text(255)?;
-    let legal = |c: char| c.is_ascii_alphanumeric() || matches!(c, '/' | '_' | '-' | '.');
-    if text.len() > 1 && text.starts_with('/') && !text.ends_with('/') && text.chars().all(legal) {
-        return Some(text.to_owned());
-    }
-    let problem = Problem::error(node.span(), "`address` is no OSC address");
-    let expected = "expected parts of a-z, A-Z, 0-9, `_`, `-` and `.`, each after a `/`";
-    node.report(problem.expected(expected).help("write \"/underfoot/board/0\""));
-    None
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::write_floor;
-    use super::*;
-    use crate::floor::{Actuator, Calibration};
-    use crate::units::Newtons;
-
-    fn read(text: &str) -> Floor {
-        parse_floor(text, "floor.ron").unwrap_or_else(|problems| panic!("{problems}"))
-    }
-
-    #[test]
-    fn an_empty_description_is_the_papers_floor() {
-        assert_eq!(read("Floor()"), Floor::default());
-        assert_eq!(read("()"), Floor::default());
-        assert_eq!(read(&write_floor(&Floor::default())), Floor::default());
-    }
-
-    #[test]
-    fn a_grid_of_another_size_is_wired_row_by_row() {
-        let floor = read("Floor(columns: 10, rows: 2, tile_m: 0.5)");
-        assert_eq!(floor, Floor::of(Geometry::new(10, 2, 0.5, 0.5, 0.02).unwrap()));
-    }
-
-    #[test]
-    fn what_is_listed_replaces_what_would_be_assumed() {
-        let floor = read(
-            "Floor(columns: 2, rows: 1,
-                allow: [\"10.0.0.5\", \"192.168.1.0/24\"],
-                boards: [
-                    (tiles: [(1, 0)]),
-                    (address: \"/lab/west\", channels: [(0, 0, Ne), None, (0, 0, Sw)]),
-                ],
-                sensors: [(tile: (0, 0), corner: Ne, a_n: 0.7, tare_n: 12.5)],
-                actuators: [(tile: (1, 0), channel: 7, full_scale_n: 55)],
-            )",
-        );
-        let sensor = |column, corner| Some(SensorId { tile: TileId::new(column, 0), corner });
-        assert_eq!(floor.boards[0].address, "/underfoot/board/0");
-        assert_eq!(floor.boards[0].channels, Corner::ALL.map(|corner| sensor(1, corner)));
-        assert_eq!(floor.boards[1].address, "/lab/west");
-        assert_eq!(
-            floor.boards[1].channels,
-            [sensor(0, Corner::NorthEast), None, sensor(0, Corner::SouthWest)]
-        );
-        let part = Calibration::exponential(0.7, 1.34);
-        assert_eq!(floor.calibration[0][Corner::NorthEast.index()], part);
-        assert_eq!(floor.calibration[0][0], Calibration::NOMINAL);
-        assert_eq!(floor.tare[0][Corner::NorthEast.index()], Newtons(12.5));
-        assert_eq!(floor.actuators, [None, Some(Actuator { channel: 7, full_scale: Newtons(55.0) })]);
-        assert_eq!(floor.allow, ["10.0.0.5", "192.168.1.0/24"].map(|text| text.parse().unwrap()));
-        assert_eq!(read(&write_floor(&floor)), floor);
-    }
-
-    #[test]
-    fn a_written_floor_can_be_edited_by_people() {
-        let mut floor = Floor::of(Geometry::of_paper_tiles(2, 1).unwrap());
-        floor.boards[0].channels.truncate(4);
-        floor.calibration[1][2] = Calibration::exponential(0.52, 1.34);
-        floor.actuators[0] = None;
-        insta::assert_snapshot!(write_floor(&floor), @r#"
-        // A floor: where its tiles are and what is wired to them.
-        // Tiles are (column, row) from the south-west, lengths in metres, forces in newtons.
-        Floor(
-            version: 1,
-            columns: 2,
-            rows: 1,
-            tile_m: 0.304,
-            pitch_m: 0.304,
-            sensor_inset_m: 0.02,
-
-            // Which tiles, or which sensors, are on the channels of each board.
-            boards: [
-                (tiles: [(0, 0)]),
-            ],
-            // f = a exp(b v) with v in volts, then the tare is taken off. Sensors that are not listed are nominal.
-            sensors: [
-                (tile: (1, 0), corner: Nw, a_n: 0.52, b_per_volt: 1.34, tare_n: 0.0),
-            ],
-            // Output channels; tiles that are not listed have no actuator.
-            actuators: [
-                (tile: (1, 0), channel: 1, full_scale_n: 40.0),
-            ],
-        )
-        "#);
     }
 }

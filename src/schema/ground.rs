@@ -19,7 +19,7 @@ use crate::floor::Geometry;
 use crate::format::describe::Description;
 use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
-use crate::layout::{Colour, Ground, Hex};
+use crate::layout::{Colour, Ground, HEX};
 
 /// Most grounds of one layout: each has state for every tile.
 const MOST: usize = 16;
@@ -66,8 +66,8 @@ impl GroundDefinition {
             Placed::read(&mut fields).map(Some)
         };
         let seed = fields.read("seed", Some(1), |node| node.whole(0..=u32::MAX));
-        let surface = fields.read("surface", Some(surface), |node| Hex.read(node, None));
-        let deep = fields.read("deep", Some(deep), |node| Hex.read(node, None));
+        let surface = fields.read("surface", Some(surface), |node| HEX.read(node, None));
+        let deep = fields.read("deep", Some(deep), |node| HEX.read(node, None));
         let material = match standard {
             Material::Ice(base) => Material::Ice(IceSpec::read_fields(&mut fields, Some(&base))),
             Material::Grain(base) => Material::Grain(GrainSpec::read_fields(&mut fields, Some(&base))),

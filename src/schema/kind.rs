@@ -145,11 +145,10 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
     };
     let look = fields.read("look", Some(base_look), |node| node.record(Some(&base_look)));
     let feel = fields.read("feel", Some(base_feel.clone()), |node| node.record(Some(&base_feel)));
-    if knows_fields {
-        fields.finish();
-    } else {
-        fields.finish_leniently();
+    if !knows_fields {
+        fields.allow_unknown();
     }
+    fields.finish();
     Some(Kind { name: name?.to_owned(), behaviour: behaviour?, feel: feel?, look: look? })
 }
 

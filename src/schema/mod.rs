@@ -17,12 +17,12 @@ mod builtin;
 mod chain;
 mod checks;
 mod control;
-mod day;
 mod effect;
 mod floor;
-mod floor_maps;
-mod floor_sensors;
-mod floor_sound;
+mod floor_codecs;
+mod floor_parts;
+#[cfg(test)]
+mod floor_tests;
 mod floor_text;
 mod goto;
 mod ground;

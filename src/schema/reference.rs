@@ -76,6 +76,11 @@ pub fn reference() -> Vec<Chapter> {
             "What the floor seems to be made of: in `grounds`, each with `at`, `size`, `seed`, `surface` and `deep`.",
             ground::describe(),
         ),
+        Chapter::new(
+            "floors",
+            "A real or simulated floor: a file for `--floor`.",
+            vec![super::floor::FloorRecord::describe()],
+        ),
     ];
     #[cfg(feature = "sim")]
     {
@@ -145,7 +150,8 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     let _ = writeln!(text, "{} {name}\n\n{}\n", "#".repeat(level), plain(about));
     for field in fields {
         let default = match &field.default {
-            Some(default) if default == "()" => String::new(),
+            // Tables are too long to tell.
+            Some(default) if default == "()" || default.len() > 100 => String::new(),
             Some(default) => format!("; {default} where nothing is written"),
             None => "; must be written".to_owned(),
         };

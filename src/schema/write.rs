@@ -5,7 +5,7 @@ use crate::floor::Rect;
 use crate::format::text::{Entry, Text};
 use crate::format::{Codec, Name, Rec, Record, Variants};
 use crate::ground::Material;
-use crate::layout::{Ground, Hex, Layout, Widget};
+use crate::layout::{Ground, HEX, Layout, Widget};
 
 /// The file that describes `layout`, in metres; [`super::parse_layout`] reads it again.
 ///
@@ -91,8 +91,8 @@ fn ground(ground: &Ground) -> Text {
     let mut entries = Vec::new();
     place(ground.spec.area, &mut entries);
     entries.push(("seed", bare(&ground.spec.seed.to_string())));
-    entries.push(("surface", Hex.write(&ground.surface)));
-    entries.push(("deep", Hex.write(&ground.deep)));
+    entries.push(("surface", HEX.write(&ground.surface)));
+    entries.push(("deep", HEX.write(&ground.deep)));
     match &ground.spec.material {
         Material::Ice(spec) => spec.write_fields(&mut entries),
         Material::Grain(spec) => spec.write_fields(&mut entries),

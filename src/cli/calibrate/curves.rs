@@ -234,8 +234,8 @@ fn law_as_json(candidate: &Candidate) -> Value {
 fn add_numbers(value: &mut Value, fit: Option<Fit>) {
     let (Some(fit), Some(fields)) = (fit, value.as_object_mut()) else { return };
     let law = fit.calibration;
-    for (parameter, number) in law.kind().parameters().into_iter().zip(law.numbers()) {
-        fields.insert(parameter.name.to_owned(), json!(number));
+    for (name, number) in law.kind().number_names().into_iter().zip(law.numbers()) {
+        fields.insert(name.to_owned(), json!(number));
     }
 }
 

@@ -1,7 +1,7 @@
 //! Records within records.
 
 use super::Codec;
-use crate::format::describe::{FieldDescription, FieldType};
+use crate::format::describe::{FieldDescription, FieldType, first_paragraph};
 use crate::format::fields::Fields;
 use crate::format::hand::Hand;
 use crate::format::node::Node;
@@ -74,6 +74,76 @@ impl<T: Record> Codec<T> for Flat {
 
     fn describe_field(&self, _: &'static str, _: &[&str], _: Option<T>, fields: &mut Vec<FieldDescription>) {
         fields.extend(T::describe().fields);
+    }
+}
+
+/// One of several records, by its name; its fields stand beside that.
+pub(crate) struct Beside;
+
+impl<T: Variants> Codec<T> for Beside {
+    fn read(&self, node: Node<'_>, base: Option<&T>) -> Option<T> {
+        OneOf.read(node, base)
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        OneOf.write(value)
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Beside(T::describe)
+    }
+
+    fn stand_in(&self) -> T {
+        T::stand_in()
+    }
+
+    fn turn(&self, value: &mut T, _: &'static str, hand: &mut Hand<'_>) {
+        value.turn_fields(hand);
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        base: Option<&T>,
+        default: Option<T>,
+    ) -> T {
+        let base = base.or(default.as_ref());
+        let all: Vec<_> = T::NAMES.iter().map(|name| (*name, *name)).collect();
+        let chosen = match fields.take(name) {
+            Some(node) => node.choice(&all),
+            None => {
+                if base.is_none() {
+                    fields.lack(name);
+                }
+                base.map(T::variant)
+            }
+        };
+        chosen.and_then(|chosen| T::read_fields(chosen, fields, base)).unwrap_or_else(|| {
+            fields.fail(name);
+            // Which other fields there may be, only the name could tell.
+            fields.allow_unknown();
+            base.cloned().unwrap_or_else(T::stand_in)
+        })
+    }
+
+    fn write_field(&self, value: &T, name: &'static str, default: Option<T>, entries: &mut Vec<Entry>) {
+        if default.is_none_or(|default| default.variant() != value.variant()) {
+            entries.push((name, RonText::Plain(value.variant().to_owned())));
+        }
+        value.write_fields(entries);
+    }
+
+    fn describe_field(
+        &self,
+        name: &'static str,
+        about: &[&str],
+        default: Option<T>,
+        fields: &mut Vec<FieldDescription>,
+    ) {
+        let default = default.map(|default| default.variant().to_owned());
+        let shape = Codec::<T>::shape(self);
+        fields.push(FieldDescription { name, about: first_paragraph(about), shape, default });
     }
 }
 

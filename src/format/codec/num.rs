@@ -8,7 +8,7 @@ use crate::format::describe::FieldType;
 use crate::format::hand::Hand;
 use crate::format::node::Node;
 use crate::format::number::Number;
-use crate::format::text::{Text as RonText, number};
+use crate::format::text::{Entry, Text as RonText, number};
 use crate::units::Newtons;
 
 /// A number. Its unit follows from the end of its field's name.
@@ -20,6 +20,8 @@ pub(crate) struct Num {
     pub(in crate::format) hand: (f64, f64),
     /// What a value is multiplied with to be in the unit of files.
     pub(in crate::format) scale: f64,
+    /// Whether it is written even where it is as its default: a file is to mean the same should that change.
+    explicit: bool,
     /// Whether it keeps to what bounds such numbers ([`super::node::Within`]).
     pub(in crate::format) bounded: bool,
 }
@@ -27,7 +29,7 @@ pub(crate) struct Num {
 /// A number within `range`, in the unit of files.
 pub(crate) const fn num(range: RangeInclusive<f64>) -> Num {
     let range = (*range.start(), *range.end());
-    Num { range, hand: range, scale: 1.0, bounded: false }
+    Num { range, hand: range, scale: 1.0, explicit: false, bounded: false }
 }
 
 impl Num {
@@ -44,6 +46,16 @@ impl Num {
     /// Degrees in files, radians in values.
     pub(crate) const fn degrees(self) -> Self {
         Self { scale: 180.0 / std::f64::consts::PI, ..self }
+    }
+
+    /// Written even where it is as its default.
+    pub(crate) const fn explicit(self) -> Self {
+        Self { explicit: true, ..self }
+    }
+
+    /// Whether a file may hold `value`.
+    pub(crate) fn holds(&self, value: f32) -> bool {
+        (self.range.0..=self.range.1).contains(&f64::from(value))
     }
 
     /// Keeps to what bounds such numbers in the record around it.
@@ -170,6 +182,12 @@ impl<T: Scalar> Codec<T> for Num {
 
     fn shape(&self) -> FieldType {
         FieldType::Number { range: self.range, whole: T::WHOLE }
+    }
+
+    fn write_field(&self, value: &T, name: &'static str, default: Option<T>, entries: &mut Vec<Entry>) {
+        if self.explicit || default.as_ref() != Some(value) {
+            entries.push((name, self.write(value)));
+        }
     }
 
     fn stand_in(&self) -> T {

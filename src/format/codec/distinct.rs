@@ -1,0 +1,97 @@
+//! Records in a list, each about a thing of its own.
+
+use std::collections::HashMap;
+use std::ops::Range;
+
+use super::{Codec, Rec};
+use crate::format::describe::FieldType;
+use crate::format::fields::Fields;
+use crate::format::node::Node;
+use crate::format::problem::Problem;
+use crate::format::record::Record;
+use crate::format::text::Text as RonText;
+
+/// Records in square brackets, no two of which may be about the same thing.
+///
+/// What is wrong between those that can be read is found although others can't.
+pub(crate) struct Distinct<T> {
+    /// What messages call one of them.
+    pub(crate) entry: &'static str,
+    pub(crate) most: usize,
+    /// Tells what one is about, by its number in the list.
+    pub(crate) about: fn(usize, &T, &Fields<'_>, &mut Seen),
+}
+
+/// Where each of some things is first written.
+#[derive(Default)]
+pub(crate) struct Seen(HashMap<String, Range<usize>>);
+
+impl Seen {
+    /// Reports that what messages call `thing` has been written before.
+    pub(crate) fn check(&mut self, fields: &Fields<'_>, thing: String, span: Range<usize>) {
+        match self.0.get(&thing) {
+            Some(first) => {
+                let problem = Problem::error(span, format!("{thing} comes twice"));
+                let first = format!("the first is on line {}", fields.reader().line(first));
+                fields.report(problem.expected(first));
+            }
+            None => drop(self.0.insert(thing, span)),
+        }
+    }
+}
+
+impl<T: Record> Distinct<T> {
+    /// Those that can be read, and whether that is all of them.
+    fn read_good(&self, node: Node<'_>) -> (Vec<T>, bool) {
+        let Some(nodes) = node.list(self.entry, self.most) else { return (Vec::new(), false) };
+        let (mut seen, mut all) = (Seen::default(), true);
+        let mut read = |(number, node): (usize, Node<'_>)| {
+            let mut fields = node.fields(T::NAME)?;
+            let one = T::read_fields(&mut fields, None);
+            (self.about)(number, &one, &fields, &mut seen);
+            let good = fields.are_read();
+            fields.finish();
+            good.then_some(one)
+        };
+        let good = nodes.into_iter().enumerate().filter_map(|numbered| {
+            let one = read(numbered);
+            all &= one.is_some();
+            one
+        });
+        (good.collect(), all)
+    }
+}
+
+impl<T: Record> Codec<Vec<T>> for Distinct<T> {
+    fn read(&self, node: Node<'_>, _: Option<&Vec<T>>) -> Option<Vec<T>> {
+        let (good, all) = self.read_good(node);
+        all.then_some(good)
+    }
+
+    fn write(&self, values: &Vec<T>) -> RonText {
+        RonText::List(values.iter().map(|value| Rec.write(value)).collect())
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::List { count: (0, self.most), each: Box::new(FieldType::Record(T::describe)) }
+    }
+
+    fn stand_in(&self) -> Vec<T> {
+        Vec::new()
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        _: Option<&Vec<T>>,
+        default: Option<Vec<T>>,
+    ) -> Vec<T> {
+        let Some(node) = fields.take(name) else { return default.unwrap_or_default() };
+        let (good, all) = self.read_good(node);
+        if !all {
+            fields.fail(name);
+        }
+        good
+    }
+}

@@ -1,0 +1,93 @@
+//! Values that remember where they are written, and values that texts stand for.
+
+use std::fmt::Display;
+use std::ops::Range;
+
+use super::Codec;
+use crate::format::describe::FieldType;
+use crate::format::node::Node;
+use crate::format::problem::Problem;
+use crate::format::text::Text as RonText;
+
+/// A value, and the bytes where it is written; wherever that is, the same value is equal.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Written<T> {
+    pub(crate) value: T,
+    /// Empty if it is written nowhere.
+    pub(crate) at: Range<usize>,
+}
+
+impl<T: PartialEq> PartialEq for Written<T> {
+    fn eq(&self, other: &Self) -> bool {
+        self.value == other.value
+    }
+}
+
+impl<T> From<T> for Written<T> {
+    fn from(value: T) -> Self {
+        Self { value, at: 0..0 }
+    }
+}
+
+/// What is written so, and where.
+pub(crate) struct At<C>(pub(crate) C);
+
+impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
+    fn read(&self, node: Node<'_>, base: Option<&Written<T>>) -> Option<Written<T>> {
+        let value = self.0.read(node, base.map(|base| &base.value))?;
+        Some(Written { value, at: node.span() })
+    }
+
+    fn write(&self, written: &Written<T>) -> RonText {
+        self.0.write(&written.value)
+    }
+
+    fn shape(&self) -> FieldType {
+        self.0.shape()
+    }
+
+    fn stand_in(&self) -> Written<T> {
+        self.0.stand_in().into()
+    }
+}
+
+/// A value that a text in quotes stands for.
+pub(crate) struct Spelled<T> {
+    /// What the text must be, for people.
+    pub(crate) about: &'static str,
+    pub(crate) parse: fn(&str) -> Option<T>,
+    /// What is said of the field of this name that holds another text.
+    pub(crate) wrong: fn(&str, &str) -> String,
+    pub(crate) expected: &'static str,
+    /// What to do about that text.
+    pub(crate) help: fn(&str) -> Option<String>,
+    /// Any value.
+    pub(crate) stand_in: T,
+}
+
+/// Longest text that stands for a value, in characters.
+const LONGEST: usize = 255;
+
+impl<T: Clone + Display> Codec<T> for Spelled<T> {
+    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+        let text = node.text(LONGEST)?;
+        let value = (self.parse)(text);
+        if value.is_none() {
+            let problem = Problem::error(node.span(), (self.wrong)(node.name, text));
+            node.report(problem.expected(self.expected).help_if((self.help)(text)));
+        }
+        value
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        RonText::Plain(format!("{:?}", value.to_string()))
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Text(self.about.to_owned())
+    }
+
+    fn stand_in(&self) -> T {
+        self.stand_in.clone()
+    }
+}

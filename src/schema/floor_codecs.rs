@@ -1,0 +1,264 @@
+//! How floor files write tiles, channels and tables.
+
+use std::sync::Arc;
+
+use super::fields::Fields;
+use super::node::Node;
+use super::problem::Problem;
+use crate::floor::{Corner, Geometry, GeometryError, Response, SensorId, TileId};
+use crate::format::describe::{FieldDescription, FieldType};
+use crate::format::text::{Entry, Text};
+use crate::format::{Codec, Follow, Name, Num, Opt, Record, num, record};
+
+record! {
+    /// Where tiles and sensors are.
+    struct MeasuresRecord = "Measures";
+    /// Tiles from west to east.
+    columns: u16 = "columns", SIDE => Geometry::default().columns();
+    /// Tiles from south to north.
+    rows: u16 = "rows", SIDE => Geometry::default().rows();
+    /// Side of a tile.
+    tile_m: f32 = "tile_m", num(0.05..=5.0).explicit() => Geometry::default().tile_m();
+    /// From one tile's middle to the next one's.
+    pitch_m: Option<f32> = "pitch_m", Follow { explicit: Opt(num(0.05..=10.0)), otherwise: "as `tile_m`" };
+    /// From a tile's edges to its sensors.
+    inset_m: f32 = "sensor_inset_m", num(0.0..=2.5).explicit() => Geometry::default().sensor_inset_m();
+}
+
+const SIDE: Num = num(1.0..=Geometry::MAX_SIDE as f64).explicit();
+
+/// The measures of a floor among its fields; tiles that come after them must be on that floor.
+pub(super) struct Measures;
+
+impl Codec<Geometry> for Measures {
+    fn read(&self, node: Node<'_>, _: Option<&Geometry>) -> Option<Geometry> {
+        node.record(None).map(|record: MeasuresRecord| record.built().unwrap_or_default())
+    }
+
+    fn write(&self, geometry: &Geometry) -> Text {
+        let mut entries = Vec::new();
+        self.write_field(geometry, "", None, &mut entries);
+        Text::Fields("", entries)
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Record(MeasuresRecord::describe)
+    }
+
+    fn stand_in(&self) -> Geometry {
+        Geometry::default()
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        _: Option<&Geometry>,
+        _: Option<Geometry>,
+    ) -> Geometry {
+        let record = MeasuresRecord::read_fields(fields, None);
+        let known = fields.are_read().then(|| record.built()).and_then(|built| {
+            built
+                .map_err(|error| {
+                    let field = match error {
+                        GeometryError::Grid { .. } => "columns",
+                        GeometryError::Tile(_) => "tile_m",
+                        GeometryError::Pitch(_) => "pitch_m",
+                        GeometryError::Inset(_) => "sensor_inset_m",
+                    };
+                    let problem = Problem::error(fields.span(field), error.to_string());
+                    fields.report(problem.expected("no such floor can be built"));
+                    fields.fail(name);
+                })
+                .ok()
+        });
+        // A floor whose measures are wrong is read on as the paper's, but its tiles are not judged by that.
+        fields.reader().know(Arc::new(Grid { known }));
+        known.unwrap_or_default()
+    }
+
+    fn write_field(
+        &self,
+        geometry: &Geometry,
+        _: &'static str,
+        _: Option<Geometry>,
+        entries: &mut Vec<Entry>,
+    ) {
+        let record = MeasuresRecord {
+            columns: geometry.columns(),
+            rows: geometry.rows(),
+            tile_m: geometry.tile_m(),
+            pitch_m: Some(geometry.pitch_m()),
+            inset_m: geometry.sensor_inset_m(),
+        };
+        record.write_fields(entries);
+    }
+
+    fn describe_field(
+        &self,
+        _: &'static str,
+        _: &[&str],
+        _: Option<Geometry>,
+        fields: &mut Vec<FieldDescription>,
+    ) {
+        fields.extend(MeasuresRecord::describe().fields);
+    }
+}
+
+impl MeasuresRecord {
+    fn built(&self) -> Result<Geometry, GeometryError> {
+        let Self { columns, rows, tile_m, pitch_m, inset_m } = *self;
+        Geometry::new(columns, rows, tile_m, pitch_m.unwrap_or(tile_m), inset_m)
+    }
+}
+
+/// The tiles that a file may speak of; any if its geometry could not be read.
+#[derive(Clone, Copy, Default)]
+struct Grid {
+    known: Option<Geometry>,
+}
+
+impl Grid {
+    fn tile(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
+        let most = u32::from(Geometry::MAX_SIDE);
+        let (columns, rows) =
+            self.known.map_or((most, most), |known| (known.columns().into(), known.rows().into()));
+        let column = Node { name: "column", ..column }.whole(0..=columns - 1);
+        let row = Node { name: "row", ..row }.whole(0..=rows - 1);
+        Some(TileId::new(column? as u16, row? as u16))
+    }
+}
+
+/// A tile, as `(column, row)`.
+pub(super) struct Tile;
+
+impl Codec<TileId> for Tile {
+    fn read(&self, node: Node<'_>, _: Option<&TileId>) -> Option<TileId> {
+        let [column, row] = node.tuple("(column, row)")?;
+        node.reader.known::<Grid>().tile(column, row)
+    }
+
+    fn write(&self, tile: &TileId) -> Text {
+        Text::Plain(tile.to_string())
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Words("(column, row), each a whole number from 0")
+    }
+
+    fn stand_in(&self) -> TileId {
+        TileId::new(0, 0)
+    }
+}
+
+/// The sensor on a channel, as `(column, row, corner)`, or `None`.
+pub(super) struct Channel;
+
+impl Codec<Option<SensorId>> for Channel {
+    fn read(&self, node: Node<'_>, _: Option<&Option<SensorId>>) -> Option<Option<SensorId>> {
+        if node.is_none() {
+            return Some(None);
+        }
+        let [column, row, name] = node.tuple("(column, row, corner)")?;
+        let tile = node.reader.known::<Grid>().tile(column, row);
+        let corner: Option<Corner> = Name.read(Node { name: "corner", ..name }, None);
+        Some(Some(SensorId { tile: tile?, corner: corner? }))
+    }
+
+    fn write(&self, sensor: &Option<SensorId>) -> Text {
+        Text::Plain(sensor.map_or("None".to_owned(), |SensorId { tile, corner }| {
+            format!("({}, {}, {})", tile.column, tile.row, Name.write(&corner).inline())
+        }))
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Words("(column, row, Sw), or None for a channel without a sensor")
+    }
+
+    fn stand_in(&self) -> Option<SensorId> {
+        None
+    }
+}
+
+/// Lists of numbers, each from minus this to this.
+pub(super) struct Table(pub(super) f32);
+
+impl<const ROWS: usize, const COLUMNS: usize> Codec<[[f32; COLUMNS]; ROWS]> for Table {
+    fn read(&self, node: Node<'_>, _: Option<&[[f32; COLUMNS]; ROWS]>) -> Option<[[f32; COLUMNS]; ROWS]> {
+        let most = f64::from(self.0);
+        let number = |node: Node<'_>| node.number(-most..=most).map(|number| number.single);
+        exactly(node, |row| exactly(row, number))
+    }
+
+    fn write(&self, table: &[[f32; COLUMNS]; ROWS]) -> Text {
+        Text::Plain(format!("{table:?}"))
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Words("lists of numbers that were measured")
+    }
+
+    fn stand_in(&self) -> [[f32; COLUMNS]; ROWS] {
+        [[0.0; COLUMNS]; ROWS]
+    }
+}
+
+/// What `read` makes of all entries, if there are as many as there must be and each could be read.
+fn exactly<'r, T, const COUNT: usize>(
+    node: Node<'r>,
+    read: impl Fn(Node<'r>) -> Option<T>,
+) -> Option<[T; COUNT]> {
+    let entries: Vec<Option<T>> = node.list(node.name, usize::MAX)?.into_iter().map(read).collect();
+    if entries.len() != COUNT {
+        let problem = Problem::error(node.span(), format!("`{}` has {} entries", node.name, entries.len()));
+        node.report(problem.expected(format!("expected {COUNT}")));
+        return None;
+    }
+    let entries: Option<Vec<T>> = entries.into_iter().collect();
+    entries?.try_into().ok()
+}
+
+/// Pairs of hertz, which rise, and a gain from the first to the second of these.
+pub(super) struct Points(pub(super) f64, pub(super) f64);
+
+impl Codec<Vec<(f32, f32)>> for Points {
+    fn read(&self, node: Node<'_>, _: Option<&Vec<(f32, f32)>>) -> Option<Vec<(f32, f32)>> {
+        let nodes = node.list("point", Response::MOST_POINTS)?;
+        if nodes.len() < 2 {
+            let problem = Problem::error(node.span(), format!("`{}` has too few points", node.name));
+            node.report(
+                problem.expected("expected 2 or more").help("write [(50, -3.5), (100, 0), (750, -6)]"),
+            );
+            return None;
+        }
+        let single = |node: Node<'_>, range| node.number(range).map(|number| number.single);
+        let mut last = 0.0;
+        let mut point = |node: Node<'_>| {
+            let [hz, gain] = node.tuple("(hertz, gain)")?;
+            let hz = single(Node { name: "hertz", ..hz }, 1.0..=20_000.0);
+            let gain = single(Node { name: "gain", ..gain }, self.0..=self.1);
+            let (hz, gain) = (hz?, gain?);
+            if hz <= last {
+                let problem = Problem::error(node.span(), "the hertz of a response must rise");
+                node.report(problem.expected(format!("expected more than {last}")));
+                return None;
+            }
+            last = hz;
+            Some((hz, gain))
+        };
+        let points: Vec<Option<(f32, f32)>> = nodes.into_iter().map(&mut point).collect();
+        points.into_iter().collect()
+    }
+
+    fn write(&self, points: &Vec<(f32, f32)>) -> Text {
+        Text::Plain(format!("{points:?}"))
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Words("a list of 2 to 1024 pairs (hertz, gain), by frequency")
+    }
+
+    fn stand_in(&self) -> Vec<(f32, f32)> {
+        Vec::new()
+    }
+}

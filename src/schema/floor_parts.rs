@@ -1,0 +1,311 @@
+//! The parts of floor files: boards, sensors, position maps, actuators, loudspeakers.
+
+use glam::Vec2;
+
+use super::fields::Fields;
+use super::floor_codecs::{Channel, Points, Table, Tile};
+use crate::floor::{
+    Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
+    PositionMap, Response, SensorId, TileId,
+};
+use crate::format::codec::{At, Beside, Seen, Spelled, Written};
+use crate::format::{Faults, Flat, Name, Num, Opt, Pair, list, num, record};
+use crate::units::Newtons;
+use crate::wire::MAX_CHANNELS;
+
+record! {
+    /// A board: what it measures, as whole tiles or sensor by sensor.
+    pub(super) struct BoardRecord = "Board" => BoardRecord::rules;
+    /// OSC address of its packets; `/underfoot/board/` and its number, from 0, unless it is written.
+    address: Option<String> = "address", Opt(ADDRESS) => None;
+    /// Tiles, each with four channels in the order sw, se, nw, ne.
+    tiles: Option<Vec<Written<TileId>>> = "tiles",
+        Opt(list("tile", MAX_CHANNELS / Corner::ALL.len(), At(Tile))) => None;
+    /// The sensor on each channel, in the order of the packet's arguments.
+    channels: Option<Vec<Written<Option<SensorId>>>> = "channels",
+        Opt(list("channel", MAX_CHANNELS, At(Channel))) => None;
+}
+
+/// An OSC address that stands for itself: no pattern characters.
+const ADDRESS: Spelled<String> = Spelled {
+    about: "an OSC address in quotes",
+    parse: |text| {
+        let legal = |c: char| c.is_ascii_alphanumeric() || matches!(c, '/' | '_' | '-' | '.');
+        let is_address =
+            text.len() > 1 && text.starts_with('/') && !text.ends_with('/') && text.chars().all(legal);
+        is_address.then(|| text.to_owned())
+    },
+    wrong: |name, _| format!("`{name}` is no OSC address"),
+    expected: "expected parts of a-z, A-Z, 0-9, `_`, `-` and `.`, each after a `/`",
+    help: |_| Some("write \"/underfoot/board/0\"".to_owned()),
+    stand_in: String::new(),
+};
+
+/// The address of the board of this number, unless told otherwise.
+fn usual_address(number: usize) -> String {
+    format!("/underfoot/board/{number}")
+}
+
+impl BoardRecord {
+    fn rules(&mut self, faults: &mut Faults) {
+        match (&self.tiles, &self.channels) {
+            (None, None) => {
+                let message = "this board has neither `tiles` nor `channels`";
+                faults.error(&["tiles", "channels"], message, "what does it measure?");
+                faults.help("add tiles: [(0, 0), (1, 0)]: four channels each, sw se nw ne");
+            }
+            (Some(_), Some(_)) => {
+                let message = "a board has `tiles` or `channels`, not both";
+                faults.error(&["channels", "tiles"], message, "one too many");
+            }
+            _ => {}
+        }
+    }
+
+    /// No two boards have the same address, and no two channels the same sensor.
+    pub(super) fn told_apart(number: usize, board: &Self, fields: &Fields<'_>, seen: &mut Seen) {
+        if !fields.have_failed(&["address"]) {
+            let address = board.address.clone().unwrap_or_else(|| usual_address(number));
+            seen.check(fields, format!("the address {address}"), fields.span("address"));
+        }
+        for (sensor, span) in board.sensors() {
+            if let Some(sensor) = sensor {
+                seen.check(fields, format!("the sensor of {sensor}"), span);
+            }
+        }
+    }
+
+    /// What each channel measures, and where that is written.
+    fn sensors(&self) -> Vec<(Option<SensorId>, std::ops::Range<usize>)> {
+        let of_tile = |tile: &Written<TileId>| {
+            Corner::ALL.map(|corner| (Some(SensorId { tile: tile.value, corner }), tile.at.clone()))
+        };
+        match (&self.tiles, &self.channels) {
+            (Some(tiles), None) => tiles.iter().flat_map(of_tile).collect(),
+            (None, Some(channels)) => {
+                channels.iter().map(|channel| (channel.value, channel.at.clone())).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// The board of this number that it describes.
+    pub(super) fn board(&self, number: usize) -> Board {
+        let address = self.address.clone().unwrap_or_else(|| usual_address(number));
+        Board { address, channels: self.sensors().into_iter().map(|(sensor, _)| sensor).collect() }
+    }
+
+    pub(super) fn of(board: &Board, number: usize) -> Self {
+        let address = (board.address != usual_address(number)).then(|| board.address.clone());
+        // Tiles that have all four sensors in the usual order are written as such.
+        let whole = |four: &[Option<SensorId>]| {
+            let tile = four.first().copied().flatten()?.tile;
+            let usual = Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
+            (four == usual).then_some(tile.into())
+        };
+        let tiles: Option<Vec<Written<TileId>>> =
+            board.channels.chunks(Corner::ALL.len()).map(whole).collect();
+        let channels = board.channels.iter().map(|sensor| (*sensor).into());
+        let channels = tiles.is_none().then(|| channels.collect());
+        Self { address, tiles, channels }
+    }
+}
+
+record! {
+    /// What is known of one sensor.
+    pub(super) struct SensorRecord = "Sensor" => |it, faults| {
+        faults.together(&["calibrated", "residual"], [it.calibrated.is_some(), it.residual.is_some()]);
+    };
+    /// The tile above it.
+    tile: TileId = "tile", Tile;
+    /// The corner of the tile.
+    corner: Corner = "corner", Name;
+    /// How its voltage becomes newtons.
+    law: Calibration = "law", Beside => Calibration::NOMINAL;
+    /// What it reads on the empty floor.
+    tare: Newtons = "tare_n", num(-5000.0..=5000.0).explicit() => Newtons::ZERO;
+    /// When its law was measured.
+    calibrated: Option<Day> = "calibrated", Opt(DAY) => None;
+    /// Root mean square of the law's error, as a share of the greatest force measured.
+    residual: Option<f32> = "residual", Opt(num(0.0..=1e6)) => None;
+}
+
+impl SensorRecord {
+    pub(super) fn id(&self) -> SensorId {
+        SensorId { tile: self.tile, corner: self.corner }
+    }
+
+    pub(super) fn apply(&self, floor: &mut Floor) {
+        let (Some(tile), corner) = (floor.geometry.index(self.tile), self.corner.index()) else { return };
+        let record = self.calibrated.zip(self.residual);
+        let record = record.map(|(day, residual)| CalibrationRecord { day, residual });
+        if let (Some(laws), Some(tares), Some(records)) = (
+            floor.calibration.get_mut(tile),
+            floor.tare.get_mut(tile),
+            floor.calibration_records.get_mut(tile),
+        ) {
+            (laws[corner], tares[corner], records[corner]) = (self.law, self.tare, record);
+        }
+    }
+
+    /// All sensors of `floor` of which something is known.
+    pub(super) fn all(floor: &Floor) -> Vec<Self> {
+        let tiles = floor.calibration.iter().zip(&floor.tare).zip(&floor.calibration_records);
+        let sensors = floor.geometry.tiles().zip(tiles).flat_map(|(tile, ((laws, tares), records))| {
+            Corner::ALL.map(|corner| {
+                let index = corner.index();
+                let record = records[index];
+                Self {
+                    tile,
+                    corner,
+                    law: laws[index],
+                    tare: tares[index],
+                    calibrated: record.map(|record| record.day),
+                    residual: record.map(|record| record.residual),
+                }
+            })
+        });
+        let is_known = |sensor: &Self| {
+            sensor.law != Calibration::NOMINAL || sensor.tare != Newtons::ZERO || sensor.calibrated.is_some()
+        };
+        sensors.filter(is_known).collect()
+    }
+
+    pub(super) fn law(&self) -> Calibration {
+        self.law
+    }
+}
+
+record! {
+    /// What pressed points taught of one tile: measured, not edited.
+    pub(super) struct MapEntry = "Map" => |it, faults| {
+        faults.together(&["mapped", "residual_m"], [it.mapped.is_some(), it.residual_m.is_some()]);
+    };
+    /// The tile.
+    pub(super) tile: TileId = "tile", Tile;
+    /// When it was measured.
+    mapped: Option<Day> = "mapped", Opt(DAY) => None;
+    /// Error that all but 5 % of the points keep to with the map.
+    residual_m: Option<f32> = "residual_m", Opt(num(0.0..=10.0)) => None;
+    /// For each sensor, what is added to a factor of one at each of 21 loads.
+    trims: [[f32; PositionMap::TRIMS]; 4] = "trims", Table(PositionMap::MOST_TRIM) => PositionMap::NONE.trims;
+    /// For the shift east and north, what each of ten terms counts.
+    bends: [[f32; PositionMap::BENDS]; 2] = "bends", Table(PositionMap::MOST_BEND) => PositionMap::NONE.bends;
+}
+
+impl MapEntry {
+    pub(super) fn apply(&self, floor: &mut Floor) {
+        let Some(tile) = floor.geometry.index(self.tile) else { return };
+        let Self { trims, bends, .. } = *self;
+        let residual_m = self.residual_m.unwrap_or(PositionMap::SOME_RESIDUAL_M);
+        let record = self.mapped.zip(self.residual_m);
+        if let (Some(map), Some(old)) = (floor.position_maps.get_mut(tile), floor.map_records.get_mut(tile)) {
+            *map = Some(PositionMap { trims, bends, residual_m });
+            *old = record.map(|(day, residual_m)| MapRecord { day, residual_m });
+        }
+    }
+
+    /// Those of all tiles of `floor` that have one.
+    pub(super) fn all(floor: &Floor) -> Vec<Self> {
+        let maps = floor.geometry.tiles().zip(floor.position_maps.iter().zip(&floor.map_records));
+        let entry = |(tile, (map, record)): (TileId, (&Option<PositionMap>, &Option<MapRecord>))| {
+            let PositionMap { trims, bends, .. } = (*map)?;
+            let (mapped, residual_m) = (record.map(|it| it.day), record.map(|it| it.residual_m));
+            Some(Self { tile, mapped, residual_m, trims, bends })
+        };
+        maps.filter_map(entry).collect()
+    }
+}
+
+record! {
+    /// How strongly an actuator moves its plate.
+    pub(super) struct ResponseRecord = "Response" => |it, faults| {
+        if it.decibels.is_some() && it.newtons.is_some() {
+            let message = "there is `response_db` or `response_n`, not both";
+            faults.error(&["response_n", "response_db"], message, "one too many");
+        }
+    };
+    /// At each frequency, decibels relative to `full_scale_n`.
+    decibels: Option<Vec<(f32, f32)>> = "response_db", Opt(Points(-100.0, 60.0)) => None;
+    /// At each frequency, newtons of a full-scale sine.
+    newtons: Option<Vec<(f32, f32)>> = "response_n", Opt(Points(1e-4, 10_000.0)) => None;
+}
+
+impl ResponseRecord {
+    /// The response of an actuator that is meant to give `full_scale`; `None` if none is written.
+    pub(super) fn of(&self, full_scale: Newtons) -> Option<Response> {
+        let newtons = self.newtons.as_ref().and_then(|points| Response::of_newtons(points, full_scale));
+        newtons.or_else(|| Response::of(self.decibels.clone()?))
+    }
+
+    pub(super) fn is_empty(&self) -> bool {
+        self.decibels.is_none() && self.newtons.is_none()
+    }
+}
+
+record! {
+    /// The actuator under one tile.
+    pub(super) struct ActuatorRecord = "Actuator";
+    /// The tile.
+    pub(super) tile: TileId = "tile", Tile;
+    /// Output channel, from 0.
+    channel: u16 = "channel", CHANNEL;
+    /// Force at the plate for a full-scale sample.
+    full_scale: Newtons = "full_scale_n", num(0.1..=10_000.0).explicit() => Actuator::nominal(0).full_scale;
+    /// How strongly it moves its plate, where that is not as for all.
+    pub(super) response: ResponseRecord = "", Flat;
+}
+
+/// Output channels that a device may have.
+const CHANNEL: Num = num(0.0..=4095.0);
+
+impl ActuatorRecord {
+    pub(super) fn apply(&self, floor: &mut Floor) {
+        let Some(tile) = floor.geometry.index(self.tile) else { return };
+        let slots = (floor.actuators.get_mut(tile), floor.responses.get_mut(tile));
+        if let (Some(actuator), Some(response)) = slots {
+            *actuator = Some(Actuator { channel: self.channel, full_scale: self.full_scale });
+            *response = self.response.of(self.full_scale);
+        }
+    }
+}
+
+/// The response that all actuators of `floor` have in common, and the actuators with their own.
+pub(super) fn all_actuators(floor: &Floor) -> (ResponseRecord, Vec<ActuatorRecord>) {
+    let moved = || floor.actuators.iter().zip(&floor.responses).filter(|(actuator, _)| actuator.is_some());
+    let first = moved().next().and_then(|(_, response)| response.as_ref());
+    let common = first.filter(|first| moved().all(|(_, own)| own.as_ref() == Some(*first)));
+    let written = |response: Option<&Response>| ResponseRecord {
+        decibels: response.map(|response| response.points().to_vec()),
+        newtons: None,
+    };
+    let all = floor.geometry.tiles().zip(floor.actuators.iter().zip(&floor.responses));
+    let actuators = all.filter_map(|(tile, (actuator, own))| {
+        let Actuator { channel, full_scale } = (*actuator)?;
+        let response = written(own.as_ref().filter(|_| common.is_none()));
+        Some(ActuatorRecord { tile, channel, full_scale, response })
+    });
+    (written(common), actuators.collect())
+}
+
+record! {
+    /// A loudspeaker beside the floor.
+    pub(super) struct LoudspeakerRecord = "Loudspeaker";
+    /// Where it stands, from the floor's south-west corner; also outside of the floor.
+    at: Vec2 = "at_m", Pair { each: num(-1000.0..=1000.0), pattern: "(east, north)", parts: ["east", "north"] };
+    /// Output channel, from 0.
+    pub(super) channel: Written<u16> = "channel", At(CHANNEL);
+    /// How loud it is: at 0, a cue of 40 N that is heard in full is a full-scale sample.
+    gain_db: f32 = "gain_db", num(-60.0..=24.0).explicit() => 0.0;
+}
+
+impl LoudspeakerRecord {
+    pub(super) fn loudspeaker(&self) -> Loudspeaker {
+        Loudspeaker { at: self.at, channel: self.channel.value, gain_db: self.gain_db }
+    }
+
+    pub(super) fn of(loudspeaker: &Loudspeaker) -> Self {
+        let Loudspeaker { at, channel, gain_db } = *loudspeaker;
+        Self { at, channel: channel.into(), gain_db }
+    }
+}
