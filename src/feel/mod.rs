@@ -38,7 +38,6 @@ mod voice;
 pub use audition::{Gesture, Moment};
 pub use cue::{Cue, Spot, Spots, SustainedCue, SustainedCues};
 pub use device_status::{DeviceState, DeviceStatus, Priority};
-pub(crate) use effect::effect_at;
 pub use effect::{
     Band, Click, Clicks, CurvePoint, Detents, Effect, EffectKind, Effects, EndStop, Feel, Friction, Grains,
     Hum, Impulse, Lasting, Manner, Material, Mode, NamedEffect, Part, PartKind, Push, Resonance, Sequence,

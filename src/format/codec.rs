@@ -10,7 +10,7 @@ pub(crate) use self::distinct::{Distinct, Seen};
 pub(crate) use self::list::{List, list};
 pub(crate) use self::nested::{Beside, Flat, OneOf, Rec};
 pub(crate) use self::num::{Num, Scalar, num};
-pub(crate) use self::written::{At, Spelled, Written};
+pub(crate) use self::written::{At, By, Required, Spelled, Written};
 use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;
@@ -119,6 +119,27 @@ impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Text {
 
     fn shape(&self) -> FieldType {
         FieldType::Text(format!("text of at most {} characters", self.0))
+    }
+
+    fn stand_in(&self) -> T {
+        T::from("")
+    }
+}
+
+/// A name that can be part of an OSC address.
+pub(crate) struct Id;
+
+impl<T: for<'a> From<&'a str> + AsRef<str>> Codec<T> for Id {
+    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
+        node.id().map(T::from)
+    }
+
+    fn write(&self, value: &T) -> RonText {
+        Text(64).write(value)
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Text("1 to 64 of the characters a-z, 0-9 and _, in quotes".to_owned())
     }
 
     fn stand_in(&self) -> T {

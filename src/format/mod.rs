@@ -41,7 +41,7 @@ pub(crate) mod text;
 mod words;
 
 pub(crate) use codec::{
-    Codec, Flag, Flat, Follow, List, Name, Named, Num, OneOf, Opt, Own, Pair, Rec, Text, list, num,
+    Codec, Flag, Flat, Follow, Id, List, Name, Named, Num, OneOf, Opt, Own, Pair, Rec, Text, list, num,
 };
 pub(crate) use fault::Faults;
 pub(crate) use record::{Record, Variants, choices, record};

@@ -6,9 +6,13 @@ use std::ops::Range;
 use glam::Vec2;
 
 use super::fields::Fields;
+use super::node::Node;
 use super::number::plain;
 use super::units::Units;
 use crate::floor::{Geometry, Rect};
+use crate::format::Codec;
+use crate::format::describe::{FieldDescription, FieldType};
+use crate::format::text::Text;
 
 /// How far edges may miss each other and still count as touching, in tiles: far below any foot, far above rounding.
 const TOUCH: f64 = 1e-6;
@@ -132,7 +136,7 @@ impl fmt::Display for Area {
 }
 
 /// An area and where its `at` is written.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Placed {
     pub(super) area: Area,
     pub(super) at: Range<usize>,
@@ -142,6 +146,54 @@ impl Placed {
     pub(super) fn read(fields: &mut Fields<'_>) -> Option<Self> {
         let area = Area::read(fields)?;
         Some(Self { area, at: fields.span("at") })
+    }
+}
+
+/// The place of something in `at` and `size` among its fields; `None` if it could not be read.
+pub(super) struct Place;
+
+impl Codec<Option<Placed>> for Place {
+    fn read(&self, _: Node<'_>, base: Option<&Option<Placed>>) -> Option<Option<Placed>> {
+        base.cloned()
+    }
+
+    fn write(&self, _: &Option<Placed>) -> Text {
+        Text::List(Vec::new())
+    }
+
+    fn shape(&self) -> FieldType {
+        FieldType::Words("(east, north), in the layout's `units`")
+    }
+
+    fn stand_in(&self) -> Option<Placed> {
+        None
+    }
+
+    fn read_field(
+        &self,
+        fields: &mut Fields<'_>,
+        name: &'static str,
+        _: Option<&Option<Placed>>,
+        _: Option<Option<Placed>>,
+    ) -> Option<Placed> {
+        let place = Placed::read(fields);
+        if place.is_none() {
+            fields.fail(name);
+        }
+        place
+    }
+
+    fn describe_field(
+        &self,
+        _: &'static str,
+        _: &[&str],
+        _: Option<Option<Placed>>,
+        fields: &mut Vec<FieldDescription>,
+    ) {
+        for (name, about) in [("at", "Its south-west corner."), ("size", "Its width and depth.")] {
+            let shape = Codec::<Option<Placed>>::shape(self);
+            fields.push(FieldDescription { name, about: about.to_owned(), shape, default: None });
+        }
     }
 }
 

@@ -10,14 +10,33 @@ use super::area::{Area, Placed};
 use super::chain::Chains;
 use super::control::{Control, Grid, Size};
 use super::inherit::Choice;
-use super::lists::MAX_WIDGETS;
+use super::lists::{MAX_WIDGETS, Room};
 use super::node::Node;
 use super::place::{Beside, Placing, Spot};
 use super::problem::Problem;
 use super::suggest::{did_you_mean, nearest};
+use crate::format::codec::By;
+use crate::format::describe::FieldType;
+use crate::format::text::Text;
 
-/// The controls that the list at `node` stands for, in its own coordinates; `room` is how many there may be.
-pub(super) fn read(node: Node<'_>, kinds: &Choice<'_>, room: &mut usize) -> Vec<Control> {
+/// Entries of `widgets`, as the controls that they stand for.
+pub(super) const WIDGETS: By<Vec<Control>> = By {
+    shape: || FieldType::Words(WIDGET),
+    read: |node| {
+        let (kinds, room) = (node.reader.known(), node.reader.known());
+        Some(read(node, &kinds, &room))
+    },
+    write: |_| Text::List(Vec::new()),
+    stand_in: Vec::new,
+};
+
+/// An entry of `widgets`, for people.
+const WIDGET: &str = "a list of controls, each with `id`, `kind`, a place, `size`, `label`, `goto`, `repeat` and what it \
+    overrides of its kind, and of Group(...)s with `id`, a place and `widgets`; a place is `at`, or one of `right_of`, \
+    `left_of`, `above` and `below` with `gap` and `align`";
+
+/// The controls that the list at `node` stands for, in its own coordinates.
+fn read(node: Node<'_>, kinds: &Choice, room: &Room) -> Vec<Control> {
     let nodes = node.list("widget", MAX_WIDGETS).unwrap_or_default();
     let entries: Vec<Entry<'_>> =
         nodes.into_iter().filter_map(|node| Entry::read(node, kinds, room)).collect();
@@ -39,18 +58,18 @@ enum EntryContent<'r> {
 }
 
 impl<'r> Entry<'r> {
-    fn read(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
+    fn read(node: Node<'r>, kinds: &Choice, room: &Room) -> Option<Self> {
         if node.is_called("Group") || node.peek("Group", "widgets").is_some() {
             return Self::group(node, kinds, room);
         }
-        let mut grid = Grid::read(node, kinds, *room)?;
-        *room = room.saturating_sub(grid.controls.len());
+        let mut grid = Grid::read(node, kinds, room.left())?;
+        room.take(grid.controls.len());
         let placing =
             std::mem::replace(&mut grid.placing, Placing { spot: None, at: 0..0, is_relative: false });
         Some(Self { placing, name: None, body: EntryContent::Grid(grid) })
     }
 
-    fn group(node: Node<'r>, kinds: &Choice<'_>, room: &mut usize) -> Option<Self> {
+    fn group(node: Node<'r>, kinds: &Choice, room: &Room) -> Option<Self> {
         let mut fields = node.fields("Group")?;
         let name = fields.read("id", Some(None), |node| node.id().map(Some)).flatten();
         let placing = Placing::read(&mut fields);

@@ -13,7 +13,7 @@ use super::reader::Reader;
 use crate::floor::Geometry;
 
 /// Notes everything wrong between the parts of `page`, and between it and the floor.
-pub(super) fn check(reader: &Reader<'_>, page: &Page<'_>, geometry: &Geometry) {
+pub(super) fn check(reader: &Reader<'_>, page: &Page, geometry: &Geometry) {
     let floor = Area::of_floor(geometry, page.units);
     check_zones(reader, page, &floor);
     check_ids(reader, page);
@@ -47,16 +47,16 @@ impl Control {
     }
 }
 
-impl Zone<'_> {
+impl Zone {
     fn named(&self, noun: &str) -> String {
-        match self.name {
-            Some(name) if !name.is_empty() => format!("{noun} \"{name}\""),
-            _ => format!("this {noun}"),
+        match self.name.value.as_str() {
+            "" => format!("this {noun}"),
+            name => format!("{noun} \"{name}\""),
         }
     }
 }
 
-fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
+fn check_zones(reader: &Reader<'_>, page: &Page, floor: &Area) {
     for (index, region) in page.regions.iter().enumerate() {
         let Some(place) = &region.place else { continue };
         let name = region.named("region");
@@ -76,7 +76,7 @@ fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
         let Some(place) = &stance.place else { continue };
         let off = off_floor(page, &stance.named("stance zone"), place, floor);
         off.into_iter().for_each(|problem| reader.report(problem));
-        let inside = |zone: &&Zone<'_>| {
+        let inside = |zone: &&Zone| {
             zone.place.as_ref().is_some_and(|region| region.area.shared(&place.area).is_some())
         };
         if let Some(region) = page.regions.iter().find(inside) {
@@ -87,8 +87,10 @@ fn check_zones(reader: &Reader<'_>, page: &Page<'_>, floor: &Area) {
     }
 }
 
-fn check_ids(reader: &Reader<'_>, page: &Page<'_>) {
-    let regions = page.regions.iter().map(|zone| (zone.name, &zone.name_at));
+fn check_ids(reader: &Reader<'_>, page: &Page) {
+    let is_read = |zone: &&Zone| !zone.name.at.is_empty();
+    let regions = page.regions.iter().filter(is_read);
+    let regions = regions.map(|zone| (Some(zone.name.value.as_str()), &zone.name.at));
     check_unique(reader, "regions", regions);
     check_unique(
         reader,
@@ -116,7 +118,7 @@ fn check_unique<'a>(
 }
 
 /// What to say of something that is not all on the floor.
-fn off_floor(page: &Page<'_>, name: &str, place: &Placed, floor: &Area) -> Option<Problem> {
+fn off_floor(page: &Page, name: &str, place: &Placed, floor: &Area) -> Option<Problem> {
     if place.area.within(floor) {
         return None;
     }
@@ -127,7 +129,7 @@ fn off_floor(page: &Page<'_>, name: &str, place: &Placed, floor: &Area) -> Optio
 }
 
 /// What to say of a control that is not all in one region.
-fn outside_region(page: &Page<'_>, name: &str, place: &Placed) -> Option<Problem> {
+fn outside_region(page: &Page, name: &str, place: &Placed) -> Option<Problem> {
     match page.region_of(&place.area).and_then(|index| page.regions.get(index)) {
         Some(region) => {
             let within = region.place.as_ref().is_none_or(|outer| place.area.within(&outer.area));
@@ -152,7 +154,7 @@ fn outside_region(page: &Page<'_>, name: &str, place: &Placed) -> Option<Problem
 /// What to say of the first of the earlier controls that the one at `index` overlaps.
 fn overlapping(
     reader: &Reader<'_>,
-    page: &Page<'_>,
+    page: &Page,
     index: usize,
     name: &str,
     place: &Placed,

@@ -15,6 +15,7 @@ use super::repeat::{self, Cell, Repeat};
 use crate::layout::Icon;
 
 /// One control. What could not be read is `None` and has been reported.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Control {
     pub(super) id: Option<String>,
     pub(super) place: Option<Placed>,
@@ -28,7 +29,7 @@ pub(super) struct Control {
 }
 
 /// Where a control is written.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(not(feature = "ergonomics"), expect(dead_code, reason = "only a review points at these"))]
 pub(super) struct ControlSpans {
     pub(super) id: Range<usize>,
@@ -66,7 +67,7 @@ pub(super) struct Grid<'r> {
 
 impl<'r> Grid<'r> {
     /// The entry at `node`, of at most `room` controls.
-    pub(super) fn read(node: Node<'r>, kinds: &Choice<'_>, room: usize) -> Option<Self> {
+    pub(super) fn read(node: Node<'r>, kinds: &Choice, room: usize) -> Option<Self> {
         let mut fields = node.fields("Widget")?;
         let repeat = fields.read("repeat", Some(Some(None)), |node| Some(Repeat::read(node).map(Some)));
         let base = fields.read("kind", None, |node| kinds.named(node));

@@ -8,13 +8,17 @@ use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::kind::ron_files;
 use super::lists::MAX_WIDGETS;
-use super::node::{Node, is_id};
+use super::node::is_id;
 use super::pairs::Limits;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::version;
-use crate::feel::{Effect, Effects, NamedEffect, Use, effect_at};
+use super::version::{self, FORMAT_VERSION, VERSION};
+use crate::feel::{Effect, Effects, NamedEffect};
+use crate::format::codec::By;
+use crate::format::describe::FieldType;
+use crate::format::text::Text;
+use crate::format::{Flat, Record, record};
 
 /// The shipped ones, read once: balancing each takes a moment.
 static BUILTIN: LazyLock<Effects> = LazyLock::new(|| {
@@ -112,47 +116,55 @@ pub fn parse_effect(
     if let Some(newer) = version::newer(&reader, "Effect") {
         return Err(newer);
     }
-    let effect = reader.root("effect").and_then(read);
-    reader.conclude(effect)
+    let read: Option<EffectFile> = reader.root("effect").and_then(|node| node.record(None));
+    reader.conclude(read.map(|read| read.effect))
 }
 
-/// The named effect that is written at `node`.
-fn read(node: Node<'_>) -> Option<NamedEffect> {
-    let mut fields = node.fields("Effect")?;
-    fields.read("version", Some(1), version::read);
-    let name = fields.read("name", None, |node| node.id());
-    let about = fields.read("about", Some(""), |node| node.text(200));
-    let effect = fields.read("plays", None, |node| effect_at(node, None, Use::Once));
-    fields.finish();
-    Some(NamedEffect { name: name?.to_owned(), about: about?.to_owned(), effect: Arc::new(effect?) })
+record! {
+    /// An effect with a name: a file in `effects/`, or an entry of `effects` in a layout.
+    pub(super) struct EffectFile = "Effect";
+    /// The version of the format.
+    version: u32 = "version", VERSION => FORMAT_VERSION;
+    /// The effect.
+    effect: NamedEffect = "", Flat;
 }
 
-/// From now on the reader also knows the effects of a layout's own list.
-pub(super) fn list(node: Node<'_>) {
-    let mut known = (*node.reader.known::<Effects>()).clone();
-    let mut here: BTreeMap<String, usize> = BTreeMap::new();
-    for node in node.list("effect", MAX_WIDGETS).unwrap_or_default() {
-        let Some(effect) = read(node) else { continue };
-        let line = node.reader.line(&node.span());
-        if let Some(first) = here.insert(effect.name.clone(), line) {
-            let span = node.peek("Effect", "name").map_or(node.span(), |name| name.span());
-            let problem = Problem::error(span, format!("two effects are called \"{}\"", effect.name));
-            node.report(problem.expected(format!("the first is on line {first}")));
+/// A layout's own effects, each of which may be made of the ones before it.
+pub(super) const OWN_EFFECTS: By<()> = By {
+    shape: || FieldType::List {
+        count: (0, MAX_WIDGETS),
+        each: Box::new(FieldType::Record(EffectFile::describe)),
+    },
+    read: |node| {
+        let mut known = (*node.reader.known::<Effects>()).clone();
+        let mut here: BTreeMap<String, usize> = BTreeMap::new();
+        for node in node.list("effect", MAX_WIDGETS).unwrap_or_default() {
+            let Some(EffectFile { effect, .. }) = node.record(None) else { continue };
+            let line = node.reader.line(&node.span());
+            if let Some(first) = here.insert(effect.name.clone(), line) {
+                let span = node.peek("Effect", "name").map_or(node.span(), |name| name.span());
+                let problem = Problem::error(span, format!("two effects are called \"{}\"", effect.name));
+                node.report(problem.expected(format!("the first is on line {first}")));
+            }
+            known.insert(effect);
+            node.reader.know(Arc::new(known.clone()));
         }
-        known.insert(effect);
-        // Each may be made of the ones before it.
-        node.reader.know(Arc::new(known.clone()));
-    }
-}
+        Some(())
+    },
+    write: |()| Text::List(Vec::new()),
+    stand_in: || (),
+};
 
 /// The file that describes `effect`; [`parse_effect`] reads the same effect from it.
 #[must_use]
 pub fn write_named_effect(effect: &NamedEffect) -> String {
-    let mut text = format!("Effect(\n    name: {:?},\n", effect.name);
-    if !effect.about.is_empty() {
-        text.push_str(&format!("    about: {:?},\n", effect.about));
+    let mut text = String::from("Effect(\n");
+    let mut entries = Vec::new();
+    effect.write_fields(&mut entries);
+    for (name, value) in entries {
+        text.push_str(&format!("    {name}: {},\n", value.lay_out(1, name.len() + 6)));
     }
-    text + &format!("    plays: {},\n)\n", write_effect(&effect.effect, 1))
+    text + ")\n"
 }
 
 /// The effect as it is written where it is played, its lines indented by so many steps.

@@ -181,7 +181,7 @@ impl FloorRecord {
 
     /// Reports loudspeakers on the channels of actuators.
     fn check_channels(&self, reader: &Reader<'_>, floor: &Floor) {
-        for channel in self.loudspeakers.iter().map(|loudspeaker| &loudspeaker.channel) {
+        for channel in self.loudspeakers.iter().map(|one| &one.channel).filter(|one| !one.at.is_empty()) {
             let mut moved = floor.geometry.tiles().zip(&floor.actuators);
             let is_taken = |(_, one): &(_, &Option<crate::floor::Actuator>)| {
                 one.is_some_and(|one| one.channel == channel.value)

@@ -6,6 +6,7 @@ use super::fields::Fields;
 use super::node::Node;
 use super::problem::Problem;
 use crate::floor::{Corner, Geometry, GeometryError, Response, SensorId, TileId};
+use crate::format::codec::By;
 use crate::format::describe::{FieldDescription, FieldType};
 use crate::format::text::{Entry, Text};
 use crate::format::{Codec, Follow, Name, Num, Opt, Record, num, record};
@@ -130,32 +131,20 @@ impl Grid {
 }
 
 /// A tile, as `(column, row)`.
-pub(super) struct Tile;
-
-impl Codec<TileId> for Tile {
-    fn read(&self, node: Node<'_>, _: Option<&TileId>) -> Option<TileId> {
+pub(super) const TILE: By<TileId> = By {
+    shape: || FieldType::Words("(column, row), each a whole number from 0"),
+    read: |node| {
         let [column, row] = node.tuple("(column, row)")?;
         node.reader.known::<Grid>().tile(column, row)
-    }
-
-    fn write(&self, tile: &TileId) -> Text {
-        Text::Plain(tile.to_string())
-    }
-
-    fn shape(&self) -> FieldType {
-        FieldType::Words("(column, row), each a whole number from 0")
-    }
-
-    fn stand_in(&self) -> TileId {
-        TileId::new(0, 0)
-    }
-}
+    },
+    write: |tile| Text::Plain(tile.to_string()),
+    stand_in: TileId::default,
+};
 
 /// The sensor on a channel, as `(column, row, corner)`, or `None`.
-pub(super) struct Channel;
-
-impl Codec<Option<SensorId>> for Channel {
-    fn read(&self, node: Node<'_>, _: Option<&Option<SensorId>>) -> Option<Option<SensorId>> {
+pub(super) const CHANNEL: By<Option<SensorId>> = By {
+    shape: || FieldType::Words("(column, row, Sw), or None for a channel without a sensor"),
+    read: |node| {
         if node.is_none() {
             return Some(None);
         }
@@ -163,22 +152,14 @@ impl Codec<Option<SensorId>> for Channel {
         let tile = node.reader.known::<Grid>().tile(column, row);
         let corner: Option<Corner> = Name.read(Node { name: "corner", ..name }, None);
         Some(Some(SensorId { tile: tile?, corner: corner? }))
-    }
-
-    fn write(&self, sensor: &Option<SensorId>) -> Text {
+    },
+    write: |sensor| {
         Text::Plain(sensor.map_or("None".to_owned(), |SensorId { tile, corner }| {
             format!("({}, {}, {})", tile.column, tile.row, Name.write(&corner).inline())
         }))
-    }
-
-    fn shape(&self) -> FieldType {
-        FieldType::Words("(column, row, Sw), or None for a channel without a sensor")
-    }
-
-    fn stand_in(&self) -> Option<SensorId> {
-        None
-    }
-}
+    },
+    stand_in: || None,
+};
 
 /// Lists of numbers, each from minus this to this.
 pub(super) struct Table(pub(super) f32);

@@ -3,7 +3,7 @@
 use glam::Vec2;
 
 use super::fields::Fields;
-use super::floor_codecs::{Channel, Points, Table, Tile};
+use super::floor_codecs::{CHANNEL as SENSOR_OF_CHANNEL, Points, TILE, Table};
 use crate::floor::{
     Actuator, Board, Calibration, CalibrationRecord, Corner, DAY, Day, Floor, Loudspeaker, MapRecord,
     PositionMap, Response, SensorId, TileId,
@@ -20,10 +20,10 @@ record! {
     address: Option<String> = "address", Opt(ADDRESS) => None;
     /// Tiles, each with four channels in the order sw, se, nw, ne.
     tiles: Option<Vec<Written<TileId>>> = "tiles",
-        Opt(list("tile", MAX_CHANNELS / Corner::ALL.len(), At(Tile))) => None;
+        Opt(list("tile", MAX_CHANNELS / Corner::ALL.len(), At(TILE))) => None;
     /// The sensor on each channel, in the order of the packet's arguments.
     channels: Option<Vec<Written<Option<SensorId>>>> = "channels",
-        Opt(list("channel", MAX_CHANNELS, At(Channel))) => None;
+        Opt(list("channel", MAX_CHANNELS, At(SENSOR_OF_CHANNEL))) => None;
 }
 
 /// An OSC address that stands for itself: no pattern characters.
@@ -117,7 +117,7 @@ record! {
         faults.together(&["calibrated", "residual"], [it.calibrated.is_some(), it.residual.is_some()]);
     };
     /// The tile above it.
-    tile: TileId = "tile", Tile;
+    tile: TileId = "tile", TILE;
     /// The corner of the tile.
     corner: Corner = "corner", Name;
     /// How its voltage becomes newtons.
@@ -182,7 +182,7 @@ record! {
         faults.together(&["mapped", "residual_m"], [it.mapped.is_some(), it.residual_m.is_some()]);
     };
     /// The tile.
-    pub(super) tile: TileId = "tile", Tile;
+    pub(super) tile: TileId = "tile", TILE;
     /// When it was measured.
     mapped: Option<Day> = "mapped", Opt(DAY) => None;
     /// Error that all but 5 % of the points keep to with the map.
@@ -247,7 +247,7 @@ record! {
     /// The actuator under one tile.
     pub(super) struct ActuatorRecord = "Actuator";
     /// The tile.
-    pub(super) tile: TileId = "tile", Tile;
+    pub(super) tile: TileId = "tile", TILE;
     /// Output channel, from 0.
     channel: u16 = "channel", CHANNEL;
     /// Force at the plate for a full-scale sample.

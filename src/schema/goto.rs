@@ -5,7 +5,7 @@ use std::ops::Range;
 use super::fields::Fields;
 
 /// The page that a control switches to.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Goto {
     pub(super) id: String,
     pub(super) at: Range<usize>,

@@ -10,13 +10,14 @@
 use std::ops::Range;
 
 use super::area::{Area, Placed};
-use super::fields::Fields;
 use super::node::Node;
 use super::number::plain;
 use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
-use crate::format::describe::Description;
+use crate::format::codec::By;
+use crate::format::describe::{Description, FieldType};
+use crate::format::text::Text;
 use crate::format::{Codec, Record};
 use crate::ground::{GrainSpec, GroundSpec, IceSpec, Material, WoodSpec};
 use crate::layout::{Colour, Ground, HEX};
@@ -27,6 +28,7 @@ const MOST: usize = 16;
 const NAMES: [&str; 5] = ["Ice", "Snow", "Gravel", "Sand", "Wood"];
 
 /// One ground as written. What could not be read is `None` and has been reported.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct GroundDefinition {
     /// `None` inside for the whole floor.
     place: Option<Option<Placed>>,
@@ -38,23 +40,22 @@ pub(super) struct GroundDefinition {
 }
 
 /// The grounds of a layout or of one of its pages.
-pub(super) fn read(fields: &mut Fields<'_>, page: Option<usize>) -> Vec<GroundDefinition> {
-    let Some(node) = fields.take("grounds") else { return Vec::new() };
+pub(super) const GROUNDS: By<Vec<GroundDefinition>> = By {
+    shape: || FieldType::Variants(describe),
+    read: |node| Some(read(node)),
+    write: |_| Text::List(Vec::new()),
+    stand_in: Vec::new,
+};
+
+fn read(node: Node<'_>) -> Vec<GroundDefinition> {
     let Some(nodes) = node.list("ground", MOST) else { return Vec::new() };
-    let definitions: Vec<Option<GroundDefinition>> =
-        nodes.into_iter().map(|node| GroundDefinition::read(node, page)).collect();
-    if definitions.iter().any(Option::is_none) {
-        // A ground that could not be read has been reported; the others alone don't make a layout.
-        return definitions
-            .into_iter()
-            .map(|definition| definition.unwrap_or_else(|| GroundDefinition::unreadable(node.span())))
-            .collect();
-    }
-    definitions.into_iter().flatten().collect()
+    // A ground that could not be read has been reported; the others alone don't make a layout.
+    let unreadable = || GroundDefinition::unreadable(node.span());
+    nodes.into_iter().map(|node| GroundDefinition::read(node).unwrap_or_else(unreadable)).collect()
 }
 
 impl GroundDefinition {
-    fn read(node: Node<'_>, page: Option<usize>) -> Option<Self> {
+    fn read(node: Node<'_>) -> Option<Self> {
         let (name, mut fields) = node.variant(&NAMES)?;
         let standard = standard(name);
         let (surface, deep) = colours(name);
@@ -76,11 +77,16 @@ impl GroundDefinition {
         let material = fields.are_read().then_some(material);
         fields.finish();
         let colours = surface.zip(deep).map(|(surface, deep)| [surface, deep]);
-        Some(Self { place, page, seed, material, colours, at })
+        Some(Self { place, page: None, seed, material, colours, at })
     }
 
     fn unreadable(at: Range<usize>) -> Self {
         Self { place: None, page: None, seed: None, material: None, colours: None, at }
+    }
+
+    /// The same on the page of this number only.
+    pub(super) fn on_page(self, number: usize) -> Self {
+        Self { page: Some(number), ..self }
     }
 
     /// Where it is, on a floor that is `floor`; `None` if that could not be read.

@@ -7,10 +7,12 @@
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
+use std::sync::Arc;
 
 use super::chain::Chains;
 use super::diagnostic::Diagnostics;
-use super::kind::{self, Kind, Kinds};
+use super::kind::{self, Kind, KindFile, Kinds};
+use super::lists::MAX_WIDGETS;
 use super::node::Node;
 use super::pairs::Limits;
 use super::problem::Problem;
@@ -18,6 +20,10 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::suggest::did_you_mean;
 use super::version;
+use crate::format::Record;
+use crate::format::codec::By;
+use crate::format::describe::FieldType;
+use crate::format::text::Text;
 
 /// What a kind is made from.
 #[derive(Clone, Copy)]
@@ -178,7 +184,7 @@ pub(super) fn read_texts(
     let mut readers = Vec::new();
     for source in &sources {
         let reader = Reader::new(source, "Kind", Limits::LAYOUT);
-        reader.know(std::sync::Arc::clone(below.effects()));
+        reader.know(Arc::clone(below.effects()));
         match version::newer(&reader, "Kind") {
             Some(newer) => problems.append(newer),
             None => readers.push(reader),
@@ -211,26 +217,42 @@ pub(super) fn read_texts(
 }
 
 /// The kinds that the controls of a layout may be of.
-pub(super) struct Choice<'k> {
-    kinds: Cow<'k, Kinds>,
+#[derive(Default)]
+pub(super) struct Choice {
+    kinds: Kinds,
     /// Names of kinds of the layout itself that can't be used, which has been reported.
     unusable: HashSet<String>,
 }
 
-impl<'k> Choice<'k> {
-    /// Those in `kinds`, and on top of them those that the layout's list of kinds describes, if it has one.
-    pub(super) fn new(kinds: &'k Kinds, list: Option<Node<'_>>) -> Self {
-        let mut choice = Self { kinds: Cow::Borrowed(kinds), unusable: HashSet::new() };
-        let nodes = list.and_then(|node| node.list("kind", super::lists::MAX_WIDGETS)).unwrap_or_default();
-        for (node, kind) in nodes.iter().zip(layer(&nodes, kinds)) {
+/// A layout's own kinds, which its controls may be of besides those that are known.
+pub(super) const OWN_KINDS: By<()> = By {
+    shape: || FieldType::List {
+        count: (0, MAX_WIDGETS),
+        each: Box::new(FieldType::Record(KindFile::describe)),
+    },
+    read: |node| {
+        let known = node.reader.known::<Choice>();
+        let mut choice = Choice::of(&known.kinds);
+        let nodes = node.list("kind", MAX_WIDGETS).unwrap_or_default();
+        for (node, kind) in nodes.iter().zip(layer(&nodes, &known.kinds)) {
             match kind {
-                Some(kind) => choice.kinds.to_mut().insert(kind),
+                Some(kind) => choice.kinds.insert(kind),
                 None => choice
                     .unusable
                     .extend(node.peek("Kind", "name").and_then(|name| name.peek_text()).map(str::to_owned)),
             }
         }
-        choice
+        node.reader.know(Arc::new(choice));
+        Some(())
+    },
+    write: |()| Text::List(Vec::new()),
+    stand_in: || (),
+};
+
+impl Choice {
+    /// Those in `kinds`.
+    pub(super) fn of(kinds: &Kinds) -> Self {
+        Self { kinds: kinds.clone(), unusable: HashSet::new() }
     }
 
     /// The kind that `node` names; `None` if it can't be used, which has been reported.

@@ -4,28 +4,41 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::behaviour;
+use super::behaviour::KindBehaviour;
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::inherit;
 use super::node::Node;
 use super::problem::Problem;
-use super::version;
+use super::version::{FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, Feel};
+use crate::format::codec::Required;
+use crate::format::{Flat, Id, Opt, Rec, Record, Text, record};
 use crate::layout::Look;
 use crate::widget::Behaviour;
 
-/// One kind of control: what its widgets do, feel and look like unless they say otherwise.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Kind {
+record! {
+    /// One kind of control: what its widgets do, feel and look like unless they say otherwise.
+    pub struct Kind = "Kind";
     /// What layouts call it.
-    pub name: String,
+    pub name: String = "name", Required(Id);
     /// What it does, with all settings.
-    pub behaviour: Behaviour,
+    pub behaviour: Behaviour = "behaviour", KindBehaviour;
     /// What it feels like.
-    pub feel: Feel,
+    pub feel: Feel = "feel", Rec => Feel::default();
     /// What it looks like.
-    pub look: Look,
+    pub look: Look = "look", Rec => Look::PLAIN;
+}
+
+record! {
+    /// A kind of control: a file in `widgets/`, or an entry of `kinds` in a layout.
+    pub(super) struct KindFile = "Kind";
+    /// The version of the format.
+    version: u32 = "version", VERSION => FORMAT_VERSION;
+    /// The kind that it is made from: all that it doesn't say is that one's.
+    from: Option<String> = "from", Opt(Text(64)) => None;
+    /// The kind.
+    kind: Kind = "", Flat;
 }
 
 /// The kinds that a layout may use, by name, and the effects that they and it may name.
@@ -119,37 +132,18 @@ impl Kinds {
 
 /// The kind that `node` describes; where it is made from a `parent`, all that it doesn't say is the parent's.
 pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
-    let mut fields = node.fields("Kind")?;
-    fields.read("version", Some(1), version::read);
-    let name = fields.read("name", None, |node| node.id());
-    // Looked up by whoever knows the other kinds.
-    fields.take("from");
-    let plain = (Look::PLAIN, Feel::default());
-    let (base_look, base_feel) = parent.map_or(plain, |parent| (parent.look, parent.feel.clone()));
-    let mut knows_fields = true;
-    let behaviour = match parent {
-        Some(parent) => {
-            if let Some(node) = fields.take("behaviour") {
-                let message = format!("what this kind does comes from \"{}\"", parent.name);
-                let expected = format!("that one is a {}", parent.behaviour.name());
-                let help = "leave out `behaviour`, or `from`";
-                fields.report(Problem::error(node.span(), message).expected(expected).help(help));
-            }
-            behaviour::read_over(&mut fields, &parent.behaviour)
-        }
-        None => {
-            let name = fields.read("behaviour", None, behaviour::name);
-            knows_fields = name.is_some();
-            name.and_then(|name| behaviour::read(&mut fields, name, None))
-        }
-    };
-    let look = fields.read("look", Some(base_look), |node| node.record(Some(&base_look)));
-    let feel = fields.read("feel", Some(base_feel.clone()), |node| node.record(Some(&base_feel)));
-    if !knows_fields {
-        fields.allow_unknown();
+    let mut fields = node.fields(KindFile::NAME)?;
+    let base = parent.map(|kind| KindFile { version: FORMAT_VERSION, from: None, kind: kind.clone() });
+    if let (Some(parent), Some(span)) = (parent, fields.value_span("behaviour")) {
+        let message = format!("what this kind does comes from \"{}\"", parent.name);
+        let expected = format!("that one is a {}", parent.behaviour.name());
+        let help = "leave out `behaviour`, or `from`";
+        fields.report(Problem::error(span, message).expected(expected).help(help));
     }
+    let read = KindFile::read_fields(&mut fields, base.as_ref());
+    let good = fields.are_read();
     fields.finish();
-    Some(Kind { name: name?.to_owned(), behaviour: behaviour?, feel: feel?, look: look? })
+    good.then_some(read.kind)
 }
 
 /// Most kinds of one folder.

@@ -21,8 +21,6 @@ mod effect;
 mod floor;
 mod floor_codecs;
 mod floor_parts;
-#[cfg(test)]
-mod floor_tests;
 mod floor_text;
 mod goto;
 mod ground;
@@ -40,6 +38,8 @@ mod reference;
 mod repeat;
 #[cfg(feature = "save")]
 mod save;
+#[cfg(test)]
+mod tests;
 mod units;
 mod version;
 mod write;

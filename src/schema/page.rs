@@ -1,27 +1,30 @@
 //! Layout files, from the text to the checked layout.
 
+use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
-use super::area::{Area, Placed};
-use super::arrange;
+use super::area::{Area, Place, Placed};
+use super::arrange::WIDGETS;
 use super::checks;
 use super::control::Control;
 use super::diagnostic::Diagnostics;
-use super::effect;
-use super::ground::{self, GroundDefinition};
-use super::inherit::Choice;
+use super::effect::OWN_EFFECTS;
+use super::ground::{GROUNDS, GroundDefinition};
+use super::inherit::{Choice, OWN_KINDS};
 use super::kind::Kinds;
-use super::lists::{MAX_WIDGETS, list};
+use super::lists::{MAX_WIDGETS, Room};
 use super::node::Node;
-use super::pages::{self, PageDefinition};
+use super::pages::{self, PAGES, PageRecord};
 use super::pairs::Limits;
 use super::places::Places;
 use super::reader::Reader;
 use super::source::{Source, read_text};
-use super::units::Units;
-use super::version;
+use super::units::{UNITS, Units};
+use super::version::{self, VERSION};
 use crate::floor::Geometry;
-use crate::format::{Codec, Name};
+use crate::format::codec::{At, Distinct, Written};
+use crate::format::{Id, Name, Record, Text, record};
 use crate::layout::{CursorRule, Layout, Region, Stance, Widget};
 use crate::widget::WidgetId;
 
@@ -66,27 +69,79 @@ pub fn parse_layout(
 ) -> Result<Loaded, Diagnostics> {
     let source = Source::new(name, text)?;
     let reader = Reader::new(&source, "Layout", Limits::LAYOUT);
-    reader.know(std::sync::Arc::clone(kinds.effects()));
+    reader.know(Arc::clone(kinds.effects()));
     if let Some(newer) = version::newer(&reader, "Layout") {
         return Err(newer);
     }
-    let page = reader.root("layout").and_then(|node| Page::read(node, kinds));
-    let layout = page.and_then(|page| {
+    reader.know(Arc::new(Choice::of(kinds)));
+    reader.know(Arc::new(Room::default()));
+    let layout = reader.root("layout").and_then(Page::read).and_then(|(page, good)| {
         checks::check(&reader, &page, geometry);
-        let layout = page.placed_on(geometry)?;
+        let layout = page.placed_on(geometry).filter(|_| good)?;
         Some((layout, page.controls.into_iter().map(|control| control.written).collect()))
     });
     let ((layout, written), warnings) = reader.conclude(layout)?;
     Ok(Loaded { layout, warnings, places: Places::new(name, text, written) })
 }
 
-/// A layout as written. What could not be read is `None` and has been reported.
-pub(super) struct Page<'r> {
-    title: Option<&'r str>,
+record! {
+    /// A page of controls placed on the floor: a file in `layouts/`.
+    pub(super) struct LayoutRecord = "Layout";
+    /// The version of the format.
+    version: u32 = "version", VERSION;
+    /// What places, sizes and gaps count in.
+    units: Units = "units", UNITS => Units::Tiles;
+    /// What people call it.
+    title: String = "title", Text(200) => String::new();
+    /// The active parts of the floor, each with a cursor of its own.
+    regions: Vec<RegionRecord> = "regions", REGIONS => Vec::new();
+    /// Where people stand while they use the controls.
+    stances: Vec<StanceRecord> = "stances", STANCES => Vec::new();
+    /// Effects of the layout's own.
+    effects: () = "effects", OWN_EFFECTS => ();
+    /// Kinds of the layout's own.
+    kinds: () = "kinds", OWN_KINDS => ();
+    /// The controls that are on every page.
+    widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
+    /// What the floor seems to be made of on every page.
+    grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
+    /// Pages that take turns.
+    pages: Vec<PageRecord> = "pages", PAGES => Vec::new();
+}
+
+record! {
+    /// An active part of the floor.
+    struct RegionRecord = "Region";
+    /// Unique among the layout's regions.
+    id: Written<String> = "id", At(Id);
+    /// Where it is.
+    place: Option<Placed> = "at", Place;
+    /// Which contacts in it operate its controls.
+    cursor: CursorRule = "cursor", Name => CursorRule::default();
+}
+
+record! {
+    /// A place to stand while using the controls.
+    struct StanceRecord = "Stance";
+    /// What is written on it.
+    label: Written<String> = "label", At(Text(64)) => Written::default();
+    /// Where it is.
+    place: Option<Placed> = "at", Place;
+}
+
+const REGIONS: Distinct<RegionRecord> =
+    Distinct { entry: "region", most: MAX_WIDGETS, about: |_, _, _, _| {} };
+
+const STANCES: Distinct<StanceRecord> =
+    Distinct { entry: "stance", most: MAX_WIDGETS, about: |_, _, _, _| {} };
+
+/// A layout as written, whose problems have been reported.
+pub(super) struct Page {
+    title: String,
     pub(super) units: Units,
-    pub(super) regions: Vec<Zone<'r>>,
-    pub(super) stances: Vec<Zone<'r>>,
-    pub(super) pages: Vec<PageDefinition<'r>>,
+    pub(super) regions: Vec<Zone>,
+    pub(super) stances: Vec<Zone>,
+    pub(super) pages: Vec<PageRecord>,
     /// Those of all pages.
     pub(super) grounds: Vec<GroundDefinition>,
     /// Those of all pages.
@@ -94,48 +149,47 @@ pub(super) struct Page<'r> {
     /// Whether all regions could be read.
     pub(super) regions_known: bool,
     /// Where the list of controls is written.
-    pub(super) widgets_at: std::ops::Range<usize>,
+    pub(super) widgets_at: Range<usize>,
 }
 
 /// A region (named by its id) or a stance zone (named by its label).
-pub(super) struct Zone<'r> {
-    pub(super) name: Option<&'r str>,
-    pub(super) name_at: std::ops::Range<usize>,
+pub(super) struct Zone {
+    pub(super) name: Written<String>,
     pub(super) place: Option<Placed>,
-    cursor: Option<CursorRule>,
+    cursor: CursorRule,
 }
 
-impl<'r> Page<'r> {
-    fn read(node: Node<'r>, kinds: &Kinds) -> Option<Self> {
-        let mut fields = node.fields("Layout")?;
-        fields.read("version", None, version::read);
-        if let Some(units) = fields.read("units", Some(Units::Tiles), Units::read) {
-            node.reader.count_in(units);
-        }
-        let title = fields.read("title", Some(""), |node| node.text(200));
-        let (regions, regions_known) =
-            list(&mut fields, "regions", "region", |node| Zone::read(node, "Region"));
-        let (stances, _) = list(&mut fields, "stances", "stance", |node| Zone::read(node, "Stance"));
-        if let Some(node) = fields.take("effects") {
-            effect::list(node);
-        }
-        let kinds = Choice::new(kinds, fields.take("kinds"));
-        let mut room = MAX_WIDGETS;
-        let widgets = fields.take("widgets");
-        let mut controls = widgets.map(|node| arrange::read(node, &kinds, &mut room)).unwrap_or_default();
-        let mut grounds = ground::read(&mut fields, None);
-        let pages = pages::read(&mut fields, &kinds, &mut room, &mut controls, &mut grounds);
+impl Page {
+    /// The layout at `node`, and whether everything of it could be read.
+    fn read(node: Node<'_>) -> Option<(Self, bool)> {
+        let mut fields = node.fields(LayoutRecord::NAME)?;
+        node.reader.count_in(Units::default());
+        let record = LayoutRecord::read_fields(&mut fields, None);
+        let good = fields.are_read();
+        let regions_at = fields.value_span("regions").unwrap_or_else(|| node.span());
         let widgets_at = fields.span("widgets");
         fields.finish();
-        let regions_known = regions_known && regions.iter().all(|region: &Zone<'_>| region.place.is_some());
-        let units = node.reader.units();
-        Some(Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at })
+        let LayoutRecord { title, units, regions, stances, mut pages, mut grounds, .. } = record;
+        let regions_known =
+            regions.iter().all(|region| region.place.is_some()) && !node.reader.is_broken(&regions_at);
+        let mut controls = record.widgets;
+        for (number, page) in pages.iter_mut().enumerate() {
+            let own = page.widgets.drain(..);
+            controls.extend(own.map(|control| Control { page: Some(number), ..control }));
+            let own = page.grounds.drain(..);
+            grounds.extend(own.map(|ground| ground.on_page(number)));
+        }
+        let zone = |name, place, cursor| Zone { name, place, cursor };
+        let regions = regions.into_iter().map(|it| zone(it.id, it.place, it.cursor)).collect();
+        let stances = stances.into_iter().map(|it| zone(it.label, it.place, CursorRule::default())).collect();
+        let page =
+            Self { title, units, regions, stances, pages, grounds, controls, regions_known, widgets_at };
+        Some((page, good))
     }
 
     /// The region whose area holds the middle of `area`.
     pub(super) fn region_of(&self, area: &Area) -> Option<usize> {
-        let holds =
-            |zone: &Zone<'_>| zone.place.as_ref().is_some_and(|place| place.area.contains(area.middle()));
+        let holds = |zone: &Zone| zone.place.as_ref().is_some_and(|place| place.area.contains(area.middle()));
         self.regions.iter().position(holds)
     }
 
@@ -144,11 +198,11 @@ impl<'r> Page<'r> {
         let units = self.units;
         let regions = self.regions.iter().map(|zone| {
             let area = zone.place.as_ref()?.area.in_metres(geometry, units);
-            Some(Region { id: zone.name?.to_owned(), area, cursor: zone.cursor? })
+            Some(Region { id: zone.name.value.clone(), area, cursor: zone.cursor })
         });
         let stances = self.stances.iter().map(|zone| {
             Some(Stance {
-                label: zone.name?.to_owned(),
+                label: zone.name.value.clone(),
                 area: zone.place.as_ref()?.area.in_metres(geometry, units),
             })
         });
@@ -169,10 +223,10 @@ impl<'r> Page<'r> {
             })
         });
         Some(Layout {
-            title: self.title?.to_owned(),
+            title: self.title.clone(),
             regions: regions.collect::<Option<_>>()?,
             stances: stances.collect::<Option<_>>()?,
-            pages: self.pages.iter().map(PageDefinition::checked).collect::<Option<_>>()?,
+            pages: self.pages.iter().map(PageRecord::checked).collect(),
             grounds: self
                 .grounds
                 .iter()
@@ -180,24 +234,5 @@ impl<'r> Page<'r> {
                 .collect::<Option<_>>()?,
             widgets: widgets.collect::<Option<_>>()?,
         })
-    }
-}
-
-impl<'r> Zone<'r> {
-    fn read(node: Node<'r>, owner: &'static str) -> Option<Self> {
-        let mut fields = node.fields(owner)?;
-        let (field, name) = match owner {
-            "Region" => ("id", fields.read("id", None, |node| node.id())),
-            _ => ("label", fields.read("label", Some(""), |node| node.text(64))),
-        };
-        let place = Placed::read(&mut fields);
-        let name_at = fields.span(field);
-        let cursor = if field == "id" {
-            fields.read("cursor", Some(CursorRule::default()), |node| Name.read(node, None))
-        } else {
-            Some(CursorRule::default())
-        };
-        fields.finish();
-        Some(Self { name, name_at, place, cursor })
     }
 }

@@ -8,52 +8,35 @@
 //! ],
 //! ```
 
-use std::ops::Range;
-
-use super::arrange;
+use super::arrange::WIDGETS;
 use super::control::Control;
-use super::fields::Fields;
 use super::goto::Goto;
-use super::ground::{self, GroundDefinition};
-use super::inherit::Choice;
-use super::lists::list;
-use super::node::Node;
+use super::ground::{GROUNDS, GroundDefinition};
+use super::lists::MAX_WIDGETS;
 use super::problem::Problem;
 use super::reader::Reader;
 use super::suggest::did_you_mean;
+use crate::format::codec::{At, Distinct, Written};
+use crate::format::{Id, Text, record};
 use crate::layout;
 use crate::widget::{Behaviour, WidgetId};
 
-/// One page as written. What could not be read is `None` and has been reported.
-pub(super) struct PageDefinition<'r> {
-    id: Option<&'r str>,
-    id_at: Range<usize>,
-    title: Option<&'r str>,
+record! {
+    /// One of the pages that take turns on one floor.
+    pub(super) struct PageRecord = "Page";
+    /// Unique among the layout's pages.
+    pub(super) id: Written<String> = "id", At(Id);
+    /// What people call it.
+    pub(super) title: String = "title", Text(200) => String::new();
+    /// The controls that are there only while the page is shown.
+    pub(super) widgets: Vec<Control> = "widgets", WIDGETS => Vec::new();
+    /// What the floor seems to be made of while the page is shown.
+    pub(super) grounds: Vec<GroundDefinition> = "grounds", GROUNDS => Vec::new();
 }
 
-/// The pages of a layout; their controls are added to `controls`.
-pub(super) fn read<'r>(
-    fields: &mut Fields<'r>,
-    kinds: &Choice<'_>,
-    room: &mut usize,
-    controls: &mut Vec<Control>,
-    grounds: &mut Vec<GroundDefinition>,
-) -> Vec<PageDefinition<'r>> {
-    let mut number = 0;
-    let (pages, _) = list(fields, "pages", "page", |node| {
-        number += 1;
-        PageDefinition::read(node, kinds, room, (number - 1, &mut *grounds))
-    });
-    let mut pages_read = Vec::with_capacity(pages.len());
-    for (number, (definition, own)) in pages.into_iter().enumerate() {
-        controls.extend(own.into_iter().map(|mut control| {
-            control.page = Some(number);
-            control
-        }));
-        pages_read.push(definition);
-    }
-    pages_read
-}
+/// The pages of a layout.
+pub(super) const PAGES: Distinct<PageRecord> =
+    Distinct { entry: "page", most: MAX_WIDGETS, about: |_, _, _, _| {} };
 
 /// Whether two controls are ever there at the same time.
 pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
@@ -61,19 +44,19 @@ pub(super) fn can_both_show(one: &Control, other: &Control) -> bool {
 }
 
 /// Notes what is wrong between pages and the controls that switch them.
-pub(super) fn check(reader: &Reader<'_>, pages: &[PageDefinition<'_>], controls: &[Control]) {
+pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Control]) {
     for (number, definition) in pages.iter().enumerate() {
-        let same = |other: &&PageDefinition<'_>| other.id.is_some() && other.id == definition.id;
+        let same = |other: &&PageRecord| other.id().is_some() && other.id == definition.id;
         if let Some(earlier) = pages[..number].iter().find(same) {
-            let message = format!("two pages have the id \"{}\"", definition.id.unwrap_or_default());
-            let expected = format!("the first is on line {}", reader.line(&earlier.id_at));
-            reader.report(Problem::error(definition.id_at.clone(), message).expected(expected));
+            let message = format!("two pages have the id \"{}\"", definition.id.value);
+            let expected = format!("the first is on line {}", reader.line(&earlier.id.at));
+            reader.report(Problem::error(definition.id.at.clone(), message).expected(expected));
         }
     }
     for control in controls {
         let Some(goto) = &control.goto else { continue };
-        if number_of(goto, pages).is_none() && pages.iter().all(|definition| definition.id.is_some()) {
-            let ids: Vec<&str> = pages.iter().filter_map(|definition| definition.id).collect();
+        if number_of(goto, pages).is_none() && pages.iter().all(|definition| definition.id().is_some()) {
+            let ids: Vec<&str> = pages.iter().filter_map(PageRecord::id).collect();
             let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
             let help = did_you_mean(&goto.id, &ids, '"');
             let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
@@ -87,31 +70,19 @@ pub(super) fn check(reader: &Reader<'_>, pages: &[PageDefinition<'_>], controls:
     }
 }
 
-impl<'r> PageDefinition<'r> {
-    fn read(
-        node: Node<'r>,
-        kinds: &Choice<'_>,
-        room: &mut usize,
-        (number, grounds): (usize, &mut Vec<GroundDefinition>),
-    ) -> Option<(Self, Vec<Control>)> {
-        let mut fields = node.fields("Page")?;
-        let id = fields.read("id", None, |node| node.id());
-        let title = fields.read("title", Some(""), |node| node.text(200));
-        let widgets = fields.take("widgets");
-        let controls = widgets.map(|node| arrange::read(node, kinds, room)).unwrap_or_default();
-        grounds.extend(ground::read(&mut fields, Some(number)));
-        let id_at = fields.span("id");
-        fields.finish();
-        Some((Self { id, id_at, title }, controls))
+impl PageRecord {
+    /// Its id, if it could be read.
+    fn id(&self) -> Option<&str> {
+        (!self.id.at.is_empty()).then_some(&self.id.value)
     }
 
     /// The page as the engine knows it.
-    pub(super) fn checked(&self) -> Option<layout::Page> {
-        Some(layout::Page { id: WidgetId::new(self.id?), title: self.title?.to_owned() })
+    pub(super) fn checked(&self) -> layout::Page {
+        layout::Page { id: WidgetId::new(&self.id.value), title: self.title.clone() }
     }
 }
 
 /// The number of the page that `goto` names among `pages`.
-pub(super) fn number_of(goto: &Goto, pages: &[PageDefinition<'_>]) -> Option<usize> {
-    pages.iter().position(|definition| definition.id == Some(&goto.id))
+pub(super) fn number_of(goto: &Goto, pages: &[PageRecord]) -> Option<usize> {
+    pages.iter().position(|definition| definition.id() == Some(&goto.id))
 }

@@ -56,6 +56,16 @@ pub fn reference() -> Vec<Chapter> {
     #[cfg_attr(not(feature = "sim"), expect(unused_mut, reason = "scenarios are for simulated floors"))]
     let mut chapters = vec![
         Chapter::new(
+            "layouts",
+            "A page of controls on a floor: a file in `layouts/`.",
+            vec![super::page::LayoutRecord::describe()],
+        ),
+        Chapter::new(
+            "kinds",
+            "Kinds of controls: files in `widgets/`, or `kinds` of a layout.",
+            vec![super::kind::KindFile::describe()],
+        ),
+        Chapter::new(
             "controls",
             "What a control does: `behaviour` of a kind, its settings beside it; a widget overrides what it writes.",
             Behaviour::describe(),
@@ -151,7 +161,7 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     for field in fields {
         let default = match &field.default {
             // Tables are too long to tell.
-            Some(default) if default == "()" || default.len() > 100 => String::new(),
+            Some(default) if default == "()" || default.len() > 200 => String::new(),
             Some(default) => format!("; {default} where nothing is written"),
             None => "; must be written".to_owned(),
         };

@@ -1,9 +1,10 @@
 //! Tiles or metres.
 
 use super::fields::Fields;
-use super::node::Node;
 use super::reader::Reader;
 use crate::floor::Geometry;
+use crate::format::codec::By;
+use crate::format::{Codec, Name, Named};
 use std::sync::Arc;
 
 /// What the places, sizes and gaps of a layout count in.
@@ -17,10 +18,6 @@ pub(super) enum Units {
 }
 
 impl Units {
-    pub(super) fn read(node: Node<'_>) -> Option<Self> {
-        node.choice(&[("Tiles", Self::Tiles), ("Metres", Self::Metres)])
-    }
-
     /// Written behind a number.
     pub(super) const fn suffix(self) -> &'static str {
         match self {
@@ -61,6 +58,22 @@ impl Units {
         }
     }
 }
+
+impl Named for Units {
+    const ALL: &'static [(&'static str, Self)] = &[("Tiles", Self::Tiles), ("Metres", Self::Metres)];
+}
+
+/// What all places and sizes behind it count in.
+pub(super) const UNITS: By<Units> = By {
+    shape: || Codec::<Units>::shape(&Name),
+    read: |node| {
+        let units = Name.read(node, None)?;
+        node.reader.count_in(units);
+        Some(units)
+    },
+    write: |units| Name.write(units),
+    stand_in: Units::default,
+};
 
 impl Reader<'_> {
     /// What places and sizes count in.

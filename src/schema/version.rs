@@ -1,21 +1,15 @@
 //! The version of the file formats.
 
 use super::diagnostic::Diagnostics;
-use super::node::Node;
 use super::problem::Problem;
 use super::reader::Reader;
-use crate::format::{Codec, Num, num};
+use crate::format::{Num, num};
 
 /// The version of the formats that this program reads and writes.
 pub const FORMAT_VERSION: u32 = 1;
 
 /// The version that a file says it is of.
 pub(super) const VERSION: Num = num(1.0..=FORMAT_VERSION as f64).explicit();
-
-/// Reads the version that a file says it is of.
-pub(super) fn read(node: Node<'_>) -> Option<u32> {
-    VERSION.read(node, None)
-}
 
 /// What to say of a file of a newer version than this program knows: that, and nothing else.
 pub(super) fn newer(reader: &Reader<'_>, kind: &'static str) -> Option<Diagnostics> {

@@ -29,13 +29,14 @@ impl Effect {
     /// Brings a model of something rubbed to the level it says.
     pub(super) fn balance(&mut self) {
         let Some(lasting) = self.kind.lasting() else { return };
-        self.kind = match lasting.balanced(self.manner.band) {
-            Lasting::Friction(friction) => EffectKind::Friction(friction),
-            Lasting::StickSlip(stick) => EffectKind::StickSlip(stick),
-            Lasting::Texture(texture) => EffectKind::Texture(texture),
-            Lasting::Grains(grains) => EffectKind::Grains(grains),
-            Lasting::Hum(_) => return,
-        };
+        match (&mut self.kind, lasting.balanced(self.manner.band)) {
+            (EffectKind::Friction(own), Lasting::Friction(friction)) => *own = friction,
+            (EffectKind::StickSlip(own), Lasting::StickSlip(stick)) => *own = stick,
+            (EffectKind::Texture(own), Lasting::Texture(texture)) => *own = texture,
+            (EffectKind::Grains(own), Lasting::Grains(grains)) => *own = grains,
+            // A kind that is played by the model of another one balances that.
+            _ => {}
+        }
     }
 }
 

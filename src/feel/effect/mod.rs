@@ -25,7 +25,6 @@ pub use stops::{Detents, EndStop, MAX_MARKS, Push};
 pub use tone::{MAX_POINTS, Tone, TonePoint};
 
 use self::reading::BandFields;
-pub(crate) use self::reading::effect_at;
 pub use crate::format::hand::Knob;
 use crate::format::{Flat, Opt, Rec, Variants, choices, num, record};
 

@@ -7,24 +7,33 @@ use ron2::ast::Expr;
 
 use super::{Band, Clicks, Effect, EffectKind, Manner, Use};
 use crate::feel::Click;
+use crate::format::codec::{By, Text as Words};
 use crate::format::describe::FieldType;
 use crate::format::node::{Node, Within};
 use crate::format::number::plain;
 use crate::format::problem::Problem;
 use crate::format::suggest::{did_you_mean, listed, nearest};
 use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Num, Pair, Record, Variants, num};
+use crate::format::{Codec, Id, Num, Pair, Record, Variants, num, record};
 
-/// An effect with a name.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NamedEffect {
+record! {
+    /// An effect with a name.
+    pub struct NamedEffect = "Effect";
     /// What layouts and kinds call it.
-    pub name: String,
+    pub name: String = "name", Id;
     /// What it is for, in a sentence; may be empty.
-    pub about: String,
+    pub about: String = "about", Words(200) => String::new();
     /// What is felt.
-    pub effect: Arc<Effect>,
+    pub effect: Arc<Effect> = "plays", WRITTEN_OUT;
 }
+
+/// An effect that is written out.
+const WRITTEN_OUT: By<Arc<Effect>> = By {
+    shape: || FieldType::Variants(EffectKind::describe),
+    read: |node| effect_at(node, None, Use::Once).map(Arc::new),
+    write: |effect| effect.to_ron(),
+    stand_in: || Arc::new(Click::default().into()),
+};
 
 /// Effects by their names.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -114,7 +123,7 @@ fn named(node: Node<'_>) -> Option<Arc<Effect>> {
 /// The effect that is written out at `node`; what it leaves out is `base`'s if that is of the same kind.
 ///
 /// Fields without a name are what the base is, or what is `used` so most often.
-pub(crate) fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
+fn effect_at(node: Node<'_>, base: Option<&Effect>, used: Use) -> Option<Effect> {
     let name = match node.expr {
         Expr::Struct(variant) => {
             let written = &*variant.name.name;

@@ -13,7 +13,7 @@ use crate::format::text::Text as RonText;
 
 /// Records in square brackets, no two of which may be about the same thing.
 ///
-/// What is wrong between those that can be read is found although others can't.
+/// What is wrong between those that can be read is found although others can't be.
 pub(crate) struct Distinct<T> {
     /// What messages call one of them.
     pub(crate) entry: &'static str,
@@ -41,31 +41,28 @@ impl Seen {
 }
 
 impl<T: Record> Distinct<T> {
-    /// Those that can be read, and whether that is all of them.
-    fn read_good(&self, node: Node<'_>) -> (Vec<T>, bool) {
+    /// All of them, with something in place of what could not be read, and whether everything could.
+    fn read_all(&self, node: Node<'_>) -> (Vec<T>, bool) {
         let Some(nodes) = node.list(self.entry, self.most) else { return (Vec::new(), false) };
-        let (mut seen, mut all) = (Seen::default(), true);
+        let (mut seen, mut good) = (Seen::default(), true);
         let mut read = |(number, node): (usize, Node<'_>)| {
-            let mut fields = node.fields(T::NAME)?;
+            let fields = node.fields(T::NAME);
+            good &= fields.is_some();
+            let mut fields = fields?;
             let one = T::read_fields(&mut fields, None);
             (self.about)(number, &one, &fields, &mut seen);
-            let good = fields.are_read();
+            good &= fields.are_read();
             fields.finish();
-            good.then_some(one)
+            Some(one)
         };
-        let good = nodes.into_iter().enumerate().filter_map(|numbered| {
-            let one = read(numbered);
-            all &= one.is_some();
-            one
-        });
-        (good.collect(), all)
+        (nodes.into_iter().enumerate().filter_map(&mut read).collect(), good)
     }
 }
 
 impl<T: Record> Codec<Vec<T>> for Distinct<T> {
     fn read(&self, node: Node<'_>, _: Option<&Vec<T>>) -> Option<Vec<T>> {
-        let (good, all) = self.read_good(node);
-        all.then_some(good)
+        let (all, good) = self.read_all(node);
+        good.then_some(all)
     }
 
     fn write(&self, values: &Vec<T>) -> RonText {
@@ -88,10 +85,10 @@ impl<T: Record> Codec<Vec<T>> for Distinct<T> {
         default: Option<Vec<T>>,
     ) -> Vec<T> {
         let Some(node) = fields.take(name) else { return default.unwrap_or_default() };
-        let (good, all) = self.read_good(node);
-        if !all {
+        let (all, good) = self.read_all(node);
+        if !good {
             fields.fail(name);
         }
-        good
+        all
     }
 }

@@ -3,7 +3,7 @@
 use underfoot::schema::{reference, write_reference};
 
 const HEAD: &str = "# What files may say\n\n\
-    Every field of controls, effects, grounds, floors and scenarios, made by `underfoot reference` from the descriptions that the \
+    Every field of layouts, kinds, controls, effects, grounds, floors and scenarios, made by `underfoot reference` from the descriptions that the \
     reader goes by. Units are the ends of names: `press_n` is in newtons, `dwell_ms` in milliseconds. A kind made \
     `from` another, a widget of a kind and an effect made `from` another take from it what they don't write.\n\n";
 
