@@ -167,8 +167,11 @@ fn believed_for(site: &Site, fault: Fault) -> Duration {
     let took = begun.elapsed();
     stand_still.store(false, Ordering::Relaxed);
     if let Some(session) = session {
-        if fault != Fault::SensingPanics {
+        // After a short standstill the floor goes on where it was: the foot is still there.
+        if !matches!(fault, Fault::SensingPanics | Fault::SensingHangs) {
             wait_until("it is cancelled", || !session.snapshot().control("drive").unwrap().pressed);
+        }
+        if fault != Fault::SensingPanics {
             session.stop();
         }
         let events = rest(&session);
