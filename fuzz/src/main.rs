@@ -46,9 +46,17 @@ fn run(target: &mut Target, count: u64, seed: u64) -> ExitCode {
     for number in 0..count {
         mutate::make(&corpus, target.most_bytes(), &mut rng, &mut input);
         bytes += input.len() as u64;
-        let started = Instant::now();
-        let read = panic::catch_unwind(AssertUnwindSafe(|| target.read(&input)));
-        let took = started.elapsed();
+        let mut took = Duration::MAX;
+        let mut read = Ok(false);
+        // A machine that is busy with something else is slow once, a reader every time.
+        for _ in 0..4 {
+            let started = Instant::now();
+            read = panic::catch_unwind(AssertUnwindSafe(|| target.read(&input)));
+            took = took.min(started.elapsed());
+            if took < SLOW || read.is_err() {
+                break;
+            }
+        }
         slowest = slowest.max(took);
         match read {
             Ok(was_good) if took < SLOW => accepted += u64::from(was_good),
