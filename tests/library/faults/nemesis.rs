@@ -63,8 +63,7 @@ fn serve(
         .with_events(Box::new(notes.clone()));
     while server.turn().unwrap() == Ended::No {}
     drop(server);
-    let told = std::mem::take(&mut *notes.0.lock().unwrap());
-    told
+    std::mem::take(&mut *notes.0.lock().unwrap())
 }
 
 /// What ends a press; nothing else is left of it then.
