@@ -161,7 +161,7 @@ fn heading(text: &mut String, level: usize, name: &str, about: &str, fields: &[F
     for field in fields {
         let default = match &field.default {
             // Tables are too long to tell.
-            Some(default) if default == "()" || default.len() > 200 => String::new(),
+            Some(default) if default == "()" || default.starts_with("[[") => String::new(),
             Some(default) => format!("; {default} where nothing is written"),
             None => "; must be written".to_owned(),
         };
