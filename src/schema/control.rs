@@ -30,7 +30,6 @@ pub(super) struct Control {
 
 /// Where a control is written.
 #[derive(Clone, Debug, PartialEq)]
-#[cfg_attr(not(feature = "ergonomics"), expect(dead_code, reason = "only a review points at these"))]
 pub(super) struct ControlSpans {
     pub(super) id: Range<usize>,
     /// `at`, or what stands for it.
