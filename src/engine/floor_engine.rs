@@ -8,7 +8,7 @@ use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
 use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent, WidgetId};
 
-use super::ignored::IgnoredPress;
+use super::ignored::{IgnoredPress, SHOWN};
 use super::interact::Interaction;
 use super::overrides::Overrides;
 use super::response::{Now, Responses};
@@ -345,6 +345,7 @@ impl Engine {
             pending: control.pending(),
         }));
         snapshot.ignored.clear();
+        snapshot.ignored.reserve(SHOWN);
         snapshot.ignored.extend(self.interaction.ignored().latest().cloned());
         self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();

@@ -19,7 +19,7 @@ use crate::widget::WidgetId;
 const GRAZE: Newtons = Newtons(10.0);
 
 /// How many ignored presses are kept to be shown.
-const SHOWN: usize = 16;
+pub(super) const SHOWN: usize = 16;
 
 /// Visits for which there is room from the start; more cost an allocation once.
 const ROOM: usize = 64;

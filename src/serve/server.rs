@@ -90,6 +90,8 @@ pub struct Server {
     link: LinkWatch,
     sensors: SensorWatch,
     snapshots: Option<Input<Snapshot>>,
+    /// When the last frame came in.
+    seen: Instant,
     /// When the snapshot was last renewed.
     shown: Instant,
     /// Whether it must be, although no frame may come.
@@ -113,6 +115,7 @@ impl Server {
             link: LinkWatch::default(),
             sensors: SensorWatch::default(),
             snapshots: None,
+            seen: Instant::START,
             shown: Instant::START,
             is_stale: false,
         }
@@ -264,6 +267,7 @@ impl Server {
     fn step(&mut self) -> bool {
         let Some(frame) = self.assembler.ready() else { return false };
         let at = frame.at;
+        self.seen = frame.received;
         let step = self.engine.step(frame);
         self.haptics.send(&step, at, self.source.now());
         for press in step.ignored {
@@ -302,7 +306,7 @@ impl Server {
 
     /// Reports what is held if that has changed or is due, and that the server lives.
     fn beat(&mut self) {
-        self.outputs.beat(self.engine.held(), self.source.now());
+        self.outputs.beat(self.engine.held(), self.seen, self.source.now());
     }
 
     /// Renews the snapshot whatever its age.

@@ -10,6 +10,10 @@ use crate::widget::WidgetId;
 /// Time between two reports of what is held: five of them may be lost or late before 100 ms are over.
 const HELD_EVERY: Duration = Duration::from_millis(20);
 
+/// How old the frame may be that says what is held: a server that works off packets of the past knows nothing of now.
+/// With the 100 ms that silence is believed for, a hold ends after 150 ms at the latest.
+const CURRENT: Duration = Duration::from_millis(40);
+
 /// Time between two signs of life.
 const ALIVE_EVERY: Duration = Duration::from_millis(100);
 
@@ -23,17 +27,18 @@ pub(super) struct Heartbeat {
 }
 
 impl Heartbeat {
-    /// Reports what is held if that has changed or is due, and that the server lives.
+    /// Reports what is held if that has changed or is due, and that the server lives. `seen`: when the last frame came in.
     pub(super) fn beat<'a>(
         &mut self,
         held: impl Iterator<Item = &'a WidgetId> + Clone,
+        seen: Instant,
         now: Instant,
         mut tell: impl FnMut(Report<'_>),
     ) {
         let Self { report, held_due, alive, alive_due } = self;
         let is_news =
             held.clone().count() != report.held.len() || held.clone().any(|id| !report.held.contains(id));
-        if is_news || (!report.held.is_empty() && now >= *held_due) {
+        if is_news || (!report.held.is_empty() && now >= *held_due && now.since(seen) < CURRENT) {
             report.ended.clear();
             report.ended.extend(report.held.drain(..).filter(|id| !held.clone().any(|still| still == id)));
             report.held.extend(held.cloned());

@@ -39,9 +39,14 @@ impl Outputs {
     }
 
     /// Tells what is held, if that has changed or is due, and that the server lives.
-    pub(super) fn beat<'a>(&mut self, held: impl Iterator<Item = &'a WidgetId> + Clone, now: Instant) {
+    pub(super) fn beat<'a>(
+        &mut self,
+        held: impl Iterator<Item = &'a WidgetId> + Clone,
+        seen: Instant,
+        now: Instant,
+    ) {
         if let Some(sink) = &mut self.sink {
-            self.heartbeat.beat(held, now, |report| sink.report(report));
+            self.heartbeat.beat(held, seen, now, |report| sink.report(report));
         }
     }
 

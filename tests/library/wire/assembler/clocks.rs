@@ -77,7 +77,8 @@ fn crystals_200_ppm_apart_slip_now_and_then_and_lose_nothing_else() {
         .collect();
     packets.sort_by_key(|packet| packet.received);
     let frames = feed(&mut assembler, packets);
-    assert!(frames.iter().all(|frame| frame.quality == LIVE));
+    let odd: Vec<_> = frames.iter().filter(|frame| frame.quality != LIVE).take(3).collect();
+    assert!(odd.is_empty(), "{odd:?}");
     assert!(frames.is_sorted_by(|a, b| (999..=1001).contains(&(b.at_us - a.at_us))));
     assert!((59_990..=60_012).contains(&frames.len()), "{}", frames.len());
     let counters = assembler.counters();
