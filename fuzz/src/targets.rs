@@ -83,7 +83,7 @@ impl Target {
             "csv" => {
                 let forces = is_force_table(text, geometry);
                 let loads = LoadTable::parse(text, geometry)
-                    .map(|table| table.sensors.iter().for_each(|sensor| drop(sensor.judge())));
+                    .map(|table| table.sensors.iter().map(|sensor| sensor.judge()).count());
                 let presses = PressTable::parse(text, &self.floor);
                 forces || loads.is_ok() || presses.is_ok()
             }
