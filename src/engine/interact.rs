@@ -1,9 +1,12 @@
 //! From cursors to controls: which control gets which foot.
 
+mod unanswered;
+
 use std::time::Duration;
 
 use glam::Vec2;
 
+use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
 use super::region::{Finger, Held, RegionState};
@@ -415,45 +418,6 @@ impl Interaction {
         self.wake(held.widget);
     }
 
-    /// Notes the contacts that lie on controls and work none, and closes the visits that are over.
-    fn note_ignored(&mut self, at: &Moment<'_>) {
-        for contact in at.contacts.iter().filter(|contact| contact.force.0 >= AS_GOOD_AS_LIFTED_N) {
-            let Some(widget) = self.hits.widget_at(at.layout, self.page, contact.centroid) else { continue };
-            let (Some(spec), Some(control)) = (at.layout.widgets.get(widget), self.controls.get(widget))
-            else {
-                continue;
-            };
-            if self.ignored.is_noted(contact.id) {
-                continue;
-            }
-            let foot = self.feet.of(contact.id);
-            let is = |so: fn(&FootHistory) -> bool| foot.is_some_and(so);
-            let in_region = at
-                .layout
-                .regions
-                .get(spec.region)
-                .is_some_and(|region| region.area.contains(contact.centroid));
-            let why = if is(FootHistory::is_in_stance) {
-                Ignored::Stance
-            } else if is(FootHistory::is_object) {
-                Ignored::Object
-            } else if !in_region {
-                Ignored::OutsideRegion
-            } else if foot.is_some_and(|foot| foot.is_step_on(PressMode::of(spec), at.now())) {
-                Ignored::Step
-            } else {
-                Ignored::OtherFoot
-            };
-            let why = switched_off(control).unwrap_or(why);
-            self.ignored.note(contact.id, widget, contact.force, Some(why));
-        }
-        let press = |widget: usize| {
-            let spec = at.layout.widgets.get(widget)?;
-            Some((spec.id.clone(), spec.behaviour.thresholds().press))
-        };
-        self.ignored.end(at.now(), press);
-    }
-
     /// Controls with no foot on them come to rest.
     fn rest(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
         let mut awake = std::mem::take(&mut self.awake);
@@ -539,15 +503,6 @@ fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<N
         && may_start(contact, frame)
         && may;
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
-}
-
-/// Why `control` answers nobody, if it is off.
-fn switched_off(control: &Control) -> Option<Ignored> {
-    match (control.is_disabled(), control.is_inhibited()) {
-        (true, _) => Some(Ignored::Disabled),
-        (false, true) => Some(Ignored::Uncalibrated),
-        (false, false) => None,
-    }
 }
 
 /// Whether `widget` acts only while it is held.

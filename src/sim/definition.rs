@@ -26,7 +26,7 @@ record! {
 }
 
 record! {
-    /// Somebody else on the same floor.
+    /// Another person on the same floor.
     pub(super) struct Other = "Other";
     /// Who it is.
     pub(super) person: PersonRecord = "person", Rec => PersonRecord::of(&Person::default());

@@ -25,6 +25,7 @@ impl Lockstep {
         &self.renderer
     }
 
+    #[cfg(feature = "wav")]
     pub(super) fn renderer_mut(&mut self) -> &mut Renderer {
         &mut self.renderer
     }

@@ -60,3 +60,26 @@ fn next(due: Instant, period: Duration, now: Instant) -> Instant {
     let next = due + period;
     if next > now && due <= now { next } else { now + period }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_an_old_frame_says_is_held_is_not_repeated_and_an_end_is_told_all_the_same() {
+        let drive = [WidgetId::new("drive")];
+        let mut heartbeat = Heartbeat::default();
+        let mut reports = |held: &[WidgetId], seen_ms: u64, now_ms: u64| {
+            let [seen, now] = [seen_ms, now_ms].map(Instant::from_millis);
+            let mut count = 0;
+            heartbeat
+                .beat(held.iter(), seen, now, |report| count += u32::from(matches!(report, Report::Held(_))));
+            count
+        };
+        assert_eq!(reports(&drive, 1000, 1000), 1, "news");
+        assert_eq!(reports(&drive, 1020, 1020), 1, "due again");
+        assert_eq!(reports(&drive, 1021, 1061), 0, "40 ms behind");
+        assert_eq!(reports(&drive, 1090, 1100), 1, "it has caught up");
+        assert_eq!(reports(&[], 1100, 1500), 1, "an end is news however late");
+    }
+}
