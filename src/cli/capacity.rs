@@ -9,6 +9,7 @@ use underfoot::floor::Geometry;
 
 use super::failure::Failure;
 use super::number::patience;
+use super::progress::Progress;
 
 /// What `underfoot capacity` is asked to do.
 ///
@@ -35,6 +36,9 @@ const SENSED_SIDE: u16 = 96;
 /// Walkers per tile: two on 6 x 6.
 const WALKERS: u16 = SENSED_SIDE * SENSED_SIDE / 18;
 
+/// Loads that are measured: six of rendering, four of sensing.
+const LOADS: u64 = 10;
+
 /// One line of the answer.
 struct Measured {
     id: &'static str,
@@ -52,8 +56,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         errln!("This is a debug build: a release build is many times faster.");
     }
     let length = args.seconds;
-    let rendering = rendering(length);
-    let sensing = sensing(length);
+    let progress = Progress::of("load", LOADS);
+    let rendering = rendering(length, &progress);
+    let sensing = sensing(length, &progress, rendering.len());
+    drop(progress);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));
     let factor = |all: &[Measured]| all.last().map_or(0.0, |measured| measured.times_real_time);
     let felt_tiles = (RENDERED_TILES * HALF_A_CORE * factor(&rendering)).floor();
@@ -98,12 +104,14 @@ fn print(measured: &Measured) {
     outln!("  {:<52} {:>7.digits$} x real time", measured.name, measured.times_real_time);
 }
 
-fn rendering(length: Duration) -> Vec<Measured> {
+fn rendering(length: Duration, progress: &Progress) -> Vec<Measured> {
     let mut all = Vec::new();
+    progress.done(0);
     for (id, modes) in [("banks_8", 8), ("banks_64", 64)] {
         let mut load = BankLoad::new(modes);
         let name = format!("modal banks alone, {modes} modes struck 20 times a second");
         all.push(Measured { id, name, times_real_time: measure(length, || load.second()) });
+        progress.done(all.len() as u64);
     }
     for (id, name, work) in [
         ("modes_8", "8 modes struck 20 times a second", RenderWork::of_modes(8)),
@@ -117,25 +125,27 @@ fn rendering(length: Duration) -> Vec<Measured> {
     ] {
         let mut load = RenderLoad::new(work);
         all.push(Measured { id, name: name.into(), times_real_time: measure(length, || load.second()) });
+        progress.done(all.len() as u64);
     }
     all
 }
 
-fn sensing(length: Duration) -> Vec<Measured> {
+fn sensing(length: Duration, progress: &Progress, before: usize) -> Vec<Measured> {
     let sizes = [
         ("6x6_2_walkers", 6, 2),
         ("24x24_2_walkers", 24, 2),
         ("96x96_2_walkers", SENSED_SIDE, 2),
         ("96x96_512_walkers", SENSED_SIDE, WALKERS),
     ];
-    sizes
-        .into_iter()
-        .map(|(id, side, walkers)| {
+    (before as u64 + 1..)
+        .zip(sizes)
+        .map(|(done, (id, side, walkers))| {
             let mut load = SensingLoad::new(side, walkers);
             let name = format!("{side} x {side} tiles, {walkers} walkers");
             let times_real_time = measure(length, || {
                 load.second();
             });
+            progress.done(done);
             Measured { id, name, times_real_time }
         })
         .collect()

@@ -1,6 +1,5 @@
 //! `underfoot experiment`: the paper's figures and the accuracy tables.
 
-use std::io::IsTerminal;
 use std::path::{Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -16,6 +15,7 @@ use underfoot::picture;
 use underfoot::sim::FloorQuality;
 
 use super::failure::Failure;
+use super::progress::Progress;
 
 /// What `underfoot experiment` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -245,11 +245,11 @@ fn intent(args: &IntentArgs) -> Result<(), Failure> {
 /// Does something so many times on all processors, telling a person at the terminal how far it has
 /// come; gives back what came of each time, in order.
 fn in_parallel<T: Send>(
-    what: &str,
+    what: &'static str,
     times: u64,
     act: impl Fn(u64) -> Result<T, ExperimentError> + Sync,
 ) -> Result<Vec<T>, Failure> {
-    let watched = std::io::stderr().is_terminal();
+    let progress = Progress::of(what, times);
     let next = AtomicU64::new(0);
     let done = Mutex::new(Vec::new());
     let workers = std::thread::available_parallelism().map_or(1, usize::from);
@@ -265,9 +265,7 @@ fn in_parallel<T: Send>(
                     let failed = result.is_err();
                     let Ok(mut done) = done.lock() else { break };
                     done.push((number, result));
-                    if watched {
-                        err!("\r{what} {} of {times} ", done.len());
-                    }
+                    progress.done(done.len() as u64);
                     if failed {
                         next.store(times, Ordering::Relaxed);
                     }
@@ -275,9 +273,7 @@ fn in_parallel<T: Send>(
             });
         }
     });
-    if watched {
-        err!("\r{:40}\r", "");
-    }
+    drop(progress);
     let mut done = done.into_inner().map_err(|_| Failure::Other("a thread of the experiment died".into()))?;
     done.sort_by_key(|(number, _)| *number);
     Ok(done.into_iter().map(|(_, result)| result).collect::<Result<_, _>>()?)
@@ -375,20 +371,14 @@ fn feet(args: &FeetArgs) -> Result<(), Failure> {
 
 /// Does something so many times, telling a person at the terminal how far it has come.
 fn counted(
-    what: &str,
+    what: &'static str,
     times: u64,
     mut act: impl FnMut(u64) -> Result<(), ExperimentError>,
 ) -> Result<(), Failure> {
-    let watched = std::io::stderr().is_terminal();
+    let progress = Progress::of(what, times);
     for step in 0..times {
-        if watched {
-            err!("\r{what} {} of {times} ", step + 1);
-        }
+        progress.done(step);
         act(step)?;
-    }
-    if watched {
-        // Over what was written there, so that the tables begin on a clean line.
-        err!("\r{:40}\r", "");
     }
     Ok(())
 }

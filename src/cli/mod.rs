@@ -29,6 +29,7 @@ mod outputs;
 mod play;
 #[cfg(feature = "preview")]
 mod preview;
+mod progress;
 mod rack;
 mod reference;
 mod render;

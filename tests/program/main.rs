@@ -18,5 +18,6 @@ mod page_commands;
 mod rack;
 mod senders;
 mod service;
+mod soak;
 mod storage;
 mod wiring;

@@ -346,3 +346,27 @@ fn who_stops_walking_and_stands_on_one_contact_may_stand_on_two() {
     let contact = &floor.sensing.contacts()[0];
     assert!(contact.ambiguous && contact.covariance.xx.sqrt() > 0.04, "{contact:?}");
 }
+
+#[test]
+fn of_three_feet_on_shared_tiles_the_one_that_leaves_is_not_kept_by_a_wrong_division() {
+    // Somebody else's toe, put down at three places beside two feet that share its tiles, and lifted again.
+    for at in [Vec2::new(0.62, 1.06), Vec2::new(1.08, 1.0), Vec2::new(1.08, 1.12)] {
+        let feet = side_by_side();
+        let mut floor = Floor::new();
+        let ids = stand_side_by_side(&mut floor, feet);
+        for milli in 0..900_u16 {
+            let milli = f32::from(milli);
+            let weight = 150.0 * (smooth(0.0, 80.0, milli) - smooth(400.0, 500.0, milli));
+            // Who stands sways: 20 N go over and back meanwhile.
+            let sway = 20.0 * (milli / 300.0 * std::f32::consts::TAU).sin();
+            let stands = [
+                Sole { force: 350.0 + sway, ..feet[0] },
+                Sole { force: 350.0 - sway, ..feet[1] },
+                Sole::new(at, 0.0, weight),
+            ];
+            floor.feel(&stands, 1);
+        }
+        let contacts = floor.sensing.contacts();
+        assert_eq!(contacts.iter().map(|contact| contact.id).collect::<Vec<_>>(), ids, "{at}: {contacts:?}");
+    }
+}

@@ -1,0 +1,86 @@
+//! How far work has come that takes its time, and how long it will still take: a line on a terminal, nothing in a pipe.
+
+use std::fmt;
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+/// Work of equal parts; its line is taken away when this is dropped.
+///
+/// Written through the thread that writes standard error, as everything else is: a terminal that stalls holds up
+/// no work.
+pub(crate) struct Progress {
+    /// One part of the work, such as "person".
+    part: &'static str,
+    parts: u64,
+    begun: Instant,
+    is_shown: bool,
+}
+
+impl Progress {
+    /// Begins work of so many parts.
+    pub(crate) fn of(part: &'static str, parts: u64) -> Self {
+        Self { part, parts, begun: Instant::now(), is_shown: std::io::stderr().is_terminal() }
+    }
+
+    /// Shows that so many parts are done.
+    pub(crate) fn done(&self, done: u64) {
+        if self.is_shown {
+            err!(
+                "\r{:60}\r{} {done} of {}{}",
+                "",
+                self.part,
+                self.parts,
+                self.left(self.begun.elapsed(), done)
+            );
+        }
+    }
+
+    /// The time that the parts to come take if they are like the ones before.
+    fn left(&self, elapsed: Duration, done: u64) -> Left {
+        if done == 0 {
+            return Left(None);
+        }
+        Left(Some(elapsed.mul_f64(self.parts.saturating_sub(done) as f64 / done as f64)))
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        if self.is_shown {
+            // Over what was written there, so that what follows begins on a clean line.
+            err!("\r{:60}\r", "");
+        }
+    }
+}
+
+/// A time that is left, as it is read at a glance; nothing while it is not known.
+struct Left(Option<Duration>);
+
+impl fmt::Display for Left {
+    fn fmt(&self, text: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Some(left) = self.0 else { return Ok(()) };
+        let seconds = left.as_secs_f64().ceil() as u64;
+        match (seconds / 3600, seconds / 60 % 60, seconds % 60) {
+            (0, 0, seconds) => write!(text, ", {seconds} s left"),
+            (0, minutes, seconds) => write!(text, ", {minutes} min {seconds:02} s left"),
+            (hours, minutes, _) => write!(text, ", {hours} h {minutes:02} min left"),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_left_follows_from_what_is_done() {
+        let progress = Progress::of("person", 100);
+        let left = |elapsed_s, done| progress.left(Duration::from_secs(elapsed_s), done).to_string();
+        assert_eq!(left(5, 0), "");
+        assert_eq!(left(5, 50), ", 5 s left");
+        assert_eq!(left(60, 20), ", 4 min 00 s left");
+        assert_eq!(left(7200, 40), ", 3 h 00 min left");
+        // Never negative, whatever is counted.
+        assert_eq!(left(60, 200), ", 0 s left");
+    }
+}
