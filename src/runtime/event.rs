@@ -57,6 +57,37 @@ pub enum Kind {
     Ended(EndReason),
 }
 
+impl Kind {
+    /// The word for it, as in JSON lines: of a control what happened to it, such as `pressed`.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Control(kind) => kind.name(),
+            Self::State => "state",
+            Self::Page => "page",
+            Self::Link(_) => "link",
+            Self::Health => "health",
+            Self::Device => "device",
+            Self::Muted => "mute",
+            Self::Crack { .. } => "crack",
+            Self::Ended(_) => "ended",
+        }
+    }
+}
+
+impl EndReason {
+    /// The word for it in other languages.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Stopped => "stopped",
+            Self::SourceEnded => "source_ended",
+            Self::Failed => "failed",
+            Self::Panicked => "panicked",
+        }
+    }
+}
+
 /// Why a session is over.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]

@@ -16,7 +16,8 @@ pub enum LinkState {
 
 impl LinkState {
     /// The word for it in OSC and JSON.
-    pub(crate) const fn name(self) -> &'static str {
+    #[must_use]
+    pub const fn name(self) -> &'static str {
         match self {
             Self::Waiting => "waiting",
             Self::Live => "live",

@@ -1,0 +1,362 @@
+//! The runtime for programs in C: `underfoot.h` says what each function does.
+//!
+//! Each function checks its pointers and texts, and catches what panics.
+
+mod session;
+mod status;
+mod structs;
+
+use std::ffi::{CStr, c_char, c_int};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::ptr;
+use std::time::Duration;
+
+use underfoot::glam::Vec2;
+use underfoot::runtime::{Control, Refusal};
+use underfoot::widget::{Indicator, Value};
+
+pub use session::UfSession;
+use status::{BAD_ARGUMENT, OK, OVER, PANIC, TIMEOUT, of_refusal};
+pub use structs::{UfContact, UfEvent, UfOptions, UfValue};
+use structs::{put, sized};
+
+/// How long one wait without an end lasts before the next one.
+const HOUR: Duration = Duration::from_secs(3600);
+
+/// Calls `f`; `fallen` if it panics.
+fn contained<T>(fallen: T, f: impl FnOnce() -> T) -> T {
+    catch_unwind(AssertUnwindSafe(f)).unwrap_or(fallen)
+}
+
+/// The text at `text`; `None` for null and for what is not UTF-8.
+///
+/// # Safety
+/// `text` is null or ends with a 0 and stays as it is for `'a`.
+unsafe fn text<'a>(text: *const c_char) -> Option<&'a str> {
+    if text.is_null() {
+        return None;
+    }
+    // SAFETY: not null; the rest is the caller's promise.
+    unsafe { CStr::from_ptr(text) }.to_str().ok()
+}
+
+/// Does `what` with one control.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+unsafe fn with_control(
+    session: *const UfSession,
+    id: *const c_char,
+    what: impl FnOnce(Control<'_>) -> Result<(), Refusal>,
+) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else {
+            return BAD_ARGUMENT;
+        };
+        match session.floor.control(id).and_then(what) {
+            Ok(()) => OK,
+            Err(refusal) => of_refusal(refusal),
+        }
+    })
+}
+
+/// Starts a floor; see `underfoot.h`.
+///
+/// # Safety
+/// The texts are null or end with 0, `options` is null or of the size it says, `error` is null or has `error_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_session_listen(
+    address: *const c_char,
+    layout: *const c_char,
+    options: *const UfOptions,
+    error: *mut c_char,
+    error_size: usize,
+) -> *mut UfSession {
+    let started = contained(Err("a fault of the library".to_owned()), || {
+        // SAFETY: as the caller promises.
+        let (Some(address), Some(layout)) = (unsafe { text(address) }, unsafe { text(layout) }) else {
+            return Err("address and layout must be texts in UTF-8".to_owned());
+        };
+        // SAFETY: as the caller promises.
+        let options = unsafe { options.as_ref() };
+        if options.is_some_and(|options| !sized::<UfOptions>(options.size)) {
+            return Err("the options have a size that no version has".to_owned());
+        }
+        let every_change = options.is_some_and(|options| options.every_change != 0);
+        // SAFETY: as the caller promises.
+        let floor = options
+            .filter(|options| !options.floor_path.is_null())
+            .map(|options| unsafe { text(options.floor_path) });
+        match floor {
+            Some(None) => Err("the path of the floor file is not UTF-8".to_owned()),
+            floor => UfSession::listen(address, layout, floor.flatten(), every_change),
+        }
+    });
+    match started {
+        Ok(session) => Box::into_raw(Box::new(session)),
+        Err(why) => {
+            if !error.is_null() && error_size > 0 {
+                // SAFETY: as the caller promises.
+                put(unsafe { std::slice::from_raw_parts_mut(error, error_size) }, &why);
+            }
+            ptr::null_mut()
+        }
+    }
+}
+
+/// Takes the next event; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `event` is null or of the size it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, timeout_ms: c_int) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let (Some(session), false) = (unsafe { session.as_ref() }, event.is_null()) else {
+            return BAD_ARGUMENT;
+        };
+        // SAFETY: not null; `size` comes first in all versions.
+        if !sized::<UfEvent>(unsafe { ptr::read(event.cast::<u32>()) }) {
+            return BAD_ARGUMENT;
+        }
+        let patience = u64::try_from(timeout_ms).ok().map(Duration::from_millis);
+        loop {
+            if let Some(next) = session.next(patience.unwrap_or(HOUR)) {
+                // SAFETY: of this version's size at least, as was checked.
+                unsafe { ptr::write(event, UfEvent::of(&next, ptr::read(event.cast::<u32>()))) };
+                return OK;
+            }
+            if session.is_over() {
+                return OVER;
+            }
+            if patience.is_some() {
+                return TIMEOUT;
+            }
+        }
+    })
+}
+
+/// Whether a foot holds a control now; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -> c_int {
+    contained(0, || {
+        // SAFETY: as the caller promises.
+        let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else { return 0 };
+        c_int::from(session.floor.held(id).is_fresh())
+    })
+}
+
+/// A descriptor to poll; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_fd(session: *const UfSession) -> c_int {
+    // SAFETY: as the caller promises.
+    contained(PANIC, || unsafe { session.as_ref() }.map_or(BAD_ARGUMENT, UfSession::descriptor))
+}
+
+/// What a control holds; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text, `value` is null or of the size it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, value: *mut UfValue) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else {
+            return BAD_ARGUMENT;
+        };
+        // SAFETY: not null; `size` comes first in all versions.
+        if value.is_null() || !sized::<UfValue>(unsafe { ptr::read(value.cast::<u32>()) }) {
+            return BAD_ARGUMENT;
+        }
+        let Some(state) = session.floor.snapshot().control(id) else { return status::UNKNOWN };
+        // SAFETY: of this version's size at least, as was checked.
+        unsafe { ptr::write(value, UfValue::of(state.value, ptr::read(value.cast::<u32>()))) };
+        OK
+    })
+}
+
+/// The feet on the floor; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `contacts` has `capacity` elements of `element_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_contacts(
+    session: *const UfSession,
+    contacts: *mut UfContact,
+    capacity: usize,
+    element_size: usize,
+) -> c_int {
+    contained(PANIC, || {
+        let size = u32::try_from(element_size).unwrap_or(0);
+        // SAFETY: as the caller promises.
+        let Some(session) = (unsafe { session.as_ref() }) else { return BAD_ARGUMENT };
+        if (contacts.is_null() && capacity > 0) || !sized::<UfContact>(size) {
+            return BAD_ARGUMENT;
+        }
+        let feet = session.floor.snapshot().floor.contacts;
+        for (index, foot) in feet.iter().enumerate().take(capacity) {
+            // SAFETY: within `capacity` elements, each of this version's size at least; aligned as the first one is, or
+            // not, in a later version.
+            unsafe {
+                let place = contacts.byte_add(index * element_size);
+                ptr::write_unaligned(place, UfContact::of(foot, size));
+            }
+        }
+        c_int::try_from(feet.len()).unwrap_or(c_int::MAX)
+    })
+}
+
+/// Events that were dropped; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_dropped(session: *const UfSession) -> u64 {
+    // SAFETY: as the caller promises.
+    contained(0, || unsafe { session.as_ref() }.map_or(0, |session| session.floor.dropped()))
+}
+
+/// Gives a control a number; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_number(session: *mut UfSession, id: *const c_char, value: f32) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set(value)) }
+}
+
+/// Gives a pad two numbers; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_pair(
+    session: *mut UfSession,
+    id: *const c_char,
+    east: f32,
+    north: f32,
+) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set(Value::Pair(Vec2::new(east, north)))) }
+}
+
+/// Gives a control another range; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_range(
+    session: *mut UfSession,
+    id: *const c_char,
+    least: f32,
+    greatest: f32,
+) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set_range(least..=greatest)) }
+}
+
+/// Writes another label on a control; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, the texts are null or end with 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_label(
+    session: *mut UfSession,
+    id: *const c_char,
+    label: *const c_char,
+) -> c_int {
+    // SAFETY: as the caller promises.
+    let Some(label) = (unsafe { text(label) }) else { return BAD_ARGUMENT };
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set_label(label)) }
+}
+
+/// Switches a control's lamp; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, the texts are null or end with 0.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_indicator(
+    session: *mut UfSession,
+    id: *const c_char,
+    lamp: *const c_char,
+) -> c_int {
+    // SAFETY: as the caller promises.
+    let Some(lamp) = (unsafe { text(lamp) }) else { return BAD_ARGUMENT };
+    let Some(lamp) = Indicator::ALL.into_iter().find(|other| other.name() == lamp) else {
+        return BAD_ARGUMENT;
+    };
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set_indicator(lamp)) }
+}
+
+/// Lets a control react to feet, or no more; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_enabled(session: *mut UfSession, id: *const c_char, enabled: c_int) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set_enabled(enabled != 0)) }
+}
+
+/// Lets a control keep its value, or no more; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_locked(session: *mut UfSession, id: *const c_char, locked: c_int) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |control| control.set_locked(locked != 0)) }
+}
+
+/// Shows another page; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `page` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_char) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        match (unsafe { session.as_ref() }, unsafe { text(page) }) {
+            (Some(session), Some(page)) => session.floor.set_page(page).map_or_else(of_refusal, |()| OK),
+            _ => BAD_ARGUMENT,
+        }
+    })
+}
+
+/// Ends the floor; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_stop(session: *mut UfSession) {
+    // SAFETY: as the caller promises.
+    contained((), || unsafe { session.as_ref() }.into_iter().for_each(|session| session.floor.stop()));
+}
+
+/// Ends the floor and frees the session; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null, or was given by `uf_session_listen` and is used by nobody else.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_close(session: *mut UfSession) {
+    if !session.is_null() {
+        // SAFETY: as the caller promises.
+        contained((), || drop(unsafe { Box::from_raw(session) }));
+    }
+}
+
+/// A status in words; see `underfoot.h`.
+#[unsafe(no_mangle)]
+pub extern "C" fn uf_status_text(status: c_int) -> *const c_char {
+    status::text(status).as_ptr()
+}

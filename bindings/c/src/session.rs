@@ -1,0 +1,96 @@
+//! The session behind a handle of C, with a descriptor that becomes readable.
+
+use std::ffi::c_int;
+#[cfg(unix)]
+use std::io::{Read, Write};
+#[cfg(unix)]
+use std::os::{fd::AsRawFd, unix::net::UnixStream};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use underfoot::runtime::{Event, Kind, Session};
+
+use crate::structs::ID_SIZE;
+
+/// What `uf_session` is.
+#[derive(Debug)]
+pub struct UfSession {
+    pub(crate) floor: Session,
+    /// Whether the last event was taken.
+    over: AtomicBool,
+    /// Has a byte whenever events may wait.
+    #[cfg(unix)]
+    woken: UnixStream,
+}
+
+impl UfSession {
+    pub(crate) fn listen(
+        address: &str,
+        layout: &str,
+        floor_file: Option<&str>,
+        every_change: bool,
+    ) -> Result<Self, String> {
+        let mut builder = Session::listen(address);
+        if let Some(path) = floor_file {
+            builder = builder.floor_file(path).map_err(|problems| problems.to_string())?;
+        }
+        builder = builder.layout_file(layout).map_err(|problems| problems.to_string())?;
+        if every_change {
+            builder = builder.every_change();
+        }
+        #[cfg(unix)]
+        let woken = {
+            let pair = || -> std::io::Result<_> {
+                let (mut wake, woken) = UnixStream::pair()?;
+                wake.set_nonblocking(true)?;
+                woken.set_nonblocking(true)?;
+                // A full pipe has been readable for long.
+                Ok((move || drop(wake.write(&[1])), woken))
+            };
+            let (wake, woken) = pair().map_err(|error| format!("the system gives no pipe: {error}"))?;
+            builder = builder.wake(wake);
+            woken
+        };
+        let floor = builder.start().map_err(|error| error.to_string())?;
+        if let Some(widget) =
+            floor.snapshot().layout.widgets.iter().find(|widget| widget.id.as_str().len() >= ID_SIZE)
+        {
+            return Err(format!("the id {} is longer than {} bytes", widget.id, ID_SIZE - 1));
+        }
+        Ok(Self {
+            floor,
+            over: AtomicBool::new(false),
+            #[cfg(unix)]
+            woken,
+        })
+    }
+
+    /// The next event within `patience`. The descriptor is emptied before the last look into the queue: what comes
+    /// later makes it readable anew.
+    pub(crate) fn next(&self, patience: Duration) -> Option<Event> {
+        let event = self.floor.next_event().or_else(|| {
+            #[cfg(unix)]
+            while (&self.woken).read(&mut [0; 64]).is_ok_and(|count| count == 64) {}
+            self.floor.next_event_timeout(patience)
+        })?;
+        if matches!(event.kind, Kind::Ended(_)) {
+            self.over.store(true, Ordering::Release);
+        }
+        Some(event)
+    }
+
+    /// Whether the last event was taken.
+    pub(crate) fn is_over(&self) -> bool {
+        self.over.load(Ordering::Acquire)
+    }
+
+    #[cfg(unix)]
+    pub(crate) fn descriptor(&self) -> c_int {
+        self.woken.as_raw_fd()
+    }
+
+    #[cfg(not(unix))]
+    pub(crate) fn descriptor(&self) -> c_int {
+        crate::status::BAD_ARGUMENT
+    }
+}

@@ -1,0 +1,163 @@
+/* A force-sensing floor in a C program.
+ *
+ * uf_session_listen starts a thread that receives the floor's packets; uf_next takes what happens. Any thread may call
+ * any function, but nobody may use a session that is being closed. No function lets a panic out. Metres, newtons,
+ * seconds; x east and y north from the floor's south-west corner.
+ *
+ * Whatever moves, shines or flows while a foot holds a control must ask uf_held every 20 ms at least, and stop when it
+ * answers 0: silence means released. This is not a safety function.
+ */
+#ifndef UNDERFOOT_H
+#define UNDERFOOT_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Bytes of an id, of a word and of a text, with the closing 0. What is longer is cut at a character. */
+#define UF_ID_SIZE 128
+#define UF_NAME_SIZE 24
+#define UF_TEXT_SIZE 256
+
+/* What functions answer; uf_status_text says it in words. */
+enum {
+    UF_OK = 0,
+    UF_TIMEOUT = 1,         /* nothing happened in that time */
+    UF_OVER = 2,            /* the session has ended and all its events were taken */
+    UF_BAD_ARGUMENT = -1,   /* a null pointer, text that is not UTF-8, or a size that no version has */
+    UF_UNKNOWN = -2,        /* no such control or page */
+    UF_WRONG_TYPE = -3,     /* the control does not hold that type of value */
+    UF_NOT_FINITE = -4,     /* NaN or infinite */
+    UF_NO_SUCH_CHOICE = -5, /* the selector has fewer options */
+    UF_NO_RANGE = -6,       /* the control can't have such a range */
+    UF_MOMENTARY = -7,      /* only a foot works it, for as long as it holds it */
+    UF_LOCKED = -8,         /* an app has locked it */
+    UF_IN_USE = -9,         /* a foot is on it */
+    UF_ENDED = -10,         /* the session is over */
+    UF_NO_ANSWER = -11,     /* the floor did not answer within 200 ms */
+    UF_REFUSED = -12,       /* for a reason that this header has no number for */
+    UF_PANIC = -13          /* a fault of the library, which has been contained */
+};
+
+/* What an event is about. */
+enum {
+    UF_CONTROL = 1, /* a foot did something to the control `id`: `name` is "pressed", "released", "changed" ... */
+    UF_STATE = 2,   /* an app changed the control `id`, or asked for it */
+    UF_PAGE = 3,    /* the page `id` is shown */
+    UF_LINK = 4,    /* `text` is "waiting", "live", "partial" or "lost"; "lost" has cancelled what was held */
+    UF_HEALTH = 5,  /* the sensors are in another state */
+    UF_DEVICE = 6,  /* the device that moves the actuators is in another state */
+    UF_MUTE = 7,    /* something else is muted */
+    UF_CRACK = 8,   /* a ground cracked at `x_m`, `y_m` */
+    UF_END = 9,     /* the last event: `text` is "stopped", "source_ended", or "failed: ..." or "panicked: ..." */
+    UF_OTHER = 100  /* something that this header has no number for; `name` has the word */
+};
+
+/* What `value` has. */
+enum {
+    UF_NOTHING = 0,
+    UF_SWITCH = 1,   /* value[0] is 0 or 1 */
+    UF_NUMBER = 2,   /* value[0] */
+    UF_CHOICE = 3,   /* value[0] is the number of the option, from 0 */
+    UF_PAIR = 4,     /* eastwards, northwards */
+    UF_DIRECTION = 5 /* of a swipe: value[0] is 0 north, 1 east, 2 south, 3 west */
+};
+
+typedef struct uf_session uf_session;
+
+/* Later versions may add fields at the ends of these. `size` says which version the program was compiled for: the
+ * library writes and reads no further. Set it before the call, as in `uf_event event = { .size = sizeof event };`. */
+
+typedef struct uf_options {
+    uint32_t size;
+    uint32_t every_change;  /* 1: keep every value; 0: of each control the latest that nobody has taken */
+    const char *floor_path; /* floor file; NULL: the paper's floor of 6 x 6 tiles */
+} uf_options;
+
+typedef struct uf_event {
+    uint32_t size;
+    uint32_t kind;           /* UF_CONTROL ... */
+    double t_s;              /* on the floor's sample clock */
+    char id[UF_ID_SIZE];     /* of the control or page; "" if it is about the floor */
+    char name[UF_NAME_SIZE]; /* the word for what happened, as in JSON lines */
+    char text[UF_TEXT_SIZE]; /* of a link and of the end; "" otherwise */
+    uint32_t value_type;     /* UF_NOTHING ... */
+    float value[2];
+    float force_n;
+    float x_m;
+    float y_m;
+    int64_t contact;         /* which foot; -1 if no foot did it */
+} uf_event;
+
+typedef struct uf_value {
+    uint32_t size;
+    uint32_t type; /* UF_SWITCH ... */
+    float value[2];
+} uf_value;
+
+typedef struct uf_contact {
+    uint32_t size;
+    uint32_t id;
+    float x_m;
+    float y_m;
+    float force_n;
+    float x_velocity_m_s;
+    float y_velocity_m_s;
+} uf_contact;
+
+/* Starts a floor whose boards send to `address`, such as "127.0.0.1:9000", with the page of controls in the file
+ * `layout`. `options` may be NULL. NULL on failure: `error` then has the reason, cut to `error_size` bytes with the
+ * closing 0; it may be NULL. */
+uf_session *uf_session_listen(const char *address, const char *layout, const uf_options *options, char *error,
+                              size_t error_size);
+
+/* Takes the next event: UF_OK, UF_TIMEOUT or UF_OVER. Waits for `timeout_ms` at most; 0 does not wait, a negative number
+ * waits for ever. The last event is always UF_END. */
+int uf_next(uf_session *session, uf_event *event, int timeout_ms);
+
+/* 1 if a foot holds the control now and the floor has said so within the last 100 ms; otherwise 0, also for NULL. */
+int uf_held(const uf_session *session, const char *id);
+
+/* A descriptor for poll and select, readable when there may be events: then call uf_next with a timeout of 0 until it
+ * answers UF_TIMEOUT or UF_OVER. Belongs to the session: don't read or close it. Negative where there is none (on
+ * Windows). */
+int uf_fd(const uf_session *session);
+
+/* What a control holds: UF_OK or UF_UNKNOWN; its type is UF_NOTHING for a button. */
+int uf_get(const uf_session *session, const char *id, uf_value *value);
+
+/* The feet on the floor: writes as many as `capacity` into `contacts`, elements of `element_size` bytes, which is
+ * sizeof(uf_contact), and answers how many there are; negative on failure. */
+int uf_contacts(const uf_session *session, uf_contact *contacts, size_t capacity, size_t element_size);
+
+/* Events that were dropped because nobody took them. */
+uint64_t uf_dropped(const uf_session *session);
+
+/* These answer UF_OK, or why the control stays as it was. A number stands for on (not 0) where the control is a switch,
+ * and for an option, from 0, where it is a selector. */
+int uf_set_number(uf_session *session, const char *id, float value);
+int uf_set_pair(uf_session *session, const char *id, float east, float north);
+int uf_set_range(uf_session *session, const char *id, float least, float greatest);
+int uf_set_label(uf_session *session, const char *id, const char *label);
+int uf_set_indicator(uf_session *session, const char *id, const char *lamp); /* "off", "on", "busy", "attention" */
+int uf_set_enabled(uf_session *session, const char *id, int enabled);
+int uf_set_locked(uf_session *session, const char *id, int locked);
+int uf_set_page(uf_session *session, const char *page);
+
+/* Ends the floor: what is held is cancelled and UF_END follows. Does not wait. */
+void uf_stop(uf_session *session);
+
+/* Ends the floor, waits until its thread has ended, and frees the session; NULL is allowed. */
+void uf_close(uf_session *session);
+
+/* `status` in words; lasts for ever. */
+const char *uf_status_text(int status);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
