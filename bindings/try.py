@@ -1,0 +1,203 @@
+"""Programs in C and Python hear what JSON lines say, and believe no hold for long.
+
+    python3 bindings/try.py UNDERFOOT LAYOUT -- NAME COMMAND... [-- NAME COMMAND...]
+
+UNDERFOOT is the program. Each COMMAND gets an address, the layout and the name of a control, and prints events as JSON
+lines, and when that control begins and ends to be held. All are sent the same packets as `underfoot run --json`; then
+the packets stop while the control is held, `--rounds` times.
+"""
+
+import argparse
+import json
+import signal
+import socket
+import statistics
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from pathlib import Path
+
+VISIT = """Scenario(
+    title: "Home, then zoom",
+    person: (mass_kg: 70, foot_m: 0.27),
+    steps: [
+        Wait(ms: 1200),
+        Enter(from: South, at: (2.2, 0.5)),
+        Press(widget: "home", force_n: 140, hold_ms: 350),
+        Sidestep(at: (4.0, 0.5)),
+        Drag(widget: "zoom", from: 0.3, to: 0.75, speed_m_s: 0.3, force_n: 110),
+        Wait(ms: 300),
+    ],
+)"""
+HOLD = VISIT.replace("hold_ms: 350", "hold_ms: 60000")
+HELD = "home"
+# What a program may still believe after the packets have stopped, in seconds.
+SOON = 0.150
+
+
+class Relay:
+    """Passes what comes to each of `targets`, until it is cut."""
+
+    def __init__(self, targets):
+        self.socket = socket.socket(socket.AF_INET, socket.SOCK_DGRAM)
+        self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, 1 << 20)
+        self.socket.bind(("127.0.0.1", 0))
+        self.socket.settimeout(0.2)
+        self.targets, self.cut_at, self.over = targets, None, False
+        self.thread = threading.Thread(target=self.pass_on)
+        self.thread.start()
+
+    def address(self):
+        return "127.0.0.1:%d" % self.socket.getsockname()[1]
+
+    def pass_on(self):
+        while not self.over:
+            try:
+                packet = self.socket.recv(65536)
+            except TimeoutError:
+                continue
+            if self.cut_at is None:
+                for target in self.targets:
+                    self.socket.sendto(packet, target)
+
+    def cut(self):
+        self.cut_at = time.monotonic()
+
+    def end(self):
+        self.over = True
+        self.thread.join()
+        self.socket.close()
+
+
+class Reader:
+    """The lines that a program prints."""
+
+    def __init__(self, command):
+        self.lines = []
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.thread = threading.Thread(target=self.read)
+        self.thread.start()
+
+    def read(self):
+        for line in self.process.stdout:
+            self.lines.append(json.loads(line))
+
+    def end(self):
+        if self.process.poll() is None:
+            self.process.send_signal(signal.SIGTERM)
+        try:
+            self.process.wait(10)
+        except subprocess.TimeoutExpired:
+            self.process.kill()
+        self.thread.join()
+
+    def events(self):
+        """What happened to controls, without what differs in the last digits of writing."""
+        told = [line for line in self.lines if "id" in line and line.get("event", "state") != "state"]
+        return [(line["event"], line["id"], rounded(line["value"]), line["contact"]) for line in told]
+
+    def wait_held(self, held, since=0.0):
+        end = time.monotonic() + 20
+        while time.monotonic() < end:
+            for line in list(self.lines):
+                if line.get("held") is held and line.get("now_s", 0) > since:
+                    return line["now_s"]
+            time.sleep(0.005)
+        raise SystemExit("never heard that %s is %sheld" % (HELD, "" if held else "no longer "))
+
+
+def rounded(value):
+    if isinstance(value, list):
+        return [round(number, 5) for number in value]
+    return round(value, 5) if isinstance(value, float) else value
+
+
+def free_address():
+    with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as taken:
+        taken.bind(("127.0.0.1", 0))
+        return taken.getsockname()
+
+
+def said(address):
+    return "%s:%d" % address
+
+
+def simulate(underfoot, scenario, folder, address):
+    path = Path(folder) / "visit.ron"
+    path.write_text(scenario)
+    command = [underfoot, "simulate", "--scenario", str(path), "--send", address]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def same_events(underfoot, layout, programs, folder):
+    addresses = [free_address() for _ in range(len(programs) + 1)]
+    wanted = Reader([underfoot, "run", layout, "--listen", said(addresses[0]), "--json", "--no-osc",
+                     "--wav", str(Path(folder) / "out.wav")])
+    readers = [Reader([*command, said(address), layout, HELD])
+               for (_, command), address in zip(programs, addresses[1:])]
+    relay = Relay(addresses)
+    time.sleep(2)
+    simulate(underfoot, VISIT, folder, relay.address()).wait()
+    # The programs end when the link is lost.
+    for reader in readers:
+        reader.process.wait(20)
+        reader.end()
+    wanted.end()
+    relay.end()
+    assert ("clicked", "home", None) in [event[:3] for event in wanted.events()], wanted.lines
+    good = True
+    for (name, _), reader in zip(programs, readers):
+        same = reader.events() == wanted.events()
+        good &= same
+        print("%s: %d events, %s" % (name, len(reader.events()), "the same as the JSON lines" if same else "OTHERS"))
+        if not same:
+            print("JSON lines:", *wanted.events(), name + ":", *reader.events(), sep="\n  ")
+    return good
+
+
+def believed(underfoot, layout, name, command, folder, rounds):
+    times = []
+    for _ in range(rounds):
+        address = free_address()
+        reader = Reader([*command, said(address), layout, HELD])
+        relay = Relay([address])
+        time.sleep(1)
+        feet = simulate(underfoot, HOLD, folder, relay.address())
+        held = reader.wait_held(True)
+        relay.cut()
+        times.append(reader.wait_held(False, held) - relay.cut_at)
+        feet.kill()
+        feet.wait()
+        relay.end()
+        reader.end()
+    print("%s: believed for %.0f ms (median of %d), %.0f ms at most"
+          % (name, 1000 * statistics.median(times), rounds, 1000 * max(times)))
+    # A machine that has something else to do delays a round; a rule that is broken delays all of them.
+    return min(times) <= SOON
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--rounds", type=int, default=2)
+    parser.add_argument("underfoot")
+    parser.add_argument("layout")
+    own, programs = sys.argv[1:], []
+    if "--" in own:
+        at = own.index("--")
+        own, rest = own[:at], own[at + 1:]
+        while rest:
+            end = rest.index("--") if "--" in rest else len(rest)
+            programs.append((rest[0], rest[1:end]))
+            rest = rest[end + 1:]
+    args = parser.parse_args(own)
+    with tempfile.TemporaryDirectory() as folder:
+        good = same_events(args.underfoot, args.layout, programs, folder)
+        for name, command in programs:
+            good &= believed(args.underfoot, args.layout, name, command, folder, args.rounds)
+    sys.exit(not good)
+
+
+if __name__ == "__main__":
+    main()
