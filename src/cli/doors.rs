@@ -81,7 +81,11 @@ impl CommandArgs {
     /// Opens the port of apps, if there is to be one.
     pub(crate) fn open(&self, source: UdpSource) -> Result<UdpSource, Failure> {
         let Some(address) = self.commands else { return Ok(source) };
-        let apps = if self.allow_commands.is_empty() { &Network::LOOPBACK[..] } else { &self.allow_commands };
-        Ok(source.with_commands(address, apps.iter().copied())?)
+        Ok(source.with_commands(address, self.apps().iter().copied())?)
+    }
+
+    /// From where requests are taken.
+    pub(crate) fn apps(&self) -> &[Network] {
+        if self.allow_commands.is_empty() { &Network::LOOPBACK } else { &self.allow_commands }
     }
 }

@@ -41,6 +41,7 @@ mod stop;
 mod watch;
 #[cfg(unix)]
 mod watchdog;
+mod web;
 mod wiring;
 
 use std::process::ExitCode;

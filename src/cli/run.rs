@@ -30,6 +30,7 @@ use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
 #[cfg(unix)]
 use super::watchdog::Watchdog;
+use super::web::WebArgs;
 
 /// What `underfoot run` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -51,6 +52,8 @@ pub(crate) struct Args {
     commands: CommandArgs,
     #[command(flatten)]
     outputs: OutputArgs,
+    #[command(flatten)]
+    web: WebArgs,
     #[command(flatten)]
     actuate: ActuateArgs,
     #[command(flatten)]
@@ -86,6 +89,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (notice, noticed) = mpsc::channel();
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&floor.geometry)?;
+    let door = args.web.open()?;
+    if let Some(door) = &door {
+        outputs.push(door.sink()?);
+    }
     #[cfg(unix)]
     if let Some(watchdog) = Watchdog::of_environment() {
         outputs.push(watchdog);
@@ -118,13 +125,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             noticed.recv().unwrap_or_default()
         );
     }
+    let apps = args.commands.apps().to_vec();
+    let web = door.map(|door| door.serve(session.clone(), floor.geometry, apps)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }
     let console = Console::start(address.as_ref().copied().unwrap_or(args.listen), session.clone())
         .map_err(|error| Failure::Other(format!("the console can't be started: {error}")))?;
     let end = end(&session);
-    drop((watch, console));
+    drop((watch, console, web));
     let Snapshot { layout, floor, .. } = session.snapshot();
     report(&floor.counters, floor.unsent_events);
     report_felt(&floor.feel);

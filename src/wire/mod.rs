@@ -12,6 +12,7 @@ mod counters;
 mod decode;
 mod encode;
 mod guard;
+mod json_request;
 mod link;
 mod message;
 mod packet;
@@ -32,5 +33,6 @@ internal! {
     use decode::{Batch, Decoder, WireError};
     use encode::{EncodeError, SensorEncoder, SensorFormat};
     use guard::{Limits, Malformed, check};
+    use json_request::{read_json};
     use packet::{MAX_CHANNELS};
 }

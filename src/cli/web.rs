@@ -1,0 +1,207 @@
+//! The door for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours.
+
+mod broadcast;
+mod client;
+mod greeting;
+mod origin;
+mod request;
+
+use std::io::{ErrorKind, Read, Write};
+use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, Builder, JoinHandle};
+use std::time::{Duration, Instant};
+
+use tracing::warn;
+use underfoot::floor::{Geometry, Network};
+use underfoot::runtime::Session;
+use underfoot::sink::{EventSink, JsonSink};
+
+use super::failure::Failure;
+use broadcast::{Broadcast, Clients};
+use origin::Origin;
+
+/// Where web pages find the floor.
+#[derive(clap::Args, Clone, Debug, Default)]
+pub(crate) struct WebArgs {
+    /// Show the floor as a web page at this address, such as 127.0.0.1:9002, and tell its events over WebSocket.
+    #[arg(long, value_name = "ADDR")]
+    web: Option<SocketAddr>,
+    /// Let pages from here connect as well, such as https://app.example.org; several may be given. Without it, pages
+    /// of this machine only.
+    #[arg(long, value_name = "ORIGIN", requires = "web")]
+    web_origin: Vec<Origin>,
+}
+
+/// Connections at once; each is a thread.
+const MOST: usize = 16;
+
+/// How long a client may take for the head of its request.
+const PATIENCE: Duration = Duration::from_secs(2);
+
+/// Most bytes of that head.
+const MOST_HEAD: usize = 8192;
+
+/// How often it is looked whether somebody comes.
+const LOOK_EVERY: Duration = Duration::from_millis(20);
+
+const PAGE: &str = include_str!("web/page.html");
+
+/// The door before the floor is there: bound, but closed.
+pub(crate) struct Door {
+    listener: TcpListener,
+    origins: Vec<Origin>,
+    clients: Arc<Clients>,
+}
+
+/// What every connection knows.
+struct House {
+    session: Session,
+    geometry: Geometry,
+    origins: Vec<Origin>,
+    /// Whose requests are taken.
+    apps: Vec<Network>,
+    clients: Arc<Clients>,
+    over: AtomicBool,
+}
+
+/// The door at work; closes when dropped.
+pub(crate) struct Web {
+    house: Arc<House>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl WebArgs {
+    /// Takes the address, if there is to be a door.
+    pub(crate) fn open(&self) -> Result<Option<Door>, Failure> {
+        let Some(address) = self.web else { return Ok(None) };
+        let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
+        let listener = TcpListener::bind(address).map_err(failed)?;
+        listener.set_nonblocking(true).map_err(failed)?;
+        Ok(Some(Door { listener, origins: self.web_origin.clone(), clients: Arc::default() }))
+    }
+}
+
+impl Door {
+    /// What tells the clients.
+    pub(crate) fn sink(&self) -> Result<impl EventSink + 'static, Failure> {
+        Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
+    }
+
+    /// Opens it.
+    pub(crate) fn serve(
+        self,
+        session: Session,
+        geometry: Geometry,
+        apps: Vec<Network>,
+    ) -> Result<Web, Failure> {
+        let Self { listener, origins, clients } = self;
+        let failed = |error| Failure::Other(format!("the door for web pages can't be opened: {error}"));
+        errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
+        let house =
+            Arc::new(House { session, geometry, origins, apps, clients, over: AtomicBool::new(false) });
+        let own = Arc::clone(&house);
+        let serve = move || accept(&listener, &own);
+        let thread = Some(Builder::new().name("web door".into()).spawn(serve).map_err(failed)?);
+        Ok(Web { house, thread })
+    }
+}
+
+impl Drop for Web {
+    fn drop(&mut self) {
+        self.house.over.store(true, Ordering::Relaxed);
+        // What panicked in it has been said.
+        let _ = self.thread.take().map(JoinHandle::join);
+        let (served, dropped) = self.house.clients.counts();
+        errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
+    }
+}
+
+/// Lets clients in until the house closes, and waits for those that are in.
+fn accept(listener: &TcpListener, house: &Arc<House>) {
+    let mut rooms: Vec<JoinHandle<()>> = Vec::new();
+    while !house.over.load(Ordering::Relaxed) {
+        match listener.accept() {
+            Ok((stream, peer)) => {
+                rooms.retain(|room| !room.is_finished());
+                if rooms.len() >= MOST {
+                    turn_away(stream, "503 Service Unavailable", "too many clients");
+                    continue;
+                }
+                let own = Arc::clone(house);
+                match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
+                    Ok(room) => rooms.push(room),
+                    Err(error) => warn!("a web client can't be served: {error}"),
+                }
+            }
+            Err(error) => {
+                if error.kind() != ErrorKind::WouldBlock {
+                    warn!("a web client can't come in: {error}");
+                }
+                thread::sleep(LOOK_EVERY);
+            }
+        }
+    }
+    rooms.into_iter().for_each(|room| drop(room.join()));
+}
+
+/// Answers one connection: a page, or events for as long as it lasts.
+fn receive(stream: TcpStream, peer: SocketAddr, house: &House) {
+    let set = stream
+        .set_nonblocking(false)
+        .and_then(|()| stream.set_read_timeout(Some(PATIENCE)))
+        .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
+        .and_then(|()| stream.set_nodelay(true));
+    // Who has gone meanwhile is no news.
+    let Some(head) = set.ok().and_then(|()| head(&stream)) else { return };
+    if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
+        client::serve(stream, peer, house);
+    } else if head.starts_with("GET / ") {
+        show_page(stream);
+    } else {
+        turn_away(stream, "404 Not Found", "there is one page here: /");
+    }
+}
+
+/// The head of the request, which stays to be read.
+fn head(stream: &TcpStream) -> Option<String> {
+    let begun = Instant::now();
+    let mut bytes = [0; MOST_HEAD];
+    while begun.elapsed() < PATIENCE {
+        let count = stream.peek(&mut bytes).ok().filter(|&count| count > 0)?;
+        let head = &bytes[..count];
+        if let Some(end) = head.windows(4).position(|end| end == b"\r\n\r\n") {
+            return Some(String::from_utf8_lossy(&head[..end + 4]).into_owned());
+        }
+        if count == MOST_HEAD {
+            return None;
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+    None
+}
+
+fn show_page(stream: TcpStream) {
+    // Nothing from elsewhere is loaded, and no other page may frame this one.
+    const HEAD: &str = "Content-Type: text/html; charset=utf-8\r\nCache-Control: no-cache\r\n\
+        Content-Security-Policy: default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
+        connect-src 'self' ws:; frame-ancestors 'none'\r\nX-Content-Type-Options: nosniff\r\n";
+    answer(stream, "200 OK", HEAD, PAGE);
+}
+
+fn turn_away(stream: TcpStream, status: &str, why: &str) {
+    answer(stream, status, "Content-Type: text/plain; charset=utf-8\r\n", why);
+}
+
+fn answer(mut stream: TcpStream, status: &str, head: &str, body: &str) {
+    let length = body.len();
+    // Who does not wait for the answer does without.
+    let _ = write!(
+        stream,
+        "HTTP/1.1 {status}\r\n{head}Content-Length: {length}\r\nConnection: close\r\n\r\n{body}"
+    );
+    // What was asked is read, so that the system does not cut the answer off.
+    let _ = stream.set_read_timeout(Some(LOOK_EVERY));
+    let _ = stream.read(&mut [0; MOST_HEAD]);
+}

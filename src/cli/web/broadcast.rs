@@ -1,0 +1,172 @@
+//! One stream of lines to many clients, none of which holds up another.
+
+use std::io::{self, Write};
+use std::net::SocketAddr;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use tracing::warn;
+use tungstenite::Utf8Bytes;
+
+/// Lines that may wait for one client: two seconds of contacts.
+const WAITING: usize = 256;
+
+/// Everybody who is told.
+#[derive(Debug, Default)]
+pub(super) struct Clients(Mutex<State>);
+
+#[derive(Debug, Default)]
+struct State {
+    there: Vec<Client>,
+    served: u64,
+    dropped: u64,
+    /// Whether the floor has ended: nothing comes any more.
+    ended: bool,
+}
+
+#[derive(Debug)]
+struct Client {
+    peer: SocketAddr,
+    lines: SyncSender<Utf8Bytes>,
+    dropped: Arc<AtomicBool>,
+}
+
+/// What one client is told.
+pub(super) struct Lines {
+    pub(super) queue: Receiver<Utf8Bytes>,
+    /// Whether too much waits for it: nothing more will come, and what waits is old.
+    pub(super) dropped: Arc<AtomicBool>,
+}
+
+impl Clients {
+    fn lock(&self) -> MutexGuard<'_, State> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// One more, who hears what happens from now on.
+    pub(super) fn join(&self, peer: SocketAddr) -> Lines {
+        let (lines, queue) = sync_channel(WAITING);
+        let dropped = Arc::<AtomicBool>::default();
+        let mut state = self.lock();
+        state.served += 1;
+        if !state.ended {
+            state.there.push(Client { peer, lines, dropped: Arc::clone(&dropped) });
+        }
+        state.tell_counts();
+        Lines { queue, dropped }
+    }
+
+    /// One less; `slow` if it does not read.
+    pub(super) fn leave(&self, peer: SocketAddr, slow: bool) {
+        let mut state = self.lock();
+        let place = state.there.iter().position(|client| client.peer == peer);
+        if let Some(place) = place {
+            state.there.swap_remove(place);
+            if slow {
+                state.count_slow(peer);
+            }
+            state.tell_counts();
+        }
+    }
+
+    /// How many were served, and how many of them were dropped.
+    pub(super) fn counts(&self) -> (u64, u64) {
+        let state = self.lock();
+        (state.served, state.dropped)
+    }
+}
+
+impl State {
+    fn tell(&mut self, line: &str) {
+        let line = Utf8Bytes::from(line);
+        let mut slow = Vec::new();
+        self.there.retain(|client| match client.lines.try_send(line.clone()) {
+            Ok(()) => true,
+            Err(TrySendError::Disconnected(_)) => false,
+            Err(TrySendError::Full(_)) => {
+                client.dropped.store(true, Ordering::Relaxed);
+                slow.push(client.peer);
+                false
+            }
+        });
+        slow.into_iter().for_each(|peer| self.count_slow(peer));
+    }
+
+    fn count_slow(&mut self, peer: SocketAddr) {
+        self.dropped += 1;
+        warn!("the web client {peer} does not read and was dropped; {} so far", self.dropped);
+    }
+
+    /// Tells all how many there are.
+    fn tell_counts(&mut self) {
+        let (connected, dropped) = (self.there.len(), self.dropped);
+        self.tell(&format!(r#"{{"event":"clients","connected":{connected},"dropped":{dropped}}}"#));
+    }
+}
+
+/// What is written to it is told line by line.
+pub(super) struct Broadcast {
+    clients: Arc<Clients>,
+    line: Vec<u8>,
+}
+
+impl Broadcast {
+    pub(super) fn new(clients: Arc<Clients>) -> Self {
+        Self { clients, line: Vec::new() }
+    }
+}
+
+impl Write for Broadcast {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let (taken, is_whole) = match bytes.iter().position(|&byte| byte == b'\n') {
+            Some(end) => (end + 1, true),
+            None => (bytes.len(), false),
+        };
+        self.line.extend(&bytes[..taken]);
+        if is_whole {
+            let line = String::from_utf8_lossy(&self.line);
+            self.clients.lock().tell(line.trim_end());
+            self.line.clear();
+        }
+        Ok(taken)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
+impl Drop for Broadcast {
+    fn drop(&mut self) {
+        let mut state = self.clients.lock();
+        state.ended = true;
+        // Their threads send what waits, and end.
+        state.there.clear();
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn who_does_not_read_is_dropped_and_the_others_hear_of_it() {
+        let clients = Arc::<Clients>::default();
+        let [stalled, reading] = [1, 2].map(|port| clients.join(([127, 0, 0, 1], port).into()));
+        let mut out = Broadcast::new(Arc::clone(&clients));
+        let mut heard = 0;
+        for number in 0..=WAITING {
+            write!(out, "{{\"number\":{number}").unwrap();
+            out.write_all(b"}\n").unwrap();
+            heard += reading.queue.try_iter().filter(|line| line.contains("number")).count();
+        }
+        assert_eq!((heard, clients.counts()), (WAITING + 1, (2, 1)));
+        assert!(stalled.dropped.load(Ordering::Relaxed) && !reading.dropped.load(Ordering::Relaxed));
+        clients.leave(([127, 0, 0, 1], 1).into(), true);
+        assert_eq!(clients.counts(), (2, 1), "counted once");
+        drop(out);
+        assert!(reading.queue.recv().is_err(), "the floor has ended");
+    }
+}

@@ -1,0 +1,201 @@
+//! One web client: lines out, requests in, on one thread that never waits for it.
+
+use std::io::ErrorKind;
+use std::net::{SocketAddr, TcpStream};
+use std::sync::atomic::Ordering;
+use std::sync::mpsc::RecvTimeoutError;
+use std::time::{Duration, Instant};
+
+use socket2::SockRef;
+use tracing::{debug, warn};
+use tungstenite::handshake::server::{ErrorResponse, Request, Response};
+use tungstenite::http::{StatusCode, header};
+use tungstenite::protocol::WebSocketConfig;
+use tungstenite::{Bytes, Error, Message, WebSocket, accept_hdr_with_config};
+
+use super::House;
+use super::broadcast::Lines;
+use super::greeting::greeting;
+use super::origin::may_connect;
+use super::request::process;
+
+/// How often it is looked whether the client asks something.
+const LOOK_EVERY: Duration = Duration::from_millis(10);
+
+/// Requests that are taken in one look: a thousand a second, as over OSC.
+const MOST_REQUESTS: usize = 10;
+
+/// Most bytes of a request.
+const MOST_BYTES: usize = 4096;
+
+/// What the system keeps for a client that does not read, in bytes: little, since what waits there grows old.
+const WAITING_BYTES: usize = 64 * 1024;
+
+/// How long what is written may wait for the client. It should not act on what is older, and may come again.
+const STALLED: Duration = Duration::from_secs(1);
+
+/// How often the client is asked whether it lives, and how long it may be silent.
+const PING_EVERY: Duration = Duration::from_secs(1);
+const SILENT: Duration = Duration::from_secs(5);
+
+/// How it ended.
+#[derive(Clone, Copy, PartialEq)]
+enum End {
+    /// It went, or the floor has ended.
+    Gone,
+    /// It does not read.
+    Slow,
+}
+
+/// Serves one client until it goes.
+pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
+    let Ok(own) = stream.local_addr() else { return };
+    // With more room at the system's a client is only dropped later.
+    let _ = SockRef::from(&stream).set_send_buffer_size(WAITING_BYTES);
+    let check = |request: &Request, response: Response| -> Result<Response, ErrorResponse> {
+        let origin = request.headers().get(header::ORIGIN).map(|origin| origin.to_str().unwrap_or("null"));
+        if may_connect(origin, own, &house.origins) {
+            return Ok(response);
+        }
+        let origin = origin.unwrap_or_default().escape_debug().to_string();
+        warn!("a web page from {origin} was refused; --web-origin lets it in");
+        let mut refused = ErrorResponse::new(Some(format!("pages from {origin} are not let in\n")));
+        *refused.status_mut() = StatusCode::FORBIDDEN;
+        Err(refused)
+    };
+    let config = WebSocketConfig::default()
+        .max_message_size(Some(MOST_BYTES))
+        .max_frame_size(Some(MOST_BYTES))
+        .write_buffer_size(0);
+    let socket = match accept_hdr_with_config(stream, check, Some(config)) {
+        Ok(socket) => socket,
+        Err(error) => return debug!("the web client {peer} made no connection: {error}"),
+    };
+    if socket.get_ref().set_nonblocking(true).is_err() {
+        return;
+    }
+    let lines = house.clients.join(peer);
+    let mut client = Client { socket, peer, house, waits_since: None, heard: Instant::now() };
+    let end = client.talk(&lines);
+    house.clients.leave(peer, end == End::Slow);
+}
+
+struct Client<'a> {
+    socket: WebSocket<TcpStream>,
+    peer: SocketAddr,
+    house: &'a House,
+    /// Since when something written waits for the client to read.
+    waits_since: Option<Instant>,
+    /// When something came from it.
+    heard: Instant,
+}
+
+impl Client<'_> {
+    fn talk(&mut self, lines: &Lines) -> End {
+        match self.try_talk(lines) {
+            Ok(end) | Err(end) => end,
+        }
+    }
+
+    fn try_talk(&mut self, lines: &Lines) -> Result<End, End> {
+        let mut shown = None;
+        let mut pinged = Instant::now();
+        loop {
+            let seen_layout = self.house.session.snapshot();
+            if shown.replace(seen_layout.floor.layout_revision) != Some(seen_layout.floor.layout_revision) {
+                self.send(Message::text(greeting(&seen_layout, &self.house.geometry)))?;
+            }
+            // Until the next look at the layout.
+            let look = Instant::now() + PING_EVERY;
+            while Instant::now() < look {
+                let is_over = self.pass_on(lines)?;
+                self.hear()?;
+                if lines.dropped.load(Ordering::Relaxed) {
+                    return Err(End::Slow);
+                }
+                if is_over {
+                    return Ok(self.say_goodbye());
+                }
+            }
+            if pinged.elapsed() >= PING_EVERY {
+                pinged = Instant::now();
+                self.send(Message::Ping(Bytes::new()))?;
+            }
+            if self.heard.elapsed() > SILENT {
+                return Err(End::Slow);
+            }
+        }
+    }
+
+    /// Sends what waits, or waits for it a little; whether nothing more will come.
+    fn pass_on(&mut self, lines: &Lines) -> Result<bool, End> {
+        if self.waits_since.is_some() {
+            std::thread::sleep(LOOK_EVERY / 2);
+            self.flush()?;
+            return Ok(false);
+        }
+        match lines.queue.recv_timeout(LOOK_EVERY) {
+            Ok(line) => self.send(Message::Text(line))?,
+            Err(RecvTimeoutError::Timeout) => {}
+            Err(RecvTimeoutError::Disconnected) => return Ok(true),
+        }
+        Ok(false)
+    }
+
+    fn send(&mut self, message: Message) -> Result<(), End> {
+        let written = self.socket.write(message);
+        self.judge(written)?;
+        self.flush()
+    }
+
+    fn flush(&mut self) -> Result<(), End> {
+        let flushed = self.socket.flush();
+        if self.judge(flushed)? {
+            self.waits_since = None;
+            return Ok(());
+        }
+        let since = *self.waits_since.get_or_insert_with(Instant::now);
+        if since.elapsed() > STALLED { Err(End::Slow) } else { Ok(()) }
+    }
+
+    /// Whether it was done, and not left for later.
+    fn judge(&self, done: tungstenite::Result<()>) -> Result<bool, End> {
+        match done {
+            Ok(()) => Ok(true),
+            Err(Error::Io(error)) if error.kind() == ErrorKind::WouldBlock => Ok(false),
+            Err(Error::WriteBufferFull(_)) => Err(End::Slow),
+            Err(error) => {
+                debug!("the web client {} went: {error}", self.peer);
+                Err(End::Gone)
+            }
+        }
+    }
+
+    /// Does what it asks.
+    fn hear(&mut self) -> Result<(), End> {
+        for _ in 0..MOST_REQUESTS {
+            let message = match self.socket.read() {
+                Ok(message) => message,
+                Err(error) => return self.judge(Err(error)).map(|_| ()),
+            };
+            self.heard = Instant::now();
+            match message {
+                Message::Text(text) => {
+                    if let Err(refusal) = process(&text, self.peer, self.house) {
+                        self.send(Message::text(refusal))?;
+                    }
+                }
+                Message::Close(_) => return Err(End::Gone),
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn say_goodbye(&mut self) -> End {
+        // Who no longer listens need not know.
+        let _ = self.socket.close(None);
+        let _ = self.socket.flush();
+        End::Gone
+    }
+}

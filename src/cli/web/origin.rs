@@ -1,0 +1,78 @@
+//! Which web pages may connect: browsers say where a page comes from, and cannot be told otherwise by it.
+
+use std::convert::Infallible;
+use std::net::{IpAddr, SocketAddr};
+use std::str::FromStr;
+
+/// What a browser calls the place a page comes from: scheme, host and port.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Origin(String);
+
+impl FromStr for Origin {
+    type Err = Infallible;
+
+    fn from_str(text: &str) -> Result<Self, Infallible> {
+        Ok(Self(text.trim_end_matches('/').to_ascii_lowercase()))
+    }
+}
+
+/// Whether a page from `origin` may connect to `own`: if it was allowed, if it comes from this machine, or if it comes
+/// from the very address it connects to, in figures. A name counts only if it was allowed, since anybody's name may
+/// lead to this machine (DNS rebinding). A client without an origin is no web page.
+pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Origin]) -> bool {
+    let Some(origin) = origin else { return true };
+    let origin = origin.to_ascii_lowercase();
+    if allowed.iter().any(|other| other.0 == origin) {
+        return true;
+    }
+    let Some((_, authority)) = origin.split_once("://") else { return false };
+    if host(authority).is_some_and(|host| host == "localhost") {
+        return true;
+    }
+    let ip = host(authority).and_then(|host| host.parse::<IpAddr>().ok()).map(|ip| ip.to_canonical());
+    ip.is_some_and(|ip| ip.is_loopback() || authority.parse() == Ok(own))
+}
+
+/// The host of `host:port` or `[host]:port`.
+fn host(authority: &str) -> Option<&str> {
+    match authority.strip_prefix('[') {
+        Some(rest) => rest.split_once(']').map(|(host, _)| host),
+        None => authority.split(':').next(),
+    }
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pages_of_this_machine_and_those_allowed_may_connect() {
+        let own: SocketAddr = "192.168.1.5:9002".parse().unwrap();
+        let allowed: Vec<Origin> = vec!["https://app.example.org/".parse().unwrap()];
+        let may = |origin| may_connect(Some(origin), own, &allowed);
+        for good in [
+            "http://localhost:3000",
+            "http://127.0.0.1",
+            "http://[::1]:9002",
+            "http://192.168.1.5:9002",
+            "https://APP.example.org",
+        ] {
+            assert!(may(good), "{good}");
+        }
+        for bad in [
+            "null",
+            "",
+            "http://evil.example",
+            "http://localhost.evil.example",
+            "http://127.0.0.1.evil.example",
+            "http://192.168.1.5:80",
+            "http://192.168.1.6:9002",
+            "http://app.example.org",
+            "http://localhost@evil.example",
+        ] {
+            assert!(!may(bad), "{bad}");
+        }
+        assert!(may_connect(None, own, &[]));
+    }
+}

@@ -1,0 +1,66 @@
+//! Requests of apps as JSON: the addresses and arguments of OSC.
+
+use rosc::OscType;
+use serde_json::Value;
+
+use super::command::{NoCommand, read};
+use super::message::ControlMessage;
+use super::prefix::Prefix;
+
+/// The request at `path` (an address without its prefix, such as `widget/zoom/set`) with JSON's numbers, truths and
+/// texts as arguments.
+///
+/// # Errors
+/// Why there is no such request, in words for who wrote it.
+pub fn read_json(path: &str, args: &[Value]) -> Result<ControlMessage, String> {
+    let prefix = Prefix::default();
+    let args: Option<Vec<OscType>> = args.iter().map(argument).collect();
+    let args = args.ok_or("arguments are numbers, true or false, and texts")?;
+    let found = read(&prefix, &prefix.address(path), &args).map_err(|no| match no {
+        NoCommand::Unknown => "there is no such request".to_owned(),
+        NoCommand::Expected(what) => format!("expected {what}"),
+    })?;
+    match <[ControlMessage; 1]>::try_from(found) {
+        Ok([message]) => Ok(message),
+        Err(_) => Err("patterns are for OSC: name one request".to_owned()),
+    }
+}
+
+fn argument(value: &Value) -> Option<OscType> {
+    match value {
+        Value::Bool(on) => Some(OscType::Bool(*on)),
+        // What is beyond a float is infinite there, and is refused as such.
+        Value::Number(number) => match number.as_i64().and_then(|whole| i32::try_from(whole).ok()) {
+            Some(whole) => Some(OscType::Int(whole)),
+            None => number.as_f64().map(|number| OscType::Float(number as f32)),
+        },
+        Value::String(text) => Some(OscType::String(text.clone())),
+        Value::Null | Value::Array(_) | Value::Object(_) => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use serde_json::json;
+
+    use super::*;
+    use crate::widget::{self, WidgetId};
+
+    #[test]
+    fn a_request_in_json_is_that_of_osc() {
+        let id = WidgetId::new("zoom");
+        let set = ControlMessage::Set { id: id.clone(), value: widget::Value::Number(0.5) };
+        assert_eq!(read_json("widget/zoom/set", &[json!(0.5)]), Ok(set));
+        let range = ControlMessage::SetRange { id, least: 1.0, greatest: 120.0 };
+        assert_eq!(read_json("widget/zoom/range/set", &[json!(1), json!(120)]), Ok(range));
+        for (path, args) in [
+            ("widget/zoom/burn", vec![]),
+            ("widget/zoom/set", vec![json!("much")]),
+            ("widget/zoom/set", vec![json!(1e300)]),
+            ("widget/zoom/set", vec![json!({})]),
+            ("widget/*/*", vec![]),
+        ] {
+            assert!(read_json(path, &args).is_err(), "{path} {args:?}");
+        }
+    }
+}
