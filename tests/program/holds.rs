@@ -1,7 +1,7 @@
 //! Every hold ends: a client believes that nothing is held soon after the program, its floor or the way
 //! between them has failed, in whatever way.
 
-mod client;
+pub mod client;
 mod session;
 pub mod site;
 

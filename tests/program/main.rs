@@ -20,4 +20,5 @@ mod senders;
 mod service;
 mod soak;
 mod storage;
+mod web;
 mod wiring;

@@ -12,7 +12,8 @@ pub struct Page {
 
 /// What a fenced block may be, and who tries it: `ron`, `sh` and `layers` are tested, `rust` is a doctest, the others
 /// are shown.
-const LANGUAGES: [&str; 8] = ["ron", "sh", "layers", "rust", "json", "toml", "console", "text"];
+const LANGUAGES: [&str; 11] =
+    ["ron", "sh", "layers", "rust", "json", "toml", "console", "text", "c", "js", "python"];
 
 /// All pages, in order of their names.
 pub fn pages() -> Vec<Page> {

@@ -199,7 +199,10 @@ impl PySession {
         state.value.map(|value| to_python(py, value)).transpose()
     }
 
-    fn __setitem__(&self, py: Python<'_>, id: &str, value: Given) -> PyResult<()> {
+    fn __setitem__(&self, py: Python<'_>, id: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
+        let value: Given = value.extract().map_err(|_| {
+            PyTypeError::new_err("a value is True or False, a number, or two numbers in a tuple")
+        })?;
         self.with_control(py, id, |control| control.set(value))
     }
 
