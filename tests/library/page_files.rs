@@ -40,6 +40,20 @@ fn every_ron_block_is_good() {
     assert!(count >= 10, "{count}");
 }
 
+/// `./dev test` compiles and runs these files.
+#[test]
+fn what_pages_show_of_other_languages_is_a_file_that_is_tried() {
+    for (page, language, file) in [
+        ("docs/c-app.md", "c", "bindings/c/first.c"),
+        ("docs/python-app.md", "python", "bindings/python/examples/follow.py"),
+    ] {
+        let pages = pages();
+        let page = pages.iter().find(|other| other.name == page).unwrap();
+        let text = std::fs::read_to_string(Path::new(ROOT).join(file)).unwrap();
+        assert_eq!(page.blocks(language)[0].trim_end(), text.trim_end(), "{}", page.name);
+    }
+}
+
 #[test]
 fn every_link_leads_somewhere() {
     for page in pages() {
