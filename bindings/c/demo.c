@@ -67,7 +67,9 @@ int main(int argc, char **argv)
         return 1;
     }
     setvbuf(stdout, NULL, _IOLBF, 0);
-    fprintf(stderr, "listening\n");
+    printf("{\"listening\":");
+    print_text(argv[1]);
+    printf("}\n");
 
     int was_held = 0, status;
     do {

@@ -12,6 +12,7 @@ import underfoot
 address, layout, watched = sys.argv[1:4]
 was_held = False
 with underfoot.listen(address, layout, every_change=True) as floor:
+    print(json.dumps({"listening": address}), flush=True)
     while not floor.over:
         event = floor.next_event(0.01)
         if event is not None and event.kind == "control":
