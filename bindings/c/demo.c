@@ -1,14 +1,22 @@
-/* Prints what feet do on a floor as JSON lines, until the floor's packets stop.
+/* Prints what feet do on a floor as JSON lines, until Ctrl-C.
  *
  *   gcc demo.c $(pkg-config --cflags --libs underfoot) -o demo && ./demo 127.0.0.1:9000 map.ron
  *
  * A third argument names a control: whenever it begins or ends to be held, a line says so with the machine's clock. */
 #include <inttypes.h>
 #include <poll.h>
+#include <signal.h>
 #include <stdio.h>
-#include <string.h>
 #include <time.h>
 #include <underfoot.h>
+
+static volatile sig_atomic_t is_asked_to_end;
+
+static void ask_to_end(int signal)
+{
+    (void)signal;
+    is_asked_to_end = 1;
+}
 
 /* Ids are as their layout's author wrote them: what JSON does not take is escaped. */
 static void print_text(const char *text)
@@ -71,14 +79,17 @@ int main(int argc, char **argv)
     print_text(argv[1]);
     printf("}\n");
 
+    signal(SIGINT, ask_to_end);
+    signal(SIGTERM, ask_to_end);
+
     int was_held = 0, status;
     do {
         struct pollfd ready = { .fd = uf_fd(floor), .events = POLLIN };
         poll(&ready, 1, 10);
+        if (is_asked_to_end) uf_stop(floor);
         uf_event event = { .size = sizeof event };
         while ((status = uf_next(floor, &event, 0)) == UF_OK) {
             if (event.kind == UF_CONTROL) print_event(&event);
-            if (event.kind == UF_LINK && strcmp(event.text, "lost") == 0) uf_stop(floor);
             if (event.kind == UF_END) fprintf(stderr, "over: %s\n", event.text);
         }
         int held = watched && uf_held(floor, watched);

@@ -2,7 +2,7 @@
 //
 //     node page.mjs UNDERFOOT ADDRESS LAYOUT ID
 //
-// UNDERFOOT is the program, which serves the page. It ends when the floor's packets stop.
+// UNDERFOOT is the program, which serves the page. SIGTERM ends it.
 import { spawn } from "node:child_process";
 import { createServer } from "node:net";
 import { mkdtempSync, rmSync } from "node:fs";
@@ -53,7 +53,6 @@ await wire.send("Network.enable");
 wire.on("Network.webSocketFrameReceived", ({ response }) => {
   const line = JSON.parse(response.payloadData);
   if (line.id && line.event !== "state") print(line);
-  if (line.event === "link" && line.state === "lost") setTimeout(() => end(0), 500);
 });
 // What a person sees, by the clock that all programs of this machine share.
 await page.exposeFunction("sayHeld", (held) => {

@@ -71,7 +71,7 @@ enum Command {
     #[cfg(feature = "preview")]
     Preview(preview::Args),
     /// Serve a floor: sensor packets in, events and actuator samples out.
-    Run(run::Args),
+    Run(Box<run::Args>),
     /// Play a scenario on a simulated floor in a process of its own, sending real packets.
     Simulate(simulate::Args),
     /// Play the built-in session without a window and leave a picture, a sound file and an event log.

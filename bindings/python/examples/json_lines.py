@@ -19,8 +19,6 @@ with underfoot.listen(address, layout, every_change=True) as floor:
             fields = ("t_s", "id", "value", "force_n", "x_m", "y_m", "contact")
             line = {field: getattr(event, field) for field in fields}
             print(json.dumps({"event": event.name, **line}), flush=True)
-        elif event is not None and event.text == "lost":
-            floor.stop()
         held = floor.held(watched)
         if held != was_held:
             print(json.dumps({"now_s": time.monotonic(), "id": watched, "held": held}), flush=True)

@@ -48,6 +48,7 @@ enum End {
 }
 
 /// Serves one client until it goes.
+#[allow(clippy::result_large_err, reason = "what refuses a client is as tungstenite has it")]
 pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
     let Ok(own) = stream.local_addr() else { return };
     // With more room at the system's a client is only dropped later.
