@@ -21,6 +21,8 @@ struct State {
     there: Vec<Client>,
     served: u64,
     dropped: u64,
+    /// Web pages that were not let in.
+    refused: u64,
     /// Whether the floor has ended: nothing comes any more.
     ended: bool,
 }
@@ -70,6 +72,16 @@ impl Clients {
         }
     }
 
+    /// Notes a web page that is not let in. Told ever more seldom: a page may try for as long as it is open.
+    pub(super) fn refuse(&self, origin: &str) {
+        let mut state = self.lock();
+        state.refused += 1;
+        if state.refused.is_power_of_two() {
+            let refused = state.refused;
+            warn!("a web page from {origin} was refused ({refused} so far); --web-origin lets it in");
+        }
+    }
+
     /// How many were served, and how many of them were dropped.
     pub(super) fn counts(&self) -> (u64, u64) {
         let state = self.lock();
@@ -95,7 +107,9 @@ impl State {
 
     fn count_slow(&mut self, peer: SocketAddr) {
         self.dropped += 1;
-        warn!("the web client {peer} does not read and was dropped; {} so far", self.dropped);
+        if self.dropped.is_power_of_two() {
+            warn!("the web client {peer} does not read and was dropped; {} so far", self.dropped);
+        }
     }
 
     /// Tells all how many there are.

@@ -7,7 +7,7 @@ use std::sync::mpsc::RecvTimeoutError;
 use std::time::{Duration, Instant};
 
 use socket2::SockRef;
-use tracing::{debug, warn};
+use tracing::debug;
 use tungstenite::handshake::server::{ErrorResponse, Request, Response};
 use tungstenite::http::{StatusCode, header};
 use tungstenite::protocol::WebSocketConfig;
@@ -59,7 +59,7 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
             return Ok(response);
         }
         let origin = origin.unwrap_or_default().escape_debug().to_string();
-        warn!("a web page from {origin} was refused; --web-origin lets it in");
+        house.clients.refuse(&origin);
         let mut refused = ErrorResponse::new(Some(format!("pages from {origin} are not let in\n")));
         *refused.status_mut() = StatusCode::FORBIDDEN;
         Err(refused)
