@@ -84,6 +84,8 @@ macro_rules! internal {
 
 #[cfg(feature = "lab")]
 pub mod capacity;
+#[cfg(feature = "egui")]
+pub mod egui_painter;
 pub mod engine;
 #[cfg(feature = "ergonomics")]
 pub mod ergonomics;

@@ -12,13 +12,13 @@ use super::feed::{FootSink, PreviewCommand, PreviewInput};
 use super::feet::MouseFeet;
 use super::floor_view::Grip;
 use super::messages::Messages;
-use super::painter::Palette;
 use super::panel::Tuner;
 use super::rate::Rate;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
 use super::watch::Watch;
+use crate::egui_painter::Palette;
 use crate::engine::Snapshot;
 use crate::floor::Floor;
 use crate::scene::{Scene, Theme};
@@ -142,7 +142,7 @@ impl eframe::App for App {
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {
-        super::painter::color(self.theme.canvas).to_normalized_gamma_f32()
+        crate::egui_painter::color(self.theme.canvas).to_normalized_gamma_f32()
     }
 
     fn persist_egui_memory(&self) -> bool {

@@ -6,8 +6,8 @@ use eframe::egui::{Align, Key, Layout, Margin, Panel, RichText, ScrollArea, Ui, 
 
 use super::app::App;
 use super::feed::PreviewCommand;
-use super::painter::color;
 use super::style::{panel_colour, panel_frame, pill, quiet};
+use crate::egui_painter::color;
 use crate::scene::Theme;
 use crate::wire::LinkState;
 

@@ -10,9 +10,8 @@ use glam::Vec2;
 
 use super::app::App;
 use super::feet::{Hand, MouseFeet};
-use super::painter::{self, color};
-use super::transform::ScreenFromFloor;
 use super::watch::{Banner, Weight};
+use crate::egui_painter::{self, ScreenFromFloor, color};
 use crate::floor::TileId;
 use crate::scene::{self, Show, Theme, View};
 use crate::widget::{Behaviour, Value};
@@ -75,7 +74,7 @@ impl App {
         };
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
-        painter::paint(&painter, &mut self.palette, &self.scene, map);
+        egui_painter::paint(&painter, &mut self.palette, &self.scene, map);
     }
 
     /// Chooses the tile that the side panel shows.

@@ -1,18 +1,15 @@
 //! The window: a simulated or real floor, drawn and played with the mouse.
 //!
 //! [`run`] shows whatever its [`PreviewInput`] brings in; sensing, sound and
-//! outputs run on other threads and never wait for it. Only this module knows
+//! outputs run on other threads and never wait for it. Only this module and [`crate::egui_painter`] know
 //! egui.
 
 mod app;
 mod bars;
 mod feed;
 mod feet;
-mod fields;
-mod fine_line;
 mod floor_view;
 mod messages;
-mod painter;
 mod panel;
 mod rate;
 mod scopes;
@@ -21,7 +18,6 @@ mod style;
 #[cfg(test)]
 mod tests;
 mod trace;
-mod transform;
 mod watch;
 
 pub use feed::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed};

@@ -6,7 +6,7 @@ use eframe::egui::{
     Color32, CornerRadius, FontFamily, FontId, Margin, RichText, Stroke, TextStyle, Ui, vec2,
 };
 
-use super::painter::color;
+use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::scene::Theme;
 

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Painter, Pos2, Rect, Shape, Stroke, pos2};
 
-use super::painter::color;
+use crate::egui_painter::color;
 use crate::feel::{Analysis, Effect, Gesture, analyse, audition};
 use crate::scene::Theme;
 

@@ -36,6 +36,7 @@ mod widths;
 pub use board::Scene;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::outline_of;
+#[cfg(feature = "lab")]
 pub(crate) use outline::sole;
 pub use theme::Theme;
 pub use view::{Shoe, Show, View};

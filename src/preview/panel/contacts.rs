@@ -3,8 +3,8 @@
 use eframe::egui::Ui;
 
 use super::super::app::App;
-use super::super::painter::color;
 use super::super::style::{Row, quiet, row, section};
+use crate::egui_painter::color;
 
 /// Lines that are always there, so that nothing below moves when feet come and go.
 const LINES: usize = 3;

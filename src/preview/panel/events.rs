@@ -4,8 +4,8 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::super::app::App;
-use super::super::painter::color;
 use super::super::style::{Row, quiet, section};
+use crate::egui_painter::color;
 use crate::scene::Theme;
 use crate::widget::{EventKind, Value, WidgetEvent};
 

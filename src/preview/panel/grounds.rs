@@ -4,8 +4,8 @@ use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 
 use super::super::app::App;
-use super::super::painter::color;
 use super::link::{figure, grouped};
+use crate::egui_painter::color;
 use crate::ground::{GroundState, Material};
 
 impl App {

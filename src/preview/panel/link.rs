@@ -4,8 +4,8 @@ use eframe::egui;
 use eframe::egui::{CollapsingHeader, Ui};
 
 use super::super::app::App;
-use super::super::painter::color;
 use super::super::style::{quiet, row};
+use crate::egui_painter::color;
 use crate::feel::DeviceState;
 use crate::scene::Theme;
 use crate::sense::Quality;

@@ -5,9 +5,9 @@ use eframe::egui::epaint::PathShape;
 use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Stroke, Ui, WidgetInfo, pos2, vec2};
 
 use super::super::app::App;
-use super::super::painter::color;
 use super::super::scopes::peak;
 use super::super::style::{quiet, section};
+use crate::egui_painter::color;
 use crate::floor::Floor;
 use crate::floor::TileId;
 use crate::scene::Theme;

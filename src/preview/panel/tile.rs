@@ -6,8 +6,8 @@ use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, po
 
 use super::super::app::App;
 use super::super::feed::PreviewCommand;
-use super::super::painter::color;
 use super::super::style::{panel_colour, quiet, section};
+use crate::egui_painter::color;
 use crate::engine::TileState;
 use crate::floor::{Corner, TileId};
 use crate::layout::Colour;

@@ -10,9 +10,9 @@ use eframe::egui::{
 
 use super::super::app::App;
 use super::super::feed::PreviewCommand;
-use super::super::painter::color;
 use super::super::style::{panel_frame, quiet, section};
 use super::super::trace::Trace;
+use crate::egui_painter::color;
 use crate::feel::{Effect, EffectKind, Gesture, Knob};
 use crate::scene::Theme;
 use crate::schema::{NamedEffect, write_named_effect};

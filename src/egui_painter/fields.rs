@@ -1,6 +1,6 @@
 //! Textures of a scene's fields.
 
-use eframe::egui::{self, Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
+use egui::{Color32, ColorImage, TextureHandle, TextureId, TextureOptions};
 
 /// The pictures of a scene's fields, which stay with the graphics card until they change.
 #[derive(Default)]

@@ -1,7 +1,7 @@
 //! Thin lines with soft edges, as textured meshes.
 
-use eframe::egui::epaint::{Mesh, Vertex};
-use eframe::egui::{
+use egui::epaint::{Mesh, Vertex};
+use egui::{
     self, Color32, ColorImage, Pos2, Stroke, TextureHandle, TextureId, TextureOptions, Vec2, pos2, vec2,
 };
 

@@ -1,28 +1,30 @@
-//! Draws a scene with egui.
+//! Draws a scene with egui: for the window, and for the widget that the crate `underfoot-egui` has for other apps.
 
-use eframe::egui;
-use eframe::egui::epaint::{
-    self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape,
-};
-use eframe::egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Shape, StrokeKind, pos2, vec2};
+mod fields;
+mod fine_line;
+mod transform;
+
+pub use transform::ScreenFromFloor;
+
+use egui::epaint::{self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape};
+use egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Shape, StrokeKind, pos2, vec2};
 use glam::Vec2;
 
-use super::fields::Fields;
-use super::fine_line::FineLine;
-use super::transform::ScreenFromFloor;
+use self::fields::Fields;
+use self::fine_line::FineLine;
 use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
 
-/// What is kept from frame to frame.
+/// What is kept from frame to frame: one for each place where a scene is drawn.
 #[derive(Default)]
-pub(super) struct Palette {
+pub struct Palette {
     line: FineLine,
     fields: Fields,
 }
 
-/// Draws a scene with egui.
-pub(super) fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
+/// Draws `scene` where `map` says.
+pub fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
     palette.fields.begin();
     let mut brush = Brush { painter, palette, map, points: Vec::new() };
     for mark in scene.marks() {
@@ -32,14 +34,21 @@ pub(super) fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scen
 }
 
 /// egui's colour for one of ours.
-pub(super) fn color(colour: Colour) -> Color32 {
+#[must_use]
+pub fn color(colour: Colour) -> Color32 {
     Color32::from_rgb(colour.red, colour.green, colour.blue)
 }
 
 /// egui's colour for ink that lets something through.
-pub(super) fn ink_color(ink: Ink) -> Color32 {
+fn ink_color(ink: Ink) -> Color32 {
     let alpha = (ink.opacity.clamp(0.0, 1.0) * 255.0).round() as u8;
     Color32::from_rgba_unmultiplied(ink.colour.red, ink.colour.green, ink.colour.blue, alpha)
+}
+
+impl std::fmt::Debug for Palette {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Palette").finish_non_exhaustive()
+    }
 }
 
 struct Brush<'a> {

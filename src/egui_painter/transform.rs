@@ -1,14 +1,13 @@
 //! Floor metres to screen points and back.
 
-use eframe::egui;
-use eframe::egui::{Pos2, Rect, pos2, vec2};
+use egui::{Pos2, Rect, pos2, vec2};
 use glam::Vec2;
 
 use crate::floor;
 
 /// From floor metres to screen points and back: north is up.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct ScreenFromFloor {
+pub struct ScreenFromFloor {
     /// Where the floor's south-west corner is on the screen.
     origin: Pos2,
     /// Points to a metre.
@@ -17,7 +16,8 @@ pub(super) struct ScreenFromFloor {
 
 impl ScreenFromFloor {
     /// The largest upright view of `bounds` in the middle of `screen`.
-    pub(super) fn fit(bounds: floor::Rect, screen: Rect) -> Self {
+    #[must_use]
+    pub fn fit(bounds: floor::Rect, screen: Rect) -> Self {
         let size = bounds.size().max(Vec2::splat(1e-3));
         // A window made as small as it goes still has something to divide by.
         let scale = (screen.width() / size.x).min(screen.height() / size.y).max(1.0);
@@ -26,23 +26,33 @@ impl ScreenFromFloor {
         Self { origin, scale }
     }
 
-    pub(super) fn scale(self) -> f32 {
+    /// Points to a metre.
+    #[must_use]
+    pub fn scale(self) -> f32 {
         self.scale
     }
 
-    pub(super) fn point(self, floor: Vec2) -> Pos2 {
+    /// A place in floor metres, in points.
+    #[must_use]
+    pub fn point(self, floor: Vec2) -> Pos2 {
         pos2(self.origin.x + floor.x * self.scale, self.origin.y - floor.y * self.scale)
     }
 
-    pub(super) fn rect(self, floor: floor::Rect) -> Rect {
+    /// An area in floor metres, in points.
+    #[must_use]
+    pub fn rect(self, floor: floor::Rect) -> Rect {
         Rect::from_two_pos(self.point(floor.min), self.point(floor.max))
     }
 
-    pub(super) fn floor(self, screen: Pos2) -> Vec2 {
+    /// A place in points, in floor metres.
+    #[must_use]
+    pub fn floor(self, screen: Pos2) -> Vec2 {
         Vec2::new(screen.x - self.origin.x, self.origin.y - screen.y) / self.scale
     }
 
-    pub(super) fn floor_vector(self, screen: egui::Vec2) -> Vec2 {
+    /// A way in points, in floor metres.
+    #[must_use]
+    pub fn floor_vector(self, screen: egui::Vec2) -> Vec2 {
         Vec2::new(screen.x, -screen.y) / self.scale
     }
 }

@@ -1,0 +1,42 @@
+//! Feet on a force-sensing floor drive the widgets of an egui app.
+//!
+//! | an app | with |
+//! |---|---|
+//! | has its own buttons, sliders and maps pressed by feet | [`FootInput`], fed in `eframe::App::raw_input_hook` |
+//! | has several sliders dragged by several feet at once | [`FootSlider`] |
+//! | shows floor, feet and controls | [`FloorView`] |
+//!
+//! What must not happen by accident does not belong here: egui has no guards, knows one pointer and can't take back
+//! what a press began. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a contact on one
+//! of those never reaches egui: only floor that is free of controls is mapped.
+//!
+//! ```no_run
+//! use underfoot::floor::Rect;
+//! use underfoot::glam::Vec2;
+//! use underfoot::runtime::Session;
+//! use underfoot_egui::FootInput;
+//!
+//! struct App { floor: Session, feet: FootInput }
+//!
+//! impl App {
+//!     fn new(floor: Session, context: &egui::Context) -> Self {
+//!         FootInput::tune(context);
+//!         // The floor from 0.9 m north on is the window.
+//!         Self { floor, feet: FootInput::new(Rect::from_min_size(Vec2::new(0.0, 0.9), Vec2::new(1.8, 0.9))) }
+//!     }
+//!
+//!     // What `eframe::App::raw_input_hook` calls.
+//!     fn raw_input_hook(&mut self, context: &egui::Context, raw: &mut egui::RawInput) {
+//!         self.feet.follow(context, &self.floor, raw);
+//!     }
+//! }
+//! ```
+
+mod input;
+mod slider;
+mod touch;
+mod view;
+
+pub use input::FootInput;
+pub use slider::FootSlider;
+pub use view::FloorView;

@@ -1,0 +1,71 @@
+//! One foot as egui hears of it.
+
+use egui::{Context, DragAndDrop, Event, Modifiers, PointerButton, Pos2, TouchDeviceId, TouchId, TouchPhase};
+use underfoot::sense::ContactId;
+use underfoot::units::Newtons;
+
+/// The device that touches of feet come from: "feet".
+pub(crate) const DEVICE: TouchDeviceId = TouchDeviceId(0x6665_6574);
+
+/// What is told to egui as a force of 1: a person who stands on one foot.
+const FULL: Newtons = Newtons(800.0);
+
+/// How far away a pointer goes for a moment so that its release is no click, in points.
+const AWAY: f32 = 100_000.0;
+
+/// A foot that touches.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Touch {
+    pub(crate) contact: ContactId,
+    pub(crate) at: Pos2,
+    pub(crate) force: Newtons,
+    /// Whether it is egui's one pointer as well.
+    pub(crate) is_pointer: bool,
+}
+
+impl Touch {
+    pub(crate) fn start(self, events: &mut Vec<Event>) {
+        events.push(self.event(TouchPhase::Start));
+        if self.is_pointer {
+            events.extend([Event::PointerMoved(self.at), self.button(true)]);
+        }
+    }
+
+    pub(crate) fn moved(self, events: &mut Vec<Event>) {
+        events.push(self.event(TouchPhase::Move));
+        if self.is_pointer {
+            events.push(Event::PointerMoved(self.at));
+        }
+    }
+
+    /// The foot let go; the press counts.
+    pub(crate) fn end(self, events: &mut Vec<Event>) {
+        events.push(self.event(TouchPhase::End));
+        if self.is_pointer {
+            events.extend([self.button(false), Event::PointerGone]);
+        }
+    }
+
+    /// The press does not count.
+    ///
+    /// A pointer that has once been far away does not click when it is released; released where it was, it leaves
+    /// sliders as they are, whichever way they lie. What it carries is dropped nowhere.
+    pub(crate) fn cancel(self, context: &Context, events: &mut Vec<Event>) {
+        events.push(self.event(TouchPhase::Cancel));
+        if self.is_pointer {
+            DragAndDrop::clear_payload(context);
+            let away = Event::PointerMoved(self.at - egui::vec2(0.0, AWAY));
+            events.extend([away, Event::PointerMoved(self.at), self.button(false), Event::PointerGone]);
+        }
+    }
+
+    fn event(self, phase: TouchPhase) -> Event {
+        let force = Some((self.force / FULL).clamp(0.0, 1.0));
+        Event::Touch { device_id: DEVICE, id: TouchId(u64::from(self.contact.0)), phase, pos: self.at, force }
+    }
+
+    fn button(self, pressed: bool) -> Event {
+        let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+        Event::PointerButton { pos: self.at, button, pressed, modifiers }
+    }
+}
