@@ -34,7 +34,7 @@ pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
     for (index, widget) in view.layout.widgets.iter().enumerate() {
         let state = view.widget_state(index);
         if !state.hidden {
-            draw(scene, view, widget, state);
+            draw(scene, view, view.as_apps_set(index, widget).as_ref().unwrap_or(widget), state);
         }
     }
 }

@@ -12,7 +12,7 @@ use crate::floor::{Corner, Geometry, Rect, TileId};
 use crate::layout::{Layout, Shape, Widget};
 use crate::sense::Quality;
 use crate::units::Newtons;
-use crate::widget::{Indicator, Track, Value};
+use crate::widget::{Indicator, Scale, Track, Value};
 use crate::wire::LinkState;
 
 fn drawn(layout: &Layout, snapshot: &Snapshot) -> Scene {
@@ -24,6 +24,27 @@ fn shown(layout: &Layout, snapshot: &Snapshot, show: Show) -> Scene {
     let geometry = Geometry::default();
     draw(&mut scene, &View { show, ..View::new(&geometry, layout, snapshot, &Theme::LIGHT) });
     scene
+}
+
+#[test]
+fn labels_and_ranges_that_apps_set_are_drawn() {
+    let layout = map();
+    let zoom = layout.widget_index("zoom").unwrap();
+    let mut snapshot = at_rest(&layout);
+    let says = |snapshot: &Snapshot, text: &str| {
+        let scene = drawn(&layout, snapshot);
+        scene.marks().iter().any(|mark| match mark {
+            Mark::Text { letters, .. } => scene.letters(*letters).contains(text),
+            _ => false,
+        })
+    };
+    assert!(!says(&snapshot, "Slice"));
+    snapshot.labels.push((zoom, "Slice".into()));
+    assert!(says(&snapshot, "Slice"));
+    let before = drawn(&layout, &snapshot);
+    let scale = *layout.widgets[zoom].behaviour.scale().unwrap();
+    snapshot.ranges.push((zoom, Scale { max: 2.0 * scale.max, ..scale }));
+    assert!(drawn(&layout, &snapshot) != before, "the handle stands elsewhere");
 }
 
 /// A layout of this one control.

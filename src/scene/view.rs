@@ -5,7 +5,7 @@ use glam::Vec2;
 use super::Theme;
 use crate::engine::{Snapshot, WidgetState};
 use crate::floor::{Geometry, TileId};
-use crate::layout::Layout;
+use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
 use crate::widget::Value;
 
@@ -116,6 +116,19 @@ impl<'a> View<'a> {
             Some(state) if same_kind(state.value, rest.value) => *state,
             _ => rest,
         }
+    }
+
+    /// The control at `index` with the label and the range that apps have set; `None` where they have set neither.
+    pub(super) fn as_apps_set(&self, index: usize, widget: &Widget) -> Option<Widget> {
+        let label = self.snapshot.labels.iter().find(|(of, _)| *of == index).map(|(_, label)| label);
+        let range = self.snapshot.ranges.iter().find(|(of, _)| *of == index);
+        let behaviour = range.and_then(|(_, scale)| widget.behaviour.with_range(scale.min, scale.max));
+        if label.is_none() && behaviour.is_none() {
+            return None;
+        }
+        let label = label.map_or_else(|| widget.label.clone(), |label| label.as_ref().to_owned());
+        let behaviour = behaviour.unwrap_or_else(|| widget.behaviour.clone());
+        Some(Widget { label, behaviour, ..widget.clone() })
     }
 }
 
