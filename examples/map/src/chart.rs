@@ -1,0 +1,139 @@
+//! The map as it is drawn.
+
+use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
+
+use crate::mercator::{Screen, project};
+use crate::state::State;
+use crate::world::{HUES, World};
+
+const SEA: Color32 = Color32::from_rgb(0xd3, 0xe3, 0xea);
+const COAST: Stroke = Stroke { width: 1.1, color: Color32::from_rgb(0x6f, 0x8b, 0x99) };
+const BORDER: Stroke = Stroke { width: 0.9, color: Color32::from_rgb(0xb5, 0xa4, 0x8c) };
+const GRID: Stroke = Stroke { width: 1.0, color: Color32::from_rgb(0xa9, 0xc3, 0xcf) };
+const INK: Color32 = Color32::from_rgb(0x2a, 0x28, 0x25);
+const QUIET: Color32 = Color32::from_rgb(0x5d, 0x58, 0x50);
+const HALO: Color32 = Color32::from_rgba_premultiplied(0xb4, 0xb2, 0xac, 0xb8);
+const LAND: [Color32; HUES] = [
+    Color32::from_rgb(0xf4, 0xec, 0xdb),
+    Color32::from_rgb(0xe8, 0xe9, 0xd2),
+    Color32::from_rgb(0xf3, 0xdf, 0xcd),
+    Color32::from_rgb(0xea, 0xe1, 0xe6),
+    Color32::from_rgb(0xf0, 0xe4, 0xb9),
+];
+
+/// Distance between two points of a line that are both worth drawing, in points.
+const FINE: f32 = 1.5;
+
+/// Draws the world into `rect`.
+pub fn paint(painter: &Painter, rect: Rect, world: &World, state: &State) {
+    let screen = Screen::new(rect, &state.camera);
+    painter.rect_filled(rect, 0.0, SEA);
+    if state.grid {
+        grid(painter, rect, &screen, state.camera.zoom);
+    }
+    let mut land = Mesh::default();
+    for country in &world.countries {
+        let color = LAND.get(country.hue % HUES).copied().unwrap_or(SEA);
+        for turn in screen.turns(country.span) {
+            country.fill(&mut land, color, |at| screen.point(at, turn));
+        }
+    }
+    painter.add(Shape::mesh(land));
+    for line in &world.lines {
+        for turn in screen.turns(line.span) {
+            let points = fine(line.points.iter().map(|at| screen.point(*at, turn)));
+            if Rect::from_points(&points).intersects(rect) && points.len() > 1 {
+                painter.add(Shape::line(points, if line.is_border { BORDER } else { COAST }));
+            }
+        }
+    }
+    if state.names {
+        names(painter, rect, &screen, world);
+    }
+    crosshair(painter, rect.center());
+}
+
+/// Without the points that nobody could tell from the one before; the last one stays.
+fn fine(points: impl Iterator<Item = Pos2>) -> Vec<Pos2> {
+    let mut kept: Vec<Pos2> = Vec::new();
+    let mut last = None;
+    for point in points {
+        if kept.last().is_none_or(|before| before.distance(point) > FINE) {
+            kept.push(point);
+            last = None;
+        } else {
+            last = Some(point);
+        }
+    }
+    kept.extend(last);
+    kept
+}
+
+fn grid(painter: &Painter, rect: Rect, screen: &Screen, zoom: f64) {
+    let step = if zoom < 3.0 {
+        30
+    } else if zoom < 4.5 {
+        10
+    } else {
+        5
+    };
+    for lon in (-180..180).step_by(step) {
+        let [x, y] = project(f64::from(lon), 0.0);
+        for turn in screen.turns([x, x]) {
+            painter.vline(screen.point([x, y], turn).x, rect.y_range(), GRID);
+        }
+    }
+    for lat in (-90 + step as i32..90).step_by(step) {
+        painter.hline(rect.x_range(), screen.point(project(0.0, f64::from(lat)), 0.0).y, GRID);
+    }
+}
+
+/// The names that fit into their countries and beside each other, those of large ones first.
+fn names(painter: &Painter, rect: Rect, screen: &Screen, world: &World) {
+    let mut countries: Vec<_> = world.countries.iter().collect();
+    countries.sort_by(|one, other| other.area.total_cmp(&one.area));
+    // The middle's name is not written below the mark on it: it stands beside the map.
+    let mut taken = vec![Rect::from_center_size(rect.center(), vec2(24.0, 24.0))];
+    for country in countries {
+        for turn in screen.turns(country.span) {
+            let at = screen.point(country.middle, turn);
+            if !rect.contains(at) {
+                continue;
+            }
+            let room = screen.point([country.middle[0] + country.width, 0.0], turn).x - at.x;
+            let size = (room / 14.0).clamp(11.0, 19.0).round();
+            let font = FontId::proportional(size);
+            let galley = painter.layout_no_wrap(country.name.clone(), font, QUIET);
+            let place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
+            let is_taken = taken.iter().any(|other| other.intersects(place.expand(3.0)));
+            if galley.size().x <= room * 0.95 && !is_taken {
+                painter.galley(place.min, galley, QUIET);
+                taken.push(place);
+            }
+        }
+    }
+}
+
+/// Where the map's middle is: its place is the one that is named.
+fn crosshair(painter: &Painter, at: Pos2) {
+    painter.circle_stroke(at, 9.0, Stroke::new(4.0, HALO));
+    painter.circle_stroke(at, 9.0, Stroke::new(1.6, INK));
+    painter.circle_filled(at, 2.0, INK);
+}
+
+/// A bar with the kilometres that it is long, from `corner` to the right.
+pub fn scale_bar(painter: &Painter, rect: Rect, state: &State, corner: Pos2) {
+    let screen = Screen::new(rect, &state.camera);
+    let each = screen.kilometres(1.0);
+    let lengths = [5000.0, 2000.0, 1000.0, 500.0, 200.0, 100.0, 50.0];
+    let km = lengths.into_iter().find(|km| km / each < 170.0).unwrap_or(20.0);
+    let width = (km / each) as f32;
+    let (left, right) = (corner, corner + vec2(width, 0.0));
+    let stroke = Stroke::new(2.0, INK);
+    painter.line_segment([left, right], stroke);
+    for end in [left, right] {
+        painter.line_segment([end, pos2(end.x, end.y - 6.0)], stroke);
+    }
+    let font = FontId::proportional(13.0);
+    painter.text(left - vec2(0.0, 8.0), Align2::LEFT_BOTTOM, format!("{km:.0} km"), font, INK);
+}

@@ -1,0 +1,108 @@
+//! A map of the world that is worked with the feet. Without arguments it brings a simulated floor of its own.
+
+mod app;
+mod chart;
+mod guide;
+mod mercator;
+mod state;
+mod world;
+
+use std::error::Error;
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::Parser;
+use eframe::egui::{self, Vec2};
+use underfoot::floor::{Floor, Rect};
+use underfoot::runtime::Session;
+use underfoot::schema::{self, Kinds};
+use underfoot::sim::{FootHandle, Scenario, feet_by_hand};
+
+use crate::guide::Guide;
+use crate::state::State;
+use crate::world::World;
+
+/// The floor of this app.
+const ATLAS: &str = include_str!("../atlas.ron");
+
+/// A map of the world, worked with the feet.
+///
+/// Without a floor, the small one in the window is a simulated one: press it with the mouse.
+#[derive(Parser, Debug)]
+struct Args {
+    /// Follow a real floor, or `underfoot simulate`, that sends its packets to this address.
+    #[arg(long, value_name = "ADDR", conflicts_with = "scenario")]
+    listen: Option<String>,
+    /// The real floor's hardware.
+    #[arg(long, value_name = "FILE", requires = "listen")]
+    floor: Option<PathBuf>,
+    /// Let a simulated person walk as this file says, and end with them.
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+    /// Print a line of JSON whenever the map comes to rest.
+    #[arg(long)]
+    print_state: bool,
+    /// Open no window.
+    #[arg(long)]
+    no_window: bool,
+    /// Also open a window for a projector above the floor; the key P does the same.
+    #[arg(long)]
+    project: bool,
+    /// Seconds without feet after which the map goes home.
+    #[arg(long, value_name = "S", default_value_t = state::HOME_AFTER_S, value_parser = seconds)]
+    home_after: f64,
+}
+
+fn seconds(text: &str) -> Result<f64, String> {
+    let number: f64 = text.parse().map_err(|_| format!("{text} is not a number"))?;
+    if (1.0..=86_400.0).contains(&number) { Ok(number) } else { Err("1 to 86400 seconds".into()) }
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args = Args::parse();
+    let hardware = match &args.floor {
+        Some(path) => schema::load_floor(path)?,
+        None => Floor::default(),
+    };
+    let geometry = hardware.geometry;
+    let layout = schema::parse_layout(ATLAS, "atlas.ron", &Kinds::builtin(), &geometry)?.layout;
+    let free = layout.regions.iter().find(|region| region.id == "map").map_or(Rect::default(), |it| it.area);
+    let (builder, hand) = match (&args.listen, &args.scenario) {
+        (Some(address), _) => (Session::listen(address.as_str()), None),
+        (None, Some(path)) => {
+            let feet = Scenario::load(path)?.resolve(&layout, &geometry)?;
+            (Session::simulated(Box::new(feet)), None)
+        }
+        (None, None) => {
+            let (hand, driver): (FootHandle, _) = feet_by_hand();
+            (Session::simulated(Box::new(driver)), Some(hand))
+        }
+    };
+    let builder = builder.floor(hardware).layout(layout);
+    let (world, state) = (World::shipped()?, State::new(args.home_after));
+    if args.no_window {
+        let mut guide = Guide::new(builder.start()?, world, state, args.print_state);
+        while !guide.has_ended {
+            guide.turn(Vec2::ZERO, 0.0);
+            std::thread::sleep(Duration::from_millis(8));
+        }
+        return Ok(());
+    }
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Atlas")
+            .with_app_id("underfoot-map")
+            .with_inner_size([1280.0, 800.0]),
+        renderer: eframe::Renderer::Glow,
+        dithering: false,
+        ..Default::default()
+    };
+    let start = Box::new(move |context: &eframe::CreationContext<'_>| {
+        let waker = context.egui_ctx.clone();
+        let floor = builder.wake(move || waker.request_repaint()).start()?;
+        let guide = Guide::new(floor, world, state, args.print_state);
+        let app = app::App::new(&context.egui_ctx, guide, geometry, free, hand, args.project);
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    });
+    Ok(eframe::run_native("Atlas", native, start)?)
+}

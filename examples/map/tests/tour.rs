@@ -1,0 +1,39 @@
+//! A person walks over the simulated floor, and the map goes where their feet tell it to.
+
+use std::path::Path;
+use std::process::Command;
+
+use serde_json::Value;
+
+/// What the map was like whenever it came to rest during the shipped tour, which is played in real time.
+fn rests() -> Vec<Value> {
+    let tour = Path::new(env!("CARGO_MANIFEST_DIR")).join("tour.ron");
+    let output = Command::new(env!("CARGO_BIN_EXE_underfoot-map"))
+        .args(["--no-window", "--print-state", "--scenario"])
+        .arg(tour)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    let text = String::from_utf8(output.stdout).unwrap();
+    text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}
+
+#[test]
+fn a_tour_pans_zooms_switches_a_layer_and_goes_home() {
+    let rests = rests();
+    let number = |rest: &Value, name: &str| rest[name].as_f64().unwrap();
+    let near = |rest: &Value, name: &str, expected: f64, by: f64| {
+        assert!((number(rest, name) - expected).abs() <= by, "{name} is not {expected}: {rest}");
+    };
+    let [start, panned, .., zoomed, without_names, home] = rests.as_slice() else { panic!("{rests:?}") };
+    // A foot that lands a few centimetres off, or a machine that is busy, pans a little less or more.
+    near(panned, "lon", number(start, "lon") + 30.0, 5.0);
+    near(panned, "zoom", 2.0, 0.0);
+    near(zoomed, "zoom", 5.0, 0.25);
+    near(zoomed, "lon", number(panned, "lon"), 0.1);
+    assert_eq!((&zoomed["names"], &without_names["names"]), (&Value::Bool(true), &Value::Bool(false)));
+    near(without_names, "zoom", number(zoomed, "zoom"), 0.0);
+    for (name, by) in [("lon", 0.0), ("lat", 0.0), ("zoom", 0.0)] {
+        near(home, name, number(start, name), by);
+    }
+}
