@@ -44,6 +44,7 @@
 //! | [`layout`] | a checked layout: controls, regions, pages |
 //! | [`source`] | where packets come from: a socket, a simulated floor |
 //! | [`sink`] | where events and samples go: OSC, TUIO, JSON lines, sound cards, files |
+//! | `recording` | what decides what happens on a floor, in an MCAP file, and the same again from it (feature `record`) |
 //! | [`wire`] | packets, requests and their limits |
 //! | [`feel`], [`ground`] | what is felt: cues, effects, materials, and the renderer of actuator samples |
 //! | [`units`] | newtons, instants |
@@ -105,6 +106,8 @@ pub mod picture;
 #[cfg(feature = "preview")]
 pub mod preview;
 mod rate_limit;
+#[cfg(feature = "record")]
+pub mod recording;
 pub mod runtime;
 #[cfg(feature = "scene")]
 pub mod scene;

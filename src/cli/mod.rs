@@ -16,6 +16,7 @@ mod console;
 mod doors;
 #[cfg(feature = "lab")]
 mod experiment;
+mod export;
 mod failure;
 mod fault_args;
 #[cfg(feature = "lab")]
@@ -33,6 +34,7 @@ mod progress;
 mod rack;
 mod reference;
 mod render;
+mod replay;
 mod run;
 mod sense;
 mod session;
@@ -76,6 +78,10 @@ enum Command {
     Simulate(simulate::Args),
     /// Play the built-in session without a window and leave a picture, a sound file and an event log.
     Session(session::Args),
+    /// Play a recorded floor again: the same events, at any speed.
+    Replay(replay::Args),
+    /// Write a recorded floor's forces, contacts and events as tables.
+    Export(export::Args),
     /// Read layouts and say everything that is wrong with them.
     Check(check::Args),
     /// Every OSC address of a layout, in and out, with its arguments.
@@ -143,6 +149,8 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Run(args)) => run::run(&args),
         Some(Command::Simulate(args)) => simulate::run(&args),
         Some(Command::Session(args)) => session::run(&args),
+        Some(Command::Replay(args)) => replay::run(&args),
+        Some(Command::Export(args)) => export::run(&args),
         Some(Command::Addresses(args)) => addresses::run(&args),
         Some(Command::Check(args)) => check::run(&args),
         Some(Command::Reference(args)) => reference::run(&args),

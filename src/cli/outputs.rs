@@ -101,8 +101,21 @@ impl OutputArgs {
         self.json
     }
 
-    /// Everybody who is told.
+    /// Everybody who is told; those who read JSON lines slowly are left lines out.
     pub(crate) fn open(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
+        self.open_with(geometry, |lines| lines)
+    }
+
+    /// Everybody who is told; those who read JSON lines slowly are waited for.
+    pub(crate) fn open_patiently(&self, geometry: &Geometry) -> Result<Fanout, Failure> {
+        self.open_with(geometry, JsonSink::waiting)
+    }
+
+    fn open_with(
+        &self,
+        geometry: &Geometry,
+        how: impl FnOnce(JsonSink) -> JsonSink,
+    ) -> Result<Fanout, Failure> {
         let mut events = Fanout::new();
         if !self.no_osc {
             for &target in &self.osc {
@@ -111,7 +124,7 @@ impl OutputArgs {
         }
         self.tuio.open(geometry, &mut events)?;
         if self.json {
-            let lines = JsonSink::new(Results(io::stdout()))?;
+            let lines = how(JsonSink::new(Results(io::stdout()))?);
             events.push(if self.json_contacts { lines.with_contacts() } else { lines });
         }
         Ok(events)

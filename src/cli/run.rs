@@ -1,6 +1,7 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
@@ -8,12 +9,14 @@ use std::time::Duration;
 
 use tracing::info;
 use underfoot::feel::FeelCounters;
+use underfoot::floor::Floor;
 use underfoot::ground::{GroundCounters, GroundState, Material};
 use underfoot::layout::Layout;
+use underfoot::recording::{Recorder, WhenBehind};
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::Faults;
+use underfoot::source::{Faults, SensorSource};
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;
@@ -63,6 +66,10 @@ pub(crate) struct Args {
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
+    /// Record everything that decides what happens into this file, for `underfoot replay`; what was there is replaced.
+    /// Latencies are not measured meanwhile.
+    #[arg(long, value_name = "FILE", conflicts_with = "latency")]
+    record: Option<PathBuf>,
     /// Stop after so many seconds.
     #[arg(long, value_name = "S", value_parser = lifetime)]
     seconds: Option<Duration>,
@@ -84,6 +91,15 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let source = args.commands.open(source)?;
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
     let source = args.faults.wrap(source, Faults::default());
+    let method = if args.eq4 { Method::Eq4 } else { Method::default() };
+    let (source, floor, layout, recorder) = match &args.record {
+        Some(file) => {
+            let recorder = record(file, &floor, &layout, method, WhenBehind::LeaveOut)?;
+            let source: Box<dyn SensorSource> = Box::new(recorder.source(source));
+            (source, recorder.floor().clone(), recorder.layout().clone(), Some(recorder))
+        }
+        None => (source, floor, layout, None),
+    };
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
@@ -93,6 +109,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(door) = &door {
         outputs.push(door.sink()?);
     }
+    if let Some(recorder) = &recorder {
+        outputs.push(recorder.events()?);
+    }
+    let unrecorded = recorder.map(|recorder| recorder.lost());
     #[cfg(unix)]
     if let Some(watchdog) = Watchdog::of_environment() {
         outputs.push(watchdog);
@@ -100,7 +120,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let session = Session::source(source, clock)
         .floor(floor.clone())
         .layout(layout)
-        .method(if args.eq4 { Method::Eq4 } else { Method::default() })
+        .method(method)
         .prefix(prefix)
         .sink(outputs)
         .actuators(actuators)
@@ -147,7 +167,29 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     // The last handle ends the recording.
     drop(session);
-    whole(&lost)
+    whole(&lost)?;
+    unrecorded.map_or(Ok(()), |lost| recorded(&lost))
+}
+
+/// Begins a recording.
+pub(crate) fn record(
+    file: &Path,
+    floor: &Floor,
+    layout: &Layout,
+    method: Method,
+    behind: WhenBehind,
+) -> Result<Recorder, Failure> {
+    Recorder::create(file, floor, layout, method, behind).map_err(|error| Failure::Other(error.to_string()))
+}
+
+/// Fails if something could not be recorded.
+pub(crate) fn recorded(lost: &AtomicU64) -> Result<(), Failure> {
+    match lost.load(Ordering::Relaxed) {
+        0 => Ok(()),
+        lost => {
+            Err(Failure::Other(format!("the recording is not whole: {lost} entries could not be written")))
+        }
+    }
 }
 
 /// Waits for the last event; what else happens the sinks tell.

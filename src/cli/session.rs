@@ -11,13 +11,14 @@ use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::layout::Layout;
 use underfoot::picture;
+use underfoot::recording::WhenBehind;
 use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot::sim::{Script, SimFloor};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
-use underfoot::source::{Pace, SimulatedSource};
+use underfoot::source::{Pace, SensorSource, SimulatedSource};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
 
@@ -28,7 +29,7 @@ use super::layout_args::LayoutArgs;
 use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
-use super::run::whole;
+use super::run::{record, recorded, whole};
 
 /// What `underfoot session` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -58,6 +59,9 @@ pub(crate) struct Args {
     /// Folder for the picture, the sound file and the event log.
     #[arg(short, long, value_name = "DIR", default_value = DEFAULT_OUT)]
     out: PathBuf,
+    /// Record everything that decides what happens into this file, for `underfoot replay`; what was there is replaced.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Samples per second and actuator channel.
     #[arg(long, value_name = "HZ", default_value_t = SAMPLE_RATE, value_parser = clap::value_parser!(u32).range(8000..=384_000))]
     rate: u32,
@@ -82,6 +86,7 @@ impl Default for Args {
             scenario: None,
             calibrate: false,
             out: DEFAULT_OUT.into(),
+            record: None,
             rate: SAMPLE_RATE,
         }
     }
@@ -108,6 +113,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
     let source = args.faults.wrap(source, rehearsed);
+    let (source, floor, layout, recorder) = match &args.record {
+        Some(file) => {
+            let recorder = record(file, &floor, &layout, Method::default(), WhenBehind::Wait)?;
+            let source: Box<dyn SensorSource> = Box::new(recorder.source(source));
+            (source, recorder.floor().clone(), recorder.layout().clone(), Some(recorder))
+        }
+        None => (source, floor, layout, None),
+    };
     let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
     let lost = Arc::<AtomicU64>::default();
     let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));
@@ -118,6 +131,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         told.push(OscSink::under(osc, args.prefix.osc_prefix.clone())?);
     }
     args.tuio.open(&geometry, &mut told)?;
+    if let Some(recorder) = &recorder {
+        told.push(recorder.events()?.waiting());
+    }
     let mut server = Server::new(&floor, layout, Method::default(), source)
         .with_feel(feel, Box::new(wav))
         .with_events(Box::new(told));
@@ -127,8 +143,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let layout = server.engine().layout().clone();
     drop(server);
+    let unrecorded = recorder.map(|recorder| recorder.lost());
     camera.develop(&geometry, &layout, &script, &picture)?;
     whole(&lost)?;
+    unrecorded.map_or(Ok(()), |lost| recorded(&lost))?;
     outln!(
         "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
          What its controls did: {}",

@@ -19,6 +19,8 @@ use super::thread::{self, Actuators, OpenActuators, Plan, Told};
 use crate::engine;
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
+#[cfg(feature = "record")]
+use crate::recording::{Recorder, WhenBehind};
 use crate::schema::{self, Diagnostics, Effects, Kinds};
 use crate::sense::Method;
 use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
@@ -40,6 +42,8 @@ pub struct SessionBuilder {
     every_change: bool,
     realtime: bool,
     stop: Arc<AtomicBool>,
+    #[cfg(feature = "record")]
+    record: Option<std::path::PathBuf>,
 }
 
 /// Where packets come from.
@@ -74,6 +78,10 @@ pub enum StartError {
     /// The simulated floor can't be calibrated.
     #[error("the simulated floor can't be calibrated: {0}")]
     Simulation(String),
+    /// The floor can't be recorded.
+    #[cfg(feature = "record")]
+    #[error(transparent)]
+    Recording(#[from] crate::recording::RecordingError),
     /// The system gives no thread.
     #[error("the system gives no thread: {0}")]
     Thread(std::io::Error),
@@ -94,6 +102,8 @@ impl SessionBuilder {
             every_change: false,
             realtime: false,
             stop: Arc::default(),
+            #[cfg(feature = "record")]
+            record: None,
         }
     }
 
@@ -213,6 +223,15 @@ impl SessionBuilder {
         self
     }
 
+    /// Records the floor into a file, in place of what was there: see [`crate::recording`]. What a disk does not take
+    /// is left out with a warning; the floor works on.
+    #[cfg(feature = "record")]
+    #[must_use]
+    pub fn record(mut self, path: impl AsRef<Path>) -> Self {
+        self.record = Some(path.as_ref().into());
+        self
+    }
+
     /// Asks the system to let the sensing thread go before others, as `underfoot run` does.
     #[must_use]
     pub fn realtime(mut self) -> Self {
@@ -235,6 +254,16 @@ impl SessionBuilder {
         let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
         let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
+        #[cfg(feature = "record")]
+        let (source, floor, layout) = match &self.record {
+            Some(path) => {
+                let recorder = Recorder::create(path, &floor, &layout, self.method, WhenBehind::LeaveOut)?;
+                self.sinks.push(recorder.events()?);
+                let (floor, layout) = (recorder.floor().clone(), recorder.layout().clone());
+                (Box::new(recorder.source(source)) as Box<dyn SensorSource>, floor, layout)
+            }
+            None => (source, floor, layout),
+        };
         let waker = self.wake.map(Waker::start).transpose().map_err(StartError::Thread)?.map(Arc::new);
         let queue = Arc::new(Queue::new(self.every_change));
         let (held_input, held) = triple_buffer(&HeldNow::default());

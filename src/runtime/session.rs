@@ -70,6 +70,24 @@ impl Session {
         SessionBuilder::fed_by(source, clock)
     }
 
+    /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then. It
+    /// ends with the recording, also where that breaks off; [`crate::recording::Progress`] tells why.
+    ///
+    /// # Errors
+    /// [`crate::recording::RecordingError`] if there is no recording to be read.
+    #[cfg(feature = "record")]
+    pub fn replay(
+        path: impl AsRef<std::path::Path>,
+        speed: crate::recording::Speed,
+    ) -> Result<SessionBuilder, crate::recording::RecordingError> {
+        let recording = crate::recording::Recording::open(path.as_ref())?;
+        let (floor, layout, method) =
+            (recording.floor().clone(), recording.layout().clone(), recording.method());
+        let source = recording.source(speed);
+        let clock = source.clock();
+        Ok(Self::source(Box::new(source), clock).floor(floor).layout(layout).method(method))
+    }
+
     /// A session on a simulated floor that was calibrated in the lab, with the feet that `driver` moves.
     #[cfg(feature = "sim")]
     #[must_use]

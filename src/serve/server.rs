@@ -328,19 +328,35 @@ impl Server {
         self.snapshots = snapshots;
     }
 
+    fn set_layout(&mut self, layout: Layout) {
+        self.engine.set_layout(layout);
+        self.is_stale = true;
+    }
+
     /// Does what is asked; what that changes is shown at the end of the turn.
     fn process_commands(&mut self) {
-        while let Some(request) = self.source.take_request() {
-            self.process_request(request);
+        loop {
+            while let Some(request) = self.source.take_request() {
+                self.process_request(request);
+            }
+            let Some(layout) = self.source.take_layout() else { break };
+            self.set_layout(layout);
         }
         while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
             match command {
-                Command::SetLayout(layout) => {
-                    self.engine.set_layout(*layout);
-                    self.is_stale = true;
+                Command::SetLayout(mut layout) => {
+                    self.source.note_layout(&mut layout);
+                    self.set_layout(*layout);
                 }
-                Command::Control(message) => self.process_request(message.into()),
-                Command::Ask(message, answer) => self.answer(message, &answer),
+                Command::Control(message) => {
+                    let request = message.into();
+                    self.source.note_request(&request);
+                    self.process_request(request);
+                }
+                Command::Ask(message, answer) => {
+                    self.source.note_request(&message.clone().into());
+                    self.answer(message, &answer);
+                }
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(Trial::new(effect, *gesture, tile));
                 }

@@ -63,6 +63,7 @@ pub struct JsonSink {
     /// Whether no frames come, so that nobody else says that nobody is there.
     lost: bool,
     cracks: CrackRateLimiter,
+    waits: bool,
 }
 
 #[derive(Debug)]
@@ -130,6 +131,7 @@ impl JsonSink {
             contacts: None,
             lost: true,
             cracks: CrackRateLimiter::default(),
+            waits: false,
         })
     }
 
@@ -140,13 +142,33 @@ impl JsonSink {
         self
     }
 
+    /// Holds up whoever reports, for two seconds at most each time, before a line is left out: for floors that are
+    /// not live.
+    #[must_use]
+    pub fn waiting(mut self) -> Self {
+        self.waits = true;
+        self
+    }
+
     fn put(&mut self, told: OwnedReport) {
         self.flush();
+        if self.waits {
+            self.wait();
+        }
         let job = Job::Told(told);
         let waits = if self.backlog.is_empty() { self.worker.hand(job) } else { Some(job) };
         if let Some(Job::Told(told)) = waits {
             let (at, worth) = (told.at(), worth(&told));
             self.backlog.push(at, Job::Told(told), worth);
+        }
+    }
+
+    /// Waits until the reader has taken what has waited for it.
+    fn wait(&mut self) {
+        let end = HostInstant::now() + LAST_WAIT;
+        while !self.backlog.is_empty() && HostInstant::now() < end {
+            std::thread::sleep(Duration::from_millis(1));
+            self.flush();
         }
     }
 
@@ -160,12 +182,8 @@ impl JsonSink {
 
 impl Drop for JsonSink {
     fn drop(&mut self) {
-        let end = HostInstant::now() + LAST_WAIT;
         self.flush();
-        while !self.backlog.is_empty() && HostInstant::now() < end {
-            std::thread::sleep(Duration::from_millis(1));
-            self.flush();
-        }
+        self.wait();
     }
 }
 

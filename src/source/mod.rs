@@ -17,6 +17,7 @@ use std::time::Duration;
 
 use thiserror::Error;
 
+use crate::layout::Layout;
 use crate::units::Instant;
 use crate::wire::{LinkCounters, Request, SensorPacket};
 
@@ -38,6 +39,17 @@ pub trait SensorSource: Send {
     fn take_request(&mut self) -> Option<Request> {
         None
     }
+
+    /// A layout that the floor got at this moment, where a recording has one; it comes in the order of the requests.
+    fn take_layout(&mut self) -> Option<Layout> {
+        None
+    }
+
+    /// Hears what the program's own app asks, so that a recording has that as well.
+    fn note_request(&mut self, _request: &Request) {}
+
+    /// Hears of a layout that the floor is about to get; a recording puts in its place what it keeps of it.
+    fn note_layout(&mut self, _layout: &mut Layout) {}
 
     /// Sends `datagram` to somebody who asked; where there is no wire, nobody hears it.
     fn answer(&mut self, _to: SocketAddr, _datagram: &[u8]) {}

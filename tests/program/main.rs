@@ -16,6 +16,7 @@ mod input;
 mod output;
 mod page_commands;
 mod rack;
+mod recordings;
 mod senders;
 mod service;
 mod soak;

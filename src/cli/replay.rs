@@ -1,0 +1,94 @@
+//! `underfoot replay`: a recorded floor, again.
+
+use std::path::PathBuf;
+
+use underfoot::feel::{RendererConfig, renderer};
+use underfoot::recording::{Progress, Recording, Speed};
+use underfoot::serve::Server;
+use underfoot::sink::{ActuatorSink, SinkError};
+use underfoot::units::Instant;
+
+use super::failure::Failure;
+use super::outputs::OutputArgs;
+use super::stop::stop_flag;
+
+/// What `underfoot replay` is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// The recording, as `underfoot run --record` leaves it.
+    file: PathBuf,
+    /// How many times as fast as it was recorded, or `max`.
+    #[arg(long, value_name = "N|max", default_value = "1", value_parser = speed)]
+    speed: Speed,
+    #[command(flatten)]
+    outputs: OutputArgs,
+}
+
+/// Replays a recording; fails, after all of it, if it breaks off.
+pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let stop = stop_flag()?;
+    let recording = open(&args.file)?;
+    let floor = recording.floor().clone();
+    let (layout, method) = (recording.layout().clone(), recording.method());
+    let source = recording.source(args.speed);
+    let progress = source.progress();
+    let outputs = args.outputs.open_patiently(&floor.geometry)?;
+    // What was muted is told again; nothing is rendered.
+    let (feel, _renderer) = renderer(RendererConfig::of(&floor, RATE));
+    let mut server = Server::new(&floor, layout, method, Box::new(source))
+        .with_prefix(args.outputs.prefix.osc_prefix.clone())
+        .with_feel(feel, Box::new(Unplayed))
+        .with_events(Box::new(outputs));
+    server.run(&stop)?;
+    drop(server);
+    errln!("Replayed {:.1} s, {} packets.", seconds(&progress), progress.packets());
+    whole(&progress)
+}
+
+/// Samples a second of a renderer that nobody asks for any.
+const RATE: u32 = 48_000;
+
+/// Opens a recording.
+pub(crate) fn open(file: &std::path::Path) -> Result<Recording, Failure> {
+    Recording::open(file).map_err(|error| Failure::Other(error.to_string()))
+}
+
+/// Fails if the recording broke off; says where it is not whole.
+pub(crate) fn whole(progress: &Progress) -> Result<(), Failure> {
+    if progress.left_out() > 0 {
+        errln!(
+            "{} entries were left out of the recording: what follows them may differ.",
+            progress.left_out()
+        );
+    }
+    match progress.broken() {
+        Some(why) => Err(Failure::Other(format!(
+            "the recording breaks off after {} packets ({:.1} s); all up to there was read ({why})",
+            progress.packets(),
+            seconds(progress),
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// The seconds that have been played, on the floor's clock.
+fn seconds(progress: &Progress) -> f64 {
+    std::time::Duration::from_micros(progress.now().micros()).as_secs_f64()
+}
+
+fn speed(text: &str) -> Result<Speed, String> {
+    if text == "max" {
+        return Ok(Speed::Max);
+    }
+    let times = text.parse().ok().filter(|times| (0.01..=1000.0).contains(times));
+    times.map(Speed::Times).ok_or_else(|| "write a number from 0.01 to 1000, or max".into())
+}
+
+/// No actuators.
+struct Unplayed;
+
+impl ActuatorSink for Unplayed {
+    fn advance(&mut self, _now: Instant) -> Result<(), SinkError> {
+        Ok(())
+    }
+}

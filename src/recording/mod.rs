@@ -1,0 +1,69 @@
+//! A floor's recording: everything that decides what happens on it, in an MCAP file, and the same again from it.
+//!
+//! [`Recorder`] keeps what a source gives and when; [`Recording`] gives it back as another source. A server asks its
+//! source for a packet, for requests and for the time, and for nothing else: with the same answers it tells the same
+//! events, to the bit. `docs/recordings.md` describes the file.
+
+mod entry;
+mod events;
+mod reader;
+mod recorder;
+mod replay;
+mod tap;
+#[cfg(test)]
+mod tests;
+mod writer;
+
+use std::io;
+use std::path::PathBuf;
+
+use thiserror::Error;
+
+use crate::schema::Diagnostics;
+
+pub use reader::Recording;
+pub use recorder::{Recorder, WhenBehind};
+pub use replay::{Progress, ReplaySource, Speed};
+pub use tap::RecordedSource;
+
+/// The topics of a recording.
+const PACKETS: &str = "/underfoot/packets";
+const SILENCE: &str = "/underfoot/silence";
+const REQUESTS: &str = "/underfoot/requests";
+const LAYOUTS: &str = "/underfoot/layouts";
+const GAPS: &str = "/underfoot/gaps";
+const END: &str = "/underfoot/end";
+const EVENTS: &str = "/underfoot/events";
+
+/// The name of the metadata, and the version of all this.
+const METADATA: &str = "underfoot";
+const VERSION: &str = "1";
+
+/// The attachments.
+const FLOOR: &str = "floor.ron";
+const LAYOUT: &str = "layout.ron";
+
+/// Why there can be no recording, or why it can't be read.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum RecordingError {
+    /// The file can't be written or read.
+    #[error("{}: {source}", path.display())]
+    File {
+        /// Which file.
+        path: PathBuf,
+        /// What the system said.
+        source: io::Error,
+    },
+    /// The file is no recording of a floor, or ends before one begins.
+    #[error("{}: {why}", path.display())]
+    Unreadable {
+        /// Which file.
+        path: PathBuf,
+        /// What is missing or wrong.
+        why: String,
+    },
+    /// The floor or the layout can't be kept, or what was kept can't be read.
+    #[error(transparent)]
+    Diagnostics(#[from] Diagnostics),
+}

@@ -1,0 +1,127 @@
+//! A recording that is being made.
+
+use std::fs::File;
+use std::path::Path;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use super::RecordingError;
+use super::events::EventLines;
+use super::tap::RecordedSource;
+use super::writer::{Job, RecordingFile};
+use crate::floor::{Floor, Geometry};
+use crate::layout::Layout;
+use crate::schema::{self, Diagnostics, Kinds};
+use crate::sense::Method;
+use crate::sink::{JsonSink, SinkError, Worker};
+use crate::source::SensorSource;
+
+/// What happens when the disk takes less than comes.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WhenBehind {
+    /// What does not fit is left out and counted: for floors at work.
+    #[default]
+    LeaveOut,
+    /// Whoever has more waits: for simulated floors that run as fast as they can.
+    Wait,
+}
+
+/// A recording that is being made, on a thread of its own; it ends when this and all that it gave are dropped.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    worker: Arc<Worker<Job>>,
+    lost: Arc<AtomicU64>,
+    behind: WhenBehind,
+    floor: Floor,
+    layout: Layout,
+}
+
+impl Recorder {
+    /// Begins a recording in a new file at `path`, in place of what was there.
+    ///
+    /// Floor and layout are kept as text. What was read back from it, [`Recorder::floor`] and [`Recorder::layout`],
+    /// is what the floor must work with: its numbers may differ by a rounding from what was given.
+    ///
+    /// # Errors
+    /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be kept.
+    pub fn create(
+        path: &Path,
+        floor: &Floor,
+        layout: &Layout,
+        method: Method,
+        behind: WhenBehind,
+    ) -> Result<Self, RecordingError> {
+        let failed = |source| RecordingError::File { path: path.into(), source };
+        let floor_text = schema::write_floor(floor);
+        let floor = schema::parse_floor(&floor_text, super::FLOOR)?;
+        let (layout_text, layout) = as_kept(layout, &floor.geometry)?;
+        let file = File::create(path).map_err(failed)?;
+        let file = RecordingFile::begin(file, &floor_text, &layout_text, method)
+            .map_err(|error| failed(std::io::Error::other(error)))?;
+        let lost = Arc::<AtomicU64>::default();
+        let counter = Arc::clone(&lost);
+        let worker =
+            Worker::spawn("recording", move |jobs| file.write_all(jobs, &counter)).map_err(failed)?;
+        Ok(Self { worker: Arc::new(worker), lost, behind, floor, layout })
+    }
+
+    /// The floor as the recording has it.
+    #[must_use]
+    pub const fn floor(&self) -> &Floor {
+        &self.floor
+    }
+
+    /// The layout as the recording has it.
+    #[must_use]
+    pub const fn layout(&self) -> &Layout {
+        &self.layout
+    }
+
+    /// `inner`, with all that it gives recorded.
+    #[must_use]
+    pub fn source(&self, inner: Box<dyn SensorSource>) -> RecordedSource {
+        RecordedSource::new(inner, self.clone())
+    }
+
+    /// Records events: the lines of [`JsonSink`].
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no thread.
+    pub fn events(&self) -> Result<JsonSink, SinkError> {
+        JsonSink::new(EventLines::new(self.clone()))
+    }
+
+    /// Counts what could not be recorded.
+    #[must_use]
+    pub fn lost(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.lost)
+    }
+
+    /// Hands `job` on; gives it back if it does not fit.
+    pub(super) fn hand(&self, job: Job) -> Option<Job> {
+        let mut job = self.worker.hand(job)?;
+        if self.behind == WhenBehind::LeaveOut {
+            return Some(job);
+        }
+        loop {
+            std::thread::sleep(Duration::from_millis(1));
+            job = self.worker.hand(job)?;
+        }
+    }
+
+    pub(super) fn count_lost(&self, count: u64) {
+        self.lost.fetch_add(count, Ordering::Relaxed);
+    }
+}
+
+/// The text of `layout`, and the layout that it is read as.
+pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, Layout), Diagnostics> {
+    let text = schema::write_layout(layout);
+    let layout = read_layout(&text, geometry)?;
+    Ok((text, layout))
+}
+
+pub(super) fn read_layout(text: &str, geometry: &Geometry) -> Result<Layout, Diagnostics> {
+    Ok(schema::parse_layout(text, super::LAYOUT, &Kinds::builtin(), geometry)?.layout)
+}

@@ -1,0 +1,73 @@
+//! Floors recorded and replayed.
+
+use std::path::Path;
+use std::process::Output;
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use super::end_to_end::{said, underfoot};
+
+fn record(folder: &Path) -> (Vec<u8>, String) {
+    let file = folder.join("visit.mcap");
+    let output = underfoot()
+        .current_dir(folder)
+        .args(["session", "--out", "visit", "--record", "visit.mcap"])
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{}", said(&output));
+    let events = std::fs::read_to_string(folder.join("visit/events.jsonl")).unwrap();
+    (std::fs::read(file).unwrap(), events)
+}
+
+fn replay(file: &Path) -> Output {
+    let arguments = ["--speed", "max", "--no-osc", "--json"];
+    underfoot().arg("replay").arg(file).args(arguments).output().unwrap()
+}
+
+#[test]
+fn a_recorded_session_gives_the_same_events_to_the_byte() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, events) = record(folder.path());
+    let output = replay(&folder.path().join("visit.mcap"));
+    assert!(output.status.success(), "{}", said(&output));
+    assert!(events.contains("\"clicked\""));
+    assert_eq!(String::from_utf8(output.stdout).unwrap(), events);
+}
+
+#[test]
+fn a_file_cut_anywhere_replays_up_to_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, events) = record(folder.path());
+    let whole_lines: Vec<&str> = events.lines().collect();
+    let mut rng = Pcg64Mcg::seed_from_u64(1);
+    let cut_file = folder.path().join("cut.mcap");
+    let mut longest = 0;
+    for _ in 0..100 {
+        let cut = rng.random_range(0..whole.len());
+        std::fs::write(&cut_file, &whole[..cut]).unwrap();
+        let output = replay(&cut_file);
+        let said = said(&output);
+        assert!(!said.contains("panicked"), "cut at {cut}: {said}");
+        let lines = String::from_utf8(output.stdout).unwrap();
+        let lines: Vec<&str> = lines.lines().collect();
+        let same = lines.iter().zip(&whole_lines).take_while(|(one, other)| one == other).count();
+        // What was held where it breaks off is cancelled and its value restored; then nothing is held.
+        for line in &lines[same..] {
+            let ends = ["\"cancelled\"", "\"changed\"", "\"held\":[]", "\"released\"", "\"disarmed\""];
+            assert!(ends.iter().any(|end| line.contains(end)), "cut at {cut}: {line}");
+        }
+        longest = longest.max(same);
+    }
+    assert!(longest > whole_lines.len() / 2, "{longest} of {}", whole_lines.len());
+}
+
+#[test]
+fn a_file_that_is_no_recording_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("no.mcap");
+    std::fs::write(&file, "not a recording").unwrap();
+    let output = replay(&file);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("no recording of a floor begins there"), "{}", said(&output));
+}
