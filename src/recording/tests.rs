@@ -1,3 +1,5 @@
+//! Entries are read as they were written, and no bytes make the reader panic.
+
 use arrayvec::ArrayVec;
 
 use super::entry::{Entry, decoder};

@@ -29,7 +29,7 @@ fn shown(layout: &Layout, snapshot: &Snapshot, show: Show) -> Scene {
 #[test]
 fn labels_and_ranges_that_apps_set_are_drawn() {
     let layout = map();
-    let zoom = layout.widget_index("zoom").unwrap();
+    let time = layout.widget_index("time").unwrap();
     let mut snapshot = at_rest(&layout);
     let says = |snapshot: &Snapshot, text: &str| {
         let scene = drawn(&layout, snapshot);
@@ -39,11 +39,11 @@ fn labels_and_ranges_that_apps_set_are_drawn() {
         })
     };
     assert!(!says(&snapshot, "Slice"));
-    snapshot.labels.push((zoom, "Slice".into()));
+    snapshot.labels.push((time, "Slice".into()));
     assert!(says(&snapshot, "Slice"));
     let before = drawn(&layout, &snapshot);
-    let scale = *layout.widgets[zoom].behaviour.scale().unwrap();
-    snapshot.ranges.push((zoom, Scale { max: 2.0 * scale.max, ..scale }));
+    let scale = *layout.widgets[time].behaviour.scale().unwrap();
+    snapshot.ranges.push((time, Scale { max: 2.0 * scale.max, ..scale }));
     assert!(drawn(&layout, &snapshot) != before, "the handle stands elsewhere");
 }
 
