@@ -71,7 +71,8 @@ impl Session {
     }
 
     /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then. It
-    /// ends with the recording, also where that breaks off; [`crate::recording::Progress`] tells why.
+    /// ends with the recording, also where that breaks off. Why it ended is told by the
+    /// [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it themselves.
     ///
     /// # Errors
     /// [`crate::recording::RecordingError`] if there is no recording to be read.

@@ -100,9 +100,11 @@ fn ten_hours_of_floor_time_take_no_more_than_one() {
 /// Row R4. An hour of real time: the real program, real packets, two outputs, and a fault now and then.
 #[test]
 #[ignore = "takes an hour"]
-fn an_hour_of_packets_takes_no_more_than_its_first_minute() {
+fn an_hour_of_packets_takes_no_more_than_its_first_five_minutes() {
     const MINUTES: u64 = 60;
     const VISITS: usize = 200;
+    /// Minutes until buffers have grown to what they need: most of it comes in the second one.
+    const WARM_UP: usize = 5;
     let folder = tempfile::tempdir().unwrap();
     let (scenario, told) = (folder.path().join("hour.ron"), folder.path().join("told.jsonl"));
     // A visit takes some twenty seconds; the last ones come after the hour.
@@ -140,7 +142,7 @@ fn an_hour_of_packets_takes_no_more_than_its_first_minute() {
     println!("{clicks} clicks");
     // Of some 180: faults of all kinds may cost a part of them.
     assert!(clicks > 90, "{clicks}");
-    expect_flat(&parts);
+    expect_flat(&parts[WARM_UP - 1..]);
 }
 
 fn is_over(process: &mut Child) -> bool {
