@@ -58,7 +58,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let length = args.seconds;
     let progress = Progress::of("load", LOADS);
     let rendering = rendering(length, &progress);
-    let sensing = sensing(length, &progress, rendering.len());
+    let sensing = sensing(length, &progress);
     drop(progress);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));
     let factor = |all: &[Measured]| all.last().map_or(0.0, |measured| measured.times_real_time);
@@ -106,12 +106,11 @@ fn print(measured: &Measured) {
 
 fn rendering(length: Duration, progress: &Progress) -> Vec<Measured> {
     let mut all = Vec::new();
-    progress.done(0);
     for (id, modes) in [("banks_8", 8), ("banks_64", 64)] {
         let mut load = BankLoad::new(modes);
         let name = format!("modal banks alone, {modes} modes struck 20 times a second");
         all.push(Measured { id, name, times_real_time: measure(length, || load.second()) });
-        progress.done(all.len() as u64);
+        progress.advance();
     }
     for (id, name, work) in [
         ("modes_8", "8 modes struck 20 times a second", RenderWork::of_modes(8)),
@@ -125,27 +124,27 @@ fn rendering(length: Duration, progress: &Progress) -> Vec<Measured> {
     ] {
         let mut load = RenderLoad::new(work);
         all.push(Measured { id, name: name.into(), times_real_time: measure(length, || load.second()) });
-        progress.done(all.len() as u64);
+        progress.advance();
     }
     all
 }
 
-fn sensing(length: Duration, progress: &Progress, before: usize) -> Vec<Measured> {
+fn sensing(length: Duration, progress: &Progress) -> Vec<Measured> {
     let sizes = [
         ("6x6_2_walkers", 6, 2),
         ("24x24_2_walkers", 24, 2),
         ("96x96_2_walkers", SENSED_SIDE, 2),
         ("96x96_512_walkers", SENSED_SIDE, WALKERS),
     ];
-    (before as u64 + 1..)
-        .zip(sizes)
-        .map(|(done, (id, side, walkers))| {
+    sizes
+        .into_iter()
+        .map(|(id, side, walkers)| {
             let mut load = SensingLoad::new(side, walkers);
             let name = format!("{side} x {side} tiles, {walkers} walkers");
             let times_real_time = measure(length, || {
                 load.second();
             });
-            progress.done(done);
+            progress.advance();
             Measured { id, name, times_real_time }
         })
         .collect()

@@ -265,7 +265,7 @@ fn in_parallel<T: Send>(
                     let failed = result.is_err();
                     let Ok(mut done) = done.lock() else { break };
                     done.push((number, result));
-                    progress.done(done.len() as u64);
+                    progress.advance();
                     if failed {
                         next.store(times, Ordering::Relaxed);
                     }
@@ -377,8 +377,8 @@ fn counted(
 ) -> Result<(), Failure> {
     let progress = Progress::of(what, times);
     for step in 0..times {
-        progress.done(step);
         act(step)?;
+        progress.advance();
     }
     Ok(())
 }

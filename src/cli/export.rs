@@ -36,13 +36,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     ended
 }
 
-/// The seconds of a moment, to the microsecond.
-macro_rules! seconds {
-    ($at:expr) => {
-        format_args!("{:.6}", std::time::Duration::from_micros($at.micros()).as_secs_f64())
-    };
-}
-
 fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
     File::create(path).map(BufWriter::new).map_err(|error| Failure::File(path.into(), error))
 }
@@ -69,8 +62,9 @@ fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
             for (index, (tile, forces)) in floor.geometry.tiles().zip(&frame.forces).enumerate() {
                 if is_loaded(forces) || (is_empty && index == 0) {
                     let [sw, se, nw, ne] = forces.map(|force| if force.is_finite() { force } else { 0.0 });
-                    let at = seconds!(frame.at);
-                    writeln!(out, "{at},{},{},{sw},{se},{nw},{ne}", tile.column, tile.row).map_err(failed)?;
+                    let at_s = frame.at.secs();
+                    writeln!(out, "{at_s:.6},{},{},{sw},{se},{nw},{ne}", tile.column, tile.row)
+                        .map_err(failed)?;
                 }
             }
         }
@@ -135,12 +129,12 @@ impl EventSink for ContactRows {
         let Report::Contacts(at, contacts) = report else { return };
         let mut rows = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         for contact in contacts {
-            let (at, id, force) = (seconds!(at), contact.id.0, contact.force.0);
+            let (at_s, id, force) = (at.secs(), contact.id.0, contact.force.0);
             let (centroid, velocity, ambiguous) = (contact.centroid, contact.velocity, contact.ambiguous);
             // A list in memory takes everything.
             let _ = writeln!(
                 rows,
-                "{at},{id},{},{},{force},{},{},{ambiguous}",
+                "{at_s:.6},{id},{},{},{force},{},{},{ambiguous}",
                 centroid.x, centroid.y, velocity.x, velocity.y
             );
         }

@@ -2,6 +2,7 @@
 
 use std::fmt;
 use std::io::IsTerminal;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 
 /// Work of equal parts; its line is taken away when this is dropped.
@@ -12,6 +13,7 @@ pub(crate) struct Progress {
     /// One part of the work, such as "person".
     part: &'static str,
     parts: u64,
+    done: AtomicU64,
     begun: Instant,
     is_shown: bool,
 }
@@ -19,11 +21,18 @@ pub(crate) struct Progress {
 impl Progress {
     /// Begins work of so many parts.
     pub(crate) fn of(part: &'static str, parts: u64) -> Self {
-        Self { part, parts, begun: Instant::now(), is_shown: std::io::stderr().is_terminal() }
+        let is_shown = std::io::stderr().is_terminal();
+        let progress = Self { part, parts, done: AtomicU64::new(0), begun: Instant::now(), is_shown };
+        progress.show(0);
+        progress
     }
 
-    /// Shows that so many parts are done.
-    pub(crate) fn done(&self, done: u64) {
+    /// One more part is done.
+    pub(crate) fn advance(&self) {
+        self.show(self.done.fetch_add(1, Ordering::Relaxed) + 1);
+    }
+
+    fn show(&self, done: u64) {
         if self.is_shown {
             err!(
                 "\r{:60}\r{} {done} of {}{}",

@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_events(Box::new(outputs));
     server.run(&stop)?;
     drop(server);
-    errln!("Replayed {:.1} s, {} packets.", seconds(&progress), progress.packets());
+    errln!("Replayed {:.1} s, {} packets.", progress.now().secs(), progress.packets());
     whole(&progress)
 }
 
@@ -65,15 +65,10 @@ pub(crate) fn whole(progress: &Progress) -> Result<(), Failure> {
         Some(why) => Err(Failure::Other(format!(
             "the recording breaks off after {} packets ({:.1} s); all up to there was read ({why})",
             progress.packets(),
-            seconds(progress),
+            progress.now().secs(),
         ))),
         None => Ok(()),
     }
-}
-
-/// The seconds that have been played, on the floor's clock.
-fn seconds(progress: &Progress) -> f64 {
-    std::time::Duration::from_micros(progress.now().micros()).as_secs_f64()
 }
 
 fn speed(text: &str) -> Result<Speed, String> {

@@ -167,8 +167,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     // The last handle ends the recording.
     drop(session);
-    whole(&lost)?;
-    unrecorded.map_or(Ok(()), |lost| recorded(&lost))
+    whole(&lost, "frames")?;
+    unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))
 }
 
 /// Begins a recording.
@@ -180,16 +180,6 @@ pub(crate) fn record(
     behind: WhenBehind,
 ) -> Result<Recorder, Failure> {
     Recorder::create(file, floor, layout, method, behind).map_err(|error| Failure::Other(error.to_string()))
-}
-
-/// Fails if something could not be recorded.
-pub(crate) fn recorded(lost: &AtomicU64) -> Result<(), Failure> {
-    match lost.load(Ordering::Relaxed) {
-        0 => Ok(()),
-        lost => {
-            Err(Failure::Other(format!("the recording is not whole: {lost} entries could not be written")))
-        }
-    }
 }
 
 /// Waits for the last event; what else happens the sinks tell.
@@ -209,12 +199,12 @@ fn stop_after(span: Duration, stop: Arc<AtomicBool>) {
     });
 }
 
-/// Fails if a recording has gaps because the disk did not take it.
-pub(crate) fn whole(lost: &AtomicU64) -> Result<(), Failure> {
+/// Fails if a recording lacks some of `what`, such as frames, because the disk did not take it.
+pub(crate) fn whole(lost: &AtomicU64, what: &str) -> Result<(), Failure> {
     match lost.load(Ordering::Relaxed) {
         0 => Ok(()),
         lost => {
-            Err(Failure::Other(format!("the recording is not whole: {lost} frames could not be written")))
+            Err(Failure::Other(format!("the recording is not whole: {lost} {what} could not be written")))
         }
     }
 }

@@ -29,7 +29,7 @@ use super::layout_args::LayoutArgs;
 use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
-use super::run::{record, recorded, whole};
+use super::run::{record, whole};
 
 /// What `underfoot session` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -145,8 +145,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     drop(server);
     let unrecorded = recorder.map(|recorder| recorder.lost());
     camera.develop(&geometry, &layout, &script, &picture)?;
-    whole(&lost)?;
-    unrecorded.map_or(Ok(()), |lost| recorded(&lost))?;
+    whole(&lost, "frames")?;
+    unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))?;
     outln!(
         "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
          What its controls did: {}",

@@ -151,16 +151,20 @@ fn a_flood_of_refused_requests_and_rubbish_leaves_a_short_log() {
     assert!(!log.contains('\u{1b}'), "a pipe gets no colours: {log}");
 }
 
+/// The memory that a process has, in kB.
+#[cfg(target_os = "linux")]
+pub(super) fn memory_kb(process: &str) -> u64 {
+    let status = std::fs::read_to_string(format!("/proc/{process}/status")).unwrap();
+    let memory = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
+    memory.trim().trim_end_matches(" kB").parse().unwrap()
+}
+
 /// What a process has used of memory, in kB, and of the processors, in ticks of the kernel.
 #[cfg(target_os = "linux")]
 fn used(process: &Child) -> (u64, u64) {
-    let read = |file: &str| std::fs::read_to_string(format!("/proc/{}/{file}", process.id())).unwrap();
-    let status = read("status");
-    let memory = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
-    let stat = read("stat");
+    let stat = std::fs::read_to_string(format!("/proc/{}/stat", process.id())).unwrap();
     let ticks = stat.rsplit(')').next().unwrap().split_whitespace().skip(11).take(2);
-    let memory = memory.trim().trim_end_matches(" kB").parse().unwrap();
-    (memory, ticks.map(|ticks| ticks.parse::<u64>().unwrap()).sum())
+    (memory_kb(&process.id().to_string()), ticks.map(|ticks| ticks.parse::<u64>().unwrap()).sum())
 }
 
 /// Row R4. A minute of whatever one sender gets out, beside nothing else: for an idle machine, in release form. With the

@@ -14,7 +14,7 @@ use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
 
 use super::end_to_end::{Served, free_port, underfoot};
-use super::output::ended;
+use super::output::{ended, memory_kb};
 
 /// What a process has of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,13 +28,7 @@ impl Holdings {
     /// Of the process `id`, such as "self".
     fn of(id: &str) -> Self {
         let count = |folder: &str| std::fs::read_dir(format!("/proc/{id}/{folder}")).unwrap().count();
-        let status = std::fs::read_to_string(format!("/proc/{id}/status")).unwrap();
-        let memory = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).unwrap();
-        Self {
-            memory_kb: memory.trim().trim_end_matches(" kB").parse().unwrap(),
-            descriptors: count("fd"),
-            threads: count("task"),
-        }
+        Self { memory_kb: memory_kb(id), descriptors: count("fd"), threads: count("task") }
     }
 }
 

@@ -349,7 +349,7 @@ fn who_stops_walking_and_stands_on_one_contact_may_stand_on_two() {
 
 #[test]
 fn of_three_feet_on_shared_tiles_the_one_that_leaves_is_not_kept_by_a_wrong_division() {
-    // Somebody else's toe, put down at three places beside two feet that share its tiles, and lifted again.
+    // A light third contact at three places beside two feet that share its tiles; it leaves after half a second.
     for at in [Vec2::new(0.62, 1.06), Vec2::new(1.08, 1.0), Vec2::new(1.08, 1.12)] {
         let feet = side_by_side();
         let mut floor = Floor::new();
