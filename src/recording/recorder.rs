@@ -57,7 +57,7 @@ impl Recorder {
         let floor = schema::parse_floor(&floor_text, super::FLOOR)?;
         let (layout_text, layout) = as_kept(layout, &floor.geometry)?;
         let file = File::create(path).map_err(failed)?;
-        let file = RecordingFile::begin(file, &floor_text, &layout_text, method)
+        let file = RecordingFile::begin(file, path, &floor_text, &layout_text, method)
             .map_err(|error| failed(std::io::Error::other(error)))?;
         let lost = Arc::<AtomicU64>::default();
         let counter = Arc::clone(&lost);

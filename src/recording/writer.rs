@@ -3,6 +3,7 @@
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::BufWriter;
+use std::path::Path;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError};
 use std::time::{Duration, Instant as HostInstant};
@@ -13,9 +14,10 @@ use mcap::{Attachment, McapResult, WriteOptions, Writer};
 use super::entry::Entry;
 use super::{END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, METADATA, PACKETS, REQUESTS, SILENCE, VERSION};
 use crate::sense::Method;
+use crate::sink::Disk;
 use crate::units::Instant;
 
-/// How often everything written so far is handed to the system: what a crash can take.
+/// How often everything written so far is handed to the system: what a crash of the program can take.
 const FLUSH_EVERY: Duration = Duration::from_secs(1);
 
 /// What stands in `/underfoot/events`; the fields of each event are on the page about OSC and JSON.
@@ -42,13 +44,21 @@ impl Job {
 /// A file that is being written.
 pub(super) struct RecordingFile {
     writer: Writer<BufWriter<File>>,
+    disk: Disk,
     channels: BTreeMap<&'static str, u16>,
     bytes: Vec<u8>,
 }
 
 impl RecordingFile {
     /// Begins the file with the floor and the layout.
-    pub(super) fn begin(file: File, floor: &str, layout: &str, method: Method) -> McapResult<Self> {
+    pub(super) fn begin(
+        file: File,
+        path: &Path,
+        floor: &str,
+        layout: &str,
+        method: Method,
+    ) -> McapResult<Self> {
+        let disk = Disk::of(&file, path)?;
         // Chunks are put together in memory: the file grows by whole chunks only and is never patched.
         let options = WriteOptions::new()
             .compression(None)
@@ -88,7 +98,7 @@ impl RecordingFile {
             channels.insert(topic, writer.add_channel(schema, topic, encoding, &BTreeMap::new())?);
         }
         writer.flush()?;
-        Ok(Self { writer, channels, bytes: Vec::new() })
+        Ok(Self { writer, disk, channels, bytes: Vec::new() })
     }
 
     fn write(&mut self, job: &Job) -> McapResult<()> {
@@ -133,7 +143,8 @@ impl RecordingFile {
                     return Ok(());
                 }
                 flushed = HostInstant::now();
-                self.writer.flush()
+                self.writer.flush()?;
+                Ok(self.disk.tend()?)
             });
             if done.is_err() {
                 break done;

@@ -306,11 +306,11 @@ impl Assembler {
         self.health.is_foreign()
     }
 
-    /// The pairs of boards that read what the floor file has of each other's empty tiles, and how often they have
-    /// changed: their cables or addresses are swapped. Their sensors are [`Quality::Faulty`] until that is mended.
-    /// Found only where the floor's tare comes from its file.
+    /// The boards that have changed places, and how often they have: each that is out of its place comes with the one
+    /// whose empty tiles it reads, which is out of its place too. Two have been swapped, more follow each other in a ring.
+    /// Their sensors are [`Quality::Faulty`] until that is mended. Found only where the floor's tare comes from its file.
     pub fn swapped(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
-        self.swaps.pairs()
+        self.swaps.places()
     }
 
     /// Writes how the sensors are doing, as of the last frame, into `health`.

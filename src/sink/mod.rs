@@ -5,6 +5,8 @@ mod channel_map;
 mod crack_rate;
 #[cfg(feature = "audio")]
 mod device;
+#[cfg(any(feature = "wav", feature = "record"))]
+mod disk;
 mod fanout;
 mod json;
 mod latency;
@@ -33,6 +35,8 @@ pub use channel_map::ChannelMap;
 pub(crate) use crack_rate::CrackRateLimiter;
 #[cfg(feature = "audio")]
 pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, output_devices};
+#[cfg(any(feature = "wav", feature = "record"))]
+pub(crate) use disk::Disk;
 pub use fanout::Fanout;
 pub use json::JsonSink;
 pub use manual::ManualSink;

@@ -62,6 +62,64 @@ fn a_file_cut_anywhere_replays_up_to_there() {
     assert!(longest > whole_lines.len() / 2, "{longest} of {}", whole_lines.len());
 }
 
+/// Lines of a replay that the whole recording has as well, from its beginning.
+fn common(replayed: &Output, whole: &str) -> usize {
+    let lines = String::from_utf8_lossy(&replayed.stdout);
+    lines.lines().zip(whole.lines()).take_while(|(one, other)| one == other).count()
+}
+
+/// A file may not grow beyond 4 MB of some 13, which is told to the program as a full disk is.
+// F4
+#[cfg(unix)]
+#[test]
+fn a_disk_that_fills_while_a_session_is_recorded_leaves_what_it_took() {
+    let folder = tempfile::tempdir().unwrap();
+    let (whole, events) = record(folder.path());
+    let script = "trap '' XFSZ; ulimit -f 8192; exec \"$0\" \"$@\"";
+    let output = std::process::Command::new("sh")
+        .args(["-c", script, env!("CARGO_BIN_EXE_underfoot")])
+        .args(["session", "--out", "again", "--record", "full.mcap"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", said(&output));
+    assert!(said(&output).contains("the recording ends here, the floor works on"), "{}", said(&output));
+    assert!(said(&output).contains("the recording is not whole"), "{}", said(&output));
+    let again = std::fs::read_to_string(folder.path().join("again/events.jsonl")).unwrap();
+    assert_eq!(again, events, "the floor has worked on");
+    let full = folder.path().join("full.mcap");
+    let share = std::fs::metadata(&full).unwrap().len() as f64 / whole.len() as f64;
+    let lines = common(&replay(&full), &events);
+    // A third of the bytes has 29 lines: most happens later.
+    assert!(share > 0.25 && lines > 20, "{share} {lines}");
+}
+
+/// What a process leaves that is killed.
+// F5
+#[test]
+fn a_killed_recording_replays_up_to_its_last_moments() {
+    let folder = tempfile::tempdir().unwrap();
+    let (_, events) = record(folder.path());
+    let path = folder.path().join("killed.mcap");
+    let mut session = underfoot()
+        .current_dir(folder.path())
+        .args(["session", "--out", "again", "--record", "killed.mcap"])
+        .stdout(std::process::Stdio::null())
+        .stderr(std::process::Stdio::null())
+        .spawn()
+        .unwrap();
+    while std::fs::metadata(&path).map_or(0, |file| file.len()) < 4_000_000 {
+        assert!(session.try_wait().unwrap().is_none(), "it ended before it was killed");
+        std::thread::yield_now();
+    }
+    session.kill().unwrap();
+    session.wait().unwrap();
+    let output = replay(&path);
+    assert!(!said(&output).contains("panicked"), "{}", said(&output));
+    let lines = common(&output, &events);
+    assert!(lines > 20, "{lines} of {}", events.lines().count());
+}
+
 #[test]
 fn a_file_that_is_no_recording_is_refused() {
     let folder = tempfile::tempdir().unwrap();

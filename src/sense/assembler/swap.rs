@@ -1,8 +1,8 @@
-//! Two boards that send under each other's address: noticed from what their plates weigh.
+//! Boards that send under each other's addresses: noticed from what their plates weigh.
 //!
 //! The floor file has what each sensor reads on the empty floor. Parts differ by a quarter, so what the sensors of a
-//! board read there is as good as a signature: a board that fits another one's tares, while the other fits its own,
-//! has changed places with it.
+//! board read there is as good as a signature. Boards each of which fits the next one's tares, and the last the
+//! first one's, have changed places: two have been swapped, or more have moved on by one in a ring.
 
 use crate::wire::Readings;
 
@@ -15,7 +15,7 @@ const BLOCK: u16 = 64;
 /// than parts that differ by a quarter do under a plate of 6 N, more than one day's drift of the middle one (our choice).
 const LEAST_N: f32 = 0.1;
 
-/// Which share of what two boards miss their own tares by they may miss each other's by (our choice).
+/// Which share of what the boards of a ring miss their own tares by they may miss the next one's by (our choice).
 const SHARE: f32 = 0.25;
 
 /// Blocks in a row that must say the same.
@@ -25,10 +25,12 @@ const AGREEING: u8 = 2;
 #[derive(Clone, Debug)]
 pub(super) struct Swaps {
     blocks: Vec<Block>,
-    /// Each board's partner.
+    /// For each board that is out of its place, the one in whose place it is.
     found: Vec<Option<u16>>,
     /// How often `found` has changed.
     changes: u64,
+    /// Space for the ring that is looked at.
+    ring: Vec<u16>,
     /// Space for sorting.
     misses: Vec<f32>,
 }
@@ -41,7 +43,7 @@ struct Block {
     is_counts: bool,
     /// The means of the last whole block; NaN for channels that gave nothing.
     means: Vec<f32>,
-    /// The partner it had in the last block, and in how many blocks in a row.
+    /// The place that it seemed to be in after the last block, if not its own, and for how many blocks in a row.
     seen: (Option<u16>, u8),
 }
 
@@ -53,8 +55,13 @@ impl Swaps {
             means: Vec::with_capacity(board.channel_count()),
             ..Block::default()
         };
-        let blocks = boards.iter().map(block).collect();
-        Self { blocks, found: vec![None; boards.len()], changes: 0, misses: Vec::with_capacity(most) }
+        Self {
+            blocks: boards.iter().map(block).collect(),
+            found: vec![None; boards.len()],
+            changes: 0,
+            ring: Vec::with_capacity(boards.len()),
+            misses: Vec::with_capacity(most),
+        }
     }
 
     /// Takes what board `number` reads.
@@ -69,50 +76,73 @@ impl Swaps {
             return;
         }
         block.finish();
-        let partner = self.partner(number, boards);
+        let place = self.place(number, boards);
         let (last, times) = self.blocks[number].seen;
-        let times = if last == partner { times.saturating_add(1) } else { 1 };
-        self.blocks[number].seen = (partner, times);
-        if times >= AGREEING && self.found[number] != partner {
-            let one = u16::try_from(number).ok();
-            for freed in [self.found[number], partner].into_iter().flatten() {
-                self.found[usize::from(freed)] = None;
-            }
-            self.found[number] = partner;
-            if let Some(partner) = partner {
-                self.found[usize::from(partner)] = one;
-            }
-            self.changes += 1;
+        let times = if last == place { times.saturating_add(1) } else { 1 };
+        self.blocks[number].seen = (place, times);
+        if times >= AGREEING && self.found[number] != place {
+            self.believe(number);
         }
     }
 
-    /// The board whose tares board `number` fits, and which fits its own.
-    fn partner(&mut self, number: usize, boards: &[BoardTrack]) -> Option<u16> {
-        let Self { blocks, misses, .. } = self;
+    /// The place that board `number` is in, if it is another one's and the ring closes, which is then in `self.ring`.
+    fn place(&mut self, number: usize, boards: &[BoardTrack]) -> Option<u16> {
+        let Self { blocks, misses, ring, .. } = self;
+        ring.clear();
         let mut misfit = |reader: usize, place: usize| {
             let block = &blocks[reader];
             boards[place].misfit(&block.means, block.is_counts, misses)
         };
-        let own = misfit(number, number).filter(|own| *own > LEAST_N)?;
-        (0..boards.len()).filter(|other| *other != number).find_map(|other| {
-            let apart = own + misfit(other, other)?;
-            let exchanged = misfit(number, other)? + misfit(other, number)?;
-            (exchanged < SHARE * apart).then(|| u16::try_from(other).ok()).flatten()
-        })
+        let (mut apart, mut exchanged) = (0.0, 0.0);
+        let mut reader = number;
+        // A ring that closes elsewhere has not come back after as many steps as there are boards.
+        for _ in 0..boards.len() {
+            let own = misfit(reader, reader).filter(|own| reader != number || *own > LEAST_N)?;
+            let others = (0..boards.len()).filter(|other| *other != reader);
+            let fits = others.filter_map(|other| misfit(reader, other).map(|by| (by, other)));
+            let (by, place) =
+                fits.min_by(|one, other| one.0.total_cmp(&other.0)).filter(|fit| fit.0 < own)?;
+            ring.push(u16::try_from(reader).ok()?);
+            apart += own;
+            exchanged += by;
+            reader = place;
+            if reader == number {
+                return ring.get(1).copied().filter(|_| exchanged < SHARE * apart);
+            }
+        }
+        None
     }
 
-    /// The board that has changed places with board `number`.
+    /// Takes board `number` for one that is in the ring just looked at, or in its own place if there is none.
+    fn believe(&mut self, number: usize) {
+        let Self { found, ring, .. } = self;
+        let is_found = self.blocks[number].seen.0.is_some();
+        if !is_found {
+            ring.clear();
+            ring.extend(u16::try_from(number).ok());
+        }
+        for member in ring.iter() {
+            let mut next = Some(*member);
+            while let Some(freed) = next {
+                next = found[usize::from(freed)].take();
+            }
+        }
+        if is_found {
+            let following = ring.iter().cycle().skip(1);
+            ring.iter().zip(following).for_each(|(one, next)| found[usize::from(*one)] = Some(*next));
+        }
+        self.changes += 1;
+    }
+
+    /// The board in whose place board `number` is, if not in its own.
     pub(super) fn of(&self, number: usize) -> Option<u16> {
         self.found.get(number).copied().flatten()
     }
 
-    /// Each pair once, and how often the pairs have changed.
-    pub(super) fn pairs(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
-        let pairs = (0..).zip(&self.found);
-        (
-            self.changes,
-            pairs.filter_map(|(one, other)| other.filter(|other| one < *other).map(|other| (one, other))),
-        )
+    /// Each board that is out of its place with the one in whose place it is, and how often that has changed.
+    pub(super) fn places(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
+        let places = (0..).zip(&self.found);
+        (self.changes, places.filter_map(|(one, place)| place.map(|place| (one, place))))
     }
 }
 

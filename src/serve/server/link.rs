@@ -78,19 +78,29 @@ impl LinkWatch {
 
     /// Says which boards have changed places.
     fn note_swapped(&mut self, assembler: &Assembler) {
-        let (changes, pairs) = assembler.swapped();
+        let (changes, places) = assembler.swapped();
         if std::mem::replace(&mut self.swaps, changes) == changes {
             return;
         }
-        let mut pairs = pairs.peekable();
-        if pairs.peek().is_none() {
+        let mut places: Vec<(u16, u16)> = places.collect();
+        if places.is_empty() {
             warn!("the boards fit the floor file again");
         }
-        for (one, other) in pairs {
+        while let Some((first, mut next)) = places.pop() {
+            let mut ring = vec![first];
+            while let Some(found) = places.iter().position(|(board, _)| *board == next) {
+                ring.push(next);
+                next = places.swap_remove(found).1;
+            }
+            ring.sort_unstable();
+            let named: Vec<String> = ring.iter().map(u16::to_string).collect();
+            let (last, others) =
+                named.split_last().map_or(("", &[][..]), |(last, others)| (last.as_str(), others));
             warn!(
-                "boards {one} and {other} are swapped: each reads what the floor file says of the other's empty tiles. \
-                 Nothing on their tiles works until that is mended, nor do controls with the guard HoldToRun: exchange \
-                 their cables or addresses, or let `underfoot wiring` find which board is where"
+                "boards {} and {last} are swapped: each reads what the floor file says of another one's empty tiles. Nothing on \
+                 their tiles works until that is mended, nor do controls with the guard HoldToRun: exchange their \
+                 cables or addresses, or let `underfoot wiring` find which board is where",
+                others.join(", ")
             );
         }
     }

@@ -11,7 +11,7 @@ use hound::{SampleFormat, WavSpec, WavWriter};
 
 use super::{WavFormat, WavSummary};
 use crate::feel::Renderer;
-use crate::sink::SinkError;
+use crate::sink::{Disk, SinkError};
 
 /// How often a recording that failed is tried again.
 const RETRY: Duration = Duration::from_secs(1);
@@ -27,6 +27,7 @@ pub(super) struct Files {
     spec: WavSpec,
     /// `None` while the disk takes nothing.
     writer: Option<WavWriter<BufWriter<File>>>,
+    disk: Disk,
     /// Bytes before the samples.
     header_bytes: u64,
     frames_per_file: u64,
@@ -67,7 +68,8 @@ impl Files {
             bits_per_sample,
             sample_format,
         };
-        let writer = open(&path, spec)?;
+        let (writer, file) = open(&path, spec)?;
+        let disk = Disk::of(&file, &path).map_err(|error| file_error(&path, error.into()))?;
         let header_bytes = fs::metadata(&path).map_or(0, |metadata| metadata.len());
         Ok(Self {
             first: path.clone(),
@@ -75,6 +77,7 @@ impl Files {
             path,
             spec,
             writer: Some(writer),
+            disk,
             header_bytes,
             frames_per_file: (limit / frame_bytes).max(1),
             frames_in_file: 0,
@@ -133,7 +136,11 @@ impl Files {
 
     fn begin_next(&mut self) -> Result<(), SinkError> {
         let next = numbered(&self.first, self.done.len() + 2);
-        let writer = open(&next, self.spec).inspect_err(|_| {
+        let begun = open(&next, self.spec).and_then(|(writer, file)| {
+            self.disk.go_on(&file, &next).map_err(|error| file_error(&next, error.into()))?;
+            Ok(writer)
+        });
+        let writer = begun.inspect_err(|_| {
             // An empty file beside the others would tell nothing; the error is the writer's.
             let _ = fs::remove_file(&next);
         })?;
@@ -163,7 +170,10 @@ impl Files {
     /// file; or tries to go on in another file if there is none.
     pub(super) fn flush(&mut self) {
         let flushed = match &mut self.writer {
-            Some(writer) => writer.flush().map_err(|error| file_error(&self.path, error)),
+            Some(writer) => writer
+                .flush()
+                .and_then(|()| Ok(self.disk.tend()?))
+                .map_err(|error| file_error(&self.path, error)),
             None if self.failed.elapsed() < RETRY => Ok(()),
             None => {
                 self.failed = WallInstant::now();
@@ -192,11 +202,16 @@ impl Files {
     }
 }
 
-/// Begins a WAV file whose header is on the disk at once.
-fn open(path: &Path, spec: WavSpec) -> Result<WavWriter<BufWriter<File>>, SinkError> {
-    let mut writer = WavWriter::create(path, spec).map_err(|error| file_error(path, error))?;
-    writer.flush().map_err(|error| file_error(path, error))?;
-    Ok(writer)
+/// Begins a WAV file whose header is on the disk at once; gives a second handle of the file as well.
+fn open(path: &Path, spec: WavSpec) -> Result<(WavWriter<BufWriter<File>>, File), SinkError> {
+    let begin = || {
+        let file = File::create(path)?;
+        let handle = file.try_clone()?;
+        let mut writer = WavWriter::new(BufWriter::new(file), spec)?;
+        writer.flush()?;
+        Ok((writer, handle))
+    };
+    begin().map_err(|error| file_error(path, error))
 }
 
 /// Makes the sizes in a WAV file's header those of its whole frames on the disk, and gives their number.
