@@ -2,14 +2,14 @@
 
 use std::collections::HashMap;
 
-use arrayvec::ArrayVec;
 use rosc::{OscMessage, OscPacket, OscTime, OscType};
 use thiserror::Error;
 
 use super::command::{self, NoCommand};
 use super::guard::{self, Limits, Malformed};
 use super::message::ControlMessage;
-use super::{LinkCounters, MAX_CHANNELS, Prefix, Readings, SensorPacket};
+use super::sensor_message::RawMessage;
+use super::{LinkCounters, Prefix, SensorPacket};
 use crate::floor::Floor;
 use crate::units::Instant;
 
@@ -81,7 +81,8 @@ impl Batch {
 /// requests may be OSC's patterns (`*`, `?`, `[]`, `{}`). Time tags matter for requests only.
 #[derive(Clone, Debug)]
 pub struct Decoder {
-    boards: HashMap<String, BoardShape>,
+    /// By the bytes of their addresses.
+    boards: HashMap<Box<[u8]>, BoardShape>,
     prefix: Prefix,
     limits: Limits,
 }
@@ -99,7 +100,7 @@ impl Decoder {
         let mut boards = HashMap::new();
         for (number, board) in (0..=u16::MAX).zip(&floor.boards) {
             let shape = BoardShape { number, channels: board.channels.len() };
-            boards.entry(board.address.clone()).or_insert(shape);
+            boards.entry(board.address.as_bytes().into()).or_insert(shape);
         }
         Self { boards, prefix: Prefix::default(), limits: Limits::SENSORS }
     }
@@ -148,39 +149,54 @@ impl Decoder {
     }
 
     fn fill(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        guard::check(datagram, &self.limits)?;
-        // The guard passes nothing that rosc refuses (a property test says so); should they ever
-        // disagree, the datagram is refused.
-        let (rest, packet) = rosc::decoder::decode_udp(datagram).map_err(|_| Malformed::Neither { at: 0 })?;
-        if !rest.is_empty() {
-            return Err(Malformed::LeftOver { at: datagram.len() - rest.len() }.into());
+        // Nearly all that comes are single messages of boards, which are checked while they are read.
+        if datagram.len() <= self.limits.bytes
+            && let Some(packet) = RawMessage::split(datagram).and_then(|raw| self.sensors(&raw, received))
+        {
+            batch.packets.push(packet);
+            return Ok(());
         }
-        self.packet(&packet, received, batch)
+        guard::check(datagram, &self.limits)?;
+        self.element(datagram, received, batch)
     }
 
-    /// Recursion is safe here: the guard has limited the depth.
-    fn packet(&self, packet: &OscPacket, received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        match packet {
-            OscPacket::Message(message) => self.message(message, received, batch),
-            OscPacket::Bundle(bundle) => {
-                let before = batch.controls.len();
-                bundle.content.iter().try_for_each(|element| self.packet(element, received, batch))?;
-                if batch.controls.len() > before {
-                    let time = |tag: &OscTime| (tag.seconds, tag.fractional);
-                    batch.due = batch.due.into_iter().chain([bundle.timetag]).max_by_key(time);
-                }
+    /// Reads a bundle or a message. Recursion is safe here: the guard has limited the depth.
+    fn element(&self, bytes: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
+        let Some(bundle) = guard::Bundle::of(bytes) else { return self.message(bytes, received, batch) };
+        let before = batch.controls.len();
+        bundle.elements().try_for_each(|element| self.element(element, received, batch))?;
+        if batch.controls.len() > before {
+            let time = |tag: &OscTime| (tag.seconds, tag.fractional);
+            batch.due = batch.due.into_iter().chain([bundle.time_tag]).max_by_key(time);
+        }
+        Ok(())
+    }
+
+    fn message(&self, bytes: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
+        if let Some(packet) = RawMessage::split(bytes).and_then(|raw| self.sensors(&raw, received)) {
+            batch.packets.push(packet);
+            return Ok(());
+        }
+        // The guard passes nothing that rosc refuses (a property test says so); should they ever
+        // disagree, the datagram is refused.
+        let Ok((b"", OscPacket::Message(message))) = rosc::decoder::decode_udp(bytes) else {
+            return Err(Malformed::Neither { at: 0 }.into());
+        };
+        match self.boards.get(message.addr.as_bytes()) {
+            Some(shape) => Err(shape.refuses(message)),
+            None => {
+                batch.controls.extend(self.controls(&message)?);
                 Ok(())
             }
         }
     }
 
-    fn message(&self, message: &OscMessage, received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        if let Some(&shape) = self.boards.get(&message.addr) {
-            batch.packets.push(sensor_packet(message, shape, received)?);
-        } else {
-            batch.controls.extend(self.controls(message)?);
-        }
-        Ok(())
+    /// The packet, if this is one of a board of this floor.
+    fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
+        let shape = self.boards.get(raw.address)?;
+        let (sequence, readings) = raw.read(&self.limits)?;
+        let packet = SensorPacket { board: shape.number, sequence, received, readings };
+        (packet.readings.len() == shape.channels).then_some(packet)
     }
 
     fn controls(&self, message: &OscMessage) -> Result<Vec<ControlMessage>, WireError> {
@@ -201,7 +217,9 @@ impl Decoder {
     #[must_use]
     pub fn is_answered<'e>(&self, error: &'e WireError) -> Option<&'e str> {
         match error {
-            WireError::WrongShape { address, .. } if !self.boards.contains_key(address) => Some(address),
+            WireError::WrongShape { address, .. } if !self.boards.contains_key(address.as_bytes()) => {
+                Some(address)
+            }
             WireError::UnknownAddress { address } => {
                 let path = self.prefix.path(address)?;
                 (!command::is_sent_by_floors(path)).then_some(address)
@@ -212,58 +230,17 @@ impl Decoder {
     }
 }
 
-fn sensor_packet(
-    message: &OscMessage,
-    shape: BoardShape,
-    received: Instant,
-) -> Result<SensorPacket, WireError> {
-    let wrong = || WireError::WrongShape {
-        address: message.addr.clone(),
-        expected: format!(
-            "an int32 sequence and {} counts (i), newtons (f), or one blob of u16 counts",
-            shape.channels
-        ),
-        found: type_tags(&message.args),
-    };
-    let Some((OscType::Int(sequence), values)) = message.args.split_first() else { return Err(wrong()) };
-    let readings = match values {
-        [OscType::Blob(blob)] => counts_from_blob(blob),
-        [OscType::Float(_), ..] => newtons(values),
-        _ => counts(values),
-    };
-    let readings = readings.filter(|readings| readings.len() == shape.channels).ok_or_else(wrong)?;
-    // The sequence is 32 bits without a sign; OSC has only signed ones.
-    Ok(SensorPacket { board: shape.number, sequence: sequence.cast_unsigned(), received, readings })
-}
-
-fn counts(values: &[OscType]) -> Option<Readings> {
-    let mut counts = ArrayVec::<_, MAX_CHANNELS>::new();
-    for value in values {
-        let &OscType::Int(count) = value else { return None };
-        counts.try_push(u16::try_from(count).ok()).ok()?;
+impl BoardShape {
+    fn refuses(self, message: OscMessage) -> WireError {
+        WireError::WrongShape {
+            expected: format!(
+                "an int32 sequence and {} counts (i), newtons (f), or one blob of u16 counts",
+                self.channels
+            ),
+            found: type_tags(&message.args),
+            address: message.addr,
+        }
     }
-    Some(Readings::Counts(counts))
-}
-
-fn newtons(values: &[OscType]) -> Option<Readings> {
-    let mut forces = ArrayVec::<_, MAX_CHANNELS>::new();
-    for value in values {
-        let &OscType::Float(force) = value else { return None };
-        forces.try_push(force).ok()?;
-    }
-    Some(Readings::Newtons(forces))
-}
-
-fn counts_from_blob(blob: &[u8]) -> Option<Readings> {
-    let (pairs, rest) = blob.as_chunks();
-    if !rest.is_empty() {
-        return None;
-    }
-    let mut counts = ArrayVec::<_, MAX_CHANNELS>::new();
-    for &pair in pairs {
-        counts.try_push(Some(u16::from_be_bytes(pair))).ok()?;
-    }
-    Some(Readings::Counts(counts))
 }
 
 /// The type tags of `args` as OSC writes them, shortened to what fits in a log line.
@@ -305,6 +282,7 @@ mod tests {
     use super::*;
     use crate::floor::Geometry;
     use crate::widget::{Value, WidgetId};
+    use crate::wire::Readings;
 
     const NOW: Instant = Instant::from_millis(7);
 

@@ -1,6 +1,7 @@
 //! Limits that a datagram must keep before it is decoded.
 
 use arrayvec::ArrayVec;
+use rosc::OscTime;
 use thiserror::Error;
 
 /// What one datagram may hold before it is refused unread.
@@ -170,6 +171,33 @@ const BUNDLE_TAG: &[u8] = b"#bundle\0";
 
 /// The tag and the time tag.
 const BUNDLE_HEADER: usize = 16;
+
+/// A bundle that [`check`] has let through.
+pub(super) struct Bundle<'a> {
+    /// When it is to be met.
+    pub(super) time_tag: OscTime,
+    elements: &'a [u8],
+}
+
+impl<'a> Bundle<'a> {
+    /// `bytes` as a bundle; `None` if they are a message.
+    pub(super) fn of(bytes: &'a [u8]) -> Option<Self> {
+        let (seconds, rest) = bytes.strip_prefix(BUNDLE_TAG)?.split_first_chunk()?;
+        let (fractional, elements) = rest.split_first_chunk()?;
+        let [seconds, fractional] = [seconds, fractional].map(|word| u32::from_be_bytes(*word));
+        Some(Self { time_tag: OscTime { seconds, fractional }, elements })
+    }
+
+    /// Its messages and bundles, in order.
+    pub(super) fn elements(&self) -> impl Iterator<Item = &'a [u8]> {
+        let mut rest = self.elements;
+        std::iter::from_fn(move || {
+            let (element, behind) = rest.get(4..)?.split_at_checked(be_u32(rest)?)?;
+            rest = behind;
+            Some(element)
+        })
+    }
+}
 
 fn be_u32(bytes: &[u8]) -> Option<usize> {
     let word: [u8; 4] = bytes.get(..4)?.try_into().ok()?;

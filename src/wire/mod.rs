@@ -18,6 +18,7 @@ mod message;
 mod packet;
 mod pattern;
 mod prefix;
+mod sensor_message;
 
 pub use counters::LinkCounters;
 pub(crate) use encode::write;

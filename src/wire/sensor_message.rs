@@ -1,0 +1,156 @@
+//! The messages of boards, read straight from their bytes: thousands a second come of them, and all look alike.
+
+use arrayvec::ArrayVec;
+
+use super::guard::Limits;
+use super::packet::{MAX_CHANNELS, Readings};
+
+/// A message as it lies in a datagram: its address and what follows it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct RawMessage<'a> {
+    /// The address without its end; not known to be text.
+    pub(super) address: &'a [u8],
+    rest: &'a [u8],
+}
+
+impl<'a> RawMessage<'a> {
+    /// Splits the address off; `None` if it has no end.
+    pub(super) fn split(bytes: &'a [u8]) -> Option<Self> {
+        let (address, rest) = text(bytes)?;
+        Some(Self { address, rest })
+    }
+
+    /// The sequence number and the readings; `None` if the message is anything but those of a board within `limits`,
+    /// to the last byte.
+    pub(super) fn read(&self, limits: &Limits) -> Option<(u32, Readings)> {
+        let (tags, arguments) = text(self.rest)?;
+        let tags = tags.strip_prefix(b",")?;
+        if self.address.len() > limits.address || tags.len() > limits.tags {
+            return None;
+        }
+        let tags = tags.strip_prefix(b"i")?;
+        let (sequence, arguments) = arguments.split_first_chunk()?;
+        let readings = match tags {
+            b"b" => Readings::Counts(blob(arguments)?),
+            [b'f', ..] => Readings::Newtons(values(tags, b'f', arguments, f32::from_be_bytes)?),
+            _ => {
+                let count = |bytes| u16::try_from(i32::from_be_bytes(bytes)).ok();
+                Readings::Counts(values(tags, b'i', arguments, count)?)
+            }
+        };
+        // The sequence is 32 bits without a sign; OSC has only signed ones.
+        Some((u32::from_be_bytes(*sequence), readings))
+    }
+}
+
+/// The bytes before the first zero, and what follows its padding to four bytes.
+fn text(bytes: &[u8]) -> Option<(&[u8], &[u8])> {
+    let length = bytes.iter().position(|byte| *byte == 0)?;
+    let rest = bytes.get((length + 1).next_multiple_of(4)..)?;
+    Some((bytes.get(..length)?, rest))
+}
+
+/// One value of four bytes for each tag, which must all be `tag`, and nothing else.
+fn values<T>(
+    tags: &[u8],
+    tag: u8,
+    arguments: &[u8],
+    value: impl Fn([u8; 4]) -> T,
+) -> Option<ArrayVec<T, MAX_CHANNELS>> {
+    let (words, rest) = arguments.as_chunks();
+    let is_alike = tags.iter().all(|one| *one == tag);
+    if !is_alike || !rest.is_empty() || words.len() != tags.len() || words.len() > MAX_CHANNELS {
+        return None;
+    }
+    Some(words.iter().map(|word| value(*word)).collect())
+}
+
+/// Counts of two bytes each, with their length before them and padding behind.
+fn blob(arguments: &[u8]) -> Option<ArrayVec<Option<u16>, MAX_CHANNELS>> {
+    let (length, bytes) = arguments.split_first_chunk()?;
+    let length = usize::try_from(u32::from_be_bytes(*length)).ok()?;
+    let (pairs, odd) = bytes.get(..length)?.as_chunks();
+    if !odd.is_empty() || pairs.len() > MAX_CHANNELS || bytes.len() != length.next_multiple_of(4) {
+        return None;
+    }
+    Some(pairs.iter().map(|pair| Some(u16::from_be_bytes(*pair))).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use rosc::{OscMessage, OscPacket, OscType, encoder};
+
+    use super::*;
+    use crate::wire::check;
+
+    const ADDRESS: &str = "/underfoot/board/3";
+
+    /// What a decoder of others makes of the same bytes, if they are a board's message.
+    fn by_rosc(datagram: &[u8]) -> Option<(String, u32, Readings)> {
+        let (_, OscPacket::Message(message)) = rosc::decoder::decode_udp(datagram).ok()? else { return None };
+        let (OscType::Int(sequence), values) = message.args.split_first()? else { return None };
+        let count = |value: &OscType| match value {
+            OscType::Int(count) => Some(u16::try_from(*count).ok()),
+            _ => None,
+        };
+        let force = |value: &OscType| match value {
+            OscType::Float(force) => Some(*force),
+            _ => None,
+        };
+        let readings = match values {
+            [OscType::Blob(blob)] => {
+                let pairs = blob.chunks(2).map(|pair| Some(u16::from_be_bytes(pair.try_into().ok()?)));
+                Readings::Counts(pairs.map(|count| count.map(Some)).collect::<Option<_>>()?)
+            }
+            [OscType::Float(_), ..] => Readings::Newtons(values.iter().map(force).collect::<Option<_>>()?),
+            _ => Readings::Counts(values.iter().map(count).collect::<Option<_>>()?),
+        };
+        Some((message.addr, sequence.cast_unsigned(), readings))
+    }
+
+    fn datagrams() -> impl Strategy<Value = Vec<u8>> {
+        let ints = prop::collection::vec((-2..70_000_i32).prop_map(OscType::Int), 0..30);
+        let floats =
+            prop::collection::vec(any::<i16>().prop_map(|n| OscType::Float(f32::from(n) / 7.0)), 1..30);
+        let blob = prop::collection::vec(any::<u8>(), 0..60).prop_map(|bytes| vec![OscType::Blob(bytes)]);
+        (any::<i32>(), prop_oneof![ints, floats, blob]).prop_map(|(sequence, values)| {
+            let args = std::iter::once(OscType::Int(sequence)).chain(values).collect();
+            encoder::encode(&OscPacket::Message(OscMessage { addr: ADDRESS.into(), args })).unwrap()
+        })
+    }
+
+    proptest! {
+        /// The guard does not see what is read here: whatever a datagram has become on its way, nothing is read that
+        /// the guard would refuse, nothing otherwise than others read it, and nothing whole is left unread.
+        #[test]
+        fn what_is_read_is_what_the_guard_lets_through_and_others_read(
+            mut datagram in datagrams(),
+            damages in prop::collection::vec((any::<prop::sample::Index>(), any::<u8>()), 0..4),
+            cut in prop::option::weighted(0.1, any::<prop::sample::Index>()),
+        ) {
+            for (at, byte) in damages {
+                let at = at.index(datagram.len());
+                datagram[at] = byte;
+            }
+            if let Some(cut) = cut {
+                datagram.truncate(cut.index(datagram.len()));
+            }
+            let raw = RawMessage::split(&datagram);
+            let read = raw.and_then(|raw| Some((raw.address, raw.read(&Limits::SENSORS)?)));
+            let is_sound = check(&datagram, &Limits::SENSORS).is_ok();
+            let others = is_sound.then(|| by_rosc(&datagram)).flatten();
+            match (read, others) {
+                (Some((address, (sequence, readings))), others) if address == ADDRESS.as_bytes() => {
+                    let (their_address, their_sequence, theirs) = others.expect("the guard and rosc take it");
+                    prop_assert_eq!(address, their_address.as_bytes());
+                    prop_assert_eq!(sequence, their_sequence);
+                    prop_assert_eq!(format!("{readings:?}"), format!("{theirs:?}"));
+                }
+                // Damaged: no board has such an address.
+                (Some(_), _) => {}
+                (None, others) => prop_assert!(others.is_none(), "{others:?} is left unread"),
+            }
+        }
+    }
+}
