@@ -1,6 +1,6 @@
 //! What packets cost on their way from datagram to frame, and what hostile ones cost.
 //!
-//! `cargo bench --bench decode --no-default-features`
+//! `cargo bench --bench decode --no-default-features --features lab`
 
 #![allow(missing_docs, clippy::unwrap_used)]
 

@@ -1,4 +1,4 @@
-//! What one frame costs: `cargo bench --bench engine --no-default-features`.
+//! What one frame costs: `cargo bench --bench engine --no-default-features --features lab`.
 //!
 //! Also what 500 controls cost against 20, on a floor of 24 x 24 tiles with ten people. Elsewhere
 //! two people walk on the paper's floor with the map layout; frames are recorded first, so that only the engine is

@@ -18,7 +18,11 @@ const LEAST_N: f32 = 0.1;
 /// Which share of what the boards of a ring miss their own tares by they may miss the next one's by (our choice).
 const SHARE: f32 = 0.25;
 
-/// Blocks in a row that must say the same.
+/// Places that a board which misses its own tares is compared with after each block: on a floor where all do, such as a
+/// crowded one, each comparison with all would cost more than everything else (our choice).
+const COMPARED: usize = 8;
+
+/// Times in a row that a board, compared with all places, must seem to be in the same one.
 const AGREEING: u8 = 2;
 
 /// Who has changed places with whom, as far as that is known.
@@ -43,7 +47,15 @@ struct Block {
     is_counts: bool,
     /// The means of the last whole block; NaN for channels that gave nothing.
     means: Vec<f32>,
-    /// The place that it seemed to be in after the last block, if not its own, and for how many blocks in a row.
+    /// By how much it missed its own tares.
+    own: f32,
+    /// How many other places it has been compared with since it was last compared with all.
+    compared: usize,
+    /// The place that fits best among those, and by how much it misses that one's tares.
+    nearest: Option<(f32, u16)>,
+    /// The same, when it was last compared with all.
+    best: Option<(f32, u16)>,
+    /// The place that it seemed to be in then, if not its own, and how many times in a row.
     seen: (Option<u16>, u8),
 }
 
@@ -76,7 +88,10 @@ impl Swaps {
             return;
         }
         block.finish();
-        let place = self.place(number, boards);
+        if !self.compare(number, boards) {
+            return;
+        }
+        let place = self.place(number);
         let (last, times) = self.blocks[number].seen;
         let times = if last == place { times.saturating_add(1) } else { 1 };
         self.blocks[number].seen = (place, times);
@@ -85,27 +100,47 @@ impl Swaps {
         }
     }
 
+    /// Compares what board `number` reads with some more places; whether it has been compared with all that it may be in.
+    fn compare(&mut self, number: usize, boards: &[BoardTrack]) -> bool {
+        let Self { blocks, misses, .. } = self;
+        let block = &mut blocks[number];
+        let mut misfit = |place: usize| boards[place].misfit(&block.means, block.is_counts, misses);
+        block.own = misfit(number).unwrap_or(0.0);
+        if block.own <= LEAST_N {
+            (block.compared, block.nearest, block.best) = (0, None, None);
+            return true;
+        }
+        let others = boards.len() - 1;
+        let until = (block.compared + COMPARED).min(others);
+        for step in block.compared..until {
+            let place = (number + 1 + step) % boards.len();
+            let Some((by, place)) = misfit(place).zip(u16::try_from(place).ok()) else { continue };
+            if block.nearest.is_none_or(|(least, _)| by < least) {
+                block.nearest = Some((by, place));
+            }
+        }
+        block.compared = until;
+        if until < others {
+            return false;
+        }
+        block.compared = 0;
+        block.best = block.nearest.take().filter(|(by, _)| *by < block.own);
+        true
+    }
+
     /// The place that board `number` is in, if it is another one's and the ring closes, which is then in `self.ring`.
-    fn place(&mut self, number: usize, boards: &[BoardTrack]) -> Option<u16> {
-        let Self { blocks, misses, ring, .. } = self;
+    fn place(&mut self, number: usize) -> Option<u16> {
+        let Self { blocks, ring, .. } = self;
         ring.clear();
-        let mut misfit = |reader: usize, place: usize| {
-            let block = &blocks[reader];
-            boards[place].misfit(&block.means, block.is_counts, misses)
-        };
         let (mut apart, mut exchanged) = (0.0, 0.0);
         let mut reader = number;
         // A ring that closes elsewhere has not come back after as many steps as there are boards.
-        for _ in 0..boards.len() {
-            let own = misfit(reader, reader).filter(|own| reader != number || *own > LEAST_N)?;
-            let others = (0..boards.len()).filter(|other| *other != reader);
-            let fits = others.filter_map(|other| misfit(reader, other).map(|by| (by, other)));
-            let (by, place) =
-                fits.min_by(|one, other| one.0.total_cmp(&other.0)).filter(|fit| fit.0 < own)?;
+        for _ in 0..blocks.len() {
+            let (by, place) = blocks[reader].best?;
             ring.push(u16::try_from(reader).ok()?);
-            apart += own;
+            apart += blocks[reader].own;
             exchanged += by;
-            reader = place;
+            reader = usize::from(place);
             if reader == number {
                 return ring.get(1).copied().filter(|_| exchanged < SHARE * apart);
             }
