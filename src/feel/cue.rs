@@ -20,7 +20,7 @@ pub struct Spot {
     pub weight: f32,
 }
 
-/// The tiles that a cue reaches, at most [`MAX_SPOTS`].
+/// The tiles that a cue reaches, at most `MAX_SPOTS`.
 pub type Spots = ArrayVec<Spot, MAX_SPOTS>;
 
 /// What is to be played once: a click, or something that lasts a known time.

@@ -8,7 +8,7 @@
 //!                                                                   +-resonance-> Cue (one event: touch and sound)
 //! ```
 //!
-//! [`Grounds`] is all the ground of one page at work: the engine feeds it each
+//! `Grounds` is all the ground of one page at work: the engine feeds it each
 //! frame. Nothing here reads a clock or the system's randomness: times come
 //! with the frames, chance from the seeds of the layout, so the same walk
 //! gives the same pond, to the bit.

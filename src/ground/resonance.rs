@@ -23,7 +23,7 @@ record! {
     };
     /// Force at the plate of the strongest event.
     pub level: Newtons = "level_n", num(0.0..=200.0);
-    /// Modes that ring together, 1 to [`MAX_MODES`].
+    /// Modes that ring together, 1 to `MAX_MODES`.
     pub modes: u8 = "modes", num(1.0..=MAX_MODES as f64);
     /// Lowest frequency, in hertz; 20 to 1000.
     pub low_hz: f32 = "low_hz", HZ;

@@ -85,7 +85,7 @@ impl Layout {
     /// The position in [`Layout::widgets`] of the control at `point` of the page numbered `page`
     /// (0 without pages); the one drawn last wins.
     ///
-    /// Looks at every control; [`HitIndex`] finds the same one faster.
+    /// Looks at every control; `HitIndex` finds the same one faster.
     #[must_use]
     pub fn widget_at(&self, page: usize, point: Vec2) -> Option<usize> {
         self.widgets.iter().rposition(|widget| widget.is_on(page) && hit::hits(widget, point))

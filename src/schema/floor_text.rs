@@ -44,7 +44,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 9] = [
 /// What is as on [`Floor::of`] its geometry is left out. A list of more than
 /// about 40,000 sensors, or 4,000 mapped tiles, is longer than the 4 MB that are read
 /// back; that and numbers outside of the ranges that files may hold are refused on
-/// reading ([`super::save_floor`] refuses them on writing).
+/// reading (`save_floor` refuses them on writing).
 #[must_use]
 pub fn write_floor(floor: &Floor) -> String {
     let record = FloorRecord::of(floor);

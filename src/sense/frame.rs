@@ -48,7 +48,7 @@ impl ForceFrame {
     /// Adds a point load where it lies, shared by the tile's four sensors as an ideal rigid plate shares it.
     ///
     /// A load beyond the floor, or one that is not finite, adds nothing. For
-    /// apps without hardware and for tests; [`crate::sim`] has plates, feet and
+    /// apps without hardware and for tests; `crate::sim` has plates, feet and
     /// sensors with their faults.
     ///
     /// # Source

@@ -8,11 +8,11 @@
 //!   -cursor-> the contact that operates a region
 //! ```
 //!
-//! [`Sensing`] is the whole chain up to the contacts; [`CursorPicker`] chooses
+//! `Sensing` is the whole chain up to the contacts; `CursorPicker` chooses
 //! among them, one picker per region.
 //!
-//! Calibration comes before all that: [`LoadTable`] and [`Comparison`] give each sensor
-//! its law, [`PressTable`] and [`MapFit`] each tile its position map.
+//! Calibration comes before all that: `LoadTable` and `Comparison` give each sensor
+//! its law, `PressTable` and `MapFit` each tile its position map.
 
 mod assembler;
 #[cfg(any(feature = "internals", test))]

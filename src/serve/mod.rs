@@ -2,7 +2,7 @@
 //!
 //! [`Server`] pulls packets from a source, assembles frames, steps the engine
 //! and hands out what comes of it. Nothing it waits for depends on a window,
-//! a disk or another program. [`take_tare`] and [`ForceWatch`] are for the
+//! a disk or another program. `take_tare` and `ForceWatch` are for the
 //! people who set a floor up.
 
 mod changes;

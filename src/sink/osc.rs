@@ -24,9 +24,9 @@ use crate::wire::{LinkState, Prefix};
 /// Events go out at once, in order. Contacts go out 100 times a second while
 /// there are any, always the latest, and once a second while there are none, also while no
 /// frames come. What is held is repeated 50 times a second, and a sign of life ten times. The
-/// messages are those of [`write_event`], [`write_contacts`], [`write_held`],
-/// [`write_alive`], [`write_crack`], [`write_page`], [`write_health`],
-/// [`write_device`], [`write_mute`] and [`write_control`].
+/// messages are those of `write_event`, `write_contacts`, `write_held`,
+/// `write_alive`, `write_crack`, `write_page`, `write_health`,
+/// `write_device`, `write_mute` and `write_control`.
 #[derive(Debug)]
 pub struct OscSink {
     worker: Worker<Job>,

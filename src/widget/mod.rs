@@ -1,6 +1,6 @@
 //! The behaviours of controls: pure state machines fed with one foot's force and place.
 //!
-//! Each step takes the time and one [`Input`] and gives back what happened.
+//! Each step takes the time and one `Input` and gives back what happened.
 //! Nothing here knows of floors, layouts or feedback. Three layers, the
 //! timeline of each written above it:
 //!

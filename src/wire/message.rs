@@ -43,7 +43,7 @@ pub enum ControlMessage {
     Label {
         /// Which control.
         id: WidgetId,
-        /// At most [`super::MAX_LABEL`] characters, none of which controls a terminal or the direction of writing.
+        /// At most `MAX_LABEL` characters, none of which controls a terminal or the direction of writing.
         text: String,
     },
     /// Switch the lamp.

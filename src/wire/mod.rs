@@ -1,7 +1,7 @@
 //! Datagrams to sensor packets and requests, and how the link is doing: pure, no sockets.
 //!
-//! A datagram is looked through by [`check`] before any decoder sees it, then
-//! read whole or refused whole by [`Decoder`]. [`SensorEncoder`] is the way
+//! A datagram is looked through by `check` before any decoder sees it, then
+//! read whole or refused whole by `Decoder`. `SensorEncoder` is the way
 //! back, for simulated boards.
 
 mod argument;
