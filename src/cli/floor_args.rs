@@ -49,6 +49,44 @@ pub(crate) fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, Failure> {
     Ok(saved)
 }
 
+/// A floor file that will be written at the end of some work, and what it holds at its beginning.
+#[derive(Debug)]
+pub(crate) struct FloorOut<'p> {
+    path: &'p Path,
+    /// `None` if there is no such file, or it can't be read.
+    held: Option<String>,
+}
+
+impl<'p> FloorOut<'p> {
+    /// Looks at what `path` holds; to be called before the work begins.
+    pub(crate) fn new(path: &'p Path) -> Self {
+        Self { path, held: held(path) }
+    }
+
+    /// Which file it is.
+    pub(crate) const fn path(&self) -> &'p Path {
+        self.path
+    }
+
+    /// As [`save_floor`], if nobody else has changed the file meanwhile.
+    pub(crate) fn save(&self, floor: &Floor) -> Result<Saved, Failure> {
+        if held(self.path) != self.held {
+            return Err(Failure::Other(format!(
+                "{} was changed by another program meanwhile, so it is left as it is now: look at it, and do this again",
+                self.path.display()
+            )));
+        }
+        save_floor(floor, self.path)
+    }
+}
+
+/// More than any floor file has.
+const MOST_BYTES: u64 = 64 << 20;
+
+fn held(path: &Path) -> Option<String> {
+    schema::read_bounded(path, MOST_BYTES).ok()
+}
+
 /// Where a floor was kept, for programs.
 pub(crate) fn saved_json(path: &Path, saved: &Saved) -> serde_json::Value {
     let backup = match saved {

@@ -13,7 +13,7 @@ use underfoot::wire::{Readings, SensorPacket};
 
 use super::doors::BoardArgs;
 use super::failure::Failure;
-use super::floor_args::{FloorArgs, save_floor};
+use super::floor_args::{FloorArgs, FloorOut};
 use super::number::patience;
 use super::stop::stop_flag;
 
@@ -50,6 +50,7 @@ const REST: u32 = 300;
 
 /// Walks from board to board.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let out = args.out.as_deref().map(FloorOut::new);
     let floor = args.floor.load()?;
     let source = args.boards.bind(args.listen, &floor)?;
     let mut walk = Walk { stop: stop_flag()?, wait: args.wait, source, feet: Feet::new(&floor) };
@@ -75,11 +76,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         places.push(found);
         walk.until("the floor to be empty again", Feet::is_empty)?;
     }
-    conclude(args, floor, &places)
+    conclude(out.as_ref(), floor, &places)
 }
 
 /// Says what was found, and keeps it if that is wanted.
-fn conclude(args: &Args, mut floor: Floor, places: &[usize]) -> Result<(), Failure> {
+fn conclude(out: Option<&FloorOut<'_>>, mut floor: Floor, places: &[usize]) -> Result<(), Failure> {
     let mut seen = places.to_vec();
     seen.sort_unstable();
     seen.dedup();
@@ -95,8 +96,8 @@ fn conclude(args: &Args, mut floor: Floor, places: &[usize]) -> Result<(), Failu
         outln!("  {} is where {} should be.", addresses[**found], addresses[*place]);
         floor.boards[*place].address.clone_from(&addresses[**found]);
     }
-    match &args.out {
-        Some(path) => save_floor(&floor, path).map(|_| ()),
+    match out {
+        Some(out) => out.save(&floor).map(|_| ()),
         None if moved.is_empty() => Ok(()),
         None => {
             errln!(

@@ -1,9 +1,10 @@
 //! `underfoot calibrate` and `measure` with real files and packets.
 
 use std::fs;
+use std::io::{BufRead, BufReader, Read};
 use std::net::{SocketAddr, UdpSocket};
 use std::path::Path;
-use std::process::{Command, Output};
+use std::process::{Command, Output, Stdio};
 
 use crate::sender::{ANY_PORT, Sender, simulated, small_floor, standing};
 use underfoot::floor::{Calibration, Floor, TileId};
@@ -213,6 +214,37 @@ fn tare_and_measure_take_packets_from_a_floor() {
     let answer: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
     assert!(answer["tiles"][1]["force"]["median_n"].as_f64().unwrap() > 150.0, "{answer}");
     assert!(answer["tiles"][3]["sensors"]["nw"]["greatest_n"].as_f64().unwrap() < 1.0, "{answer}");
+}
+
+/// Somebody saves the floor file in an editor while `underfoot` waits for packets to take the tare from.
+// F8
+#[test]
+fn a_floor_file_that_another_program_changed_meanwhile_is_left_to_it() {
+    let (folder, _) = site();
+    let path = folder.path().join("floor.ron");
+    let floor = small_floor();
+    let port = free_port();
+    let listen = port.to_string();
+    let mut tare = Command::new(env!("CARGO_BIN_EXE_underfoot"))
+        .args(["calibrate", "tare", "--floor", "floor.ron", "--listen", &listen, "--seconds", "20"])
+        .current_dir(folder.path())
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let mut said = BufReader::new(tare.stderr.take().unwrap());
+    let mut lines = String::new();
+    said.read_line(&mut lines).unwrap();
+    assert!(lines.starts_with("Listening on"), "{lines}");
+    let others = format!("// Written by somebody else.\n{}", std::fs::read_to_string(&path).unwrap());
+    std::fs::write(&path, &others).unwrap();
+    let _sender = Sender::start(&floor, simulated(&floor), port, |sim, _| {
+        sim.step(&[]);
+    });
+    said.read_to_string(&mut lines).unwrap();
+    assert_eq!(tare.wait().unwrap().code(), Some(1), "{lines}");
+    assert!(lines.contains("floor.ron was changed by another program meanwhile"), "{lines}");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), others);
 }
 
 #[test]

@@ -9,7 +9,7 @@ use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoa
 
 use super::{count, plot, read_table, rounded, today};
 use crate::cli::failure::Failure;
-use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
+use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
 
 /// What `underfoot calibrate curves` is asked to do.
 ///
@@ -50,6 +50,7 @@ const PLOT_PX: u32 = 1800;
 
 /// Fits, reports, keeps.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
     let text = read_table(&args.table)?;
     let name = args.table.display();
@@ -67,8 +68,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let scene = plot::draw(&judged);
         picture::write(&scene, path, PLOT_PX)?;
     }
-    let saved = match args.out.as_ref().or(args.floor.floor.as_ref()) {
-        Some(path) => Some((path, save_floor(&floor, path)?)),
+    let saved = match &out {
+        Some(out) => Some((out.path(), out.save(&floor)?)),
         None => None,
     };
     if args.json {

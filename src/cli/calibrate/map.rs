@@ -8,7 +8,7 @@ use underfoot::sense::{Errors, MapError, MapFit, PressTable};
 
 use super::{count, read_table, rounded, today};
 use crate::cli::failure::Failure;
-use crate::cli::floor_args::{FloorArgs, save_floor, saved_json};
+use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
 
 /// What `underfoot calibrate map` is asked to do.
 ///
@@ -33,6 +33,7 @@ pub(crate) struct Args {
 
 /// Fits, reports, keeps.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
     let text = read_table(&args.table)?;
     let name = args.table.display();
@@ -44,8 +45,8 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     }
     let fits: Vec<_> = table.tiles.iter().map(|points| (points.tile, points.fit(&floor))).collect();
     keep(&mut floor, &fits);
-    let saved = match args.out.as_ref().or(args.floor.floor.as_ref()) {
-        Some(path) => Some((path, save_floor(&floor, path)?)),
+    let saved = match &out {
+        Some(out) => Some((out.path(), out.save(&floor)?)),
         None => None,
     };
     if args.json {

@@ -11,7 +11,7 @@ use underfoot::serve::{TareFailure, take_tare};
 use super::today;
 use crate::cli::doors::BoardArgs;
 use crate::cli::failure::Failure;
-use crate::cli::floor_args::{save_floor, saved_json};
+use crate::cli::floor_args::{FloorOut, saved_json};
 use crate::cli::number::patience;
 
 /// What `underfoot calibrate tare` is asked to do.
@@ -42,6 +42,7 @@ pub(crate) struct Args {
 
 /// Takes the tare and keeps it, or says why not.
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
+    let out = FloorOut::new(&args.floor);
     let mut floor = schema::load_floor(&args.floor)?;
     let mut source = args.boards.bind(args.listen, &floor)?;
     errln!("Listening on {}; keep off the floor.", args.listen);
@@ -53,7 +54,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
             },
         )?;
     floor.tared = Some(today());
-    let saved = save_floor(&floor, &args.floor)?;
+    let saved = out.save(&floor)?;
     let weights = floor.tare.iter().map(|tare| tare.iter().map(|tare| tare.0).sum::<f32>());
     let (least, most) = weights.fold((f32::INFINITY, f32::NEG_INFINITY), |(l, m), w| (l.min(w), m.max(w)));
     if args.json {
