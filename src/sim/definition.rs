@@ -7,7 +7,9 @@ use glam::Vec2;
 
 use super::Person;
 use crate::floor::Rect;
-use crate::format::{Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choices, list, num, record};
+use crate::format::codec::By;
+use crate::format::describe::FieldType;
+use crate::format::{Codec, Name, Named, Num, OneOf, Opt, Pair, Rec, Text, choices, list, num, record};
 use crate::units::Newtons;
 
 record! {
@@ -64,7 +66,7 @@ choices! {
     Press(Press),
     /// As Press, for a moment.
     Tap(Tap),
-    /// Presses a slider and moves along its track.
+    /// Presses a slider, dial or pad, or the free floor, and slides along it.
     Drag(Drag),
     /// As Press, on a bare place.
     Point(Point),
@@ -145,14 +147,15 @@ record! {
 }
 
 record! {
-    /// Moves a slider.
+    /// Moves a slider, dial or pad, or slides over free floor.
     pub(super) struct Drag = "Drag";
-    /// Its id.
-    pub(super) widget: String = "widget", Text(64);
-    /// Where the foot is put down, as a share of the track.
-    pub(super) from: f32 = "from", num(0.0..=1.0);
-    /// Where it lets go, as a share of the track.
-    pub(super) to: f32 = "to", num(0.0..=1.0);
+    /// Its id; over free floor, none is written.
+    pub(super) widget: Option<String> = "widget", Opt(Text(64)) => None;
+    /// Where the foot is put down: as a share of a slider's track or of a dial's range, as shares of a pad's width and
+    /// depth, on free floor in tiles.
+    pub(super) from: End = "from", END;
+    /// Where it lets go, likewise.
+    pub(super) to: End = "to", END;
     /// How fast it goes.
     pub(super) speed_m_s: f32 = "speed_m_s", num(0.01..=2.0) => 0.3;
     /// How hard it presses.
@@ -188,6 +191,31 @@ const MOST_FAULTS: usize = 32;
 
 /// That places are on the floor is checked where the floor is known.
 const PLACE: Pair = Pair { each: num(-1e4..=1e4), pattern: "(east, north)", parts: ["east", "north"] };
+
+/// Where a foot that drags is put down or lets go.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum End {
+    /// Along a track or a range.
+    Share(f32),
+    /// Eastwards and northwards: shares of a pad, tiles of the floor.
+    Place(Vec2),
+}
+
+/// What a share may be is known where the control is.
+const END: By<End> = By {
+    shape: || FieldType::Words("a number from 0 to 1, or (east, north)"),
+    read: |node| match node.peek_number() {
+        Some(_) => SHARE.read(node, None).map(End::Share),
+        None => PLACE.read(node, None).map(End::Place),
+    },
+    write: |end: &End| match end {
+        End::Share(share) => SHARE.write(share),
+        End::Place(place) => PLACE.write(place),
+    },
+    stand_in: || End::Share(0.0),
+};
+
+const SHARE: Num = num(0.0..=1.0);
 
 const FORCE: Num = num(0.0..=3000.0);
 

@@ -8,6 +8,7 @@ use super::curve::Curve;
 use super::gait::Gait;
 use super::person::{MoveError, PRESS_ROLL, Person, SIDES, Standing};
 use super::rolling::{Rolling, RollingHabit};
+use super::slide::Slide;
 use super::sway::Sway;
 use super::track::{Pose, Profile, Track, forward, turn_between};
 use super::way::{Way, bend};
@@ -190,37 +191,38 @@ impl Performance {
     /// # Errors
     /// [`MoveError`]: nobody there, out of reach, on the other foot, heavier than the body, or not finite.
     pub fn press(&mut self, target: Vec2, force: Newtons, hold: Duration) -> Result<(), MoveError> {
-        self.press_along(target, target, force, hold, 0.0)
+        self.press_along(Slide::Line { from: target, to: target }, force, hold, 0.0)
     }
 
-    /// Presses on `from`, slides to `to` at `speed_m_s` under the same force, and lets go there.
+    /// Presses where `way` begins, slides along it at `speed_m_s` under the same force, and lets go at its end.
+    ///
+    /// The shoe points where it pointed, however the way bends.
     ///
     /// # Errors
     /// As [`Performance::press`].
-    pub fn drag(&mut self, from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons) -> Result<(), MoveError> {
-        self.press_along(from, to, force, Duration::from_millis(150), speed_m_s.max(0.01))
+    pub fn drag(&mut self, way: Slide, speed_m_s: f32, force: Newtons) -> Result<(), MoveError> {
+        self.press_along(way, force, Duration::from_millis(150), speed_m_s.max(0.01))
     }
 
     fn press_along(
         &mut self,
-        from: Vec2,
-        to: Vec2,
+        way: Slide,
         force: Newtons,
         hold: Duration,
         speed_m_s: f32,
     ) -> Result<(), MoveError> {
-        must_be_finite(from.is_finite() && to.is_finite() && force.is_finite() && speed_m_s.is_finite())?;
+        must_be_finite(way.is_finite() && force.is_finite() && speed_m_s.is_finite())?;
         let standing = self.standing.ok_or(MoveError::NotThere)?;
         let weight = self.person.weight();
         if force > weight {
             return Err(MoveError::TooHeavy { force_n: force.0, weight_n: weight.0 });
         }
-        let nearer = standing.nearer_foot((from + to) * 0.5);
-        let reached = self.reach(&standing, nearer, from, to);
+        let nearer = standing.nearer_foot(way.at(0.5));
+        let reached = self.reach(&standing, nearer, way);
         let (side, [start, end]) = match reached {
             Ok(poses) => (nearer, poses),
             // The other foot may do; if not, the nearer one's trouble is the one to tell.
-            Err(trouble) => (1 - nearer, self.reach(&standing, 1 - nearer, from, to).map_err(|_| trouble)?),
+            Err(trouble) => (1 - nearer, self.reach(&standing, 1 - nearer, way).map_err(|_| trouble)?),
         };
         let home = standing.feet[side];
 
@@ -229,7 +231,8 @@ impl Performance {
         let share = (force / weight).max(0.0);
         // Heavier presses take longer to build up.
         let rise_s = (0.06 + 0.0003 * f64::from(force.0)).min(0.12);
-        let slide_s = if from == to { 0.0 } else { f64::from(from.distance(to) / speed_m_s) + RAMP_S };
+        let is_still = way.length() == 0.0;
+        let slide_s = if is_still { 0.0 } else { f64::from(way.length() / speed_m_s) + RAMP_S };
         let out_s = swing_time(home, start);
 
         self.shift_weight(side, 0.5, 0.0);
@@ -238,14 +241,15 @@ impl Performance {
         let pressed = touch + rise_s;
         let slide = pressed + hold.as_secs_f64();
         let slid = slide + slide_s;
-        let let_go = if from == to { slid } else { slid + hold.as_secs_f64() };
+        let let_go = if is_still { slid } else { slid + hold.as_secs_f64() };
         let off = let_go + 0.08;
         let back = off + swing_time(end, home);
 
         let foot = &mut self.tracks[side];
         foot.go(lifted, touch, start, Profile::Swing);
-        if from != to {
-            foot.go(slide, slid, end, Profile::Steady { ramp_s: RAMP_S as f32 });
+        if !is_still {
+            let way = way.shifted(start.position - way.at(0.0));
+            foot.slide(slide, slid, way, Profile::Steady { ramp_s: RAMP_S as f32 });
         }
         foot.go(off, back, home, Profile::Swing);
         foot.roll.rest(lifted, STAND_ROLL);
@@ -267,13 +271,13 @@ impl Performance {
     }
 
     /// The shoe's poses at both ends of a press of one foot, if it can go there and all the way between.
-    fn reach(&self, standing: &Standing, side: usize, from: Vec2, to: Vec2) -> Result<[Pose; 2], MoveError> {
+    fn reach(&self, standing: &Standing, side: usize, way: Slide) -> Result<[Pose; 2], MoveError> {
         let (home, stance) = (standing.feet[side], standing.feet[1 - side]);
         let pose = |target| self.person.pose_pressing(target, home.heading);
-        for part in 0..=8 {
-            self.person.can_put(pose(from.lerp(to, part as f32 / 8.0)), stance)?;
+        for part in 0..=WAY_PARTS {
+            self.person.can_put(pose(way.at(part as f32 / WAY_PARTS as f32)), stance)?;
         }
-        Ok([pose(from), pose(to)])
+        Ok([pose(way.at(0.0)), pose(way.at(1.0))])
     }
 
     /// Walks along a way without sharp bends.
@@ -478,6 +482,9 @@ const REPLANT_S: f64 = 0.3;
 
 /// Longest small step aside, in metres.
 const ASIDE_STEP_M: f32 = 0.3;
+
+/// How many parts of a drag's way are looked at: five in a turn of a dial's ten.
+const WAY_PARTS: u16 = 50;
 
 /// Seconds in which a drag reaches its speed.
 const RAMP_S: f64 = 0.1;

@@ -1,5 +1,6 @@
 //! Scenarios: files that say what people do on a floor, tied to a layout and played.
 
+mod dragging;
 #[cfg(test)]
 mod tests;
 
@@ -12,6 +13,7 @@ use super::definition::{MOST_OTHERS, MOST_STEPS, PersonRecord, ScenarioRecord, S
 use super::performance::Performance;
 use super::person::MoveError;
 use super::script::Script;
+use super::slide::Slide;
 use crate::floor::{Geometry, Rect};
 use crate::format::describe::Description;
 use crate::format::diagnostic::Diagnostics;
@@ -24,7 +26,6 @@ use crate::format::suggest::did_you_mean;
 use crate::format::{Record, Variants};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
-use crate::widget::Behaviour;
 
 /// A scenario file, read and its numbers checked, not yet tied to a layout.
 ///
@@ -42,8 +43,11 @@ use crate::widget::Behaviour;
 ///         // The ball of the nearer foot on the middle of the control. 120 N and 300 ms may be left out.
 ///         Press(widget: "zoom_in", force_n: 120, hold_ms: 300),
 ///         Tap(widget: "layers", force_n: 120),
-///         // Along the slider's axis, in shares of its travel. 0.3 m/s and 80 N may be left out.
+///         // Along a slider's track or round a dial, in shares of its range; over a pad, in shares of its width and
+///         // depth, such as (0.5, 0.5). 0.3 m/s and 80 N may be left out.
 ///         Drag(widget: "zoom", from: 0.2, to: 0.8, speed_m_s: 0.3, force_n: 80),
+///         // Without a control: from place to place on the free floor.
+///         Drag(from: (2.2, 2.0), to: (2.4, 2.2)),
 ///         // As Press, on a bare place.
 ///         Point(at: (2.0, 3.0), force_n: 120, hold_ms: 300),
 ///         // By small steps, looking where one looked before.
@@ -228,18 +232,7 @@ impl Stage<'_> {
             Step::Press(step) => Ready::Press(middle(&step.widget)?, step.force, step.hold),
             Step::Tap(step) => Ready::Press(middle(&step.widget)?, step.force, TAP),
             Step::Point(step) => Ready::Press(place(step.at)?, step.force, step.hold),
-            Step::Drag(step) => {
-                let widget = self.widget(&step.widget, written)?;
-                let Behaviour::Slider(slider) = &widget.behaviour else {
-                    let message = format!("Drag needs a slider, and \"{}\" is a {}", widget.id, widget.kind);
-                    written.wrong("widget", message, None);
-                    return None;
-                };
-                let size = widget.area.size();
-                let at = |share: f32| widget.area.min + slider.track.place_at(share, size) * size;
-                let (from, to) = (at(step.from), at(step.to));
-                Ready::Drag { from, to, speed_m_s: step.speed_m_s, force: step.force }
-            }
+            Step::Drag(step) => Ready::Drag(self.way(step, written)?, step.speed_m_s, step.force),
             Step::Leave(step) => Ready::Leave(step.to),
         })
     }
@@ -263,7 +256,7 @@ impl Stage<'_> {
             Ready::Sidestep(at) => performance.sidestep(at),
             Ready::Turn(facing) => performance.turn(facing),
             Ready::Press(target, force, hold) => performance.press(target, force, hold),
-            Ready::Drag { from, to, speed_m_s, force } => performance.drag(from, to, speed_m_s, force),
+            Ready::Drag(way, speed_m_s, force) => performance.drag(way, speed_m_s, force),
             Ready::Leave(to) => {
                 let from = performance.place().ok_or(MoveError::NotThere)?;
                 performance.walk(&[to.outside(self.bounds, from, BESIDE_M)])?;
@@ -305,6 +298,6 @@ enum Ready {
     Sidestep(Vec2),
     Turn(f32),
     Press(Vec2, Newtons, Duration),
-    Drag { from: Vec2, to: Vec2, speed_m_s: f32, force: Newtons },
+    Drag(Slide, f32, Newtons),
     Leave(Side),
 }

@@ -121,7 +121,7 @@ mod tests {
 
     use super::*;
     use crate::floor::Geometry;
-    use crate::sim::{MoveError, Person};
+    use crate::sim::{MoveError, Person, Slide};
     use crate::units::Newtons;
 
     const EAST: f32 = -0.5 * PI;
@@ -300,7 +300,7 @@ mod tests {
     fn a_drag_slides_at_its_speed_under_its_force() {
         let (from, to) = (Vec2::new(0.8, 1.3), Vec2::new(1.1, 1.3));
         let mut person = standing_at(0.95, 0.95, 0.0);
-        person.drag(from, to, 0.3, Newtons(80.0)).unwrap();
+        person.drag(Slide::Line { from, to }, 0.3, Newtons(80.0)).unwrap();
         let frames = play(person);
         let held: Vec<_> = frames
             .iter()

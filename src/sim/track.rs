@@ -6,6 +6,7 @@ use glam::Vec2;
 
 use super::curve::Curve;
 use super::rolling::Rolling;
+use super::slide::Slide;
 
 /// Where a shoe is and where its toes point (radians counter-clockwise from north).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -34,6 +35,17 @@ pub(super) fn forward(heading: f32) -> Vec2 {
     Vec2::from_angle(heading).rotate(Vec2::Y)
 }
 
+/// The way of a move from where the foot is to where it goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Path {
+    Straight,
+    /// By so many radians counter-clockwise round a centre, without turning.
+    Round {
+        centre: Vec2,
+        sweep: f32,
+    },
+}
+
 /// How a move spends its time.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Profile {
@@ -49,6 +61,7 @@ struct Move {
     end_s: f64,
     from: Pose,
     to: Pose,
+    path: Path,
     profile: Profile,
 }
 
@@ -69,13 +82,25 @@ pub(super) struct Track {
 impl Track {
     /// Puts the foot somewhere at once.
     pub(super) fn put(&mut self, at_s: f64, pose: Pose) {
-        self.moves.push(Move { start_s: at_s, end_s: at_s, from: pose, to: pose, profile: Profile::Swing });
+        let (path, profile) = (Path::Straight, Profile::Swing);
+        self.moves.push(Move { start_s: at_s, end_s: at_s, from: pose, to: pose, path, profile });
     }
 
     /// Moves the foot from wherever it then is; moves come in order and don't overlap.
     pub(super) fn go(&mut self, start_s: f64, end_s: f64, to: Pose, profile: Profile) {
         let from = self.moves.last().map_or(to, |last| last.to);
-        self.moves.push(Move { start_s, end_s, from, to, profile });
+        self.moves.push(Move { start_s, end_s, from, to, path: Path::Straight, profile });
+    }
+
+    /// Slides the foot from where it then is along `way`, which begins there, without turning.
+    pub(super) fn slide(&mut self, start_s: f64, end_s: f64, way: Slide, profile: Profile) {
+        let from = self.moves.last().map_or(Pose::default(), |last| last.to);
+        let to = Pose { position: way.at(1.0), ..from };
+        let path = match way {
+            Slide::Line { .. } => Path::Straight,
+            Slide::Arc { centre, sweep, .. } => Path::Round { centre, sweep },
+        };
+        self.moves.push(Move { start_s, end_s, from, to, path, profile });
     }
 
     /// The step that it is in, or was in last.
@@ -115,7 +140,13 @@ impl Move {
                 }
             }
         };
-        self.from.towards(self.to, share)
+        match self.path {
+            Path::Straight => self.from.towards(self.to, share),
+            Path::Round { centre, sweep } => {
+                let spoke = self.from.position - centre;
+                Pose { position: centre + Vec2::from_angle(sweep * share).rotate(spoke), ..self.from }
+            }
+        }
     }
 }
 

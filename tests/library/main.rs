@@ -15,6 +15,7 @@ mod support;
 mod accuracy;
 mod calibrate;
 mod controls;
+mod dragging;
 mod examples;
 mod fault_table;
 mod faults;

@@ -5,7 +5,9 @@ use crate::feel::Feel;
 use crate::layout::{Colour, CursorRule, Look, Region, Shape};
 use crate::sim::{Foot, FootDriver};
 use crate::units::Instant;
-use crate::widget::{ButtonSpec, Scale, SliderSpec, Thresholds, WidgetId};
+use crate::widget::{
+    Behaviour, ButtonSpec, DialSpec, PadSpec, Scale, SliderSpec, Thresholds, Track, WidgetId,
+};
 
 fn layout() -> Layout {
     let thresholds = Thresholds::new(Newtons(40.0), Newtons(30.0));
@@ -127,6 +129,64 @@ fn presses_and_drags_meet_their_controls() {
     assert!(held(70.0)[0].centre_of_pressure().distance(Vec2::splat(2.0 * 0.304)) < 1e-4);
 }
 
+#[test]
+fn drags_follow_the_geometry_of_what_they_drag() {
+    let thresholds = Thresholds::new(Newtons(40.0), Newtons(30.0));
+    let mut layout = layout();
+    let ways = |layout: &Layout, steps: &str| -> Vec<Vec2> {
+        let steps = format!("Stand(at: (3.0, 0.8)), {steps}");
+        let mut script = parse(&steps).unwrap().resolve(layout, &Geometry::default()).unwrap();
+        let frames = play(&mut script);
+        let working = |feet: &Vec<Foot>| feet.iter().find(|foot| (foot.force.0 - 80.0).abs() < 0.01).copied();
+        frames.iter().filter_map(working).map(|foot| foot.centre_of_pressure()).collect()
+    };
+    let ends = |way: &[Vec2]| [*way.first().unwrap(), *way.last().unwrap()];
+    let [from, to] = ends(&ways(&layout, "Drag(from: (2.0, 2.0), to: (2.4, 2.2))"));
+    assert!(from.distance(Vec2::splat(2.0 * 0.304)) < 1e-4, "{from}");
+    assert!(to.distance(Vec2::new(2.4, 2.2) * 0.304) < 1e-4, "{to}");
+
+    let at = layout.widget_index("zoom").unwrap();
+    layout.widgets[at].area = Rect::from_min_size(Vec2::new(0.7, 0.6), Vec2::splat(0.4));
+    let area = layout.widgets[at].area;
+    layout.widgets[at].behaviour = Behaviour::Pad(PadSpec::new(thresholds, Scale::UNIT, Scale::UNIT));
+    let [from, to] = ends(&ways(&layout, "Drag(widget: \"zoom\", from: (0.5, 0.5), to: (0.2, 0.8))"));
+    assert!(from.distance(area.centre()) < 1e-4, "{from}");
+    assert!(to.distance(area.min + Vec2::new(0.2, 0.8) * 0.4) < 1e-4, "{to}");
+
+    let (scale, initial) = (Scale::UNIT, 0.0);
+    layout.widgets[at].behaviour =
+        Behaviour::Dial(DialSpec { thresholds, scale, turn_degrees: 360.0, initial });
+    let way = ways(&layout, "Drag(widget: \"zoom\", from: 0.25, to: 1.0)");
+    let spokes: Vec<Vec2> = way.iter().map(|at| *at - area.centre()).collect();
+    assert!(spokes.iter().all(|spoke| (spoke.length() - 0.12).abs() < 1e-4));
+    assert!(spokes[0].distance(Vec2::new(-0.12, 0.0)) < 1e-4, "a quarter of the turn from the south is west");
+    let turned: f32 = spokes.windows(2).map(|pair| pair[0].angle_to(pair[1])).sum();
+    assert!((turned + 1.5 * std::f32::consts::PI).abs() < 0.02, "clockwise: {turned}");
+
+    let track = Track::Arc { from_degrees: 180.0, to_degrees: 0.0 };
+    layout.widgets[at].behaviour =
+        Behaviour::Slider(SliderSpec { track, ..SliderSpec::new(thresholds, scale) });
+    let way = ways(&layout, "Drag(widget: \"zoom\", from: 0.0, to: 1.0)");
+    let share = |at: Vec2| track.share_at((at - area.min) / area.size(), area.size()).unwrap();
+    assert!(share(way[0]) < 1e-3 && share(way[way.len() - 1]) > 0.999);
+    let highest = way.iter().map(|at| at.y).fold(f32::MIN, f32::max);
+    assert!(highest > way[0].y + 0.1, "over the top of the arc, not across");
+}
+
+#[test]
+fn ends_of_drags_that_do_not_fit_are_told_with_what_would() {
+    let told = |drag: &str| messages(&format!("Stand(at: (3.0, 0.6)),\nDrag({drag})"));
+    let slider = told("widget: \"zoom\", from: (0.2, 0.2), to: 0.2");
+    assert!(slider.contains("`from` is a share of \"zoom\", which is a slider: write 0.5"), "{slider}");
+    assert!(slider.contains("test.ron:3:28"), "{slider}");
+    let floor = told("from: 0.2, to: (9, 1)");
+    assert!(floor.contains("`from` is a place in tiles, as Drag has no `widget`: write (2.5, 3)"), "{floor}");
+    let floor = told("from: (2, 2), to: (9, 1)");
+    assert!(floor.contains("(9, 1) is not on this floor of 6 x 6 tiles"), "{floor}");
+    let share = told("widget: \"zoom\", from: 0.2, to: 1.2");
+    assert!(share.contains("expected 0 to 1, found 1.2"), "{share}");
+}
+
 fn messages(steps: &str) -> String {
     match parse(steps).and_then(|scenario| scenario.resolve(&layout(), &Geometry::default())) {
         Err(error) => error.to_string(),
@@ -148,7 +208,7 @@ fn mistakes_are_told_with_their_places_and_all_at_once() {
       |                 ^^^^^^^^
       = help: did you mean "zoom_in"?
 
-    error: Drag needs a slider, and "layers" is a button
+    error: Drag needs a slider, a dial or a pad, and "layers" is a button
      --> test.ron:4:14
       |
     4 | Drag(widget: "layers", from: 0.1, to: 0.9),

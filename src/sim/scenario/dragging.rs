@@ -1,0 +1,102 @@
+//! The way that a foot drags: along the geometry of a control, or over free floor.
+
+use glam::Vec2;
+
+use super::{Stage, Written};
+use crate::floor::Rect;
+use crate::sim::definition::{Drag, End};
+use crate::sim::slide::Slide;
+use crate::widget::{Behaviour, DialSpec, Track};
+
+/// How far from a dial's middle a foot goes round it, in halves of its smaller side: well off the hub, well inside.
+const ROUND: f32 = 0.6;
+
+impl Stage<'_> {
+    /// The way of a drag, in floor metres; `None` after it has reported what can't be dragged so.
+    pub(super) fn way(&self, step: &Drag, written: Written<'_>) -> Option<Slide> {
+        let Some(id) = &step.widget else {
+            let ends =
+                self.ends(step, written, places, "is a place in tiles, as Drag has no `widget`", "(2.5, 3)");
+            let [from, to] =
+                ends?.map(|(field, tiles)| self.place(tiles, written.step.peek(written.name, field)?));
+            return Some(Slide::Line { from: from?, to: to? });
+        };
+        let widget = self.widget(id, written)?;
+        let (id, area) = (&widget.id, widget.area);
+        match &widget.behaviour {
+            Behaviour::Slider(spec) => {
+                let what = format!("is a share of \"{id}\", which is a slider");
+                let [from, to] = self.ends(step, written, shares, &what, "0.5")?.map(|(_, share)| share);
+                Some(along(spec.track, area, from, to))
+            }
+            Behaviour::Dial(spec) => {
+                let what = format!("is a share of \"{id}\", which is a dial");
+                let [from, to] = self.ends(step, written, shares, &what, "0.5")?.map(|(_, share)| share);
+                Some(round(spec, area, from, to))
+            }
+            Behaviour::Pad(_) => {
+                let what = format!("is a place on \"{id}\", which is a pad");
+                let pad = Rect::new(Vec2::ZERO, Vec2::ONE);
+                let on_pad = |end| places(end).filter(|at| pad.contains(*at));
+                let ends = self.ends(step, written, on_pad, &what, "(0.5, 0.5), each 0 to 1")?;
+                let [from, to] = ends.map(|(_, shares)| area.min + shares * area.size());
+                Some(Slide::Line { from, to })
+            }
+            _ => {
+                let kind = &widget.kind;
+                let message = format!("Drag needs a slider, a dial or a pad, and \"{id}\" is a {kind}");
+                written.wrong("widget", message, None);
+                None
+            }
+        }
+    }
+
+    /// Both ends with their fields' names as `read` has them; `None` after it has reported those that it has not.
+    fn ends<T>(
+        &self,
+        step: &Drag,
+        written: Written<'_>,
+        read: impl Fn(End) -> Option<T>,
+        what: &str,
+        example: &str,
+    ) -> Option<[(&'static str, T); 2]> {
+        let [from, to] = [("from", step.from), ("to", step.to)].map(|(field, end)| {
+            let end = read(end);
+            if end.is_none() {
+                written.wrong(field, format!("`{field}` {what}: write {example}"), None);
+            }
+            Some((field, end?))
+        });
+        Some([from?, to?])
+    }
+}
+
+fn shares(end: End) -> Option<f32> {
+    if let End::Share(share) = end { Some(share) } else { None }
+}
+
+fn places(end: End) -> Option<Vec2> {
+    if let End::Place(place) = end { Some(place) } else { None }
+}
+
+/// Along the track of a slider.
+fn along(track: Track, area: Rect, from: f32, to: f32) -> Slide {
+    let size = area.size();
+    let at = |share: f32| area.min + track.place_at(share, size) * size;
+    match (track, track.circle(size)) {
+        (Track::Arc { from_degrees, to_degrees }, Some((centre, _))) => {
+            let sweep = (to_degrees - from_degrees).to_radians() * (to - from);
+            Slide::Arc { from: at(from), centre: area.centre() + centre, sweep }
+        }
+        _ => Slide::Line { from: at(from), to: at(to) },
+    }
+}
+
+/// Round a dial, from where its needle is at the share `from`: clockwise to more.
+fn round(spec: &DialSpec, area: Rect, from: f32, to: f32) -> Slide {
+    let turn = spec.turn_degrees.to_radians();
+    let angle = std::f32::consts::FRAC_PI_2 + turn * (0.5 - from);
+    let radius = ROUND * 0.5 * area.size().min_element();
+    let centre = area.centre();
+    Slide::Arc { from: centre + Vec2::from_angle(angle) * radius, centre, sweep: turn * (from - to) }
+}

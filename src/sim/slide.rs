@@ -1,0 +1,83 @@
+//! The way of a foot that slides over the floor under load.
+
+use glam::Vec2;
+
+/// The way of a foot that slides over the floor, in floor metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Slide {
+    /// Straight from one place to another.
+    Line {
+        /// Where it is put down.
+        from: Vec2,
+        /// Where it lets go.
+        to: Vec2,
+    },
+    /// Round a centre.
+    Arc {
+        /// Where it is put down.
+        from: Vec2,
+        /// What it goes round.
+        centre: Vec2,
+        /// How far, in radians counter-clockwise; may be several turns.
+        sweep: f32,
+    },
+}
+
+impl Slide {
+    /// Where the foot is a share (0 to 1) of the way along.
+    #[must_use]
+    pub fn at(self, share: f32) -> Vec2 {
+        match self {
+            Self::Line { from, to } => from.lerp(to, share),
+            Self::Arc { from, centre, sweep } => {
+                centre + Vec2::from_angle(sweep * share).rotate(from - centre)
+            }
+        }
+    }
+
+    /// How far it is, in metres.
+    #[must_use]
+    pub fn length(self) -> f32 {
+        match self {
+            Self::Line { from, to } => from.distance(to),
+            Self::Arc { from, centre, sweep } => from.distance(centre) * sweep.abs(),
+        }
+    }
+
+    /// Whether all of its numbers are finite.
+    pub(super) fn is_finite(self) -> bool {
+        match self {
+            Self::Line { from, to } => from.is_finite() && to.is_finite(),
+            Self::Arc { from, centre, sweep } => from.is_finite() && centre.is_finite() && sweep.is_finite(),
+        }
+    }
+
+    /// The same way `by` metres beside it.
+    pub(super) fn shifted(self, by: Vec2) -> Self {
+        match self {
+            Self::Line { from, to } => Self::Line { from: from + by, to: to + by },
+            Self::Arc { from, centre, sweep } => Self::Arc { from: from + by, centre: centre + by, sweep },
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::f32::consts::{PI, TAU};
+
+    use super::*;
+
+    #[test]
+    fn an_arc_keeps_its_distance_and_ends_where_its_sweep_says() {
+        let arc = Slide::Arc { from: Vec2::new(2.0, 1.0), centre: Vec2::ONE, sweep: -PI };
+        assert!((arc.length() - PI).abs() < 1e-6);
+        assert!(arc.at(0.5).distance(Vec2::new(1.0, 0.0)) < 1e-6, "clockwise: by the south");
+        assert!(arc.at(1.0).distance(Vec2::new(0.0, 1.0)) < 1e-6);
+        for share in [0.0, 0.1, 0.7, 1.0] {
+            assert!((arc.at(share).distance(Vec2::ONE) - 1.0).abs() < 1e-6);
+            assert!(arc.shifted(Vec2::X).at(share).distance(arc.at(share) + Vec2::X) < 1e-6);
+        }
+        let twice = Slide::Arc { from: Vec2::X, centre: Vec2::ZERO, sweep: 2.0 * TAU };
+        assert!(twice.at(1.0).distance(Vec2::X) < 1e-5 && (twice.length() - 2.0 * TAU).abs() < 1e-5);
+    }
+}
