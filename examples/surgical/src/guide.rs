@@ -1,0 +1,142 @@
+//! Between the floor and the viewer: events and holds to the one, ranges, values and labels to the other.
+
+use std::time::{Duration, Instant};
+
+use underfoot::engine::ValueRange;
+use underfoot::runtime::{Kind, Refusal, Session, Snapshot};
+use underfoot::widget::{SetError, Value};
+
+use crate::state::{Hold, OFFERED, State};
+
+/// Longest time that one turn may stand for: a window that was covered does not jump.
+const LONGEST: Duration = Duration::from_millis(250);
+
+/// How often the floor's labels may change: reading takes longer.
+const LABEL_EVERY: Duration = Duration::from_millis(250);
+
+pub struct Guide {
+    pub floor: Session,
+    pub state: State,
+    pub has_ended: bool,
+    /// Whether each rest of the viewer is printed.
+    print: bool,
+    last: Instant,
+    /// The series whose range the floor's slider has.
+    ranged: Option<usize>,
+    labelled: Option<Instant>,
+}
+
+impl Guide {
+    pub fn new(floor: Session, state: State, print: bool) -> Self {
+        let last = Instant::now();
+        Self { floor, state, has_ended: false, print, last, ranged: None, labelled: None }
+    }
+
+    /// Lets time pass until now; `drag` is how far feet dragged the picture, in units of the series. Gives what the
+    /// floor looks like.
+    pub fn turn(&mut self, drag: [f64; 2]) -> Snapshot {
+        let before = self.state.report(None);
+        while let Some(event) = self.floor.next_event() {
+            self.has_ended |= matches!(event.kind, Kind::Ended(_));
+            self.state.hear(&event);
+        }
+        if before != self.state.report(None) {
+            self.state.stir();
+        }
+        let now = Instant::now();
+        let dt = now.duration_since(self.last).min(LONGEST);
+        self.last = now;
+        let snapshot = self.floor.snapshot();
+        let window = match snapshot.value("window") {
+            Some(Value::Pair(pair)) if self.floor.held("window").is_fresh() => {
+                [pair.x, pair.y].map(f64::from)
+            }
+            _ => [0.0; 2],
+        };
+        let hold = Hold { window, drag, beam: self.floor.held("beam").is_fresh() };
+        let rests = self.state.pass(dt.as_secs_f64(), &hold);
+        if let Err(refusal) = self.tell(&snapshot, now)
+            && !self.has_ended
+            && matches!(refusal, Refusal::NoAnswer)
+        {
+            eprintln!("{refusal}");
+        }
+        if rests && self.print {
+            self.print(&snapshot);
+        }
+        snapshot
+    }
+
+    /// Lets the floor follow the viewer. A control in use refuses, and is asked again.
+    fn tell(&mut self, snapshot: &Snapshot, now: Instant) -> Result<(), Refusal> {
+        let (sheet, view) = (self.state.sheet(), self.state.view());
+        if self.ranged != Some(self.state.current) {
+            let slice = self.floor.control("slice")?;
+            // A single picture leaves nothing to slide.
+            slice.set_enabled(sheet.frames > 1)?;
+            if sheet.frames > 1 {
+                slice.set_range(1.0..=sheet.frames as f64)?;
+            }
+            self.ranged = Some(self.state.current);
+        }
+        for (id, value) in [("slice", (view.slice + 1) as f64), ("zoom", view.zoom)] {
+            let Some(control) = snapshot.control(id) else { continue };
+            let differs = matches!(control.value, Some(Value::Number(shown)) if (f64::from(shown) - value).abs() > 0.01);
+            if differs && control.enabled && !control.pressed {
+                self.floor.control(id)?.set(value)?;
+            }
+        }
+        // What is locked refuses, and that is felt: there is nothing to clear.
+        let is_locked = snapshot.control("clear").is_some_and(|clear| clear.locked);
+        if is_locked == self.state.has_marks() {
+            self.floor.control("clear")?.set_locked(!is_locked)?;
+        }
+        if self.labelled.is_none_or(|at| now.duration_since(at) >= LABEL_EVERY) {
+            self.labelled = Some(now);
+            self.label(snapshot)?;
+        }
+        Ok(())
+    }
+
+    /// What is written on the floor.
+    fn label(&self, snapshot: &Snapshot) -> Result<(), Refusal> {
+        let state = &self.state;
+        let (sheet, view) = (state.sheet(), state.view());
+        let mut labels = vec![
+            ("slice".to_owned(), format!("Slice {} of {}", view.slice + 1, sheet.frames)),
+            ("zoom".to_owned(), format!("Zoom {:.1}", view.zoom)),
+            ("mark".to_owned(), if view.first.is_some() { "To here" } else { "Mark" }.to_owned()),
+        ];
+        for button in 1..=OFFERED {
+            let offered = state.sheets.get(state.offered + button - 1);
+            let title = offered.map_or("-", |sheet| sheet.title.as_str());
+            labels.push((format!("series_{button}"), title.chars().take(40).collect()));
+        }
+        for (id, label) in labels {
+            if snapshot.control(&id).is_some_and(|control| control.label != label) {
+                self.floor.control(&id)?.set_label(&label)?;
+            }
+        }
+        for button in 1..=OFFERED {
+            self.enable(snapshot, &format!("series_{button}"), state.offered + button <= state.sheets.len())?;
+        }
+        self.enable(snapshot, "more", state.sheets.len() > OFFERED)
+    }
+
+    fn enable(&self, snapshot: &Snapshot, id: &str, wanted: bool) -> Result<(), Refusal> {
+        let control = snapshot.control(id).ok_or(SetError::Unknown)?;
+        if control.enabled == wanted { Ok(()) } else { self.floor.control(id)?.set_enabled(wanted) }
+    }
+
+    /// One line of JSON.
+    fn print(&self, snapshot: &Snapshot) {
+        let range = snapshot.control("slice").and_then(|slice| match slice.range {
+            Some(ValueRange::Number(scale)) => Some([scale.min, scale.max].map(f64::from)),
+            _ => None,
+        });
+        match serde_json::to_string(&self.state.report(range)) {
+            Ok(line) => println!("{line}"),
+            Err(error) => eprintln!("{error}"),
+        }
+    }
+}

@@ -1,0 +1,176 @@
+//! DICOM images read with the feet. Without arguments it shows a phantom, on a simulated floor of its own.
+//!
+//! An example of a user interface, not a medical device.
+
+mod app;
+mod beam;
+mod chart;
+mod guide;
+mod phantom;
+mod series;
+mod state;
+
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+use clap::Parser;
+use eframe::egui::{self, RawInput, Rect, pos2, vec2};
+use underfoot::floor::{self, Floor};
+use underfoot::layout::Layout;
+use underfoot::runtime::{Session, SessionBuilder};
+use underfoot::schema::{self, Kinds};
+use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated, feet_by_hand};
+use underfoot::source::{FaultInjector, Faults, Pace, SimulatedSource};
+use underfoot::widget::Guard;
+use underfoot_egui::FootInput;
+
+use crate::app::Shelf;
+use crate::guide::Guide;
+use crate::state::{Sheet, State};
+
+/// The floor of this app.
+const CONSOLE: &str = include_str!("../console.ron");
+
+/// Where the picture is when there is no window, in points.
+const UNSEEN: Rect = Rect { min: pos2(0.0, 34.0), max: pos2(908.0, 800.0) };
+
+/// DICOM images read with the feet, while both hands are busy. NOT A MEDICAL DEVICE: an example of a user interface.
+///
+/// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it with
+/// the mouse.
+#[derive(Parser, Debug)]
+struct Args {
+    /// A DICOM file, or a folder of them: all series in it and below it.
+    folder: Option<PathBuf>,
+    /// Follow a real floor, or `underfoot simulate`, that sends its packets to this address.
+    #[arg(long, value_name = "ADDR", conflicts_with = "scenario")]
+    listen: Option<String>,
+    /// The real floor's hardware.
+    #[arg(long, value_name = "FILE", requires = "listen")]
+    floor: Option<PathBuf>,
+    /// Let a simulated person walk as this file says, and end with them.
+    #[arg(long, value_name = "FILE")]
+    scenario: Option<PathBuf>,
+    /// Print a line of JSON whenever the viewer comes to rest.
+    #[arg(long)]
+    print_state: bool,
+    /// Open no window.
+    #[arg(long)]
+    no_window: bool,
+}
+
+fn main() -> Result<(), Box<dyn Error>> {
+    let args = Args::parse();
+    let shelf = shelf(args.folder.as_deref())?;
+    let hardware = match &args.floor {
+        Some(path) => schema::load_floor(path)?,
+        None => Floor::default(),
+    };
+    let layout = schema::parse_layout(CONSOLE, "console.ron", &Kinds::builtin(), &hardware.geometry)?.layout;
+    let longest_s = longest_s(&layout).ok_or("the floor has no control \"beam\" that is held to run")?;
+    let free = layout.regions.iter().find(|region| region.id == "image");
+    let free = free.map_or(floor::Rect::default(), |region| region.area);
+    let geometry = hardware.geometry;
+    let (builder, hand) = match (&args.listen, &args.scenario) {
+        (Some(address), _) => (Session::listen(address.as_str()).floor(hardware), None),
+        (None, Some(path)) => (played(path, &hardware, &layout)?, None),
+        (None, None) => {
+            let (hand, driver) = feet_by_hand();
+            (Session::simulated(Box::new(driver)).floor(hardware), Some(hand))
+        }
+    };
+    let builder = builder.layout(layout);
+    let state = State::new(shelf.series.iter().map(Sheet::of).collect(), longest_s);
+    if args.no_window {
+        unseen(Guide::new(builder.start()?, state, args.print_state), FootInput::new(free));
+        return Ok(());
+    }
+    let native = eframe::NativeOptions {
+        viewport: egui::ViewportBuilder::default()
+            .with_title("Image console")
+            .with_app_id("underfoot-surgical")
+            .with_inner_size([1280.0, 800.0]),
+        renderer: eframe::Renderer::Glow,
+        dithering: false,
+        ..Default::default()
+    };
+    let start = Box::new(move |context: &eframe::CreationContext<'_>| {
+        let waker = context.egui_ctx.clone();
+        let floor = builder.wake(move || waker.request_repaint()).start()?;
+        let guide = Guide::new(floor, state, args.print_state);
+        let app = app::App::new(&context.egui_ctx, guide, shelf, geometry, free, hand);
+        Ok(Box::new(app) as Box<dyn eframe::App>)
+    });
+    Ok(eframe::run_native("Image console", native, start)?)
+}
+
+/// The series in a folder, or of the phantom.
+fn shelf(folder: Option<&Path>) -> Result<Shelf, Box<dyn Error>> {
+    let is_phantom = folder.is_none();
+    let found = match folder {
+        Some(folder) => series::read(folder).map_err(|error| format!("{}: {error}", folder.display()))?,
+        None => {
+            let folder = tempfile::tempdir()?;
+            phantom::write(folder.path())?;
+            series::read(folder.path())?
+        }
+    };
+    for told in &found.left_out {
+        eprintln!("{told}");
+    }
+    match folder {
+        Some(folder) if found.series.is_empty() => {
+            let name = folder.display();
+            Err(format!("{name}: no picture that can be shown; without a folder, a phantom is shown").into())
+        }
+        _ => Ok(Shelf { series: found.series, left_out: found.left_out, is_phantom }),
+    }
+}
+
+/// For how long the beam may be held, in seconds.
+fn longest_s(layout: &Layout) -> Option<f64> {
+    let beam = layout.widgets.get(layout.widget_index("beam")?)?;
+    match beam.behaviour.thresholds().guard {
+        Guard::HoldToRun(run) => Some(run.max.as_secs_f64()),
+        Guard::Free | Guard::Confirm(_) => None,
+    }
+}
+
+/// A simulated floor on which people do what a file says, with what goes wrong meanwhile.
+fn played(path: &Path, wired: &Floor, layout: &Layout) -> Result<SessionBuilder, Box<dyn Error>> {
+    /// Which floor of its kind.
+    const SEED: u64 = 1;
+    let scenario = Scenario::load(path)?;
+    let mut faults = Faults::default();
+    for fault in scenario.faults() {
+        faults = faults.and(fault.parse().map_err(|error| format!("{}: {error}", path.display()))?);
+    }
+    let feet = scenario.resolve(layout, &wired.geometry)?;
+    let sim = SimFloor::new(wired, SimConfig::default(), SEED);
+    let floor = calibrated(wired, &sim, SEED)?;
+    let source = SimulatedSource::new(sim, Box::new(feet), Pace::RealTime);
+    let source = FaultInjector::new(source, faults, SEED);
+    let begun = Instant::now();
+    let clock = Arc::new(move || underfoot::units::Instant::START + begun.elapsed());
+    Ok(Session::source(Box::new(source), clock).floor(floor))
+}
+
+/// Without a window: the same feet, as touches on a picture that nobody sees.
+fn unseen(mut guide: Guide, mut feet: FootInput) {
+    let context = egui::Context::default();
+    FootInput::tune(&context);
+    let begun = Instant::now();
+    let screen = Rect::from_min_size(pos2(0.0, 0.0), vec2(1280.0, 800.0));
+    while !guide.has_ended {
+        let time = Some(begun.elapsed().as_secs_f64());
+        let mut raw = RawInput { screen_rect: Some(screen), time, ..RawInput::default() };
+        feet.follow(&context, &guide.floor, &mut raw);
+        let mut drag = [0.0; 2];
+        let seen = context.run_ui(raw, |ui| drag = app::dragged(ui, &mut feet, UNSEEN, &guide, [0.0; 2]));
+        seen.drop_without_applying_deltas();
+        guide.turn(drag);
+        std::thread::sleep(Duration::from_millis(8));
+    }
+}
