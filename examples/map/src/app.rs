@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use eframe::egui::{
-    self, Align2, Color32, Context, CornerRadius, FontId, Frame, Key, Margin, RawInput, Rect, RichText,
-    Sense, Shadow, Ui, Vec2, ViewportBuilder, ViewportCommand, ViewportId, pos2, vec2,
+    self, Align2, Color32, Context, CornerRadius, FontId, Frame, Key, Margin, RawInput, Rect, Response,
+    RichText, Sense, Shadow, Ui, Vec2, ViewportBuilder, ViewportCommand, ViewportId, pos2, vec2,
 };
 use underfoot::floor::{self, Geometry};
 use underfoot::glam;
@@ -166,9 +166,7 @@ impl eframe::App for App {
 
     fn ui(&mut self, ui: &mut Ui, _: &mut eframe::Frame) {
         let (rect, snapshot) = (ui.max_rect(), self.guide.floor.snapshot());
-        let map = ui.interact(rect, ui.scope_id().with("map"), Sense::drag());
-        map.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Map"));
-        self.feet.set_target(rect);
+        let map = dragged(ui, &mut self.feet, rect);
         self.drag += map.drag_delta();
         if map.hovered() {
             self.levels += f64::from(ui.input(|input| input.smooth_scroll_delta().y)) / 200.0;
@@ -192,6 +190,14 @@ impl eframe::App for App {
             self.projection(&ui.ctx().clone(), &snapshot);
         }
     }
+}
+
+/// The map in `rect`, as it is dragged by feet or the mouse.
+pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect) -> Response {
+    let map = ui.interact(rect, ui.scope_id().with("map"), Sense::drag());
+    map.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Map"));
+    feet.set_target(rect);
+    map
 }
 
 /// A foot that looks north and presses at `place`.

@@ -9,14 +9,15 @@ mod world;
 
 use std::error::Error;
 use std::path::PathBuf;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use clap::Parser;
-use eframe::egui::{self, Vec2};
-use underfoot::floor::{Floor, Rect};
+use eframe::egui::{self, RawInput, Rect, Vec2, pos2};
+use underfoot::floor::{self, Floor};
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
 use underfoot::sim::{FootHandle, Scenario, feet_by_hand};
+use underfoot_egui::FootInput;
 
 use crate::guide::Guide;
 use crate::state::State;
@@ -24,6 +25,9 @@ use crate::world::World;
 
 /// The floor of this app.
 const ATLAS: &str = include_str!("../atlas.ron");
+
+/// Where the map is when there is no window, in points.
+const UNSEEN: Rect = Rect { min: pos2(0.0, 0.0), max: pos2(1280.0, 800.0) };
 
 /// A map of the world, worked with the feet.
 ///
@@ -66,7 +70,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let geometry = hardware.geometry;
     let layout = schema::parse_layout(ATLAS, "atlas.ron", &Kinds::builtin(), &geometry)?.layout;
-    let free = layout.regions.iter().find(|region| region.id == "map").map_or(Rect::default(), |it| it.area);
+    let free =
+        layout.regions.iter().find(|region| region.id == "map").map_or(floor::Rect::default(), |it| it.area);
     let (builder, hand) = match (&args.listen, &args.scenario) {
         (Some(address), _) => (Session::listen(address.as_str()), None),
         (None, Some(path)) => {
@@ -81,11 +86,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     let builder = builder.floor(hardware).layout(layout);
     let (world, state) = (World::shipped()?, State::new(args.home_after));
     if args.no_window {
-        let mut guide = Guide::new(builder.start()?, world, state, args.print_state);
-        while !guide.has_ended {
-            guide.turn(Vec2::ZERO, 0.0);
-            std::thread::sleep(Duration::from_millis(8));
-        }
+        unseen(Guide::new(builder.start()?, world, state, args.print_state), FootInput::new(free));
         return Ok(());
     }
     let native = eframe::NativeOptions {
@@ -105,4 +106,21 @@ fn main() -> Result<(), Box<dyn Error>> {
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     Ok(eframe::run_native("Atlas", native, start)?)
+}
+
+/// Without a window: the same feet, as touches on a map that nobody sees.
+fn unseen(mut guide: Guide, mut feet: FootInput) {
+    let context = egui::Context::default();
+    FootInput::tune(&context);
+    let begun = Instant::now();
+    while !guide.has_ended {
+        let time = Some(begun.elapsed().as_secs_f64());
+        let mut raw = RawInput { screen_rect: Some(UNSEEN), time, ..RawInput::default() };
+        feet.follow(&context, &guide.floor, &mut raw);
+        let mut drag = Vec2::ZERO;
+        let seen = context.run_ui(raw, |ui| drag = app::dragged(ui, &mut feet, UNSEEN).drag_delta());
+        seen.drop_without_applying_deltas();
+        guide.turn(drag, 0.0);
+        std::thread::sleep(Duration::from_millis(8));
+    }
 }
