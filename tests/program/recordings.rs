@@ -8,13 +8,16 @@ use rand_pcg::Pcg64Mcg;
 
 use super::end_to_end::{said, underfoot};
 
-fn record(folder: &Path) -> (Vec<u8>, String) {
+/// The built-in session, or what somebody does on one of the example apps' floors: layout and scenario.
+fn record(folder: &Path, app: Option<[&str; 2]>) -> (Vec<u8>, String) {
     let file = folder.join("visit.mcap");
-    let output = underfoot()
-        .current_dir(folder)
-        .args(["session", "--out", "visit", "--record", "visit.mcap"])
-        .output()
-        .unwrap();
+    let mut session = underfoot();
+    session.current_dir(folder).args(["session", "--out", "visit", "--record", "visit.mcap"]);
+    if let Some([layout, scenario]) = app {
+        let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples");
+        session.arg(examples.join(layout)).arg("--scenario").arg(examples.join(scenario));
+    }
+    let output = session.output().unwrap();
     assert!(output.status.success(), "{}", said(&output));
     let events = std::fs::read_to_string(folder.join("visit/events.jsonl")).unwrap();
     (std::fs::read(file).unwrap(), events)
@@ -28,17 +31,26 @@ fn replay(file: &Path) -> Output {
 #[test]
 fn a_recorded_session_gives_the_same_events_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();
-    let (_, events) = record(folder.path());
-    let output = replay(&folder.path().join("visit.mcap"));
-    assert!(output.status.success(), "{}", said(&output));
-    assert!(events.contains("\"clicked\""));
-    assert_eq!(String::from_utf8(output.stdout).unwrap(), events);
+    let apps = [
+        None,
+        Some(["map/atlas.ron", "map/tour.ron"]),
+        Some(["surgical/console.ron", "surgical/reading.ron"]),
+        // The floor falls silent in it, and comes back.
+        Some(["surgical/console.ron", "surgical/imaging.ron"]),
+    ];
+    for app in apps {
+        let (_, events) = record(folder.path(), app);
+        let output = replay(&folder.path().join("visit.mcap"));
+        assert!(output.status.success(), "{app:?}: {}", said(&output));
+        assert!(events.contains("\"clicked\""), "{app:?}");
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), events, "{app:?}");
+    }
 }
 
 #[test]
 fn a_file_cut_anywhere_replays_up_to_there() {
     let folder = tempfile::tempdir().unwrap();
-    let (whole, events) = record(folder.path());
+    let (whole, events) = record(folder.path(), None);
     let whole_lines: Vec<&str> = events.lines().collect();
     let mut rng = Pcg64Mcg::seed_from_u64(1);
     let cut_file = folder.path().join("cut.mcap");
