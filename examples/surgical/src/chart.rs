@@ -114,8 +114,8 @@ fn crosshair(painter: &Painter, at: Pos2) {
 
 /// A bar with the length that it stands for, in the lower left.
 fn scale_bar(painter: &Painter, screen: &Screen, state: &State) {
-    let lengths = [200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0];
-    let length = lengths.into_iter().find(|length| length * screen.scale < 220.0).unwrap_or(1.0);
+    let lengths = [200.0, 100.0, 50.0, 20.0, 10.0, 5.0, 2.0, 1.0, 0.5, 0.2];
+    let length = lengths.into_iter().find(|length| length * screen.scale < 220.0).unwrap_or(0.1);
     let left = screen.rect.left_bottom() + vec2(28.0, -28.0);
     let right = left + vec2((length * screen.scale) as f32, 0.0);
     let stroke = Stroke::new(2.0, Color32::WHITE);
@@ -127,7 +127,7 @@ fn scale_bar(painter: &Painter, screen: &Screen, state: &State) {
         painter,
         left - vec2(0.0, 9.0),
         Align2::LEFT_BOTTOM,
-        &format!("{length:.0} {}", state.sheet().unit),
+        &format!("{length} {}", state.sheet().unit),
         14.0,
     );
 }

@@ -5,6 +5,7 @@
 mod app;
 mod beam;
 mod chart;
+mod feel;
 mod guide;
 mod phantom;
 mod series;
@@ -27,6 +28,7 @@ use underfoot::widget::Guard;
 use underfoot_egui::FootInput;
 
 use crate::app::Shelf;
+use crate::feel::Feel;
 use crate::guide::Guide;
 use crate::state::{Sheet, State};
 
@@ -59,6 +61,8 @@ struct Args {
     /// Open no window.
     #[arg(long)]
     no_window: bool,
+    #[command(flatten)]
+    feel: Feel,
 }
 
 fn main() -> Result<(), Box<dyn Error>> {
@@ -81,7 +85,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             (Session::simulated(Box::new(driver)).floor(hardware), Some(hand))
         }
     };
-    let builder = builder.layout(layout);
+    let builder = args.feel.attach(builder.layout(layout));
     let state = State::new(shelf.series.iter().map(Sheet::of).collect(), longest_s);
     if args.no_window {
         unseen(Guide::new(builder.start()?, state, args.print_state), FootInput::new(free));
