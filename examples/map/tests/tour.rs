@@ -1,4 +1,5 @@
 //! A person walks over the simulated floor, and the map goes where their feet tell it to.
+#![allow(clippy::panic, clippy::unwrap_used)]
 
 use std::path::Path;
 use std::process::Command;
