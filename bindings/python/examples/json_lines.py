@@ -4,6 +4,7 @@
 """
 
 import json
+import signal
 import sys
 import time
 
@@ -12,6 +13,7 @@ import underfoot
 address, layout, watched = sys.argv[1:4]
 was_held = False
 with underfoot.listen(address, layout, every_change=True) as floor:
+    signal.signal(signal.SIGTERM, lambda *_: floor.stop())
     print(json.dumps({"listening": address}), flush=True)
     while not floor.over:
         event = floor.next_event(0.01)
