@@ -337,9 +337,9 @@ impl Feed {
                 let sim = SimFloor::new(&floor, SimConfig::default(), SEED);
                 let floor = calibrated(&floor, &sim, SEED)
                     .map_err(|error| StartError::Simulation(error.to_string()))?;
-                let begun = std::time::Instant::now();
-                let clock: HostClock = Arc::new(move || Instant::START + begun.elapsed());
-                Ok((Box::new(SimulatedSource::new(sim, driver, Pace::RealTime)), clock, floor))
+                let source = SimulatedSource::new(sim, driver, Pace::RealTime);
+                let clock = source.clock();
+                Ok((Box::new(source), clock, floor))
             }
         }
     }

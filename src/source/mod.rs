@@ -3,11 +3,15 @@
 #[cfg(any(feature = "internals", test))]
 mod fault;
 #[cfg(feature = "sim")]
+mod floor_clock;
+#[cfg(feature = "sim")]
 mod simulated;
 mod udp;
 
 #[cfg(any(feature = "internals", test))]
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
+#[cfg(all(test, feature = "preview"))]
+pub(crate) use floor_clock::tests::ByHand;
 #[cfg(feature = "sim")]
 pub use simulated::{Pace, SimulatedSource};
 pub use udp::UdpSource;

@@ -1,12 +1,13 @@
 //! Packets of a simulated floor.
 
 use std::fmt;
-use std::thread;
+use std::sync::Arc;
 use std::time::Duration;
 
+use super::floor_clock::{FloorClock, Host, Machine};
 use super::{SensorSource, SourceError};
 use crate::sim::{Foot, FootDriver, SimFloor};
-use crate::units::Instant;
+use crate::units::{HostClock, Instant};
 use crate::wire::SensorPacket;
 
 /// How fast a simulated floor's time passes.
@@ -15,7 +16,8 @@ pub enum Pace {
     /// As fast as packets are asked for; the clock shows the floor's own time and nothing ever sleeps.
     FreeRunning,
     /// A millisecond per millisecond of the host's monotonic clock, from the first packet asked for.
-    /// Whoever asks too late gets what is due at once: no millisecond is left out.
+    /// Whoever asks up to 50 ms late gets what is due at once. When nobody asks for longer, the floor's time
+    /// stands still meanwhile: a busy machine makes the floor slow, but never silent. No millisecond is left out.
     RealTime,
 }
 
@@ -35,20 +37,23 @@ pub struct SimulatedSource {
     over: bool,
 }
 
-#[derive(Debug)]
 enum Clock {
     Virtual,
-    /// Stands still until the first packet is asked for.
-    Host(Option<std::time::Instant>),
+    Host(FloorClock),
 }
 
 impl SimulatedSource {
     /// The packets of `floor` under the feet that `driver` moves.
     #[must_use]
     pub fn new(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace) -> Self {
+        Self::on(floor, driver, pace, Arc::new(Machine(std::time::Instant::now())))
+    }
+
+    /// As [`SimulatedSource::new`], on another host than this machine.
+    pub(crate) fn on(floor: SimFloor, driver: Box<dyn FootDriver>, pace: Pace, host: Arc<dyn Host>) -> Self {
         let clock = match pace {
             Pace::FreeRunning => Clock::Virtual,
-            Pace::RealTime => Clock::Host(None),
+            Pace::RealTime => Clock::Host(FloorClock::new(host)),
         };
         let board = floor.readings().len();
         Self {
@@ -60,6 +65,16 @@ impl SimulatedSource {
             board,
             received: Instant::START,
             over: false,
+        }
+    }
+
+    /// The clock that stamps the packets of a floor at [`Pace::RealTime`], for other threads; a free-running
+    /// floor's is the moment of the packet in hand, which others see as the start.
+    #[must_use]
+    pub fn clock(&self) -> HostClock {
+        match &self.clock {
+            Clock::Virtual => Arc::new(|| Instant::START),
+            Clock::Host(clock) => clock.shared(),
         }
     }
 
@@ -76,10 +91,12 @@ impl SimulatedSource {
 
     /// Waits until the next millisecond is due; false if that is after `patience` has run out.
     fn wait(&mut self, due: Instant, patience: Duration) -> bool {
-        let Clock::Host(start) = &mut self.clock else { return true };
-        start.get_or_insert_with(std::time::Instant::now);
-        let left = due.since(self.now());
-        thread::sleep(left.min(patience));
+        let Clock::Host(clock) = &self.clock else { return true };
+        clock.start();
+        let left = due.since(clock.now());
+        if !left.is_zero() {
+            clock.sleep(left.min(patience));
+        }
         left <= patience
     }
 }
@@ -105,10 +122,11 @@ impl SensorSource for SimulatedSource {
             self.floor.step(&self.feet);
             self.ticks += 1;
             self.board = 0;
-            self.received = match self.clock {
-                Clock::Virtual => due,
-                Clock::Host(_) => self.now(),
-            };
+            // Stamped with its own millisecond also when that is caught up: nothing was late on the way.
+            self.received = due;
+            if let Clock::Host(clock) = &self.clock {
+                clock.simulated(due);
+            }
         }
         let readings = self.floor.readings().get(self.board).cloned();
         let board = self.board as u16;
@@ -119,9 +137,9 @@ impl SensorSource for SimulatedSource {
     }
 
     fn now(&self) -> Instant {
-        match self.clock {
+        match &self.clock {
             Clock::Virtual => self.received,
-            Clock::Host(start) => start.map_or(Instant::START, |start| Instant::START + start.elapsed()),
+            Clock::Host(clock) => clock.now(),
         }
     }
 }
@@ -129,7 +147,7 @@ impl SensorSource for SimulatedSource {
 impl fmt::Debug for SimulatedSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("SimulatedSource")
-            .field("clock", &self.clock)
+            .field("now", &self.now())
             .field("ticks", &self.ticks)
             .finish_non_exhaustive()
     }
@@ -137,8 +155,12 @@ impl fmt::Debug for SimulatedSource {
 
 #[cfg(test)]
 mod tests {
+    use std::thread;
+
     use glam::Vec2;
 
+    use super::super::floor_clock::CATCH_UP;
+    use super::super::floor_clock::tests::ByHand;
     use super::*;
     use crate::floor::{Floor, Geometry};
     use crate::sim::SimConfig;
@@ -207,8 +229,7 @@ mod tests {
             packets.iter().filter(|packet| packet.board == 0).map(|packet| packet.sequence).collect();
         assert_eq!(numbers, (0..30).collect::<Vec<u32>>());
         for packet in &packets {
-            let due = Instant::from_millis(packet.sequence.into());
-            assert!(packet.received >= due, "{packet:?} came before its time");
+            assert_eq!(packet.received, Instant::from_millis(packet.sequence.into()));
         }
         assert!(packets.windows(2).all(|pair| pair[0].received <= pair[1].received));
         assert!(source.now() >= Instant::from_millis(29));
@@ -223,6 +244,30 @@ mod tests {
         // The next millisecond may or may not have come; a second ahead it has not.
         let early = std::iter::from_fn(|| source.next(Duration::ZERO).ok().flatten()).take(600).count();
         assert!(early < 600, "200 ms of packets at once");
+    }
+
+    #[test]
+    fn a_reader_that_comes_back_after_seconds_finds_the_floor_as_it_was_left() {
+        let host = ByHand::default();
+        let floor = Floor::of(Geometry::of_paper_tiles(6, 1).unwrap());
+        let floor = SimFloor::new(&floor, SimConfig::default(), 8);
+        let mut source =
+            SimulatedSource::on(floor, Box::new(Slide(9000)), Pace::RealTime, Arc::new(host.clone()));
+        let clock = source.clock();
+        let mut next = || source.next(Duration::from_millis(5)).unwrap().unwrap();
+        for pause_s in [0.05, 0.3, 1.0, 5.0] {
+            let before = next().received;
+            host.pass(Duration::from_secs_f64(pause_s));
+            let ahead = clock().since(before);
+            assert!(ahead <= CATCH_UP, "{ahead:?} have passed for everybody else");
+            assert_eq!(next().received, before + Duration::from_millis(1), "and for the floor a millisecond");
+            // It catches up, and then runs on with the host.
+            (0..100).for_each(|_| drop(next()));
+            let (host_began, began) = (host.elapsed(), next().received);
+            (0..100).for_each(|_| drop(next()));
+            assert_eq!(next().received.since(began), Duration::from_millis(101));
+            assert!(host.elapsed().abs_diff(host_began).abs_diff(Duration::from_millis(101)) < CATCH_UP);
+        }
     }
 
     #[test]
