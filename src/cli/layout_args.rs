@@ -3,9 +3,13 @@
 use std::path::{Path, PathBuf};
 
 use clap::Args;
+#[cfg(feature = "preview")]
+use underfoot::ergonomics;
+#[cfg(feature = "preview")]
+use underfoot::floor::Floor;
 use underfoot::floor::Geometry;
 use underfoot::layout::Layout;
-use underfoot::schema::{self, Diagnostics, Effects, Kinds};
+use underfoot::schema::{self, Diagnostics, Effects, Kinds, Loaded};
 
 use super::failure::Failure;
 
@@ -27,21 +31,34 @@ pub(crate) struct LayoutArgs {
 pub(crate) const DEFAULT_LAYOUT: &str = "map";
 
 impl LayoutArgs {
-    /// The layout named or described, checked for this floor; its warnings go to standard error.
-    pub(crate) fn load(&self, geometry: &Geometry) -> Result<Layout, Failure> {
+    fn read(&self, geometry: &Geometry) -> Result<Loaded, Failure> {
         let kinds = self.kinds()?;
-        let loaded = match self.path() {
+        Ok(match self.path() {
             Some(path) => schema::load_layout(path, &kinds, geometry)?,
             None => {
                 let name = self.layout.as_deref().and_then(Path::to_str).unwrap_or(DEFAULT_LAYOUT);
                 let text = schema::builtin_layout(name).unwrap_or_default();
                 schema::parse_layout(text, &format!("{name} (built in)"), &kinds, geometry)?
             }
-        };
+        })
+    }
+
+    /// The layout named or described, checked for this floor; its warnings go to standard error.
+    pub(crate) fn load(&self, geometry: &Geometry) -> Result<Layout, Failure> {
+        let loaded = self.read(geometry)?;
         if !loaded.warnings.is_empty() {
             err!("{}", loaded.warnings);
         }
         Ok(loaded.layout)
+    }
+
+    /// As [`LayoutArgs::load`], with everything that `underfoot check` would warn of, and nothing on standard error.
+    #[cfg(feature = "preview")]
+    pub(crate) fn reviewed(&self, floor: &Floor) -> Result<(Layout, Diagnostics), Failure> {
+        let loaded = self.read(&floor.geometry)?;
+        let mut warnings = loaded.warnings;
+        warnings.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+        Ok((loaded.layout, warnings))
     }
 
     /// The file to read and to watch; `None` for a built-in layout.

@@ -49,8 +49,8 @@ impl SimArgs {
     }
 }
 
-/// The scenario in `file`, or the built-in session, on the controls of `layout`; without controls, a stroll. With it,
-/// what goes wrong meanwhile.
+/// The scenario in `file`, or the built-in session where it fits `layout`, or a visit to each of its controls; without
+/// controls, a stroll. With it, what goes wrong meanwhile.
 pub(crate) fn script(
     file: Option<&Path>,
     layout: &Layout,
@@ -59,7 +59,11 @@ pub(crate) fn script(
     let scenario = match file {
         Some(path) => Scenario::load(path)?,
         None if layout.widgets.is_empty() => Scenario::parse("the built-in stroll", Scenario::STROLL)?,
-        None => Scenario::parse("the built-in session", Scenario::SESSION)?,
+        None => {
+            let session = Scenario::parse("the built-in session", Scenario::SESSION)?;
+            let script = session.resolve(layout, geometry).unwrap_or_else(|_| made_for(layout, geometry));
+            return Ok((script, Faults::default()));
+        }
     };
     let mut faults = Faults::default();
     for written in scenario.faults() {
@@ -70,4 +74,15 @@ pub(crate) fn script(
         faults = faults.and(fault);
     }
     Ok((scenario.resolve(layout, geometry)?, faults))
+}
+
+/// A visit to the controls of `layout`.
+fn made_for(layout: &Layout, geometry: &Geometry) -> Script {
+    let visit = sim::visit(layout, geometry);
+    for id in &visit.missed {
+        tracing::warn!(
+            "the visitor finds no place from which a foot reaches \"{id}\", or no way to its page"
+        );
+    }
+    visit.script
 }

@@ -6,24 +6,24 @@ use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::thread;
-use std::time::{Duration, Instant as HostInstant};
+use std::time::Duration;
 
 use underfoot::feel::{Renderer, ScopeReader};
-use underfoot::floor::{Floor, Geometry};
+use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::preview::{
     self, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput, PreviewOptions,
-    ScopeFeed,
+    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
 };
 use underfoot::runtime::{EndReason, Kind, Session};
-use underfoot::schema;
+use underfoot::schema::{self, Diagnostics};
 use underfoot::sense::Method;
 use underfoot::serve::Command;
-use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand};
+use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand, watched};
 use underfoot::sink::{EventSink, LatencyStages, Report};
 use underfoot::source::{Faults, Pace, SensorSource, SimulatedSource};
-use underfoot::units::{HostClock, Instant};
+use underfoot::units::HostClock;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::ControlMessage;
 
@@ -58,6 +58,15 @@ pub(crate) struct Args {
     /// Show the built-in session played on the simulated floor.
     #[arg(long, conflicts_with = "scenario")]
     session: bool,
+    /// Open the window for a projector at once, over the whole screen: the controls alone, laid onto the floor.
+    #[arg(long)]
+    project: bool,
+    /// The screen that the projection fills, counted from 0.
+    #[arg(long, value_name = "NUMBER", requires = "project")]
+    monitor: Option<usize>,
+    /// File that remembers where the floor's corners are on the projection, in place of the usual one.
+    #[arg(long, value_name = "FILE")]
+    corners: Option<PathBuf>,
     #[command(flatten)]
     sim: SimArgs,
     #[command(flatten)]
@@ -87,7 +96,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::NoWindow("there is no display".into()));
     }
     let floor = args.floor.load()?;
-    let layout = args.layout.load(&floor.geometry)?;
+    let (layout, warnings) = args.layout.reviewed(&floor)?;
     let stage = args.stage(&floor, &layout)?;
 
     let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
@@ -111,10 +120,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .start()?;
 
     let desk = Desk { session: session.clone(), news };
-    let _watch = watch(&args.layout, floor.geometry, &desk)?;
+    let _watch = watch(&args.layout, &floor, &desk)?;
     let choices = args.choices();
-    let told =
-        Obeyed { files: args.layout.clone(), choices: choices.clone(), geometry: floor.geometry, desk };
+    let told = Obeyed { files: args.layout.clone(), choices: choices.clone(), floor, desk };
     told.process_commands(wished, notice_sender);
 
     let scopes = scopes.try_iter().last().flatten();
@@ -122,6 +130,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let input = PreviewInput {
         floor: Arc::new(stage.floor),
         layout: Arc::new(layout),
+        warnings: told_of(&warnings),
         source: stage.name,
         snapshots: session.take_snapshots(),
         events,
@@ -129,12 +138,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         notices,
         scopes,
         feet: stage.feet,
+        shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
         commands: wishes,
     };
     // Also when the window fails, the floor ends in order first.
-    let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &PreviewOptions::default())));
+    let projection =
+        ProjectionOptions { open: args.project, monitor: args.monitor, corners: args.corners.clone() };
+    let options = PreviewOptions { projection, ..PreviewOptions::default() };
+    let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
     session.stop();
     let end = end(&session);
     match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
@@ -156,6 +169,7 @@ struct Stage {
     clock: HostClock,
     name: String,
     feet: Option<Box<dyn FootSink>>,
+    shoes: Option<ShoeFeed>,
 }
 
 impl Args {
@@ -169,6 +183,7 @@ impl Args {
                 source: Box::new(source),
                 name: format!("floor on port {}", address.port()),
                 feet: None,
+                shoes: None,
             });
         }
         let mut faults = Faults::default();
@@ -181,14 +196,23 @@ impl Args {
                 let (handle, driver) = feet_by_hand();
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
             };
+        let (driver, mut seen) = watched(driver);
+        let is_led = feet.is_some();
+        let shoes: ShoeFeed = Box::new(move |shoes| {
+            shoes.clear();
+            shoes
+                .extend(seen.read().iter().enumerate().map(|(index, foot)| shoe(foot, is_led && index == 1)));
+        });
         let (sim, floor) = self.sim.calibrated(floor)?;
-        let begun = HostInstant::now();
+        let driver = Box::new(driver);
+        let source = SimulatedSource::new(sim, driver, Pace::RealTime);
         Ok(Stage {
             floor,
-            source: FaultArgs::default().wrap(SimulatedSource::new(sim, driver, Pace::RealTime), faults),
-            clock: Arc::new(move || Instant::START + begun.elapsed()),
+            clock: source.clock(),
+            source: FaultArgs::default().wrap(source, faults),
             name: name.into(),
             feet,
+            shoes: Some(shoes),
         })
     }
 
@@ -207,12 +231,15 @@ struct Desk {
 }
 
 impl Desk {
-    fn take(&self, name: &str, read: Result<Layout, String>) {
+    /// `opened` if somebody chose it in the window.
+    fn take(&self, name: &str, opened: bool, read: Result<(Layout, Diagnostics), String>) {
         let name = name.to_string();
         let news = match read {
-            Ok(layout) => {
+            Ok((layout, warnings)) => {
                 let loaded = Arc::new(layout.clone());
-                LayoutNews::Loaded { layout: loaded, revision: self.session.set_layout(layout), name }
+                let revision = self.session.set_layout(layout);
+                let warnings = told_of(&warnings);
+                LayoutNews::Loaded { layout: loaded, revision, name, opened, warnings }
             }
             Err(diagnostics) => LayoutNews::Refused { name, diagnostics },
         };
@@ -220,17 +247,28 @@ impl Desk {
     }
 }
 
-fn watch(files: &LayoutArgs, geometry: Geometry, desk: &Desk) -> Result<Option<Watch>, Failure> {
+fn watch(files: &LayoutArgs, floor: &Floor, desk: &Desk) -> Result<Option<Watch>, Failure> {
     let name = files.path().map(|path| path.display().to_string()).unwrap_or_default();
-    let desk = desk.clone();
-    Watch::start(files, geometry, move |read| desk.take(&name, read.map_err(|wrong| wrong.to_string())))
+    let (desk, own, floor) = (desk.clone(), files.clone(), floor.clone());
+    Watch::start(files, floor.geometry, move |read| {
+        let read = read.map_err(|wrong| wrong.to_string());
+        let read = read.and_then(|_| own.reviewed(&floor).map_err(|failure| failure.to_string()));
+        desk.take(&name, false, read);
+    })
+}
+
+fn told_of(warnings: &Diagnostics) -> Warnings {
+    Warnings {
+        count: warnings.warnings() + warnings.errors(),
+        text: if warnings.is_empty() { String::new() } else { warnings.to_string() },
+    }
 }
 
 /// What the wishes of the person at the window need.
 struct Obeyed {
     files: LayoutArgs,
     choices: Vec<String>,
-    geometry: Geometry,
+    floor: Floor,
     desk: Desk,
 }
 
@@ -275,11 +313,11 @@ impl Obeyed {
     fn open(&mut self, choice: usize) {
         let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
         self.files.layout = Some(PathBuf::from(&name));
-        self.show(&name);
+        self.show(&name, true);
     }
 
-    fn show(&self, name: &str) {
-        self.desk.take(name, self.files.load(&self.geometry).map_err(|failure| failure.to_string()));
+    fn show(&self, name: &str, opened: bool) {
+        self.desk.take(name, opened, self.files.reviewed(&self.floor).map_err(|failure| failure.to_string()));
     }
 
     /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
@@ -292,12 +330,15 @@ impl Obeyed {
         if let Err(error) = std::fs::create_dir_all(&folder) {
             return format!("{} can't be made: {error}", folder.display());
         }
-        match schema::save_text(text, &path) {
+        // What somebody has written beside the numbers stays.
+        let old = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = schema::keep_comments(&old, text);
+        match schema::save_text(&text, &path) {
             Ok(_) => {
                 let layout = self.files.layout.as_ref();
-                self.show(
-                    &layout.map_or_else(|| DEFAULT_LAYOUT.to_owned(), |layout| layout.display().to_string()),
-                );
+                let layout =
+                    layout.map_or_else(|| DEFAULT_LAYOUT.to_owned(), |layout| layout.display().to_string());
+                self.show(&layout, false);
                 format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
             }
             Err(error) => error.to_string(),
@@ -329,8 +370,8 @@ impl EventSink for ToWindow {
 struct Mouse(FootHandle);
 
 impl FootSink for Mouse {
-    fn set(&mut self, feet: &[PreviewFoot]) {
-        self.0.set(feet.iter().map(foot).collect());
+    fn lead(&mut self, over_s: f32, paths: &[Vec<PreviewFoot>]) {
+        self.0.lead(over_s, paths.iter().map(|path| path.iter().map(foot).collect()).collect());
     }
 
     fn centre_of_pressure(&self, shoe: &PreviewFoot) -> Vec2 {
@@ -349,6 +390,11 @@ fn foot(shoe: &PreviewFoot) -> Foot {
         force: shoe.force,
         roll: shoe.roll,
     }
+}
+
+/// The shoe around a foot; a foot of a scenario has no side, the mouse's second one is the left.
+fn shoe(foot: &Foot, left: bool) -> PreviewFoot {
+    PreviewFoot { length_m: foot.length_m + SHOE_M, left, ..PreviewFoot::from(foot) }
 }
 
 /// What the actuators did, as the window draws it.

@@ -3,8 +3,10 @@
 mod fields;
 mod fine_line;
 mod transform;
+mod warped;
 
 pub use transform::ScreenFromFloor;
+pub use warped::paint_warped;
 
 use egui::epaint::{self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape};
 use egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Shape, StrokeKind, pos2, vec2};

@@ -8,20 +8,23 @@ use std::time::{Duration, Instant};
 use eframe::egui::Ui;
 
 use super::PreviewOptions;
-use super::feed::{FootSink, PreviewCommand, PreviewInput};
+use super::feed::{FootSink, PreviewCommand, PreviewInput, ShoeFeed};
 use super::feet::MouseFeet;
 use super::floor_view::Grip;
+use super::keyboard::Keyboard;
 use super::messages::Messages;
 use super::panel::Tuner;
+use super::projection::Projection;
 use super::rate::Rate;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
 use super::watch::Watch;
+use super::zoom::Zoom;
 use crate::egui_painter::Palette;
 use crate::engine::Snapshot;
 use crate::floor::Floor;
-use crate::scene::{Scene, Theme};
+use crate::scene::{Scene, Shoe, Theme};
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
@@ -34,7 +37,12 @@ pub(super) struct App {
     pub(super) messages: Messages,
     pub(super) scopes: Scopes,
     pub(super) feet: Option<(MouseFeet, Box<dyn FootSink>)>,
+    /// The feet on the floor, as the floor has them.
+    pub(super) shoe_feed: Option<ShoeFeed>,
+    pub(super) shoes: Vec<Shoe>,
     pub(super) grip: Grip,
+    pub(super) zoom: Zoom,
+    pub(super) keyboard: Keyboard,
     pub(super) selection: Selection,
     pub(super) watch: Watch,
     pub(super) scene: Scene,
@@ -45,6 +53,12 @@ pub(super) struct App {
     pub(super) choices: Vec<String>,
     /// `None` where there are no effects to tune.
     pub(super) tuner: Option<Tuner>,
+    pub(super) projection: Projection,
+    /// Whether somebody wants the side panel; `None` while the window's width decides.
+    pub(super) panel_wanted: Option<bool>,
+    pub(super) lists_warnings: bool,
+    /// By how much the window's own size has enlarged everything.
+    enlarged: f32,
     commands: Sender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
@@ -59,11 +73,21 @@ pub(super) struct App {
 
 impl App {
     pub(super) fn new(input: PreviewInput, options: &PreviewOptions) -> Self {
+        let (projection, wrong) = Projection::new(&options.projection);
+        let mut messages = Messages::new(input.layout, input.events, input.layouts, input.notices);
+        messages.warnings = input.warnings;
+        wrong.into_iter().for_each(|wrong| messages.note(wrong));
         Self {
+            projection,
+            panel_wanted: None,
+            lists_warnings: false,
+            enlarged: 1.0,
             selection: Selection::new(&input.floor.geometry),
             scopes: Scopes::new(input.scopes, &input.floor),
-            messages: Messages::new(input.layout, input.events, input.layouts, input.notices),
+            messages,
             feet: input.feet.map(|sink| (MouseFeet::new(), sink)),
+            shoe_feed: input.shoes,
+            shoes: Vec::new(),
             floor: input.floor,
             source: input.source,
             snapshots: input.snapshots,
@@ -71,6 +95,8 @@ impl App {
             tuner: Tuner::new(input.effects),
             commands: input.commands,
             grip: Grip::default(),
+            zoom: Zoom::default(),
+            keyboard: Keyboard::default(),
             watch: Watch::default(),
             scene: Scene::new(),
             palette: Palette::default(),
@@ -88,6 +114,7 @@ impl App {
     /// One frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
+        self.enlarge(ui.ctx());
         self.handle_mute_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
@@ -95,9 +122,23 @@ impl App {
         self.side_panel(ui);
         self.tuner_panel(ui);
         self.problems(ui);
+        self.warnings(ui);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| self.floor_view(ui));
+        self.projection_window(ui);
         self.request_next_frame(ui);
+    }
+
+    /// Large windows get larger letters and panels: what is seen of them is farther away.
+    fn enlarge(&mut self, ctx: &egui::Context) {
+        let points = ctx.content_rect().size() * ctx.zoom_factor();
+        let wanted = (0.85 * (points.x / 1280.0).min(points.y / 800.0)).clamp(1.0, 2.0);
+        // By tenths, or text would be laid out anew with each pixel.
+        let wanted = (10.0 * wanted).round() / 10.0;
+        if wanted != self.enlarged {
+            ctx.set_zoom_factor(ctx.zoom_factor() / self.enlarged * wanted);
+            self.enlarged = wanted;
+        }
     }
 
     fn receive(&mut self, ui: &Ui) {
@@ -107,6 +148,10 @@ impl App {
         let snapshot = self.snapshots.output_buffer();
         self.messages.receive(now_s, snapshot.layout_revision);
         self.messages.relabel(&snapshot.labels);
+        self.messages.note_grounds(snapshot);
+        if let Some(feed) = &mut self.shoe_feed {
+            feed(&mut self.shoes);
+        }
         self.watch.observe(now_s, snapshot, fresh);
         self.selection.follow(snapshot);
         self.scopes.update(&self.floor, snapshot, self.selection.tile(), elapsed_s);
@@ -115,12 +160,16 @@ impl App {
         self.frames.observe(now_s, snapshot.counters.frames);
     }
 
-    /// Pictures come 60 times a second, also where the display does not pace them.
+    /// Draws 60 times a second while something moves that nobody else tells of, also where the display does not pace
+    /// frames; otherwise the next frame comes with news from the floor ([`super::lookout`]) or from the mouse.
     fn request_next_frame(&mut self, ui: &Ui) {
         let now = Instant::now();
         self.due = (self.due + PICTURE).max(now);
-        // Never zero: that would ask for two frames.
-        ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
+        let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
+        if is_held || self.scopes.are_moving() {
+            // Never zero: that would ask for two frames.
+            ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
+        }
     }
 
     /// Tells the program; one that hung up does not want to know.

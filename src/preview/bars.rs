@@ -11,6 +11,9 @@ use crate::egui_painter::color;
 use crate::scene::Theme;
 use crate::wire::LinkState;
 
+/// Width of the window below which the top bar takes two lines, in points.
+const TWO_LINES: f32 = 1010.0;
+
 /// How long the window tells that a saved file was loaded, in seconds.
 const TELL_S: f64 = 6.0;
 
@@ -19,6 +22,16 @@ impl App {
     pub(super) fn top_bar(&mut self, ui: &mut Ui) {
         let frame = panel_frame(&self.theme, Margin::symmetric(14, 7));
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
+            if ui.available_width() < TWO_LINES {
+                ui.horizontal(|ui| {
+                    ui.set_min_height(26.0);
+                    self.heading(ui);
+                    self.mutes(ui);
+                    self.link_state(ui);
+                });
+                ui.horizontal_wrapped(|ui| self.buttons(ui));
+                return;
+            }
             ui.horizontal(|ui| {
                 ui.set_min_height(26.0);
                 // From the right first: the title gives way.
@@ -54,12 +67,23 @@ impl App {
                 self.command(PreviewCommand::Open(index));
             }
         }
+        let count = self.messages.warnings.count;
+        if count > 0 {
+            let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
+            let text = RichText::new(text).color(color(self.theme.warning));
+            let button =
+                ui.add(egui::Button::selectable(self.lists_warnings, text).frame_when_inactive(true));
+            if button.on_hover_text("What feet and eyes will have trouble with").clicked() {
+                self.lists_warnings = !self.lists_warnings;
+            }
+        }
         match &self.messages.file {
             Some(file) if file.diagnostics.is_some() => {
                 pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
             }
             Some(file) if self.now_s - file.at_s < TELL_S => {
-                pill(ui, self.theme.good, &self.theme, &format!("{}: saved changes loaded", file.name));
+                let what = if file.opened { "opened" } else { "saved changes loaded" };
+                pill(ui, self.theme.good, &self.theme, &format!("{}: {what}", file.name));
             }
             Some(file) => {
                 ui.add(egui::Label::new(quiet(&self.theme, &file.name)).truncate());
@@ -82,11 +106,14 @@ impl App {
         }
     }
 
+    fn link_state(&self, ui: &mut Ui) {
+        let (text, colour) = link(self.snapshots.output_buffer().link, &self.theme);
+        pill(ui, colour, &self.theme, text);
+    }
+
     fn rates(&self, ui: &mut Ui) {
+        self.link_state(ui);
         let theme = &self.theme;
-        let snapshot = self.snapshots.output_buffer();
-        let (text, colour) = link(snapshot.link, theme);
-        pill(ui, colour, theme, text);
         let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
         let texts = [
             (
@@ -111,6 +138,12 @@ impl App {
         if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Light or dark window").clicked() {
             self.turn_theme(ui.ctx());
         }
+        let width = ui.ctx().content_rect().width();
+        let shown = self.shows_panel(width);
+        let panel = ui.add(egui::Button::selectable(shown, "Panel").frame_when_inactive(true));
+        if panel.on_hover_text("Figures, events and actuators at the side").clicked() {
+            self.panel_wanted = Some(!shown);
+        }
         let sensors = ui.add(egui::Button::selectable(self.marks, "Sensors").frame_when_inactive(true));
         if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
             self.marks = !self.marks;
@@ -127,6 +160,13 @@ impl App {
             if button.on_hover_text("Tune what controls feel like: see, hear and save").clicked() {
                 tuner.is_open = !tuner.is_open;
             }
+        }
+        let projects = self.projection.is_open();
+        let button = ui.add(egui::Button::selectable(projects, "Project").frame_when_inactive(true));
+        let hint =
+            "The floor alone, in a window of its own for a projector; F11 does the same, C there adjusts it";
+        if button.on_hover_text(hint).clicked() {
+            self.projection.toggle();
         }
         let Some((feet, _)) = &mut self.feet else { return };
         let stands = feet.standing().is_some();
@@ -162,18 +202,23 @@ impl App {
                 &[
                     ("Hold", "press"),
                     ("Drag", "slide"),
-                    ("Wheel", "harder, softer"),
+                    ("Wheel, R, F", "harder, softer"),
+                    ("Ctrl-wheel", "zoom"),
                     ("Right-drag, Q, E", "turn"),
                     ("Space", "stance foot here"),
                     ("Shift-click", "look at a tile"),
+                    ("Tab, Enter", "press by keyboard"),
+                    ("F11", "project"),
                     ("M", "mute"),
                 ]
             } else {
                 &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]
             };
+            // A narrow window tells the first ones only; the rest is in the documentation.
+            let told = if ui.available_width() < TWO_LINES { 4 } else { steps.len() };
             ui.horizontal(|ui| {
                 ui.spacing_mut().item_spacing.x = 5.0;
-                for (key, does) in steps {
+                for (key, does) in steps.iter().take(told) {
                     ui.label(RichText::new(*key).size(12.0).color(color(theme.ink)));
                     ui.label(RichText::new(*does).size(12.0).color(color(theme.quiet)));
                     ui.add_space(9.0);
@@ -181,6 +226,26 @@ impl App {
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
                     ui.add(egui::Label::new(quiet(theme, &self.source).size(12.0)).truncate());
                 });
+            });
+        });
+    }
+
+    /// What `underfoot check` would say of the layout, while somebody wants to see it.
+    pub(super) fn warnings(&mut self, ui: &mut Ui) {
+        let warnings = &self.messages.warnings;
+        if !self.lists_warnings || warnings.count == 0 {
+            return;
+        }
+        let theme = &self.theme;
+        let frame = egui::Frame::new()
+            .fill(color(panel_colour(theme).mix(theme.warning, 0.05)))
+            .inner_margin(Margin { left: 14, right: 8, top: 8, bottom: 8 });
+        let panel = Panel::bottom("warnings").frame(frame).resizable(true);
+        panel.default_size(180.0).size_range(70.0..=(0.5 * ui.available_height()).max(71.0)).show(ui, |ui| {
+            ui.label(RichText::new("What feet and eyes will have trouble with").size(14.5).strong());
+            ScrollArea::both().auto_shrink(false).show(ui, |ui| {
+                let text = RichText::new(&warnings.text).monospace().size(12.5).color(color(theme.ink));
+                ui.add(egui::Label::new(text).extend().selectable(true));
             });
         });
     }

@@ -26,6 +26,8 @@ pub struct PreviewInput {
     pub floor: Arc<Floor>,
     /// The layout to begin with.
     pub layout: Arc<Layout>,
+    /// Its warnings.
+    pub warnings: Warnings,
     /// What the floor is, in a few words: `simulated floor`, `walk.mcap`, `port 9000`.
     pub source: String,
     /// The latest state, written by the sensing thread.
@@ -40,12 +42,26 @@ pub struct PreviewInput {
     pub scopes: Option<Box<dyn ScopeFeed>>,
     /// The feet of a simulated floor; `None` for a real floor or a recording, which nobody can step on with a mouse.
     pub feet: Option<Box<dyn FootSink>>,
+    /// The feet on a simulated floor, whoever moves them; `None` for a real floor or a recording.
+    pub shoes: Option<ShoeFeed>,
     /// Names of layouts that can be opened from the window; empty if there is no choice.
     pub choices: Vec<String>,
     /// The effects that can be tuned, by name; empty if there is no tuner.
     pub effects: Vec<NamedEffect>,
     /// What the person at the window wants.
     pub commands: Sender<PreviewCommand>,
+}
+
+/// Puts the shoes on or above the floor, as they are now, in place of those of the last call.
+pub type ShoeFeed = Box<dyn FnMut(&mut Vec<Shoe>)>;
+
+/// What feet and eyes will have trouble with in a layout.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Warnings {
+    /// How many there are.
+    pub count: usize,
+    /// All of them, as the program would print them.
+    pub text: String,
 }
 
 /// What became of a layout file that changed.
@@ -60,6 +76,10 @@ pub enum LayoutNews {
         revision: u64,
         /// What to say about it: `map.ron`.
         name: String,
+        /// Whether somebody chose it in the window; otherwise its file has changed.
+        opened: bool,
+        /// What the program would print of it as warnings; empty if nothing.
+        warnings: Warnings,
     },
     /// It has problems; the last good layout stays.
     Refused {
@@ -128,8 +148,11 @@ pub trait ScopeFeed {
 
 /// A simulated floor's feet.
 pub trait FootSink {
-    /// Takes the feet that stand on the floor or hover above it; called for each frame.
-    fn set(&mut self, feet: &[PreviewFoot]);
+    /// Leads each foot along its path, which took the hand `over_s` seconds; called for each frame.
+    ///
+    /// The sink makes steps and slides of it, with the force and the speed of a leg. A foot's place in the list is
+    /// its identity; one without a path is lifted where it is.
+    fn lead(&mut self, over_s: f32, paths: &[Vec<PreviewFoot>]);
 
     /// Where the force of `foot` acts, in floor metres: the window puts that point under the mouse.
     ///

@@ -25,22 +25,13 @@ const WORKING_ROLL: f32 = 0.75;
 /// A foot that stands rests on all of its sole.
 const STANDING_ROLL: f32 = 0.40;
 
-/// Time in which a force comes within a third of what it shall be: a brisk step, not a stamp.
-const RAMP_S: f32 = 0.030;
-
-/// The shortest press: a click on the mouse is over before a foot has come down.
-const SHORTEST_S: f32 = 0.150;
-
-/// Force below which a lifted foot is in the air.
-const IN_THE_AIR: f32 = 1.0;
-
 /// What the person at the mouse does, from one frame to the next.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Hand {
+    /// What the mouse did since the last frame, in order.
+    pub(super) moves: Vec<Move>,
     /// Where the pointer is over the floor, in floor metres; `None` if it is elsewhere.
     pub(super) pointer: Option<Vec2>,
-    /// Whether a press began on the bare floor.
-    pub(super) pressed: bool,
     /// Whether the button is still down.
     pub(super) down: bool,
     /// Notches of the wheel, away from the user positive.
@@ -55,6 +46,17 @@ pub(super) struct Hand {
     pub(super) elapsed_s: f32,
 }
 
+/// One thing that the mouse did, in floor metres.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Move {
+    /// It came here.
+    To(Vec2),
+    /// Its button went down here, on the bare floor.
+    Press(Vec2),
+    /// Its button came up here.
+    Release(Vec2),
+}
+
 /// The mouse's foot and the standing one.
 #[derive(Debug)]
 pub(super) struct MouseFeet {
@@ -64,17 +66,14 @@ pub(super) struct MouseFeet {
     at: Option<Vec2>,
     /// Whether the button holds it down.
     held: bool,
-    /// How long it has been down.
-    down_s: f32,
-    /// Scratch for the sink.
+    /// The feet as they were led last.
     all: Vec<PreviewFoot>,
 }
 
-/// One foot, with the force it is going to.
+/// One foot, with the force it presses with when it is down.
 #[derive(Debug)]
 struct MouseFoot {
     shoe: PreviewFoot,
-    /// What it presses with once it is down.
     wanted: Newtons,
 }
 
@@ -95,12 +94,6 @@ impl MouseFoot {
         // Kept within half a turn either way, for the read-out.
         self.shoe.heading_rad = (self.shoe.heading_rad + turn_rad + PI).rem_euclid(TAU) - PI;
     }
-
-    fn approach(&mut self, force: f32, elapsed_s: f32) {
-        let share = 1.0 - (-elapsed_s / RAMP_S).exp();
-        let now = self.shoe.force.0 + (force - self.shoe.force.0) * share;
-        self.shoe.force = if force == 0.0 && now < IN_THE_AIR { Newtons::ZERO } else { Newtons(now) };
-    }
 }
 
 impl MouseFeet {
@@ -110,14 +103,12 @@ impl MouseFeet {
             standing: None,
             at: None,
             held: false,
-            down_s: 0.0,
             all: Vec::with_capacity(2),
         }
     }
 
-    /// Moves the feet by what the hand does and hands them to the sink.
+    /// Leads the feet by what the hand does; the sink makes steps and slides of it.
     pub(super) fn step(&mut self, hand: &Hand, sink: &mut dyn FootSink) {
-        let working_down = self.held || self.working.shoe.force > Newtons::ZERO;
         match (&mut self.standing, hand.on_handle && !self.held) {
             (Some(standing), true) => {
                 standing.press(hand.wheel);
@@ -130,37 +121,48 @@ impl MouseFeet {
         }
         if let Some(standing) = &mut self.standing {
             standing.shoe.position += hand.drag;
-            standing.approach(standing.wanted.0, hand.elapsed_s);
+            standing.shoe.force = standing.wanted;
         }
-        if hand.pressed && hand.pointer.is_some() {
-            (self.held, self.down_s) = (true, 0.0);
+        let mut path = Vec::with_capacity(hand.moves.len() + 1);
+        for step in &hand.moves {
+            match *step {
+                Move::To(at) => path.push(self.working_at(at, sink)),
+                Move::Press(at) => {
+                    self.held = true;
+                    path.push(self.working_at(at, sink));
+                }
+                Move::Release(at) => {
+                    path.push(self.working_at(at, sink));
+                    self.held = false;
+                    path.push(self.working_at(at, sink));
+                }
+            }
         }
-        self.down_s += hand.elapsed_s;
-        // A pointer that is gone lifts the foot where it was.
-        if self.held && ((!hand.down && self.down_s >= SHORTEST_S) || hand.pointer.is_none()) {
-            self.held = false;
-        }
-        self.at = match hand.pointer {
-            Some(pointer) => Some(pointer),
-            None if working_down => self.at,
-            None => None,
-        };
-        self.working.approach(if self.held { self.working.wanted.0 } else { 0.0 }, hand.elapsed_s);
-        if let Some(at) = self.at {
-            self.working.shoe.position = Vec2::ZERO;
-            self.working.shoe.position = at - sink.centre_of_pressure(&self.working.shoe);
+        // A pointer that is gone, or a button whose release nobody told, lifts the foot where it was.
+        self.held &= hand.down && hand.pointer.is_some();
+        self.at = hand.pointer;
+        match hand.pointer {
+            Some(at) => path.push(self.working_at(at, sink)),
+            None => path.clear(),
         }
         self.all.clear();
-        self.all.extend(self.standing.as_ref().map(|foot| foot.shoe));
         // Over the standing foot's handle the hand holds that foot.
-        self.all.extend(
-            (self.at.is_some() && (working_down || self.held || !hand.on_handle))
-                .then_some(self.working.shoe),
-        );
-        sink.set(&self.all);
+        self.all.extend((self.at.is_some() && (self.held || !hand.on_handle)).then_some(self.working.shoe));
+        self.all.extend(self.standing.as_ref().map(|foot| foot.shoe));
+        let standing = self.standing.iter().map(|foot| foot.shoe).collect();
+        sink.lead(hand.elapsed_s, &[path, standing]);
     }
 
-    /// The feet as last handed to the sink.
+    /// The working foot with its pressure under `at`, pressing if the button holds it down.
+    fn working_at(&mut self, at: Vec2, sink: &dyn FootSink) -> PreviewFoot {
+        let shoe = &mut self.working.shoe;
+        shoe.force = if self.held { self.working.wanted } else { Newtons::ZERO };
+        shoe.position = Vec2::ZERO;
+        shoe.position = at - sink.centre_of_pressure(shoe);
+        *shoe
+    }
+
+    /// The feet as they were led last; the working one first.
     pub(super) fn shoes(&self) -> &[PreviewFoot] {
         &self.all
     }
@@ -208,48 +210,66 @@ impl MouseFeet {
 mod tests {
     use super::*;
 
-    /// Keeps what it was given.
+    /// Keeps where it was led last.
     #[derive(Default)]
-    struct Given(Vec<PreviewFoot>);
+    struct Given(Vec<Vec<PreviewFoot>>);
 
     impl FootSink for Given {
-        fn set(&mut self, feet: &[PreviewFoot]) {
-            self.0 = feet.to_vec();
+        fn lead(&mut self, _over_s: f32, paths: &[Vec<PreviewFoot>]) {
+            self.0 = paths.to_vec();
         }
     }
 
-    const PICTURE_S: f32 = 1.0 / 60.0;
+    impl Given {
+        fn working(&self) -> PreviewFoot {
+            *self.0[0].last().unwrap()
+        }
+
+        fn standing(&self) -> PreviewFoot {
+            *self.0[1].last().unwrap()
+        }
+    }
 
     fn hand(x: f32, y: f32) -> Hand {
-        Hand { pointer: Some(Vec2::new(x, y)), elapsed_s: PICTURE_S, ..Hand::default() }
+        let at = Vec2::new(x, y);
+        Hand { moves: vec![Move::To(at)], pointer: Some(at), elapsed_s: 1.0 / 60.0, ..Hand::default() }
     }
 
     fn pressing(x: f32, y: f32) -> Hand {
-        Hand { pressed: true, down: true, ..hand(x, y) }
+        Hand { moves: vec![Move::Press(Vec2::new(x, y))], down: true, ..hand(x, y) }
     }
 
     fn holding(x: f32, y: f32) -> Hand {
         Hand { down: true, ..hand(x, y) }
     }
 
-    fn run(feet: &mut MouseFeet, given: &mut Given, hand: Hand, frames: usize) {
-        for _ in 0..frames {
-            feet.step(&hand, given);
-        }
+    #[test]
+    fn holding_the_button_presses_and_letting_go_lifts_the_foot() {
+        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
+        feet.step(&hand(0.5, 0.6), &mut given);
+        assert_eq!(given.working().force, Newtons::ZERO, "a foot in the air follows the mouse");
+        feet.step(&pressing(0.5, 0.6), &mut given);
+        assert_eq!(given.working().force, WORKING);
+        feet.step(&Hand { moves: vec![Move::Release(Vec2::new(0.5, 0.6))], ..hand(0.5, 0.6) }, &mut given);
+        assert_eq!(given.working().force, Newtons::ZERO);
     }
 
     #[test]
-    fn holding_the_button_brings_the_force_up_and_letting_go_lifts_the_foot() {
+    fn what_happens_within_one_frame_is_told_in_order() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
-        feet.step(&hand(0.5, 0.6), &mut given);
-        assert_eq!(given.0[0].force, Newtons::ZERO, "a foot in the air follows the mouse");
-        feet.step(&pressing(0.5, 0.6), &mut given);
-        let first = given.0[0].force.0;
-        assert!((20.0..130.0).contains(&first), "it ramps: {first}");
-        run(&mut feet, &mut given, holding(0.5, 0.6), 15);
-        assert!((given.0[0].force.0 - WORKING.0).abs() < 1.0);
-        run(&mut feet, &mut given, hand(0.5, 0.6), 20);
-        assert_eq!(given.0[0].force, Newtons::ZERO);
+        let [a, b, c] = [0.5, 0.6, 0.7].map(|x| Vec2::new(x, 0.6));
+        let moves = vec![Move::To(a), Move::Press(a), Move::To(b), Move::Release(b), Move::To(c)];
+        feet.step(&Hand { moves, ..hand(0.7, 0.6) }, &mut given);
+        let path: Vec<_> = given.0[0].iter().map(|foot| (acts_at(foot), foot.force.0)).collect();
+        let expected = [(a, 0.0), (a, 150.0), (b, 150.0), (b, 150.0), (b, 0.0), (c, 0.0), (c, 0.0)];
+        assert_eq!(path.len(), expected.len());
+        for (told, expected) in path.iter().zip(expected) {
+            assert!(told.0.distance(expected.0) < 1e-5 && told.1 == expected.1, "{path:?}");
+        }
+    }
+
+    fn acts_at(foot: &PreviewFoot) -> Vec2 {
+        Given::default().centre_of_pressure(foot)
     }
 
     #[test]
@@ -258,65 +278,48 @@ mod tests {
         feet.step(&pressing(0.5, 0.6), &mut given);
         for _ in 0..8 {
             feet.step(&Hand { turn_rad: 0.9, ..holding(0.52, 0.61) }, &mut given);
-            let centre = given.centre_of_pressure(&given.0[0]);
+            let centre = acts_at(&given.working());
             assert!(centre.distance(Vec2::new(0.52, 0.61)) < 1e-5, "{centre}");
         }
-        assert!(given.0[0].heading_rad.abs() <= PI);
-    }
-
-    #[test]
-    fn a_click_is_a_whole_step() {
-        // Pressed and released between two frames.
-        let (mut feet, mut given) = (MouseFeet::new(), Given::default());
-        feet.step(&Hand { down: false, ..pressing(0.5, 0.6) }, &mut given);
-        let mut most = 0.0_f32;
-        for _ in 0..40 {
-            feet.step(&hand(0.5, 0.6), &mut given);
-            most = most.max(given.0[0].force.0);
-        }
-        assert!(most > 0.9 * WORKING.0, "{most}");
-        assert_eq!(given.0[0].force, Newtons::ZERO);
+        assert!(given.working().heading_rad.abs() <= PI);
     }
 
     #[test]
     fn the_wheel_presses_harder_within_what_a_person_can_do() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.step(&Hand { wheel: 1.0, ..pressing(0.5, 0.6) }, &mut given);
-        run(&mut feet, &mut given, holding(0.5, 0.6), 20);
-        assert!((given.0[0].force.0 - 168.0).abs() < 1.0, "{}", given.0[0].force.0);
-        run(&mut feet, &mut given, Hand { wheel: 5.0, ..holding(0.5, 0.6) }, 20);
-        assert!(given.0[0].force.0 <= FORCES.1);
-        run(&mut feet, &mut given, Hand { wheel: -9.0, ..holding(0.5, 0.6) }, 40);
-        assert!((given.0[0].force.0 - FORCES.0).abs() < 0.1);
+        assert!((given.working().force.0 - 168.0).abs() < 0.1);
+        for (wheel, limit) in [(90.0, FORCES.1), (-90.0, FORCES.0)] {
+            feet.step(&Hand { wheel, ..holding(0.5, 0.6) }, &mut given);
+            assert_eq!(given.working().force.0, limit);
+        }
     }
 
     #[test]
     fn the_standing_foot_stays_where_it_was_left_until_it_is_dragged() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
         feet.stand(Vec2::new(0.9, 0.3));
-        run(&mut feet, &mut given, hand(0.2, 1.5), 30);
-        assert_eq!(given.0[0].position, Vec2::new(0.9, 0.3));
-        assert!((given.0[0].force.0 - STANDING.0).abs() < 1.0);
-        assert!(given.0[0].left && !given.0[1].left, "the other foot works");
+        feet.step(&hand(0.2, 1.5), &mut given);
+        assert_eq!(given.standing().position, Vec2::new(0.9, 0.3));
+        assert_eq!(given.standing().force, STANDING);
+        assert!(given.standing().left && !given.working().left, "the other foot works");
         let drag = Hand { drag: Vec2::new(0.1, 0.0), on_handle: true, ..hand(0.9, 0.3) };
         feet.step(&drag, &mut given);
-        assert_eq!(given.0.len(), 1, "the hand holds the standing foot");
-        assert!(given.0[0].position.distance(Vec2::new(1.0, 0.3)) < 1e-6);
+        assert_eq!(feet.shoes().len(), 1, "the hand holds the standing foot");
+        assert!(given.standing().position.distance(Vec2::new(1.0, 0.3)) < 1e-6);
         feet.lift_standing();
         feet.step(&hand(0.2, 1.5), &mut given);
-        assert_eq!(given.0.len(), 1);
-        assert!(!given.0[0].left);
+        assert!(given.0[1].is_empty());
+        assert!(!given.working().left);
     }
 
     #[test]
     fn a_pointer_that_leaves_lifts_the_foot_where_it_was() {
         let (mut feet, mut given) = (MouseFeet::new(), Given::default());
-        run(&mut feet, &mut given, pressing(0.5, 0.6), 20);
-        let stood = given.0[0].position;
-        let gone = Hand { pointer: None, down: true, elapsed_s: PICTURE_S, ..Hand::default() };
-        feet.step(&gone, &mut given);
-        assert_eq!(given.0[0].position, stood);
-        run(&mut feet, &mut given, gone, 30);
-        assert!(given.0.is_empty(), "no foot, no ghost of one");
+        feet.step(&pressing(0.5, 0.6), &mut given);
+        feet.step(&Hand { pointer: None, down: true, ..Hand::default() }, &mut given);
+        assert!(given.0[0].is_empty() && feet.shoes().is_empty(), "no foot, no ghost of one");
+        feet.step(&holding(0.5, 0.6), &mut given);
+        assert_eq!(given.working().force, Newtons::ZERO, "it stays lifted when the pointer comes back");
     }
 }

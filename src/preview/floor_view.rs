@@ -3,14 +3,15 @@
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Align2, CursorIcon, Event, FontId, Key, MouseWheelSource, MouseWheelUnit, PointerButton, Pos2, Rect,
-    Response, Sense, Ui, WidgetInfo, pos2, vec2,
+    Align2, CursorIcon, Event, EventFilter, FontId, Key, MouseWheelSource, MouseWheelUnit, PointerButton,
+    Pos2, Rect, Response, Sense, Ui, WidgetInfo, pos2, vec2,
 };
 use glam::Vec2;
 
 use super::app::App;
-use super::feet::{Hand, MouseFeet};
+use super::feet::{Hand, MouseFeet, Move};
 use super::watch::{Banner, Weight};
+use super::zoom::Zoom;
 use crate::egui_painter::{self, ScreenFromFloor, color};
 use crate::floor::TileId;
 use crate::scene::{self, Show, Theme, View};
@@ -41,11 +42,15 @@ impl App {
         let canvas = ui.allocate_rect(rect, Sense::drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
         let show = Show { sensors: self.marks, ..Show::WINDOW };
-        let map = ScreenFromFloor::fit(scene::extent(&self.floor.geometry, show), rect.shrink(6.0));
+        self.zoom_by_wheel(ui, &canvas, show);
+        let map = self.zoom.map(scene::extent(&self.floor.geometry, show), rect.shrink(6.0));
         self.look_at_tiles(ui, &canvas, map);
         let on_handle = self.move_feet(ui, &canvas, map);
         self.draw(ui, rect, map, show);
         self.name_controls(ui, map);
+        if self.zoom.is_closer() {
+            self.zoom_out_button(ui, rect);
+        }
         if let Some(at) = self.grip.handle {
             self.draw_handle(ui, rect, at);
         }
@@ -59,10 +64,22 @@ impl App {
         }
     }
 
+    /// The shoes that press, as the floor has them, and the mouse's own while it is in the air.
+    fn visible_shoes(&mut self) {
+        let Some((feet, _)) = &self.feet else { return };
+        if self.shoe_feed.is_none() {
+            self.shoes.clear();
+        }
+        self.shoes.retain(|shoe| shoe.force.0 > 0.0);
+        let is_led = self.shoes.is_empty();
+        self.shoes.extend(feet.shoes().iter().filter(|shoe| is_led || shoe.force.0 == 0.0));
+    }
+
     fn draw(&mut self, ui: &Ui, rect: Rect, map: ScreenFromFloor, show: Show) {
+        self.visible_shoes();
         let view = View {
             show,
-            shoes: self.feet.as_ref().map_or(&[], |(feet, _)| feet.shoes()),
+            shoes: &self.shoes,
             levels: self.scopes.levels(),
             chosen: self.selection.pinned(),
             ..View::new(
@@ -75,6 +92,33 @@ impl App {
         scene::draw(&mut self.scene, &view);
         let painter = ui.painter_at(rect);
         egui_painter::paint(&painter, &mut self.palette, &self.scene, map);
+    }
+
+    /// Ctrl with the wheel, and a pinch, zoom about the pointer; the middle button pans.
+    fn zoom_by_wheel(&mut self, ui: &Ui, canvas: &Response, show: Show) {
+        let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
+            return;
+        };
+        let (by, panned) = ui.input(|i| {
+            let is_panned = i.pointer.button_down(PointerButton::Middle);
+            (i.zoom_delta(), if is_panned { i.pointer.delta() } else { egui::Vec2::ZERO })
+        });
+        let screen = canvas.rect.shrink(6.0);
+        let extent = scene::extent(&self.floor.geometry, show);
+        if by != 1.0 {
+            self.zoom.about(pointer, by, extent, screen);
+        }
+        if panned != egui::Vec2::ZERO {
+            self.zoom.pan(panned, extent, screen);
+        }
+    }
+
+    fn zoom_out_button(&mut self, ui: &mut Ui, rect: Rect) {
+        let area = Rect::from_min_size(rect.left_top() + vec2(10.0, 10.0), vec2(84.0, 26.0));
+        let button = ui.put(area, egui::Button::new(format!("{:.0} % · fit", 100.0 * self.zoom.by())));
+        if button.on_hover_text("Show the whole floor").clicked() {
+            self.zoom = Zoom::default();
+        }
     }
 
     /// Chooses the tile that the side panel shows.
@@ -116,10 +160,15 @@ impl App {
         let mut hand = read_hand(ui, canvas, map);
         hand.on_handle = on_handle;
         hand.drag = drag;
-        hand.pressed &= !self.grip.held;
+        if self.grip.held {
+            hand.moves.clear();
+        }
         if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
             feet.lift_working();
-            hand.pressed = false;
+            hand.moves.clear();
+        }
+        if let Some(key) = self.keyboard.hand(ui, &self.messages.layout, hand.elapsed_s) {
+            hand = key;
         }
         feet.step(&hand, sink.as_mut());
         on_handle || self.grip.held
@@ -171,7 +220,8 @@ impl App {
     }
 
     /// Tells screen readers and tests what is on the floor and how it is.
-    fn name_controls(&self, ui: &Ui, map: ScreenFromFloor) {
+    fn name_controls(&mut self, ui: &Ui, map: ScreenFromFloor) {
+        let mut focused = None;
         let snapshot = self.snapshots.output_buffer();
         for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
             let state = snapshot.widgets.get(index).copied().unwrap_or_default();
@@ -179,7 +229,16 @@ impl App {
                 continue;
             }
             let id = ui.scope_id().with(("floor control", index));
-            let node = ui.interact(map.rect(widget.area), id, Sense::hover());
+            let node = ui.interact(map.rect(widget.area), id, Sense::focusable_noninteractive());
+            if node.has_focus() {
+                focused = Some(index);
+                // Arrows slide the foot instead of leaving the control.
+                let filter =
+                    EventFilter { horizontal_arrows: true, vertical_arrows: true, ..EventFilter::default() };
+                ui.memory_mut(|memory| memory.set_focus_lock_filter(node.id, filter));
+                let edge = egui::Stroke::new(3.0, color(self.theme.cursor));
+                ui.painter().rect_stroke(node.rect.expand(4.0), 8.0, edge, egui::StrokeKind::Outside);
+            }
             node.widget_info(|| {
                 let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
                 let enabled = !state.disabled;
@@ -192,6 +251,7 @@ impl App {
                 }
             });
         }
+        self.keyboard.focus(focused);
     }
 }
 
@@ -242,6 +302,24 @@ fn stand_and_drag(
 fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
     let inside = canvas.contains_pointer();
     let keys = ui.ctx().memory(|memory| memory.focused().is_none());
+    let events = ui.input(|i| i.events.clone());
+    // Where a press counts: a window that draws seldom may have it long before the pointer came to where it is.
+    let is_floor = |at: Pos2| {
+        canvas.rect.contains(at) && ui.ctx().layer_id_at(at).is_none_or(|layer| layer == ui.layer_id())
+    };
+    let moves = events.iter().filter_map(|event| match event {
+        Event::PointerMoved(at) => Some(Move::To(map.floor(*at))),
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed: true, modifiers }
+            if is_floor(*pos) && !modifiers.shift =>
+        {
+            Some(Move::Press(map.floor(*pos)))
+        }
+        Event::PointerButton { pos, button: PointerButton::Primary, pressed: false, .. } => {
+            Some(Move::Release(map.floor(*pos)))
+        }
+        _ => None,
+    });
+    let moves = moves.collect();
     ui.input(|i| {
         let down = i.pointer.primary_down();
         // A press that began on the floor goes on beyond its edge, as a foot would.
@@ -249,14 +327,18 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         let turned =
             if i.pointer.button_down(PointerButton::Secondary) && inside { i.pointer.delta().x } else { 0.0 };
         let key = |key: Key| f32::from(u8::from(keys && i.key_down(key)));
-        let elapsed_s = i.stable_dt.clamp(0.0, 0.1);
+        let turning_s = i.stable_dt.clamp(0.0, 0.1);
         Hand {
+            moves,
             pointer: pointer.map(|at| map.floor(at)),
-            pressed: i.pointer.primary_pressed() && inside && !i.modifiers.shift,
             down,
-            wheel: if inside { notches(&i.events) } else { 0.0 },
-            turn_rad: -turned * TURN_PER_POINT + (key(Key::Q) - key(Key::E)) * TURN_PER_S * elapsed_s,
-            elapsed_s,
+            wheel: if inside {
+                notches(&events) + 8.0 * turning_s * (key(Key::R) - key(Key::F))
+            } else {
+                0.0
+            },
+            turn_rad: -turned * TURN_PER_POINT + (key(Key::Q) - key(Key::E)) * TURN_PER_S * turning_s,
+            elapsed_s: i.unstable_dt,
             ..Hand::default()
         }
     })
@@ -267,6 +349,8 @@ fn notches(events: &[Event]) -> f32 {
     let notches = |event: &Event| match event {
         // What a touch pad adds after the fingers are gone is not meant as a harder press.
         Event::MouseWheel { source: MouseWheelSource::Momentum, .. } => 0.0,
+        // That zooms.
+        Event::MouseWheel { modifiers, .. } if modifiers.command || modifiers.ctrl => 0.0,
         Event::MouseWheel { unit, delta, .. } => match unit {
             // A notch is about 50 points on a touch pad.
             MouseWheelUnit::Point => delta.y / 50.0,

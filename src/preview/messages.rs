@@ -3,9 +3,12 @@
 use std::collections::VecDeque;
 use std::sync::Arc;
 use std::sync::mpsc::Receiver;
+use std::time::Duration;
 
-use super::feed::LayoutNews;
+use super::feed::{LayoutNews, Warnings};
+use crate::engine::Snapshot;
 use crate::layout::Layout;
+use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
 
 /// Events that are kept for the list: some minutes of busy feet.
@@ -14,13 +17,36 @@ const KEPT: usize = 500;
 /// Notices that are kept; a program that says more says the same again.
 const NOTICES: usize = 4;
 
+/// Pause after which ground that gives way begins a new line.
+const SAME_WALK: Duration = Duration::from_secs(2);
+
+/// One line of the list of events.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Happened {
+    /// A control's event.
+    Event(WidgetEvent),
+    /// Ice cracked, or other ground gave way.
+    GaveWay {
+        /// Which of the layout's grounds.
+        ground: usize,
+        /// What it is made of.
+        material: &'static str,
+        /// How often it gave way.
+        count: u64,
+        /// When it did last.
+        at: Instant,
+    },
+}
+
 /// What other threads said, sorted.
 pub(super) struct Messages {
     events: Receiver<WidgetEvent>,
     layouts: Receiver<LayoutNews>,
     notices: Receiver<String>,
-    /// Events, newest first.
-    pub(super) recent: VecDeque<WidgetEvent>,
+    /// What happened, newest first.
+    pub(super) recent: VecDeque<Happened>,
+    /// What each ground had counted at the last frame.
+    counted: Vec<u64>,
     /// Events since the window opened.
     pub(super) event_count: u64,
     /// The layout that snapshots belong to.
@@ -29,6 +55,8 @@ pub(super) struct Messages {
     coming: VecDeque<(Arc<Layout>, u64)>,
     /// What became of the layout file last.
     pub(super) file: Option<FileNote>,
+    /// What feet and eyes will have trouble with in the layout.
+    pub(super) warnings: Warnings,
     /// Sentences for the person at the window, oldest first.
     pub(super) notes: VecDeque<String>,
 }
@@ -42,6 +70,8 @@ pub(super) struct FileNote {
     pub(super) at_s: f64,
     /// All problems; `None` if it was loaded.
     pub(super) diagnostics: Option<String>,
+    /// Whether somebody chose it in the window.
+    pub(super) opened: bool,
 }
 
 impl Messages {
@@ -56,10 +86,12 @@ impl Messages {
             layouts,
             notices,
             recent: VecDeque::with_capacity(KEPT),
+            counted: Vec::new(),
             event_count: 0,
             layout,
             coming: VecDeque::new(),
             file: None,
+            warnings: Warnings::default(),
             notes: VecDeque::new(),
         }
     }
@@ -80,31 +112,68 @@ impl Messages {
             self.event_count += 1;
             match self.recent.front_mut() {
                 // A slider on its way is one line that follows it, or it would push out everything else.
-                Some(newest) if follows(newest, &event) => *newest = event,
+                Some(Happened::Event(newest)) if follows(newest, &event) => *newest = event,
                 _ => {
                     self.recent.truncate(KEPT - 1);
-                    self.recent.push_front(event);
+                    self.recent.push_front(Happened::Event(event));
                 }
             }
         }
         for news in self.layouts.try_iter() {
             self.file = Some(match news {
-                LayoutNews::Loaded { layout, revision, name } => {
+                LayoutNews::Loaded { layout, revision, name, opened, warnings } => {
                     self.coming.push_back((layout, revision));
-                    FileNote { name, at_s: now_s, diagnostics: None }
+                    self.warnings = warnings;
+                    FileNote { name, at_s: now_s, diagnostics: None, opened }
                 }
                 LayoutNews::Refused { name, diagnostics } => {
-                    FileNote { name, at_s: now_s, diagnostics: Some(diagnostics) }
+                    FileNote { name, at_s: now_s, diagnostics: Some(diagnostics), opened: false }
                 }
             });
         }
         while let Some((layout, _)) = self.coming.pop_front_if(|(_, from)| *from <= revision) {
             self.layout = layout;
         }
-        for note in self.notices.try_iter() {
-            if !self.notes.contains(&note) {
-                self.notes.push_back(note);
+        while let Ok(note) = self.notices.try_recv() {
+            self.note(note);
+        }
+    }
+
+    /// Lists what has given way on the grounds since the last frame; steps of one walk are one line for each ground.
+    pub(super) fn note_grounds(&mut self, snapshot: &Snapshot) {
+        let counts = snapshot.grounds.iter().map(|ground| ground.counters.events);
+        let before = std::mem::replace(&mut self.counted, counts.collect());
+        if before.len() != self.counted.len() {
+            return;
+        }
+        for (index, (before, now)) in before.into_iter().zip(&self.counted).enumerate() {
+            // Another layout's ground counts anew.
+            let count = now.saturating_sub(before);
+            let Some(ground) = self.layout.grounds.get(index).filter(|_| count > 0) else { continue };
+            match self.recent.front_mut() {
+                Some(Happened::GaveWay { ground: last, count: so_far, at, .. })
+                    if *last == index && snapshot.at.since(*at) < SAME_WALK =>
+                {
+                    (*so_far, *at) = (*so_far + count, snapshot.at);
+                }
+                _ => {
+                    let material = ground.spec.material.name();
+                    self.recent.truncate(KEPT - 1);
+                    self.recent.push_front(Happened::GaveWay {
+                        ground: index,
+                        material,
+                        count,
+                        at: snapshot.at,
+                    });
+                }
             }
+        }
+    }
+
+    /// Says something to the person at the window, unless that is being said.
+    pub(super) fn note(&mut self, note: String) {
+        if !self.notes.contains(&note) {
+            self.notes.push_back(note);
         }
         while self.notes.len() > NOTICES {
             self.notes.pop_front();
@@ -130,13 +199,45 @@ mod tests {
         Arc::new(Layout { title: title.into(), ..map() })
     }
 
+    fn event_of(happened: &Happened) -> &WidgetEvent {
+        let Happened::Event(event) = happened else { panic!("{happened:?}") };
+        event
+    }
+
+    #[test]
+    fn what_gives_way_on_one_walk_is_one_line() {
+        let text = crate::schema::builtin_layout("pond").unwrap();
+        let (kinds, geometry) = (crate::schema::Kinds::builtin(), crate::floor::Geometry::default());
+        let pond = crate::schema::parse_layout(text, "pond", &kinds, &geometry).unwrap().layout;
+        let mut messages = Messages::new(Arc::new(pond), channel().1, channel().1, channel().1);
+        for (at_ms, events) in [(0, 0), (1000, 4), (1500, 6), (9000, 7)] {
+            let mut snapshot = Snapshot { at: Instant::from_millis(at_ms), ..Snapshot::default() };
+            snapshot.grounds = vec![Default::default()];
+            snapshot.grounds[0].counters.events = events;
+            messages.note_grounds(&snapshot);
+        }
+        let counts: Vec<_> = messages
+            .recent
+            .iter()
+            .map(|line| match line {
+                Happened::GaveWay { count, material, .. } => (*count, *material),
+                Happened::Event(event) => panic!("{event:?}"),
+            })
+            .collect();
+        assert_eq!(counts, [(1, "Ice"), (6, "Ice")]);
+    }
+
+    fn loaded(title: &str, revision: u64) -> LayoutNews {
+        let (name, warnings) = ("map.ron".into(), Warnings::default());
+        LayoutNews::Loaded { layout: named(title), revision, name, opened: false, warnings }
+    }
+
     #[test]
     fn a_layout_is_shown_once_snapshots_belong_to_it() {
         let (news, layouts) = channel();
         let mut messages = Messages::new(named("old"), channel().1, layouts, channel().1);
         for (title, revision) in [("newer", 2), ("newest", 3)] {
-            let name = "map.ron".into();
-            news.send(LayoutNews::Loaded { layout: named(title), revision, name }).unwrap();
+            news.send(loaded(title, revision)).unwrap();
         }
         messages.receive(1.0, 1);
         assert_eq!(messages.layout.title, "old", "a foot was still on it");
@@ -155,8 +256,7 @@ mod tests {
         messages.receive(1.0, 0);
         assert_eq!(messages.layout.title, "good");
         assert_eq!(messages.file.as_ref().unwrap().diagnostics, Some(diagnostics));
-        news.send(LayoutNews::Loaded { layout: named("mended"), revision: 1, name: "map.ron".into() })
-            .unwrap();
+        news.send(loaded("mended", 1)).unwrap();
         messages.receive(2.0, 0);
         assert_eq!(messages.file.as_ref().unwrap().diagnostics, None);
     }
@@ -173,7 +273,7 @@ mod tests {
         messages.receive(1.0, 0);
         assert_eq!(messages.recent.len(), KEPT);
         assert_eq!(messages.event_count, 2000);
-        assert_eq!(messages.recent[0].at, crate::units::Instant::from_millis(1999), "newest first");
+        assert_eq!(event_of(&messages.recent[0]).at, Instant::from_millis(1999), "newest first");
         assert_eq!(messages.notes, ["no sound card"]);
     }
 
@@ -188,8 +288,12 @@ mod tests {
         let told = [moved(1, "zoom"), moved(2, "zoom"), moved(3, "volume"), moved(4, "zoom")];
         told.into_iter().for_each(|told| event.send(told).unwrap());
         messages.receive(1.0, 0);
-        let listed: Vec<_> =
-            messages.recent.iter().map(|event| (event.at.micros() / 1000, event.id.as_str())).collect();
+        let listed: Vec<_> = messages
+            .recent
+            .iter()
+            .map(event_of)
+            .map(|event| (event.at.micros() / 1000, event.id.as_str()))
+            .collect();
         assert_eq!(listed, [(4, "zoom"), (3, "volume"), (2, "zoom")]);
         assert_eq!(messages.event_count, 4);
     }

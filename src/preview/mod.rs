@@ -6,11 +6,16 @@
 
 mod app;
 mod bars;
+#[cfg(test)]
+mod drags;
 mod feed;
 mod feet;
 mod floor_view;
+mod keyboard;
+mod lookout;
 mod messages;
 mod panel;
+mod projection;
 mod rate;
 mod scopes;
 mod selection;
@@ -19,8 +24,12 @@ mod style;
 mod tests;
 mod trace;
 mod watch;
+mod zoom;
 
-pub use feed::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed};
+pub use feed::{
+    FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed, Warnings,
+};
+pub use projection::ProjectionOptions;
 
 use eframe::egui;
 use thiserror::Error;
@@ -36,11 +45,18 @@ pub struct PreviewOptions {
     pub size: (f32, f32),
     /// The colours.
     pub theme: Theme,
+    /// The window for a projector.
+    pub projection: ProjectionOptions,
 }
 
 impl Default for PreviewOptions {
     fn default() -> Self {
-        Self { title: "underfoot".into(), size: (1280.0, 800.0), theme: Theme::LIGHT }
+        Self {
+            title: "underfoot".into(),
+            size: (1280.0, 800.0),
+            theme: Theme::LIGHT,
+            projection: ProjectionOptions::default(),
+        }
     }
 }
 
@@ -63,7 +79,7 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         .with_title(&options.title)
         .with_app_id("underfoot")
         .with_inner_size([options.size.0, options.size.1])
-        .with_min_inner_size([720.0, 480.0]);
+        .with_min_inner_size([640.0, 420.0]);
     // No gradients here that dithering would help, and without a graphics card it costs a tenth of each frame.
     let native = eframe::NativeOptions {
         viewport,
@@ -72,12 +88,13 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         ..Default::default()
     };
     keep_memory();
-    let app = app::App::new(input, options);
+    let (title, options) = (options.title.clone(), options.clone());
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
+        let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.theme);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
-    eframe::run_native(&options.title, native, start)
+    eframe::run_native(&title, native, start)
         .map_err(|error| PreviewError::NoWindow(reason(&error.to_string()).to_owned()))
 }
 

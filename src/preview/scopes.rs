@@ -33,6 +33,11 @@ impl Scopes {
         &self.levels
     }
 
+    /// Whether any actuator moves, or did a moment ago.
+    pub(super) fn are_moving(&self) -> bool {
+        self.levels.iter().any(|level| *level > 0.0)
+    }
+
     /// Takes in what the actuators did since the last frame, `elapsed_s` ago.
     pub(super) fn update(&mut self, floor: &Floor, snapshot: &Snapshot, selected: TileId, elapsed_s: f32) {
         let Some(feed) = &mut self.feed else { return };

@@ -72,6 +72,8 @@ fn visuals(visuals: &mut egui::Visuals, theme: &Theme) {
         face.corner_radius = radius;
         face.expansion = 0.0;
     }
+    // What has the focus of the keyboard looks as what is under the mouse; on a panel a hairline would not be seen.
+    visuals.widgets.hovered.bg_stroke = Stroke::new(2.0, color(theme.accent));
     // Boxes to tick have to be seen on the panel.
     visuals.widgets.inactive.bg_fill = color(panel.mix(theme.ink, 0.10));
 }

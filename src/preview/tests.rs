@@ -8,8 +8,11 @@ use egui_kittest::Harness;
 use egui_kittest::kittest::{NodeT, Queryable};
 use glam::Vec2;
 
+use super::ProjectionOptions;
 use super::app::App;
-use super::{FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed};
+use super::{
+    FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed, Warnings,
+};
 use crate::engine::Snapshot;
 use crate::floor::{Corner, Floor, SensorId, TileId};
 use crate::ground::{Crack, GroundCounters, GroundState};
@@ -46,8 +49,8 @@ struct Room {
 struct Feet(Arc<Mutex<Vec<PreviewFoot>>>);
 
 impl FootSink for Feet {
-    fn set(&mut self, feet: &[PreviewFoot]) {
-        *self.0.lock().unwrap() = feet.to_vec();
+    fn lead(&mut self, _over_s: f32, paths: &[Vec<PreviewFoot>]) {
+        *self.0.lock().unwrap() = paths.iter().filter_map(|path| path.last().copied()).collect();
     }
 }
 
@@ -81,6 +84,7 @@ impl Room {
         let input = PreviewInput {
             floor: Arc::new(Floor::default()),
             layout,
+            warnings: Warnings::default(),
             source: "simulated floor".into(),
             snapshots: output,
             events: event_list,
@@ -88,11 +92,15 @@ impl Room {
             notices: notes,
             scopes: Some(Box::new(Silence)),
             feet: simulated.then_some(sink),
+            shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),
             commands: sender,
         };
-        let app = App::new(input, &PreviewOptions::default());
+        // Nobody's own corners.
+        let corners = Some(std::env::temp_dir().join("underfoot no such folder/projection.txt"));
+        let projection = ProjectionOptions { corners, ..ProjectionOptions::default() };
+        let app = App::new(input, &PreviewOptions { projection, ..PreviewOptions::default() });
         let window = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(1.0 / 60.0)
@@ -163,6 +171,10 @@ impl Room {
     fn says(&self, text: &str) -> bool {
         self.window.query_all_by_label_contains(text).next().is_some()
     }
+}
+
+fn loaded(layout: Arc<Layout>, name: String) -> LayoutNews {
+    LayoutNews::Loaded { layout, revision: 0, name, opened: false, warnings: Warnings::default() }
 }
 
 fn middle_of(name: &str) -> Vec2 {
@@ -244,7 +256,7 @@ fn the_standing_foot_stays_where_space_left_it() {
     room.hover(handle + vec2(80.0, 0.0));
     let moved = room.feet();
     assert!(moved.1.unwrap().position.x > standing.position.x + 0.1);
-    assert!(moved.0.is_none(), "the hand holds the standing foot");
+    assert_eq!(moved.0.unwrap().force, Newtons::ZERO, "the hand holds the standing foot");
     room.button(handle + vec2(80.0, 0.0), PointerButton::Primary, false);
     // Space on it lifts it.
     room.window.key_press(Key::Space);
@@ -385,7 +397,7 @@ fn a_bad_layout_is_told_while_the_last_good_one_works() {
     let mut layout = Layout { title: "Mended".into(), ..map() };
     layout.widgets.truncate(1);
     let name = "map.ron".into();
-    room.layouts.send(LayoutNews::Loaded { layout: Arc::new(layout), revision: 0, name }).unwrap();
+    room.layouts.send(loaded(Arc::new(layout), name)).unwrap();
     room.run(3);
     assert!(!room.says("has problems"));
     assert!(room.says("saved changes loaded"));
@@ -443,7 +455,7 @@ fn the_panel_counts_what_gave_way_underfoot() {
     let pond = parse_layout(text, "pond", &Kinds::builtin(), &Floor::default().geometry).unwrap().layout;
     let mut snapshot = at_rest(&pond);
     let layout = Arc::new(pond);
-    room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name: "pond".into() }).unwrap();
+    room.layouts.send(loaded(layout, "pond".into())).unwrap();
     let counters = GroundCounters { events: 5, unfelt: 0, evicted: 2 };
     let cracks = vec![Crack::default(); 3];
     snapshot.grounds = vec![GroundState { cracks, counters, ..GroundState::default() }];
@@ -535,4 +547,86 @@ fn an_effect_is_tuned_played_and_saved() {
     room.window.get_by_label("Effects").click();
     room.run(3);
     assert!(!room.says("Revert"));
+}
+
+#[test]
+fn a_control_with_the_focus_is_pressed_and_slid_by_keys() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Home").focus();
+    room.run(2);
+    room.window.key_down(Key::Enter);
+    room.run(3);
+    let foot = room.feet().0.unwrap();
+    assert!((foot.force.0 - 150.0).abs() < 1.0 && acts_at(&foot).distance(middle_of("Home")) < 0.001);
+    room.window.key_up(Key::Enter);
+    room.run(3);
+    assert!(room.feet().0.is_none_or(|foot| foot.force == Newtons::ZERO));
+    room.window.get_by_label("Time of day").focus();
+    room.run(2);
+    room.window.key_down(Key::Space);
+    room.run(2);
+    room.window.key_down(Key::ArrowRight);
+    room.run(20);
+    let foot = room.feet().0.unwrap();
+    let way = acts_at(&foot) - middle_of("Time of day");
+    assert!(foot.force.0 > 100.0 && way.x > 0.05 && way.y.abs() < 0.001, "{way}");
+    assert!(room.feet().1.is_none(), "Space is the control's while it has the focus");
+}
+
+#[test]
+fn warnings_are_counted_and_listed_and_an_opened_layout_is_not_called_saved() {
+    let mut room = Room::simulated();
+    assert!(!room.says("warning"));
+    let warnings = Warnings { count: 2, text: "warning[U101]: \"home\" is 4.0 cm wide".into() };
+    let (layout, name) = (Arc::new(map()), "map".to_owned());
+    room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name, opened: true, warnings }).unwrap();
+    room.run(3);
+    assert!(room.says("map: opened") && !room.says("saved"));
+    assert!(!room.says("U101"));
+    room.window.get_by_label("2 warnings").click();
+    room.run(3);
+    assert!(room.says("U101"));
+}
+
+#[test]
+fn sensors_of_a_lost_floor_are_not_called_live() {
+    let mut room = Room::simulated();
+    let mut snapshot = at_rest(&map());
+    snapshot.health.counts = [144, 0, 0, 0];
+    snapshot.link = LinkState::Lost;
+    room.write(snapshot);
+    assert!(room.says("Sensors: none heard") && !room.says("144 live"));
+}
+
+#[test]
+fn ctrl_with_the_wheel_zooms_and_leaves_the_force() {
+    let mut room = Room::simulated();
+    let home = room.place("Home");
+    let before = room.window.get_by_label("Home").rect();
+    room.hover(home);
+    room.window.event(Event::MouseWheel {
+        unit: MouseWheelUnit::Line,
+        delta: vec2(0.0, 4.0),
+        phase: egui::TouchPhase::Move,
+        source: egui::MouseWheelSource::Wheel,
+        modifiers: Modifiers::CTRL | Modifiers::COMMAND,
+    });
+    room.run(30);
+    let after = room.window.get_by_label("Home").rect();
+    assert!(after.width() > 1.05 * before.width(), "{before} {after}");
+    assert!((after.center() - home).length() < 2.0, "what is under the mouse stays there");
+    room.press(home);
+    assert!((room.feet().0.unwrap().force.0 - 150.0).abs() < 1.0);
+}
+
+#[test]
+fn the_projection_shows_controls_only_and_is_closed_by_the_key_that_opened_it() {
+    let mut room = Room::simulated();
+    room.window.key_press(Key::F11);
+    room.run(3);
+    assert!(room.says("Projected floor") && room.says("Projected Home"));
+    assert!(!room.says("Corner 1"), "feet and stray clicks move nothing");
+    room.window.key_press(Key::F11);
+    room.run(3);
+    assert!(!room.says("Projected floor"));
 }

@@ -6,6 +6,7 @@ use super::mark::{Ink, Paint, Stroke};
 use super::view::Shoe;
 use super::{Scene, View, outline};
 use crate::engine::FootRole;
+use crate::floor::Rect;
 use crate::sense::Contact;
 
 /// Area of a contact's circle per newton, in square metres: 350 N, half a person, make 13 cm across.
@@ -53,14 +54,15 @@ fn radius_m(force: f32) -> f32 {
 
 /// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons.
 pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) {
+    let mut tags = Vec::new();
     for contact in &view.snapshot.contacts {
         if contact.centroid.is_finite() {
-            self::contact(scene, view, contact);
+            self::contact(scene, view, contact, &mut tags);
         }
     }
 }
 
-fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
+fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec<Rect>) {
     let theme = view.theme;
     let leads = view.snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
     // Objects on the floor are drawn like what no longer counts.
@@ -86,17 +88,12 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
     // A larger floor is seen from further away, a single tile from nearby.
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
     let (ground, size_m) = (Paint::fill(Ink::faint(theme.plate, 0.92)), 0.026 * by);
-    // Beside the circle, to the north-east, but never off the drawing; on a control to the
-    // south-west, for names and values stand in the control's north.
-    let floor = view.geometry.bounds();
-    let mut away = Vec2::new(0.72 * radius + 0.085 * by, 0.72 * radius + 0.030 * by);
-    if view.layout.widget_at(view.snapshot.page, at).is_some() {
-        away = -away;
-    } else if at.x + away.x + 0.08 * by > floor.max.x {
-        away.x = -away.x;
+    let middle = tag_place(view, at, radius, by, tags);
+    let leads_from = (middle - at).clamp_length_max(radius);
+    if middle.distance(at) > radius + 0.10 * by {
+        let stroke = Stroke::new(0.002, Ink::faint(colour, 0.6));
+        scene.add_line(at + leads_from, middle, Paint::stroke(stroke));
     }
-    let inside = Vec2::new(0.08, 0.03) * by;
-    let middle = (at + away).min(floor.max - inside).max(floor.min + inside);
     let edged = ground.with_stroke(Stroke::new(0.0018, Ink::faint(colour, 0.7)));
     let number = contact.id.0;
     let left = if is_object { " · ignored" } else { "" };
@@ -107,6 +104,45 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact) {
         edged,
         format_args!("{number} · {:.0} N{left}", contact.force.0),
     );
+}
+
+/// Where a contact's tag covers neither controls, with their names and values, nor other tags, nor what lies beyond the floor: beside the
+/// circle if there is room, otherwise as near as there is; to the north-east before elsewhere.
+fn tag_place(view: &View<'_>, at: Vec2, radius: f32, by: f32, tags: &mut Vec<Rect>) -> Vec2 {
+    /// Half of a tag.
+    const HALF: Vec2 = Vec2::new(0.075, 0.022);
+    /// Directions in order of preference.
+    const WAYS: [Vec2; 8] = [
+        Vec2::new(0.7, 0.7),
+        Vec2::new(-0.7, 0.7),
+        Vec2::new(0.7, -0.7),
+        Vec2::new(-0.7, -0.7),
+        Vec2::X,
+        Vec2::NEG_X,
+        Vec2::Y,
+        Vec2::NEG_Y,
+    ];
+    let half = HALF * by;
+    let floor = view.geometry.bounds();
+    let controls = view.layout.widgets.iter().filter(|widget| widget.is_on(view.snapshot.page));
+    let areas: Vec<Rect> = controls.map(|widget| widget.area).chain(tags.iter().copied()).collect();
+    let mut best = (f32::INFINITY, at);
+    for step in 0..12_u8 {
+        let farther = 0.03 * by * f32::from(step);
+        for (rank, way) in (0_u8..).zip(WAYS) {
+            let place = at + way * (Vec2::splat(radius + farther) + half);
+            let place = place.clamp(floor.min + half, (floor.max - half).max(floor.min + half));
+            let tag = Rect::from_centre_size(place, 2.0 * half);
+            let covered = areas.iter().filter(|area| area.overlaps(tag)).count() as f32;
+            let on_circle = f32::from(u8::from(place.distance(at) < 0.7 * radius));
+            let cost = 10.0 * covered + 3.0 * on_circle + place.distance(at) + 0.002 * f32::from(rank);
+            if cost < best.0 {
+                best = (cost, place);
+            }
+        }
+    }
+    tags.push(Rect::from_centre_size(best.1, 2.0 * half));
+    best.1
 }
 
 /// A heavy ring with four ticks: this contact operates the controls.

@@ -4,7 +4,7 @@ use glam::Vec2;
 
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::widths::CAP_HEIGHT;
-use super::{Scene, View, holds, outline, terrain};
+use super::{Scene, View, outline, terrain};
 use crate::engine::TileState;
 use crate::floor::{Corner, Rect, TileId};
 use crate::layout::Colour;
@@ -19,7 +19,7 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let by = super::magnification(view.geometry).min(1.0);
     rim(scene, slab, 0.010, theme.shadow, &[(0.032 * by, 0.016), (0.022 * by, 0.030), (0.013 * by, 0.045)]);
     // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
-    let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022);
+    let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022 * seen_from(view));
     seams(scene, view, gap);
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
@@ -29,14 +29,23 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         if terrain::hides(view, cell) {
             continue;
         }
-        let active = view.layout.regions.iter().any(|region| holds(region.area, cell));
-        let colour = theme.plate.mix(theme.accent, if active { TINT } else { 0.0 }).mix(theme.load, share);
+        let colour = theme.plate.mix(theme.load, share);
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
+    }
+    // On a large floor plates are drawn to whole pixels, which would close every other seam.
+    if super::magnification(view.geometry) > 1.5 {
+        seams(scene, view, 0.0);
     }
 }
 
 /// How much of the accent's colour an active area has.
 const TINT: f32 = 0.045;
+
+/// How much wider seams are on a floor larger than the paper's, which is seen from farther away: or half of them would
+/// fall between a screen's pixels. No more than a plate can spare.
+fn seen_from(view: &View<'_>) -> f32 {
+    super::magnification(view.geometry).clamp(1.0, 0.04 * view.geometry.pitch_m() / 0.0022).max(1.0)
+}
 
 /// What is seen between the plates: a frame around all of them and lines between them.
 ///
@@ -48,7 +57,7 @@ fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     let width_m = 0.014 * super::magnification(view.geometry).clamp(0.4, 1.0);
     scene.add_box(slab, 0.010, Paint::stroke(Stroke::new(width_m, colour)));
     // A little wider than the seam, for the plates' round corners.
-    let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006, colour));
+    let stroke = Paint::stroke(Stroke::new(2.0 * gap + 0.006 * seen_from(view), colour));
     let (size, pitch_m) = (slab.size(), view.geometry.pitch_m());
     for column in 1..view.geometry.columns() {
         let south = slab.min + Vec2::new(f32::from(column) * pitch_m, 0.0);
@@ -101,14 +110,8 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
         let area = region.area.grown(-0.010);
-        // Plates within it are tinted already; one that ends amid plates tints its own ground.
-        let cut = view.geometry.tiles().any(|tile| {
-            let plate = view.geometry.plate(tile);
-            plate.grown(-1e-4).overlaps(region.area) && !holds(region.area, plate)
-        });
         let stroke = Stroke::new(0.003, Ink::faint(theme.accent, 0.45));
-        let fill = cut.then_some(Ink::faint(theme.accent, TINT));
-        scene.add_box(area, 0.022, Paint { fill, stroke: Some(stroke) });
+        scene.add_box(area, 0.022, Paint::fill(Ink::faint(theme.accent, TINT)).with_stroke(stroke));
         let size_m = 0.024;
         let lettering = Lettering {
             at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),

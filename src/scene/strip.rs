@@ -42,6 +42,10 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     if view.show.contacts {
         let (state, colour) = match view.snapshot.link {
             LinkState::Waiting => ("no packets yet", theme.warning),
+            // Nominal parts are what every floor begins with, and no fault.
+            LinkState::Live if view.snapshot.health.uncalibrated > 0 && ground::none_live(view) => {
+                ("live, not calibrated", theme.quiet)
+            }
             LinkState::Live if ground::none_live(view) => ("live, all sensors degraded", theme.warning),
             LinkState::Live => ("live", theme.good),
             LinkState::Partial => ("some boards are silent", theme.warning),

@@ -25,6 +25,8 @@ mod floor_text;
 mod goto;
 mod ground;
 mod inherit;
+#[cfg(feature = "save")]
+mod keep_comments;
 mod kind;
 mod lists;
 #[cfg(feature = "ergonomics")]
@@ -56,6 +58,8 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
+#[cfg(feature = "save")]
+pub use keep_comments::keep_comments;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, folder_beside, load_layout, parse_layout};
 pub use places::Places;

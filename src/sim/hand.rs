@@ -1,78 +1,124 @@
-//! Feet moved by hand: set from another thread, smoothed at the sensor rate.
+//! Feet moved by hand: led along paths from another thread, moved at the sensor rate.
 
-use std::sync::Arc;
+use std::collections::VecDeque;
+use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
 
 use glam::Vec2;
-use triple_buffer::{Input, Output, triple_buffer};
 
 use super::foot::{Foot, FootDriver};
 use super::track::turn_between;
 use crate::units::{Instant, Newtons};
 
-/// A handle to set feet with, and the driver that moves them.
+/// A handle to lead feet with, and the driver that moves them.
 ///
 /// The driver goes to the simulated floor's thread, the handle stays with
 /// whoever knows where the feet shall be. When the handle is dropped the feet
 /// lift off and the performance is over.
 #[must_use]
 pub fn feet_by_hand() -> (FootHandle, HandDriver) {
-    let (input, output) = triple_buffer(&Vec::new());
-    let held = Arc::new(());
-    let handle = FootHandle { input, _held: Arc::clone(&held) };
-    (handle, HandDriver { output, held, followers: Vec::new(), last: None })
+    let (paths, led) = channel();
+    (FootHandle { paths }, HandDriver { led, followers: Vec::new(), last: None })
 }
 
-/// Says where feet shall be; the latest word counts.
+/// Says where feet shall go.
 #[derive(Debug)]
 pub struct FootHandle {
-    input: Input<Vec<Foot>>,
-    _held: Arc<()>,
+    paths: Sender<Led>,
 }
 
+/// The paths of all feet, and how long they take, in seconds.
+type Led = (f32, Vec<Vec<Foot>>);
+
 impl FootHandle {
-    /// Where the feet shall be from now on, and what they shall press with.
+    /// Leads each foot along its path, which took the hand `over_s` seconds, after all it was led along before.
     ///
-    /// A foot's place in the list is its identity: lift one by setting its force
-    /// to zero, or leave out the last ones. A foot that is not finite is taken as
-    /// lifted. Never blocks.
-    pub fn set(&mut self, feet: Vec<Foot>) {
-        self.input.write(feet);
+    /// A path is a list of places with what the foot presses with there. A foot that is put down lands before it
+    /// slides, stays down for 150 ms at least, and lifts where the path lifts it. It slides as fast as it is led, at
+    /// most 2 m/s; so the path counts, not how seldom it is told. A foot's place in the list is its identity. One
+    /// without a path, or beyond the list's end, lifts where it is; so does one led to a place that is not finite. A
+    /// time that is not finite counts as none. Never blocks.
+    pub fn lead(&mut self, over_s: f32, feet: Vec<Vec<Foot>>) {
+        // A floor that has ended has no feet to lead.
+        let _ = self.paths.send((over_s, feet));
     }
 }
 
-/// Moves the feet of a [`FootHandle`]: 60 words a second become motion at 1 kHz without steps.
+/// Moves the feet of a [`FootHandle`]: paths told now and then become motion at 1 kHz without steps.
 #[derive(Debug)]
 pub struct HandDriver {
-    output: Output<Vec<Foot>>,
-    held: Arc<()>,
+    led: Receiver<Led>,
     followers: Vec<Follower>,
     last: Option<Instant>,
 }
 
-/// Time constant of the followers, in seconds: they lag 15 ms behind a steady motion.
+/// Time constant of what smooths the motion, in seconds: it lags 15 ms behind a steady one.
 const FOLLOW_S: f32 = 0.0075;
+
+/// Time constant of the force, in seconds: nine tenths of it within 47 ms, a brisk step and not a stamp.
+const PRESS_S: f32 = 0.012;
 
 /// Below this a foot is in the air and may be anywhere, in newtons.
 const AIRBORNE: f32 = 0.5;
+
+/// Share of its force from which on a foot has landed and may slide.
+const LANDED: f32 = 0.8;
+
+/// The shortest press, in seconds: a click on a mouse is over before a foot has come down.
+const SHORTEST_S: f32 = 0.150;
+
+/// The fastest that a foot slides, in metres per second: no leg follows a mouse that is flung across a screen.
+const FASTEST_M_S: f32 = 2.0;
+
+/// How near a foot has to be to where it shall lift, in metres: it does not slide while it rises.
+const THERE_M: f32 = 0.002;
+
+/// The least time in which what is left of a path is walked, in seconds, so that uneven frames of a window become an
+/// even motion.
+const EVEN_S: f32 = 0.050;
+
+/// The most, however long the window stood still.
+const LONGEST_S: f32 = 0.250;
+
+/// Places that wait at most: half a minute of a mouse that reports 125 times a second.
+const MOST_PLACES: usize = 4096;
 
 impl FootDriver for HandDriver {
     fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool {
         feet.clear();
         let dt = self.last.map_or(0.0, |last| at.since(last).as_secs_f32());
         self.last = Some(at);
-        let dropped = Arc::strong_count(&self.held) == 1;
-        let wanted: &[Foot] = if dropped { &[] } else { self.output.read() };
-        let missing = wanted.len().saturating_sub(self.followers.len());
-        self.followers.extend(wanted.iter().rev().take(missing).rev().map(Follower::over));
-        for (index, follower) in self.followers.iter_mut().enumerate() {
-            follower.follow(wanted.get(index).filter(|foot| is_finite(foot)), dt);
+        let dropped = loop {
+            match self.led.try_recv() {
+                Ok((over_s, paths)) => self.lead(over_s, &paths),
+                Err(TryRecvError::Empty) => break false,
+                Err(TryRecvError::Disconnected) => break true,
+            }
+        };
+        if dropped {
+            self.lead(0.0, &[]);
         }
-        while self.followers.len() > wanted.len() && self.followers.last().is_some_and(Follower::is_airborne)
-        {
+        self.followers.iter_mut().for_each(|follower| follower.step(dt));
+        while self.followers.last().is_some_and(Follower::is_gone) {
             self.followers.pop();
         }
         feet.extend(self.followers.iter().map(Follower::foot));
         !(dropped && feet.is_empty())
+    }
+}
+
+impl HandDriver {
+    fn lead(&mut self, over_s: f32, paths: &[Vec<Foot>]) {
+        for index in 0..paths.len().max(self.followers.len()) {
+            let path = paths.get(index).map_or(&[][..], Vec::as_slice);
+            match self.followers.get_mut(index) {
+                Some(follower) => follower.lead(over_s, path),
+                None => {
+                    let mut follower = Follower::over(path.first());
+                    follower.lead(over_s, path);
+                    self.followers.push(follower);
+                }
+            }
+        }
     }
 }
 
@@ -81,63 +127,169 @@ fn is_finite(foot: &Foot) -> bool {
         && [foot.heading, foot.length_m, foot.force.0, foot.roll].iter().all(|number| number.is_finite())
 }
 
-/// One foot on its way to where it is wanted.
-#[derive(Clone, Copy, Debug)]
+/// One foot on its way along its path.
+#[derive(Clone, Debug)]
 struct Follower {
-    length_m: f32,
     x: Spring,
     y: Spring,
     heading: Spring,
     force: Spring,
     roll: Spring,
+    /// How far along its path it is led.
+    goal: Foot,
+    /// What is left of the path.
+    path: VecDeque<Foot>,
+    /// Time in which that is walked, in seconds.
+    left_s: f32,
+    /// How long it has been down.
+    down_s: f32,
+    /// Whether it bears what it shall and may slide.
+    landed: bool,
+    /// Whether it was left out of what it was told last.
+    left_out: bool,
 }
 
 impl Follower {
-    /// A foot in the air over where it is wanted.
-    fn over(wanted: &Foot) -> Self {
-        let safe = if is_finite(wanted) {
-            *wanted
-        } else {
-            Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.27, force: Newtons::ZERO, roll: 0.0 }
-        };
-        Self {
-            length_m: safe.length_m,
-            x: Spring::at(safe.position.x),
-            y: Spring::at(safe.position.y),
-            heading: Spring::at(safe.heading),
+    /// A foot in the air over the first place of its path.
+    fn over(first: Option<&Foot>) -> Self {
+        let anywhere =
+            Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.27, force: Newtons::ZERO, roll: 0.0 };
+        let goal = Foot { force: Newtons::ZERO, ..first.copied().filter(is_finite).unwrap_or(anywhere) };
+        let mut follower = Self {
+            x: Spring::at(0.0),
+            y: Spring::at(0.0),
+            heading: Spring::at(0.0),
             force: Spring::at(0.0),
-            roll: Spring::at(safe.roll),
+            roll: Spring::at(0.0),
+            goal,
+            path: VecDeque::new(),
+            left_s: 0.0,
+            down_s: 0.0,
+            landed: false,
+            left_out: false,
+        };
+        follower.jump(goal);
+        follower
+    }
+
+    fn lead(&mut self, over_s: f32, path: &[Foot]) {
+        let before_m = self.length_left();
+        self.left_out = path.is_empty();
+        let last = self.path.back().copied().unwrap_or(self.goal);
+        let lifted = Foot { force: Newtons::ZERO, ..last };
+        if path.is_empty() && last.force > Newtons::ZERO {
+            self.path.push_back(lifted);
         }
+        for place in path {
+            let last = self.path.back().copied().unwrap_or(self.goal);
+            let place = if is_finite(place) { *place } else { Foot { force: Newtons::ZERO, ..last } };
+            self.path.push_back(Foot { force: place.force.max(Newtons::ZERO), ..place });
+        }
+        // A hand that rests gives no more time for what it led the foot along before.
+        if self.length_left() > before_m {
+            self.left_s = if over_s.is_finite() { over_s.clamp(EVEN_S, LONGEST_S) } else { EVEN_S };
+        }
+        // Of what nobody walked for so long, the newest counts.
+        let excess = self.path.len().saturating_sub(MOST_PLACES);
+        self.path.drain(..excess);
     }
 
     fn is_airborne(&self) -> bool {
         self.force.value < AIRBORNE
     }
 
-    fn follow(&mut self, wanted: Option<&Foot>, dt: f32) {
-        if let Some(wanted) = wanted {
-            self.length_m = wanted.length_m;
-            let heading = self.heading.value + turn_between(self.heading.value, wanted.heading);
-            let goals = [wanted.position.x, wanted.position.y, heading, wanted.roll];
-            let springs = [&mut self.x, &mut self.y, &mut self.heading, &mut self.roll];
-            for (spring, goal) in springs.into_iter().zip(goals) {
-                if self.force.value < AIRBORNE {
-                    *spring = Spring::at(goal);
-                } else {
-                    spring.follow(goal, dt);
+    fn is_gone(&self) -> bool {
+        self.left_out && self.path.is_empty() && self.is_airborne()
+    }
+
+    fn step(&mut self, dt: f32) {
+        self.walk(dt);
+        let Foot { position, heading, roll, force, .. } = self.goal;
+        if self.is_airborne() && force == Newtons::ZERO {
+            self.jump(self.goal);
+        } else {
+            let heading = self.heading.value + turn_between(self.heading.value, heading);
+            self.x.follow(position.x, FOLLOW_S, dt);
+            self.y.follow(position.y, FOLLOW_S, dt);
+            self.heading.follow(heading, FOLLOW_S, dt);
+            self.roll.follow(roll, FOLLOW_S, dt);
+        }
+        self.force.follow(force.0, PRESS_S, dt);
+        self.down_s += dt;
+        self.landed = force > Newtons::ZERO && (self.landed || self.force.value >= LANDED * force.0);
+    }
+
+    /// Leads the goal along the path, as far as a foot gets in `dt` seconds.
+    fn walk(&mut self, dt: f32) {
+        let speed = (self.length_left() / self.left_s.max(dt).max(1e-4)).min(FASTEST_M_S);
+        let mut way_m = speed * dt;
+        while let Some(next) = self.path.front().copied() {
+            match (self.goal.force > Newtons::ZERO, next.force > Newtons::ZERO) {
+                // What was lifted has to be in the air before it is anywhere else.
+                (false, _) if !self.is_airborne() => return,
+                (false, false) => self.goal = next,
+                (false, true) => {
+                    self.jump(next);
+                    self.down_s = 0.0;
+                    self.landed = false;
+                    self.goal = next;
+                }
+                (true, _) if !self.landed => return,
+                (true, _) if self.down_s < SHORTEST_S && next.force == Newtons::ZERO => return,
+                (true, _) => {
+                    let distance = self.goal.position.distance(next.position);
+                    if distance > way_m {
+                        let here = self.goal.position.lerp(next.position, way_m / distance);
+                        let force = if next.force > Newtons::ZERO { next.force } else { self.goal.force };
+                        self.goal = Foot { position: here, force, ..next };
+                        self.left_s -= dt;
+                        return;
+                    }
+                    way_m -= distance;
+                    let is_there = self.place().distance(next.position) < THERE_M;
+                    if next.force == Newtons::ZERO && !is_there {
+                        self.goal = Foot { force: self.goal.force, ..next };
+                        return;
+                    }
+                    self.goal = next;
                 }
             }
+            self.path.pop_front();
         }
-        self.force.follow(wanted.map_or(0.0, |foot| foot.force.0.max(0.0)), dt);
+    }
+
+    /// Length of the path until the foot is next lifted, in metres.
+    fn length_left(&self) -> f32 {
+        let mut here = self.goal.position;
+        let mut length = 0.0;
+        for place in &self.path {
+            length += here.distance(place.position);
+            here = place.position;
+            if place.force == Newtons::ZERO {
+                break;
+            }
+        }
+        length
+    }
+
+    fn jump(&mut self, to: Foot) {
+        self.x = Spring::at(to.position.x);
+        self.y = Spring::at(to.position.y);
+        self.heading = Spring::at(to.heading);
+        self.roll = Spring::at(to.roll);
+    }
+
+    fn place(&self) -> Vec2 {
+        Vec2::new(self.x.value, self.y.value)
     }
 
     fn foot(&self) -> Foot {
         // A lifted foot's force only fades out; the last trace of it is not a contact.
         let force = if self.force.value < 0.01 { 0.0 } else { self.force.value };
         Foot {
-            position: Vec2::new(self.x.value, self.y.value),
+            position: self.place(),
             heading: self.heading.value,
-            length_m: self.length_m,
+            length_m: self.goal.length_m,
             force: Newtons(force),
             roll: self.roll.value,
         }
@@ -156,9 +308,9 @@ impl Spring {
         Self { value, per_s: 0.0 }
     }
 
-    /// The exact motion over `dt` seconds, so any step is stable.
-    fn follow(&mut self, goal: f32, dt: f32) {
-        let rate = 1.0 / FOLLOW_S;
+    /// The exact motion over `dt` seconds with the given time constant, so any step is stable.
+    fn follow(&mut self, goal: f32, constant_s: f32, dt: f32) {
+        let rate = 1.0 / constant_s;
         let off = self.value - goal;
         let push = self.per_s + rate * off;
         let fade = (-rate * dt).exp();
@@ -175,89 +327,135 @@ mod tests {
         Foot { position: Vec2::new(x, 0.5), heading: 0.0, length_m: 0.27, force: Newtons(force), roll: 0.4 }
     }
 
-    #[test]
-    fn a_mouse_at_sixty_hertz_becomes_a_smooth_slide() {
+    /// What becomes of a hand that tells its path every `frame_ms`, `at` each millisecond.
+    fn led(frame_ms: u64, length_ms: u64, at: impl Fn(u64) -> Foot) -> Vec<Foot> {
         let (mut handle, mut driver) = feet_by_hand();
-        let mut feet = Vec::new();
-        let mut places = Vec::new();
-        for ms in 0..600u64 {
-            if ms % 17 == 0 {
-                // Half a metre per second.
-                handle.set(vec![foot(0.0005 * ms as f32, 300.0)]);
+        let (mut feet, mut walked) = (Vec::new(), Vec::new());
+        for ms in 0..length_ms {
+            if ms % frame_ms == 0 {
+                // Mice report some 125 times a second.
+                let path = (0..frame_ms.div_ceil(8)).rev().map(|back| at(ms.saturating_sub(8 * back)));
+                handle.lead(frame_ms as f32 * 1e-3, vec![path.collect()]);
             }
             assert!(driver.feet(Instant::from_millis(ms), &mut feet));
-            places.push(feet[0].position.x);
+            walked.push(feet[0]);
         }
-        let speeds: Vec<f32> = places[100..].windows(2).map(|pair| (pair[1] - pair[0]) * 1e3).collect();
-        let (slow, fast) = speeds.iter().fold((9.0f32, 0.0f32), |(l, h), &v| (l.min(v), h.max(v)));
-        // Unsmoothed it would jump 8.5 mm in a millisecond (8.5 m/s) and then rest.
-        assert!(slow > 0.2 && fast < 0.9, "{slow} to {fast} m/s");
-        let lag = 0.0005 * 599.0 - places[599];
-        assert!((0.005..0.018).contains(&lag), "15 ms plus the mouse's own 8 ms are about 12 mm: {lag}");
+        walked
+    }
+
+    #[test]
+    fn a_mouse_becomes_a_smooth_slide_at_ten_frames_a_second_as_at_sixty() {
+        for frame_ms in [16, 33, 100] {
+            // Half a metre per second, once it is down.
+            let walked = led(frame_ms, 1500, |ms| foot(0.0005 * ms.saturating_sub(100) as f32, 300.0));
+            let speeds: Vec<f32> = walked[500..]
+                .windows(2)
+                .map(|pair| (pair[1].position.x - pair[0].position.x) * 1e3)
+                .collect();
+            let (slow, fast) = speeds.iter().fold((9.0f32, 0.0f32), |(l, h), &v| (l.min(v), h.max(v)));
+            // Unsmoothed it would jump 50 mm in a millisecond (50 m/s) and then rest.
+            assert!(slow > 0.3 && fast < 0.8, "{slow} to {fast} m/s at {frame_ms} ms");
+            let lag_s = (0.0005 * 1399.0 - walked[1499].position.x) / 0.5;
+            assert!(lag_s < 0.02 + 2e-3 * frame_ms.max(50) as f32, "{lag_s} s at {frame_ms} ms");
+        }
     }
 
     #[test]
     fn force_comes_and_goes_without_steps() {
-        let (mut handle, mut driver) = feet_by_hand();
-        let mut feet = Vec::new();
-        let mut forces = Vec::new();
-        handle.set(vec![foot(0.5, 200.0)]);
-        for ms in 0..300u64 {
-            if ms == 150 {
-                handle.set(vec![foot(0.5, 0.0)]);
-            }
-            driver.feet(Instant::from_millis(ms), &mut feet);
-            forces.push(feet[0].force.0);
-        }
-        assert!(forces[0] < 1.0 && forces[60] > 195.0 && forces[149] > 199.9 && forces[299] == 0.0);
+        let forces: Vec<f32> = led(16, 400, |ms| foot(0.5, if ms < 150 { 200.0 } else { 0.0 }))
+            .iter()
+            .map(|f| f.force.0)
+            .collect();
+        assert!(forces[0] < 1.0 && forces[60] > 190.0 && forces[149] > 199.9 && forces[399] == 0.0);
         let steepest = forces.windows(2).map(|pair| (pair[1] - pair[0]).abs()).fold(0.0, f32::max);
         assert!(steepest < 12.0, "{steepest} N in a millisecond");
         assert!(forces.iter().all(|&force| (0.0..200.1).contains(&force)));
     }
 
     #[test]
+    fn a_foot_lands_before_it_slides_and_lifts_where_the_path_lifts_it() {
+        // All within one frame: down, 30 cm to the east, up.
+        let (mut handle, mut driver) = feet_by_hand();
+        let mut feet = Vec::new();
+        handle.lead(0.1, vec![vec![foot(0.2, 0.0), foot(0.2, 100.0), foot(0.5, 100.0), foot(0.5, 0.0)]]);
+        let mut most = 0.0_f32;
+        for ms in 0..600 {
+            driver.feet(Instant::from_millis(ms), &mut feet);
+            let foot = feet[0];
+            if foot.force.0 > AIRBORNE && foot.force.0 < 0.7 * 100.0 {
+                let off = (foot.position.x - 0.2).abs().min((foot.position.x - 0.5).abs());
+                assert!(off < 0.001, "{foot:?} is neither where it came down nor where it lifts");
+            }
+            most = most.max(foot.force.0);
+        }
+        assert!(most > 95.0, "{most}");
+        assert_eq!((feet[0].position.x, feet[0].force), (0.5, Newtons::ZERO));
+    }
+
+    #[test]
+    fn a_click_is_a_whole_step_and_a_flung_mouse_is_followed_as_fast_as_a_leg_can() {
+        let (mut handle, mut driver) = feet_by_hand();
+        let mut feet = Vec::new();
+        handle.lead(0.016, vec![vec![foot(0.2, 150.0), foot(0.2, 0.0)]]);
+        let mut down_ms = 0;
+        for ms in 0..400 {
+            driver.feet(Instant::from_millis(ms), &mut feet);
+            down_ms += u64::from(feet[0].force.0 > 0.9 * 150.0);
+        }
+        assert!((80..250).contains(&down_ms), "{down_ms}");
+        handle.lead(0.016, vec![vec![foot(0.2, 150.0), foot(1.2, 150.0)]]);
+        let mut last = 0.2;
+        for ms in 400..1200 {
+            driver.feet(Instant::from_millis(ms), &mut feet);
+            assert!(feet[0].position.x - last < 1.1e-3 * FASTEST_M_S);
+            last = feet[0].position.x;
+        }
+        assert!((last - 1.2).abs() < 1e-3, "{last}");
+    }
+
+    #[test]
     fn a_lifted_foot_lands_where_it_is_wanted_and_not_on_the_way() {
         let (mut handle, mut driver) = feet_by_hand();
         let mut feet = Vec::new();
-        handle.set(vec![foot(0.2, 100.0)]);
-        (0..100).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
-        handle.set(vec![foot(0.2, 0.0)]);
-        (100..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
-        handle.set(vec![foot(1.2, 100.0)]);
-        for ms in 200..300 {
+        handle.lead(0.0, vec![vec![foot(0.2, 100.0)]]);
+        (0..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
+        handle.lead(0.0, vec![vec![foot(0.2, 0.0), foot(1.2, 100.0)]]);
+        for ms in 200..500 {
             driver.feet(Instant::from_millis(ms), &mut feet);
-            assert_eq!(feet[0].position.x, 1.2);
+            let x = feet[0].position.x;
+            assert!((x - 0.2).abs() < 1e-4 || (x - 1.2).abs() < 1e-4, "{x}");
         }
+        assert_eq!(feet[0].position.x, 1.2);
     }
 
     #[test]
     fn feet_left_out_lift_and_go_and_a_dropped_handle_ends_the_performance() {
         let (mut handle, mut driver) = feet_by_hand();
         let mut feet = Vec::new();
-        handle.set(vec![foot(0.2, 100.0), foot(0.5, 100.0)]);
-        (0..100).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
-        handle.set(vec![foot(0.2, 100.0)]);
-        driver.feet(Instant::from_millis(100), &mut feet);
+        handle.lead(0.0, vec![vec![foot(0.2, 100.0)], vec![foot(0.5, 100.0)]]);
+        (0..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
+        handle.lead(0.0, vec![vec![foot(0.2, 100.0)]]);
+        driver.feet(Instant::from_millis(200), &mut feet);
         assert_eq!(feet.len(), 2, "it lifts before it goes");
-        (101..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
+        (201..400).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
         assert_eq!(feet.len(), 1);
         drop(handle);
-        let end = (200..400).find(|&ms| !driver.feet(Instant::from_millis(ms), &mut feet));
-        assert!(end.is_some_and(|ms| ms > 210), "{end:?}");
+        let end = (400..700).find(|&ms| !driver.feet(Instant::from_millis(ms), &mut feet));
+        assert!(end.is_some_and(|ms| ms > 410), "{end:?}");
     }
 
     #[test]
     fn nonsense_lifts_the_foot_where_it_is() {
         let (mut handle, mut driver) = feet_by_hand();
         let mut feet = Vec::new();
-        handle.set(vec![foot(f32::NAN, 100.0)]);
+        handle.lead(f32::NAN, vec![vec![foot(f32::NAN, 100.0)]]);
         driver.feet(Instant::START, &mut feet);
         assert!(is_finite(&feet[0]));
-        handle.set(vec![foot(0.7, 100.0)]);
-        (1..100).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
+        handle.lead(0.0, vec![vec![foot(0.7, 100.0)]]);
+        (1..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
         assert_eq!(feet[0].position.x, 0.7);
-        handle.set(vec![foot(0.7, f32::INFINITY)]);
-        (100..200).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
+        handle.lead(0.0, vec![vec![foot(0.7, f32::INFINITY)]]);
+        (200..400).for_each(|ms| assert!(driver.feet(Instant::from_millis(ms), &mut feet)));
         assert_eq!((feet[0].position.x, feet[0].force), (0.7, Newtons::ZERO));
     }
 }

@@ -58,6 +58,8 @@ mod sensor;
 mod slide;
 mod sway;
 mod track;
+mod visit;
+mod watched;
 mod way;
 
 pub use floor::{Sensing, SimConfig, SimFloor};
@@ -80,3 +82,5 @@ pub use script::Script;
 pub use seam::SeamConfig;
 pub use sensor::{PartConfig, SensorFault};
 pub use slide::Slide;
+pub use visit::{Visit, visit};
+pub use watched::{WatchedFeet, watched};

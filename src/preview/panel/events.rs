@@ -4,9 +4,11 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{ScrollArea, Sense, Ui, WidgetInfo, vec2};
 
 use super::super::app::App;
+use super::super::messages::Happened;
 use super::super::style::{Row, quiet, section};
 use crate::egui_painter::color;
 use crate::scene::Theme;
+use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
 
 /// Height of one line, in points.
@@ -28,12 +30,29 @@ impl App {
             if recent.is_empty() {
                 ui.label(quiet(theme, "nothing yet"));
             }
-            for event in lines.filter_map(|line| recent.get(line)) {
-                show(ui, theme, event);
+            for happened in lines.filter_map(|line| recent.get(line)) {
+                match happened {
+                    Happened::Event(event) => show(ui, theme, event),
+                    Happened::GaveWay { material, count, at, .. } => {
+                        gave_way(ui, theme, material, *count, *at)
+                    }
+                }
             }
         });
         ui.spacing_mut().item_spacing.y = 5.0;
     }
+}
+
+/// Ground that gave way, so many times.
+fn gave_way(ui: &mut Ui, theme: &Theme, material: &str, count: u64, at: Instant) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
+    let spoken = format!("{material} gave way {count}");
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let line = Row { ui, rect, size: 12.5 };
+    line.right(0.19, &format!("{:.3}", at.secs()), color(theme.quiet));
+    line.left(0.23, 0.56, material, color(theme.ink));
+    line.left(0.58, 0.82, "gave way", color(theme.haptic));
+    line.right(1.0, &format!("{count} ×"), color(theme.ink));
 }
 
 fn show(ui: &mut Ui, theme: &Theme, event: &WidgetEvent) {

@@ -20,6 +20,12 @@ impl App {
             return;
         }
         let health = &snapshot.health;
+        if snapshot.link == LinkState::Lost {
+            ui.add_space(2.0);
+            let text = "Sensors: none heard, the link is lost";
+            ui.label(egui::RichText::new(text).color(color(theme.fault)));
+            return;
+        }
         let colour = match health {
             health if health.count(Quality::Faulty) > 0 => theme.fault,
             health if health.is_well() => theme.ink,

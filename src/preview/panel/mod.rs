@@ -20,7 +20,16 @@ use super::style::panel_frame;
 const EVENTS: f32 = 150.0;
 
 impl App {
+    /// Whether the panel is there in a window of this width, in points: where the floor would have no room, only if
+    /// somebody wants it.
+    pub(in crate::preview) fn shows_panel(&self, width: f32) -> bool {
+        self.panel_wanted.unwrap_or(width >= 2.2 * 304.0)
+    }
+
     pub(super) fn side_panel(&mut self, ui: &mut Ui) {
+        if !self.shows_panel(ui.ctx().content_rect().width()) {
+            return;
+        }
         let frame = panel_frame(&self.theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         let panel = Panel::right("side panel").frame(frame).resizable(true);
         panel.default_size(304.0).size_range(264.0..=440.0).show(ui, |ui| {

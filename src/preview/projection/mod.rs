@@ -1,0 +1,310 @@
+//! The floor for a projector: a window of its own with the controls and nothing else, laid onto the real floor by its
+//! corners.
+//!
+//! It only shows. Feet work the controls on the floor itself; the corners move by mouse and keys of this computer, and
+//! only while they are being adjusted.
+
+mod homography;
+mod placement;
+
+use std::path::PathBuf;
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Align2, Color32, CursorIcon, FontId, Key, Pos2, Rect, Sense, Stroke, Ui, ViewportBuilder,
+    ViewportCommand, ViewportId, WidgetInfo, pos2, vec2,
+};
+use glam::{DVec2, Vec2};
+
+use self::placement::{Placement, usual_file};
+use super::app::App;
+use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
+use crate::layout::Colour;
+use crate::scene::{self, Scene, Show, Theme, View};
+
+/// Radius of a corner's handle, in points.
+const HANDLE: f32 = 22.0;
+
+/// How far an arrow key moves a corner, in points; with Shift, and without.
+const NUDGE: (f32, f32) = (10.0, 1.0);
+
+/// What is thrown onto the floor. Black is where no light falls: on the plates, which are there already.
+const PROJECTED: Theme = Theme {
+    canvas: Colour::rgb(0, 0, 0),
+    seam: Colour::rgb(0, 0, 0),
+    plate: Colour::rgb(0, 0, 0),
+    quiet: Colour::rgb(0xd8, 0xd4, 0xcc),
+    ..Theme::DARK
+};
+
+/// How the floor is projected at first.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct ProjectionOptions {
+    /// Whether its window is open at once, over the whole screen.
+    pub open: bool,
+    /// The screen that it fills, as the system counts them from 0; `None` for the one it opens on.
+    pub monitor: Option<usize>,
+    /// The file that remembers the corners, in place of the usual one.
+    pub corners: Option<PathBuf>,
+}
+
+/// The projector's window and what it remembers.
+pub(super) struct Projection {
+    is_open: bool,
+    is_full: bool,
+    monitor: Option<usize>,
+    file: Option<PathBuf>,
+    /// `None` until the picture's shape is known and no file says it.
+    placement: Option<Placement>,
+    /// The corner that keys move, while corners are adjusted.
+    adjusting: Option<usize>,
+    scene: Scene,
+    palette: Palette,
+}
+
+impl Projection {
+    /// As `options` say; a sentence for the person at the window if the file of corners can't be used.
+    pub(super) fn new(options: &ProjectionOptions) -> (Self, Option<String>) {
+        let file = options.corners.clone().or_else(usual_file);
+        let read = file.as_deref().map_or(Ok(None), Placement::load);
+        let (placement, wrong) = read.map_or_else(|wrong| (None, Some(wrong)), |placement| (placement, None));
+        let projection = Self {
+            is_open: options.open,
+            is_full: options.open || options.monitor.is_some(),
+            monitor: options.monitor,
+            file,
+            placement,
+            adjusting: None,
+            scene: Scene::new(),
+            palette: Palette::default(),
+        };
+        (projection, wrong)
+    }
+
+    pub(super) fn is_open(&self) -> bool {
+        self.is_open
+    }
+
+    /// Opens the window, or closes it.
+    pub(super) fn toggle(&mut self) {
+        self.is_open = !self.is_open;
+        self.adjusting = None;
+    }
+
+    fn window(&self) -> ViewportBuilder {
+        let window = ViewportBuilder::default()
+            .with_title("underfoot: the floor")
+            .with_app_id("underfoot")
+            .with_inner_size([960.0, 720.0])
+            .with_fullscreen(self.is_full);
+        match self.monitor.filter(|_| self.is_full) {
+            Some(monitor) => window.with_monitor(monitor),
+            None => window,
+        }
+    }
+
+    /// What keys do in this window; the answer is whether the placement has changed.
+    fn obey_keys(&mut self, ui: &Ui, size: Vec2, floor: f32) -> bool {
+        let pressed = |key: Key| ui.input(|i| i.key_pressed(key));
+        if pressed(Key::Escape) && self.adjusting.is_some() {
+            self.adjusting = None;
+        } else if pressed(Key::Escape) || pressed(Key::F11) {
+            self.toggle();
+        }
+        if pressed(Key::F) {
+            self.is_full = !self.is_full;
+        }
+        if pressed(Key::N) {
+            (self.is_full, self.monitor) = (true, Some(self.monitor.map_or(0, |monitor| (monitor + 1) % 8)));
+        }
+        if pressed(Key::C) {
+            self.adjusting = if self.adjusting.is_some() { None } else { Some(0) };
+        }
+        let (Some(placement), Some(selected)) = (&mut self.placement, &mut self.adjusting) else {
+            return false;
+        };
+        let before = *placement;
+        for (index, key) in [Key::Num1, Key::Num2, Key::Num3, Key::Num4].into_iter().enumerate() {
+            if pressed(key) {
+                *selected = index;
+            }
+        }
+        placement.mirrored ^= pressed(Key::M);
+        placement.quarter_turns = (placement.quarter_turns + u8::from(pressed(Key::R))) % 4;
+        if pressed(Key::Home) {
+            *placement = Placement::fit(floor, size.x / size.y);
+        }
+        let by = if ui.input(|i| i.modifiers.shift) { NUDGE.0 } else { NUDGE.1 };
+        for (key, way) in [
+            (Key::ArrowLeft, Vec2::NEG_X),
+            (Key::ArrowRight, Vec2::X),
+            (Key::ArrowUp, Vec2::NEG_Y),
+            (Key::ArrowDown, Vec2::Y),
+        ] {
+            if pressed(key) {
+                *placement = placement.moved(*selected, placement.corners[*selected] + way * by / size);
+            }
+        }
+        *placement != before
+    }
+
+    /// Handles at the corners; the answer is whether one was let go elsewhere.
+    fn adjust(&mut self, ui: &mut Ui, picture: Rect, size: Vec2) -> bool {
+        let (Some(placement), Some(selected)) = (&mut self.placement, &mut self.adjusting) else {
+            return false;
+        };
+        let mut let_go = false;
+        let on_picture = |corner: Vec2| picture.min + vec2(corner.x, corner.y) * picture.size();
+        for index in 0..4 {
+            // A corner beyond the picture is taken hold of at its edge.
+            let at = on_picture(placement.corners[index]);
+            let shown = picture.shrink(HANDLE).clamp(at);
+            let area = Rect::from_center_size(shown, egui::Vec2::splat(2.0 * HANDLE));
+            let handle = ui.interact(area, ui.scope_id().with(("corner", index)), Sense::drag());
+            handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Corner {}", index + 1)));
+            if handle.drag_started() {
+                *selected = index;
+            }
+            let drag = handle.drag_delta();
+            if drag != egui::Vec2::ZERO {
+                let to = placement.corners[index] + Vec2::new(drag.x, drag.y) / size;
+                *placement = placement.moved(index, to);
+            }
+            let_go |= handle.drag_stopped();
+        }
+        let painter = ui.painter();
+        let line = color(PROJECTED.cursor);
+        let corners = placement.corners.map(on_picture);
+        for (index, &corner) in corners.iter().enumerate() {
+            painter.line_segment([corner, corners[(index + 1) % 4]], Stroke::new(2.0, line));
+            let shown = picture.shrink(HANDLE).clamp(corner);
+            let fill = if index == *selected { line } else { Color32::BLACK };
+            painter.circle(shown, HANDLE - 2.0, fill, Stroke::new(2.0, line));
+            let number = format!("{}", index + 1);
+            painter.text(shown, Align2::CENTER_CENTER, number, FontId::proportional(20.0), Color32::WHITE);
+        }
+        help(ui, picture);
+        let_go
+    }
+}
+
+/// How to adjust the corners, in the middle of the picture.
+fn help(ui: &Ui, picture: Rect) {
+    let lines = [
+        "Drag each corner onto the floor’s own corner",
+        "1 to 4 and arrows: by a point, with Shift by ten",
+        "M mirror     R turn     Home start anew",
+        "F full screen     N next screen",
+        "C or Esc: done",
+    ];
+    let size = (picture.width() / 44.0).clamp(13.0, 30.0);
+    let height = 1.5 * size;
+    let middle = picture.center();
+    let half = vec2(15.0 * size, 0.5 * height * (lines.len() as f32 + 1.0));
+    ui.painter().rect_filled(
+        Rect::from_center_size(middle, 2.0 * half),
+        10.0,
+        Color32::from_black_alpha(220),
+    );
+    for (index, line) in lines.into_iter().enumerate() {
+        let at = pos2(middle.x, middle.y + (index as f32 - 2.0) * height);
+        ui.painter().text(at, Align2::CENTER_CENTER, line, FontId::proportional(size), Color32::WHITE);
+    }
+}
+
+impl App {
+    /// The projector's window, while it is open; F11 opens and closes it.
+    pub(super) fn projection_window(&mut self, ui: &Ui) {
+        if ui.input(|i| i.key_pressed(Key::F11)) {
+            self.projection.toggle();
+            ui.ctx().request_repaint();
+            // Where windows can't have windows of their own, the same key would close it again.
+            return;
+        }
+        if !self.projection.is_open {
+            return;
+        }
+        let ctx = ui.ctx().clone();
+        let window = self.projection.window();
+        ctx.show_viewport_immediate(ViewportId::from_hash_of("projection"), window, |ui, _| self.project(ui));
+        // On a computer with one screen the projection covers the window that draws it.
+        ctx.send_viewport_cmd_to(ViewportId::ROOT, ViewportCommand::RequestPaintWhileHidden);
+    }
+
+    fn project(&mut self, ui: &mut Ui) {
+        if ui.input(|i| i.viewport().close_requested()) {
+            self.projection.toggle();
+            return;
+        }
+        let picture = ui.available_rect_before_wrap();
+        let node = ui.interact(picture, ui.scope_id().with("projected floor"), Sense::hover());
+        node.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Projected floor"));
+        let size = Vec2::new(picture.width(), picture.height()).max(Vec2::ONE);
+        let floor = self.floor.geometry.bounds();
+        let shape = floor.size().x / floor.size().y;
+        self.projection.placement.get_or_insert_with(|| Placement::fit(shape, size.x / size.y));
+        let changed = self.projection.obey_keys(ui, size, shape);
+        ui.painter().rect_filled(picture, 0.0, color(PROJECTED.canvas));
+        self.draw_projected(ui, picture, size);
+        let moved = self.projection.adjust(ui, picture, size);
+        if self.projection.adjusting.is_none() {
+            ui.ctx().set_cursor_icon(CursorIcon::None);
+        }
+        if changed || moved {
+            self.keep_placement();
+        }
+    }
+
+    fn draw_projected(&mut self, ui: &Ui, picture: Rect, size: Vec2) {
+        let floor = self.floor.geometry.bounds();
+        let homography = self.projection.placement.and_then(|placement| placement.from_floor(floor, size));
+        let Some(homography) = homography else { return };
+        let view = View {
+            show: Show::PROJECTOR,
+            ..View::new(
+                &self.floor.geometry,
+                &self.messages.layout,
+                self.snapshots.output_buffer(),
+                &PROJECTED,
+            )
+        };
+        scene::draw(&mut self.projection.scene, &view);
+        let map = ScreenFromFloor::fit(floor, picture);
+        let onto = |at: Pos2| {
+            let place = homography.map(map.floor(at).as_dvec2());
+            picture.min + vec2(place.x as f32, place.y as f32)
+        };
+        let Projection { palette, scene, .. } = &mut self.projection;
+        egui_painter::paint_warped(&ui.painter_at(picture), palette, scene, map, onto);
+        // For tests and for whoever cannot see: where each control lies on the picture.
+        let snapshot = self.snapshots.output_buffer();
+        for (index, widget) in self.messages.layout.widgets.iter().enumerate() {
+            if snapshot.widgets.get(index).is_some_and(|state| state.hidden) {
+                continue;
+            }
+            let corner = |at: Vec2| {
+                let at: DVec2 = homography.map(at.as_dvec2());
+                picture.min + vec2(at.x as f32, at.y as f32)
+            };
+            let area = widget.area;
+            let others = [Vec2::new(area.min.x, area.max.y), Vec2::new(area.max.x, area.min.y), area.max];
+            let around = others.into_iter().fold(Rect::from_pos(corner(area.min)), |mut around, at| {
+                around.extend_with(corner(at));
+                around
+            });
+            let node = ui.interact(around, ui.scope_id().with(("projected", index)), Sense::hover());
+            let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
+            node.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Projected {name}")));
+        }
+    }
+
+    fn keep_placement(&mut self) {
+        let (Some(placement), Some(file)) = (self.projection.placement, &self.projection.file) else {
+            return;
+        };
+        if let Err(wrong) = placement.save(file) {
+            self.messages.note(format!("The corners are not remembered: {wrong}"));
+        }
+    }
+}
