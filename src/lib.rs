@@ -50,9 +50,9 @@
 //! | [`units`] | newtons, instants |
 //!
 //! The features `sim` (a simulated floor with people on it), `scene` and `picture` (a floor drawn), `ergonomics`
-//! (whether feet and eyes can use a layout), `lab` (figures and accuracy tables) and `preview` (a window) add a
-//! module each; an app that leaves the default features out compiles none of them. With `internals`, which the
-//! program needs, names become public that may change in any version.
+//! (whether feet and eyes can use a layout), `edit` (layouts changed in place), `lab` (figures and accuracy tables) and
+//! `preview` (a window) add a module each; an app that leaves the default features out compiles none of them. With
+//! `internals`, which the program needs, names become public that may change in any version.
 //!
 //! # A packet's way
 //!
@@ -85,6 +85,8 @@ macro_rules! internal {
 
 #[cfg(feature = "lab")]
 pub mod capacity;
+#[cfg(feature = "edit")]
+pub mod edit;
 #[cfg(feature = "egui")]
 pub mod egui_painter;
 pub mod engine;

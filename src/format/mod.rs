@@ -28,6 +28,8 @@ pub(crate) mod file;
 pub(crate) mod hand;
 pub(crate) mod node;
 pub(crate) mod number;
+#[cfg(any(feature = "edit", test))]
+pub(crate) mod outline;
 pub(crate) mod pairs;
 pub(crate) mod problem;
 pub(crate) mod reader;

@@ -16,6 +16,8 @@ use super::problem::Problem;
 use super::units::Units;
 use crate::floor::Geometry;
 use crate::format::codec::By;
+#[cfg(feature = "edit")]
+use crate::format::describe::FieldDescription;
 use crate::format::describe::{Description, FieldType};
 use crate::format::text::Text;
 use crate::format::{Codec, Record};
@@ -149,6 +151,13 @@ fn standard(name: &str) -> Material {
         "Wood" => Material::Wood(WoodSpec::PLANKS),
         _ => Material::Ice(IceSpec::POND),
     }
+}
+
+/// What can be said of a ground of this name; nothing for a name that no ground has.
+#[cfg(feature = "edit")]
+pub(crate) fn ground_fields(name: &str) -> Vec<FieldDescription> {
+    let described = describe().into_iter().find(|description| description.name == name);
+    described.map(|description| description.fields).unwrap_or_default()
 }
 
 /// What is known of each ground; what is not written is as in the usual ground of its name.

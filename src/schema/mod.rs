@@ -60,11 +60,15 @@ pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 #[cfg(feature = "save")]
 pub use keep_comments::keep_comments;
+#[cfg(feature = "edit")]
+pub(crate) use ground::ground_fields;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, folder_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};
+#[cfg(feature = "edit")]
+pub(crate) use save::write_over;
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text};
 pub use version::FORMAT_VERSION;

@@ -1,5 +1,7 @@
 //! Where the parts of a layout are written.
 
+#[cfg(feature = "edit")]
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::control::ControlSpans;
@@ -24,5 +26,11 @@ impl PartialEq for Places {
 impl Places {
     pub(super) fn new(name: &str, text: &str, widgets: Vec<ControlSpans>) -> Self {
         Self { name: name.into(), text: text.into(), widgets }
+    }
+
+    /// Bytes of the text, without a byte-order mark, where the control at `index` has its id, or its grid its ids.
+    #[cfg(feature = "edit")]
+    pub(crate) fn id_span(&self, index: usize) -> Option<Range<usize>> {
+        self.widgets.get(index).map(|written| written.id.clone())
     }
 }

@@ -70,6 +70,19 @@ pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
 /// # Errors
 /// [`SaveError::File`]; the old file, if there was one, is then as it was.
 pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
+    write(text, path, true)
+}
+
+/// As [`save_text`], but keeps nothing of what the file held before.
+///
+/// # Errors
+/// Those of [`save_text`].
+#[cfg(feature = "edit")]
+pub(crate) fn write_over(text: &str, path: &Path) -> Result<(), SaveError> {
+    write(text, path, false).map(|_| ())
+}
+
+fn write(text: &str, path: &Path, keeps_old: bool) -> Result<Saved, SaveError> {
     let failed = |doing| move |source| SaveError::File { path: path.to_path_buf(), doing, source };
     let target = match fs::canonicalize(path) {
         Ok(target) => target,
@@ -97,7 +110,11 @@ pub fn save_text(text: &str, path: &Path) -> Result<Saved, SaveError> {
         file.as_file().set_permissions(old.permissions()).map_err(failed("setting its permissions"))?;
     }
     file.as_file().sync_all().map_err(failed("bringing it to the disk"))?;
-    let backup = old.map(|_| back_up(&target)).transpose().map_err(failed("keeping the old one"))?;
+    let backup = old
+        .filter(|_| keeps_old)
+        .map(|_| back_up(&target))
+        .transpose()
+        .map_err(failed("keeping the old one"))?;
     file.persist(&target).map_err(|error| failed("putting it in its place")(error.error))?;
     sync_folder(folder).map_err(failed("bringing its folder to the disk"))?;
     Ok(backup.map_or(Saved::New, |backup| Saved::Replaced { backup }))

@@ -1,0 +1,198 @@
+//! What can be said of a record: its fields with what they say now, and where that comes from.
+
+use super::address::{Address, List};
+use super::change::Edit;
+use super::document::Document;
+use super::item::Item;
+use crate::ergonomics::{Finding, Part};
+use crate::floor::Rect;
+use crate::format::describe::{FieldDescription, FieldType};
+use crate::format::text::Entry;
+use crate::format::{Record, Variants};
+use crate::layout::Widget;
+use crate::schema::Diagnostic;
+
+/// Where the value of a field comes from.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Origin {
+    /// It is written in the record.
+    Written,
+    /// The control's kind, of this name, says it.
+    Kind(String),
+    /// Nobody says it: it is the format's default, or nothing.
+    Default,
+}
+
+/// A field of a record, as an inspector shows it.
+#[derive(Clone, Debug)]
+pub struct Property {
+    /// Its name, that of a field within a field as `look.face`.
+    pub name: String,
+    /// What it is.
+    pub about: String,
+    /// What may be written: type, range and unit in words.
+    pub told: String,
+    /// What may be written.
+    pub shape: FieldType,
+    /// What it says now, as it is or would be written; empty for nothing.
+    pub value: String,
+    /// Where that comes from.
+    pub origin: Origin,
+}
+
+/// Fields that belong together.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// What they are about.
+    pub title: String,
+    /// The fields.
+    pub properties: Vec<Property>,
+}
+
+/// A width that suits a shoe, in metres; rule U101.
+const GOOD_M: f32 = 0.12;
+
+impl Document {
+    /// Everything that can be said of `record`.
+    #[must_use]
+    pub fn properties(&self, record: &Address, item: Option<&Item>) -> Vec<Section> {
+        let text = |what: &str| FieldType::Text(what.into());
+        let place = || FieldType::Words("two numbers in round brackets, in the layout's units");
+        let id = ("id", "Its name for apps and addresses.", text("1 to 64 of a-z, 0-9 and _"));
+        let at = ("at", "Its south-west corner.", place());
+        let size = ("size", "Its width and depth.", place());
+        let cursor = FieldType::Names(vec!["Largest", "Working", "Each"]);
+        let own: Vec<(&str, &str, FieldType)> = match record.list() {
+            None => vec![("title", "What people call it.", text("at most 200 characters"))],
+            Some(List::Regions) => {
+                vec![id, at, size, ("cursor", "Which contacts in it operate its controls.", cursor)]
+            }
+            Some(List::Stances) => {
+                vec![("label", "What is written on it.", text("at most 64 characters")), at, size]
+            }
+            Some(List::Pages) => vec![id, ("title", "What people call it.", text("at most 200 characters"))],
+            Some(List::Grounds) => vec![at, size],
+            Some(List::Widgets) if item.is_some_and(|item| item.is_group) => vec![id, at],
+            Some(List::Widgets) => vec![
+                id,
+                ("kind", "What it is made of.", FieldType::Names(Vec::new())),
+                ("label", "What is written on it.", text("at most 64 characters")),
+                at,
+                size,
+                ("goto", "The page that a click on it shows.", text("the id of a page")),
+            ],
+        };
+        let own = own.into_iter().map(|(name, about, shape)| {
+            let field = FieldDescription { name, about: about.into(), shape, default: None };
+            self.property(record, name.to_owned(), &field, None, &[])
+        });
+        let mut sections = vec![Section { title: "Record".into(), properties: own.collect() }];
+        let widget =
+            item.filter(|item| !item.is_group).and_then(|item| self.layout().widgets.get(item.widgets.start));
+        if record.list() == Some(List::Widgets)
+            && let Some(widget) = widget
+        {
+            sections.extend(self.control(record, widget));
+        }
+        if record.list() == Some(List::Grounds) {
+            let name = record.find(self.root()).and_then(|record| record.name.clone()).unwrap_or_default();
+            let described = crate::schema::ground_fields(&name);
+            let properties =
+                described.iter().map(|field| self.property(record, field.name.to_owned(), field, None, &[]));
+            sections.push(Section { title: name, properties: properties.collect() });
+        }
+        sections
+    }
+
+    fn control(&self, record: &Address, widget: &Widget) -> Vec<Section> {
+        let behaviour = &widget.behaviour;
+        let described = crate::widget::Behaviour::describe();
+        let described = described.into_iter().find(|record| record.name == behaviour.variant());
+        let entries = |write: &dyn Fn(&mut Vec<Entry>)| {
+            let mut entries = Vec::new();
+            write(&mut entries);
+            entries
+        };
+        let section = |title: &str, prefix: &str, fields: Vec<FieldDescription>, entries: Vec<Entry>| {
+            let properties = fields.iter().map(|field| {
+                self.property(record, format!("{prefix}{}", field.name), field, Some(&widget.kind), &entries)
+            });
+            Section { title: title.into(), properties: properties.collect() }
+        };
+        vec![
+            section(
+                behaviour.name(),
+                "",
+                described.map(|record| record.fields).unwrap_or_default(),
+                entries(&|entries| Variants::write_fields(behaviour, entries)),
+            ),
+            section(
+                "Look",
+                "look.",
+                crate::layout::Look::describe().fields,
+                entries(&|entries| Record::write_fields(&widget.look, entries)),
+            ),
+            section(
+                "Feel",
+                "feel.",
+                crate::feel::Feel::describe().fields,
+                entries(&|entries| Record::write_fields(&widget.feel, entries)),
+            ),
+        ]
+    }
+
+    /// A field; `entries` are what the resolved control says of it, be it written in the record or in its kind.
+    fn property(
+        &self,
+        record: &Address,
+        name: String,
+        field: &FieldDescription,
+        kind: Option<&str>,
+        entries: &[Entry],
+    ) -> Property {
+        let entry = entries.iter().find(|(entry, _)| *entry == field.name);
+        let (value, origin) = match (self.written(record, &name), entry, kind) {
+            (Some(written), ..) => (written.to_owned(), Origin::Written),
+            (None, Some((_, text)), Some(kind)) => (text.inline(), Origin::Kind(kind.to_owned())),
+            _ => (field.default.clone().unwrap_or_default(), Origin::Default),
+        };
+        let told = field.shape.told(field.name);
+        Property { name, about: field.about.clone(), told, shape: field.shape.clone(), value, origin }
+    }
+
+    /// The record that a finding is about.
+    #[must_use]
+    pub fn found_in(&self, finding: &Finding) -> Option<Address> {
+        self.record_of(finding.widget)
+    }
+
+    /// The record that a message of the reader is about.
+    #[must_use]
+    pub fn told_of(&self, problem: &Diagnostic) -> Option<Address> {
+        // The text that it reads has no byte-order mark.
+        self.record_at(problem.span.start)
+    }
+
+    /// What mends a finding, and in words; `None` where only a person can say what is meant.
+    ///
+    /// Too small a control becomes 12 cm wide and deep; a threshold is taken back to what its kind says.
+    #[must_use]
+    pub fn mend(&self, finding: &Finding, items: &[Item]) -> Option<(String, Vec<Edit>)> {
+        let record = self.record_of(finding.widget)?;
+        let item = items.iter().find(|item| item.record == record && item.widgets.len() == 1)?;
+        match finding.part {
+            Part::Size if finding.rule.code == "U101" => {
+                let size = item.area.size().max(glam::Vec2::splat(GOOD_M));
+                let area = Rect::from_centre_size(item.area.centre(), size);
+                Some(("Make it 12 cm".into(), self.placing(&[(item, area)]).ok()?))
+            }
+            Part::Press if self.written(&record, "press_n").is_some() => {
+                let fields = ["press_n", "release_n"];
+                let written = fields.iter().filter(|field| self.written(&record, field).is_some());
+                let edits = written.map(|field| Edit::unset(&record, field)).collect();
+                Some(("Press as its kind".into(), edits))
+            }
+            _ => None,
+        }
+    }
+}

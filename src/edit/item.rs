@@ -1,0 +1,140 @@
+//! The records of a layout as things on the floor.
+
+use std::ops::Range;
+
+use glam::Vec2;
+
+use super::address::{Address, List};
+use super::document::Document;
+use crate::floor::Rect;
+use crate::format::outline::Outline;
+
+/// A record that covers a part of the floor.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Item {
+    /// Which record.
+    pub record: Address,
+    /// What it is called: an id, a label or what it is made of; may be empty.
+    pub name: String,
+    /// What it covers, in floor metres; for a group or a grid, what its controls cover.
+    pub area: Rect,
+    /// Its page; `None` if it is on all of them.
+    pub page: Option<usize>,
+    /// The numbers of its controls in the layout; none for a region, a stance zone or a ground.
+    pub widgets: Range<usize>,
+    /// Whether it holds other records: a group.
+    pub is_group: bool,
+}
+
+impl Item {
+    /// Whether it is there while the page of this number is shown.
+    #[must_use]
+    pub fn is_on(&self, page: usize) -> bool {
+        self.page.is_none_or(|own| own == page)
+    }
+}
+
+/// The smallest rectangle around all of `areas`; `None` around none.
+#[must_use]
+pub fn around(areas: impl IntoIterator<Item = Rect>) -> Option<Rect> {
+    areas.into_iter().reduce(|all, one| Rect::new(all.min.min(one.min), all.max.max(one.max)))
+}
+
+impl Document {
+    /// All records that cover a part of the floor: grounds, regions, stance zones, then controls, each in the order of
+    /// the text and a group before what is in it.
+    #[must_use]
+    pub fn items(&self) -> Vec<Item> {
+        let layout = self.layout();
+        let all = Address::all(self.root());
+        let mut items = Vec::new();
+        let mut grounds = layout.grounds.iter();
+        for (address, record) in &all {
+            let area = match address.list() {
+                Some(List::Grounds) => grounds.next().map(|ground| ground.spec.area),
+                Some(List::Regions) => index(address).and_then(|at| layout.regions.get(at)).map(|it| it.area),
+                Some(List::Stances) => index(address).and_then(|at| layout.stances.get(at)).map(|it| it.area),
+                _ => None,
+            };
+            if let Some(area) = area {
+                items.push(item(address, record, area, address.page(), 0..0));
+            }
+        }
+        items.sort_by_key(|item| item.record.list() != Some(List::Grounds));
+        let homes: Vec<Option<&Address>> = (0..layout.widgets.len())
+            .map(|widget| home(&all, self.loaded().places.id_span(widget)))
+            .collect();
+        for (address, record) in all.iter().filter(|(address, _)| address.list() == Some(List::Widgets)) {
+            let is_in = |home: &Option<&Address>| home.is_some_and(|home| home.is_within(address));
+            let Some(first) = homes.iter().position(is_in) else { continue };
+            let count = homes[first..].iter().take_while(|home| is_in(home)).count();
+            let widgets = first..first + count;
+            let areas = layout.widgets.get(widgets.clone()).unwrap_or_default();
+            let Some(area) = around(areas.iter().map(|widget| widget.area)) else { continue };
+            items.push(item(address, record, area, address.page(), widgets));
+        }
+        items
+    }
+
+    /// The record of the control of this number in the layout: the innermost one that it is written in.
+    #[must_use]
+    pub fn record_of(&self, widget: usize) -> Option<Address> {
+        home(&Address::all(self.root()), self.loaded().places.id_span(widget)).cloned()
+    }
+
+    /// The innermost record that the byte at `offset` of the text is part of; `None` outside of all lists.
+    #[must_use]
+    pub fn record_at(&self, offset: usize) -> Option<Address> {
+        home(&Address::all(self.root()), Some(offset..offset)).filter(|at| at.split().is_some()).cloned()
+    }
+
+    /// The id written for a record.
+    #[must_use]
+    pub fn id_of(&self, record: &Address) -> Option<&str> {
+        record.find(self.root())?.field("id")?.value.says.as_deref()
+    }
+
+    /// How long one unit of the layout's places is, in metres.
+    #[must_use]
+    pub fn unit_m(&self) -> f64 {
+        let units = self.written(&Address::LAYOUT, "units");
+        if units == Some("Metres") { 1.0 } else { self.floor().geometry.pitch_m().into() }
+    }
+
+    /// The topmost control, stance zone, region or ground at `point` of the page numbered `page`; controls of a group
+    /// one by one, whole grounds not at all.
+    #[must_use]
+    pub fn item_at(&self, items: &[Item], page: usize, point: Vec2) -> Option<Address> {
+        let rank = |item: &Item| match item.record.list() {
+            Some(List::Widgets) => 3,
+            Some(List::Stances) => 2,
+            Some(List::Regions) => 1,
+            _ => 0,
+        };
+        let here = items.iter().enumerate().filter(|(_, item)| {
+            let is_placed =
+                item.record.list() != Some(List::Grounds) || self.written(&item.record, "at").is_some();
+            !item.is_group && is_placed && item.is_on(page) && item.area.contains(point)
+        });
+        here.max_by_key(|(at, item)| (rank(item), *at)).map(|(_, item)| item.record.clone())
+    }
+}
+
+fn index(address: &Address) -> Option<usize> {
+    address.split().map(|(_, _, index)| index)
+}
+
+fn item(address: &Address, record: &Outline, area: Rect, page: Option<usize>, widgets: Range<usize>) -> Item {
+    let says = |field: &str| record.field(field).and_then(|field| field.value.says.clone());
+    let name = says("id").or_else(|| says("label")).or_else(|| record.name.clone()).unwrap_or_default();
+    let is_group = record.field("widgets").is_some();
+    Item { record: address.clone(), name, area, page, widgets, is_group }
+}
+
+/// The innermost of `all` records around `place`.
+fn home<'a>(all: &'a [(Address, &Outline)], place: Option<Range<usize>>) -> Option<&'a Address> {
+    let place = place?;
+    let holds =
+        |(_, record): &&(Address, &Outline)| record.span.start <= place.start && place.end <= record.span.end;
+    all.iter().filter(holds).min_by_key(|(_, record)| record.span.len()).map(|(address, _)| address)
+}

@@ -1,0 +1,40 @@
+//! Editing of layouts: no window, no clock, no files but [`LayoutFile`].
+//!
+//! ```text
+//! Edit -change, splice-> text with a few other bytes -schema-> Layout, warnings -ergonomics-> findings
+//!   -history-> undo, redo
+//! Item (a record on the floor) -snap, arrange, place-> Edit
+//! Document -file, merge-> file, draft
+//! ```
+//!
+//! The text is what counts: comments, order and line breaks stay, and an edit changes the bytes of its own record only.
+
+mod address;
+mod arrange;
+mod change;
+mod clipboard;
+mod document;
+mod file;
+mod history;
+mod inspect;
+mod item;
+mod merge;
+mod place;
+mod refusal;
+mod snap;
+mod splice;
+mod template;
+#[cfg(test)]
+mod tests;
+
+pub use address::{Address, List};
+pub use arrange::{Align, align, distribute};
+pub use change::{Edit, quoted};
+pub use document::Document;
+pub use file::{LayoutFile, Saving};
+pub use inspect::{Origin, Property, Section};
+pub use item::{Item, around};
+pub use merge::{Merge, merge};
+pub use refusal::Refusal;
+pub use snap::{Edges, FINE_M, Grid, Guide, Reason};
+pub use template::Template;

@@ -1,0 +1,340 @@
+//! Changes of a text at single places: fields and list entries put in, replaced and cut out.
+//!
+//! Everything else keeps its bytes: comments, the order of fields, line breaks, blanks.
+
+use std::ops::Range;
+
+use crate::format::outline::{Element, Outline, OutlineShape};
+
+/// What stands deeper by one step.
+const STEP: &str = "    ";
+
+/// A place of a text and what is to stand there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Splice {
+    pub(super) at: Range<usize>,
+    pub(super) text: String,
+}
+
+impl Splice {
+    pub(super) fn new(at: Range<usize>, text: impl Into<String>) -> Self {
+        Self { at, text: text.into() }
+    }
+
+    fn insert(at: usize, text: impl Into<String>) -> Self {
+        Self::new(at..at, text)
+    }
+}
+
+/// `text` with all `splices`, which must not overlap.
+pub(super) fn spliced(text: &str, mut splices: Vec<Splice>) -> String {
+    splices.sort_by_key(|splice| (splice.at.start, splice.at.end));
+    let mut result = String::with_capacity(text.len() + 64);
+    let mut from = 0;
+    for splice in splices {
+        result.push_str(text.get(from..splice.at.start).unwrap_or_default());
+        result.push_str(&splice.text);
+        from = splice.at.end.max(from);
+    }
+    result.push_str(text.get(from..).unwrap_or_default());
+    result
+}
+
+/// An entry that was cut out, to be put in elsewhere.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Piece {
+    /// Its text; further lines as far from the margin as if it stood there.
+    pub(super) text: String,
+    /// The comment behind it on its line.
+    pub(super) comment: String,
+}
+
+impl Piece {
+    pub(super) fn new(text: impl Into<String>) -> Self {
+        Self { text: text.into(), comment: String::new() }
+    }
+}
+
+/// A text with its lines.
+#[derive(Clone, Copy)]
+pub(super) struct Lines<'t>(pub(super) &'t str);
+
+impl<'t> Lines<'t> {
+    fn start(self, at: usize) -> usize {
+        self.0[..at].rfind('\n').map_or(0, |line_break| line_break + 1)
+    }
+
+    /// Where the line ends that holds `at`, before its line break.
+    fn end(self, at: usize) -> usize {
+        let rest = &self.0[at..];
+        let line = rest.split('\n').next().unwrap_or_default();
+        at + line.strip_suffix('\r').unwrap_or(line).len()
+    }
+
+    /// What the line begins with that holds `at`.
+    fn indent(self, at: usize) -> &'t str {
+        let line = &self.0[self.start(at)..at];
+        &line[..line.len() - line.trim_start().len()]
+    }
+
+    fn line_break(self) -> &'static str {
+        if self.0.contains("\r\n") { "\r\n" } else { "\n" }
+    }
+
+    fn is_first(self, at: usize) -> bool {
+        self.0[self.start(at)..at].trim().is_empty()
+    }
+
+    /// The comment that is all that follows `at` on its line, or nothing; `None` if something else follows.
+    fn only_comment(self, at: usize) -> Option<&'t str> {
+        let rest = self.0[at..self.end(at)].trim();
+        let closes = || rest.find("*/").is_some_and(|close| close + 2 == rest.len());
+        (rest.is_empty() || rest.starts_with("//") || (rest.starts_with("/*") && closes())).then_some(rest)
+    }
+
+    /// Whether `element` has its lines to itself, but for a comment behind it.
+    fn owns_lines(self, element: &Element) -> Option<&'t str> {
+        self.only_comment(element.end()).filter(|_| self.is_first(element.start()))
+    }
+
+    /// The text of `element`, as a piece.
+    pub(super) fn piece(self, element: &Element) -> Piece {
+        let indent = self.indent(element.start());
+        let text = &self.0[element.start()..element.value.span.end];
+        let mut lines = text.split('\n');
+        let mut dedented = lines.next().unwrap_or_default().to_owned();
+        for line in lines {
+            dedented.push('\n');
+            dedented
+                .push_str(line.strip_prefix(indent).unwrap_or_else(|| line.trim_start_matches([' ', '\t'])));
+        }
+        let comment = self.owns_lines(element).unwrap_or_default().to_owned();
+        Piece { text: dedented.replace("\r\n", "\n"), comment }
+    }
+
+    fn indented(self, text: &str, indent: &str) -> String {
+        let mut lines = text.split('\n').map(|line| line.trim_end_matches('\r'));
+        let mut indented = lines.next().unwrap_or_default().to_owned();
+        for line in lines {
+            indented.push_str(self.line_break());
+            if !line.trim().is_empty() {
+                indented.push_str(indent);
+                indented.push_str(line);
+            }
+        }
+        indented
+    }
+
+    /// Puts `piece` in as the element number `index` of `parent`, a record or a list, written as its neighbours are.
+    pub(super) fn insert(self, parent: &Outline, index: usize, piece: &Piece) -> Vec<Splice> {
+        let comment = if piece.comment.is_empty() { String::new() } else { format!(" {}", piece.comment) };
+        let own_line = |indent: &str| {
+            let text = self.indented(&piece.text, indent);
+            format!("{}{indent}{text},{comment}", self.line_break())
+        };
+        let inline = || {
+            let indent = self.indent(parent.span.start);
+            let comment = match piece.comment.strip_prefix("//") {
+                Some(line) => format!(" /* {} */", line.trim().replace("*/", "* /")),
+                None => comment.clone(),
+            };
+            (self.indented(&piece.text, indent), comment)
+        };
+        let Some(inside) = &parent.inside else {
+            // A name alone gets brackets.
+            return vec![Splice::insert(parent.span.end, format!("({})", inline().0))];
+        };
+        let before = index.min(parent.elements.len()).checked_sub(1).and_then(|at| parent.elements.get(at));
+        match (before, parent.elements.first()) {
+            (Some(before), _) => {
+                let missing = before.comma.is_none().then(|| Splice::insert(before.value.span.end, ","));
+                if self.owns_lines(before).is_some() {
+                    let place = self.end(before.end());
+                    let line = Splice::insert(place, own_line(self.indent(before.start())));
+                    return missing.into_iter().chain([line]).collect();
+                }
+                let (text, comment) = inline();
+                let closing = if before.comma.is_some() { "," } else { "" };
+                let entry = Splice::insert(before.end(), format!(" {text}{closing}{comment}"));
+                missing.into_iter().chain([entry]).collect()
+            }
+            (None, Some(first))
+                if self.is_first(first.start()) && self.only_comment(inside.start).is_some() =>
+            {
+                vec![Splice::insert(self.end(inside.start), own_line(self.indent(first.start())))]
+            }
+            (None, Some(first)) => {
+                let (text, comment) = inline();
+                vec![Splice::insert(first.start(), format!("{text},{comment} "))]
+            }
+            (None, None) if self.0[inside.clone()].contains('\n') && self.is_first(inside.end) => {
+                let indent = format!("{}{STEP}", self.indent(inside.end));
+                let line = own_line(&indent);
+                let line = line.trim_start_matches(['\r', '\n']);
+                vec![Splice::insert(self.start(inside.end), format!("{line}{}", self.line_break()))]
+            }
+            (None, None) if parent.shape == OutlineShape::List => {
+                let outer = self.indent(parent.span.start);
+                let line = own_line(&format!("{outer}{STEP}"));
+                vec![Splice::insert(inside.end, format!("{line}{}{outer}", self.line_break()))]
+            }
+            (None, None) => vec![Splice::insert(inside.end, inline().0)],
+        }
+    }
+
+    /// Takes the element number `index` of `parent` out, with its comma and the comment behind it.
+    pub(super) fn cut(self, parent: &Outline, index: usize) -> Vec<Splice> {
+        let Some(element) = parent.elements.get(index) else { return Vec::new() };
+        if self.owns_lines(element).is_some() {
+            let end = self.end(element.end());
+            let line_break = self.0[end..].find('\n').map_or(0, |at| at + 1);
+            return vec![Splice::new(self.start(element.start())..end + line_break, "")];
+        }
+        let before = index.checked_sub(1).and_then(|before| parent.elements.get(before));
+        let Some(before) = before else {
+            let rest = &self.0[element.end()..];
+            let blanks = rest.len() - rest.trim_start_matches([' ', '\t']).len();
+            return vec![Splice::new(element.start()..element.end() + blanks, "")];
+        };
+        let between = &self.0[before.end()..element.start()];
+        // An entry of a list leaves the line of the one before it as it is; fields are all of one record.
+        let shares_line = !between.contains('\n') || parent.shape != OutlineShape::List;
+        let joins = between.trim().is_empty() && shares_line;
+        let start = if joins { before.end() } else { element.start() };
+        // The last one leaves no comma behind where it had none.
+        let comma = before.comma.clone().filter(|comma| element.comma.is_none() && comma.end == start);
+        let start = comma.map_or(start, |comma| comma.start);
+        vec![Splice::new(start..element.end(), "")]
+    }
+
+    /// Writes `value` for the field at `path` of `record`: what is written already is replaced, as little as will do.
+    pub(super) fn set(self, record: &Outline, path: &[&str], value: &str) -> Vec<Splice> {
+        let Some((name, rest)) = path.split_first() else { return self.replace(record, value) };
+        match record.field(name) {
+            Some(element) if element.value.shape == OutlineShape::Record || rest.is_empty() => {
+                self.set(&element.value, rest, value)
+            }
+            Some(element) => {
+                vec![Splice::new(element.value.span.clone(), nested(rest, value))]
+            }
+            None => {
+                let field = format!("{name}: {}", nested(rest, value));
+                self.insert(record, record.elements.len(), &Piece::new(field))
+            }
+        }
+    }
+
+    fn replace(self, old: &Outline, value: &str) -> Vec<Splice> {
+        let written = &self.0[old.span.clone()];
+        let number = |text: &str| text.trim().parse::<f64>().ok();
+        if written == value || (number(written).is_some() && number(written) == number(value)) {
+            return Vec::new();
+        }
+        if old.shape == OutlineShape::Tuple
+            && let Some(new) = Outline::parse(value)
+            && new.shape == OutlineShape::Tuple
+            && new.elements.len() == old.elements.len()
+        {
+            let pairs = old.elements.iter().zip(&new.elements);
+            return pairs
+                .flat_map(|(old, new)| self.replace(&old.value, &value[new.value.span.clone()]))
+                .collect();
+        }
+        vec![Splice::new(old.span.clone(), self.indented(value, self.indent(old.span.start)))]
+    }
+
+    /// Takes the field at `path` of `record` out, with a record that has no other field.
+    pub(super) fn unset(self, record: &Outline, path: &[&str]) -> Vec<Splice> {
+        let Some((name, rest)) = path.split_first() else { return Vec::new() };
+        let is_called = |element: &Element| element.field.as_ref().is_some_and(|(own, _)| own == name);
+        let Some(index) = record.elements.iter().position(is_called) else { return Vec::new() };
+        let value = &record.elements[index].value;
+        let is_only = rest.len() == 1 && value.elements.len() == 1 && value.field(rest[0]).is_some();
+        if rest.is_empty() || (is_only && value.name.is_none()) {
+            self.cut(record, index)
+        } else {
+            self.unset(value, rest)
+        }
+    }
+}
+
+/// `value` as the field at `path` of nothing yet.
+fn nested(path: &[&str], value: &str) -> String {
+    path.iter().rev().fold(value.to_owned(), |value, name| format!("({name}: {value})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn changed(text: &str, change: impl Fn(Lines<'_>, &Outline) -> Vec<Splice>) -> String {
+        let root = Outline::parse(text).unwrap();
+        spliced(text, change(Lines(text), &root))
+    }
+
+    fn set(text: &str, path: &str, value: &str) -> String {
+        let path: Vec<&str> = path.split('.').collect();
+        changed(text, |lines, root| lines.set(root, &path, value))
+    }
+
+    fn unset(text: &str, path: &str) -> String {
+        let path: Vec<&str> = path.split('.').collect();
+        changed(text, |lines, root| lines.unset(root, &path))
+    }
+
+    fn insert(text: &str, index: usize, entry: &str) -> String {
+        changed(text, |lines, root| lines.insert(&root.field("w").unwrap().value, index, &Piece::new(entry)))
+    }
+
+    fn cut(text: &str, index: usize) -> String {
+        changed(text, |lines, root| lines.cut(&root.field("w").unwrap().value, index))
+    }
+
+    #[test]
+    fn a_field_is_replaced_where_it_stands() {
+        assert_eq!(set("(a: 1, /* b */ c: 2)", "a", "5"), "(a: 5, /* b */ c: 2)");
+        assert_eq!(set("(at: (1.50 /*e*/, 2))", "at", "(1.5, 3)"), "(at: (1.50 /*e*/, 3))");
+        assert_eq!(set("(look: (face: 1, ink: 2))", "look.ink", "7"), "(look: (face: 1, ink: 7))");
+        assert_eq!(set("(g: Confirm)", "g.x", "7"), "(g: Confirm(x: 7))");
+    }
+
+    #[test]
+    fn a_new_field_is_written_as_its_neighbours_are() {
+        assert_eq!(set("(a: 1)", "b", "2"), "(a: 1, b: 2)");
+        assert_eq!(set("(a: 1,)", "b", "2"), "(a: 1, b: 2,)");
+        assert_eq!(set("(\n  a: 1 // one\n)", "b", "2"), "(\n  a: 1, // one\n  b: 2,\n)");
+        assert_eq!(set("Snow", "at", "(1, 2)"), "Snow(at: (1, 2))");
+        assert_eq!(set("(a: 1)", "look.ink", "2"), "(a: 1, look: (ink: 2))");
+        assert_eq!(set("()", "a", "2"), "(a: 2)");
+    }
+
+    #[test]
+    fn a_field_is_taken_out_with_its_comma() {
+        assert_eq!(unset("(a: 1, b: 2, c: 3)", "b"), "(a: 1, c: 3)");
+        assert_eq!(unset("(a: 1, b: 2)", "b"), "(a: 1)");
+        assert_eq!(unset("(a: 1, b: 2)", "a"), "(b: 2)");
+        assert_eq!(unset("(a: 1,\n    b: 2)", "b"), "(a: 1)");
+        assert_eq!(unset("(\n  a: 1,\n  // why\n  b: 2, // how\n)", "b"), "(\n  a: 1,\n  // why\n)");
+        assert_eq!(unset("(a: 1, look: (ink: 2))", "look.ink"), "(a: 1)");
+    }
+
+    #[test]
+    fn entries_come_and_go_as_their_neighbours_are_written() {
+        let lines = "(w: [\n  // first\n  (a), // one\n  (b)\n])";
+        assert_eq!(insert(lines, 1, "(n)"), "(w: [\n  // first\n  (a), // one\n  (n),\n  (b)\n])");
+        assert_eq!(insert(lines, 2, "(n)"), "(w: [\n  // first\n  (a), // one\n  (b),\n  (n),\n])");
+        assert_eq!(
+            insert(lines, 0, "(n,\n  m)"),
+            "(w: [\n  (n,\n    m),\n  // first\n  (a), // one\n  (b)\n])"
+        );
+        assert_eq!(cut(lines, 0), "(w: [\n  // first\n  (b)\n])");
+        assert_eq!(insert("(w: [(a), (b)])", 2, "(n)"), "(w: [(a), (b), (n)])");
+        assert_eq!(insert("(w: [(a), (b)])", 0, "(n)"), "(w: [(n), (a), (b)])");
+        assert_eq!(cut("(w: [(a), (b)])", 1), "(w: [(a)])");
+        assert_eq!(cut("(w: [(a), (b)])", 0), "(w: [(b)])");
+        assert_eq!(cut("(w: [(a),\n  (b) /* c */ ])", 1), "(w: [(a),\n   /* c */ ])");
+        assert_eq!(insert("(\n  w: [])", 0, "(n)"), "(\n  w: [\n      (n),\n  ])");
+        assert_eq!(insert("(w: [\n])", 0, "(n)"), "(w: [\n    (n),\n])");
+        assert_eq!(insert("(w: [\r\n  (a),\r\n])", 1, "(n)"), "(w: [\r\n  (a),\r\n  (n),\r\n])");
+    }
+}
