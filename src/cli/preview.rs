@@ -13,8 +13,8 @@ use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    self, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput, PreviewOptions,
-    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
+    self, DesignInput, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput,
+    PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
 };
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema::{self, Diagnostics};
@@ -141,6 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
+        design: args.design()?,
         commands: wishes,
     };
     // Also when the window fails, the floor ends in order first.
@@ -216,6 +217,18 @@ impl Args {
         })
     }
 
+    /// The layout as text, to be designed.
+    fn design(&self) -> Result<Option<DesignInput>, Failure> {
+        let kinds = Arc::new(self.layout.kinds()?);
+        let path = self.layout.path().map(std::path::Path::to_path_buf);
+        let name = self.layout.layout.as_deref().and_then(std::path::Path::to_str).unwrap_or(DEFAULT_LAYOUT);
+        let text = match &path {
+            Some(path) => std::fs::read_to_string(path).ok(),
+            None => schema::builtin_layout(name).map(str::to_owned),
+        };
+        Ok(text.map(|text| DesignInput { name: name.to_owned(), text, path, kinds }))
+    }
+
     /// The layout given and the built-in ones.
     fn choices(&self) -> Vec<String> {
         let given = self.layout.path().map(|path| path.display().to_string());
@@ -280,6 +293,10 @@ impl Obeyed {
                 let command = match wish {
                     PreviewCommand::Open(choice) => {
                         self.open(choice);
+                        continue;
+                    }
+                    PreviewCommand::Try { layout, name } => {
+                        self.desk.take(&name, Ok(Arc::unwrap_or_clone(layout)));
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {

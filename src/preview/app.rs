@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::Ui;
 
 use super::PreviewOptions;
+use super::design::Designer;
 use super::feed::{FootSink, PreviewCommand, PreviewInput, ShoeFeed};
 use super::feet::MouseFeet;
 use super::floor_view::Grip;
@@ -59,6 +60,8 @@ pub(super) struct App {
     pub(super) lists_warnings: bool,
     /// By how much the window's own size has enlarged everything.
     enlarged: f32,
+    /// `None` where nothing can be designed.
+    pub(super) designer: Option<Designer>,
     commands: Sender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
@@ -85,6 +88,7 @@ impl App {
             selection: Selection::new(&input.floor.geometry),
             scopes: Scopes::new(input.scopes, &input.floor),
             messages,
+            designer: input.design.and_then(|design| Designer::new(design, &input.floor)),
             feet: input.feet.map(|sink| (MouseFeet::new(), sink)),
             shoe_feed: input.shoes,
             shoes: Vec::new(),
@@ -116,9 +120,14 @@ impl App {
         self.receive(ui);
         self.enlarge(ui.ctx());
         self.handle_mute_key(ui);
+        self.handle_mode_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
         self.notices(ui);
+        if self.designer.as_ref().is_some_and(|designer| designer.is_open) {
+            self.design(ui);
+            return self.request_next_frame(ui);
+        }
         self.side_panel(ui);
         self.tuner_panel(ui);
         self.problems(ui);

@@ -65,6 +65,7 @@ impl App {
             response.response.widget_info(|| WidgetInfo::labeled(Role::ComboBox, true, "Layout"));
             if let Some(index) = chosen {
                 self.command(PreviewCommand::Open(index));
+                self.design_choice(index);
             }
         }
         let count = self.messages.warnings.count;
@@ -138,6 +139,7 @@ impl App {
         if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Light or dark window").clicked() {
             self.turn_theme(ui.ctx());
         }
+        self.mode_button(ui);
         let width = ui.ctx().content_rect().width();
         let shown = self.shows_panel(width);
         let panel = ui.add(egui::Button::selectable(shown, "Panel").frame_when_inactive(true));

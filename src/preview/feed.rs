@@ -5,6 +5,7 @@ use std::sync::mpsc::{Receiver, Sender};
 
 use glam::Vec2;
 
+use super::design::DesignInput;
 use crate::engine::Snapshot;
 use crate::feel::{Effect, Gesture};
 use crate::floor::{Floor, TileId};
@@ -48,6 +49,8 @@ pub struct PreviewInput {
     pub choices: Vec<String>,
     /// The effects that can be tuned, by name; empty if there is no tuner.
     pub effects: Vec<NamedEffect>,
+    /// The layout as text, to be designed in the window; `None` where that can't be done.
+    pub design: Option<DesignInput>,
     /// What the person at the window wants.
     pub commands: Sender<PreviewCommand>,
 }
@@ -95,6 +98,13 @@ pub enum LayoutNews {
 pub enum PreviewCommand {
     /// Open the layout at this place in [`PreviewInput::choices`].
     Open(usize),
+    /// Put the layout on the floor that is being designed.
+    Try {
+        /// The layout.
+        layout: Arc<Layout>,
+        /// What to say about it: `map.ron`.
+        name: String,
+    },
     /// Switch a control on or off, as an app would.
     Enable {
         /// Which control.

@@ -6,6 +6,7 @@
 
 mod app;
 mod bars;
+mod design;
 #[cfg(test)]
 mod drags;
 mod feed;
@@ -26,6 +27,7 @@ mod trace;
 mod watch;
 mod zoom;
 
+pub use design::DesignInput;
 pub use feed::{
     FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed, Warnings,
 };

@@ -95,6 +95,12 @@ impl Room {
             shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),
+            design: Some(super::DesignInput {
+                name: "map".into(),
+                text: builtin_layout("map").unwrap().into(),
+                path: None,
+                kinds: Arc::new(Kinds::builtin()),
+            }),
             commands: sender,
         };
         // Nobody's own corners.

@@ -1,0 +1,450 @@
+//! The floor as a drawing board: what is selected, moved, sized, put down, and what is wrong with it.
+
+use eframe::egui;
+use eframe::egui::accesskit::Role;
+use eframe::egui::{
+    Align2, Color32, CursorIcon, FontId, Key, PointerButton, Pos2, Sense, Stroke, StrokeKind, Ui, WidgetInfo,
+    pos2, vec2,
+};
+use glam::Vec2;
+
+use super::Designer;
+use crate::edit::{Address, Edges, Grid, Guide, Item, List};
+use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
+use crate::engine::Snapshot;
+use crate::floor::Rect;
+use crate::format::diagnostic::Severity;
+use crate::layout::Layout;
+use crate::scene::{self, Show, Theme, View};
+
+/// Half the side of a handle, and how near the pointer must be to it, in points.
+const HANDLE: f32 = 5.0;
+const NEAR: f32 = 9.0;
+
+/// How near a line pulls, in points.
+const PULL: f32 = 7.0;
+
+/// How far the pointer goes before a press is a drag, in points.
+const SLACK: f32 = 4.0;
+
+/// Narrowest that anything is dragged to, in metres; the format allows 0.05 tiles.
+const LEAST_M: f32 = 0.03;
+
+/// What the pointer is doing.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Gesture {
+    #[default]
+    None,
+    /// It went down on something, which is moved once it goes further.
+    Pressed { at: Pos2, record: Address },
+    /// What is selected follows it.
+    Moving { from: Vec2, edges: Edges },
+    /// It draws a rectangle around what is to be selected.
+    Lasso { from: Vec2 },
+    /// The view follows it.
+    Panning,
+}
+
+/// Which part of the floor is seen.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Zoom {
+    /// 1 for the whole floor.
+    factor: f32,
+    /// How far the middle of the view is from that of the floor, in metres.
+    pan: Vec2,
+}
+
+impl Default for Zoom {
+    fn default() -> Self {
+        Self { factor: 1.0, pan: Vec2::ZERO }
+    }
+}
+
+impl Zoom {
+    fn map(self, bounds: Rect, screen: egui::Rect) -> ScreenFromFloor {
+        let seen = Rect::from_centre_size(bounds.centre() + self.pan, bounds.size() / self.factor);
+        ScreenFromFloor::fit(seen, screen)
+    }
+}
+
+impl Designer {
+    /// The floor, in what is left of the window.
+    pub(super) fn canvas(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
+        let rect = ui.available_rect_before_wrap();
+        let canvas = ui.allocate_rect(rect, Sense::click_and_drag());
+        canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Drawing board"));
+        let geometry = self.document.floor().geometry;
+        let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
+        let bounds = scene::extent(&geometry, show);
+        self.zoom(ui, &canvas, bounds, rect.shrink(14.0));
+        let map = self.view.map(bounds, rect.shrink(14.0));
+        let trial = self.gestures(ui, &canvas, map);
+        let shown = trial.layout.as_ref().unwrap_or_else(|| self.document.layout());
+        let snapshot = Snapshot { page: self.page, ..Snapshot::default() };
+        let view = View { show, ..View::new(&geometry, shown, &snapshot, theme) };
+        let mut scene = std::mem::take(&mut self.scene);
+        scene::draw(&mut scene, &view);
+        let painter = ui.painter_at(rect);
+        egui_painter::paint(&painter, palette, &scene, map);
+        self.scene = scene;
+        self.marks(ui, rect, map, theme, &trial);
+        self.names(ui, map);
+    }
+
+    fn zoom(&mut self, ui: &Ui, canvas: &egui::Response, bounds: Rect, screen: egui::Rect) {
+        let Some(pointer) = ui.input(|i| i.pointer.hover_pos()).filter(|_| canvas.contains_pointer()) else {
+            return;
+        };
+        let (wheel, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
+        let by = pinch * (wheel * 0.004).exp();
+        if (by - 1.0).abs() > 1e-4 {
+            let under = self.view.map(bounds, screen).floor(pointer);
+            self.view.factor = (self.view.factor * by).clamp(0.5, 12.0);
+            // What is under the pointer stays there.
+            let now = self.view.map(bounds, screen).floor(pointer);
+            self.view.pan += under - now;
+        }
+    }
+
+    /// The whole floor again.
+    pub(super) fn fit(&mut self) {
+        self.view = Zoom::default();
+    }
+
+    /// Follows the pointer; what would come of it if it let go now.
+    fn gestures(&mut self, ui: &Ui, canvas: &egui::Response, map: ScreenFromFloor) -> Trial {
+        let (pointer, pressed, released, middle, space, shift, alt, delta) = ui.input(|i| {
+            (
+                i.pointer.interact_pos().or(i.pointer.hover_pos()),
+                i.pointer.primary_pressed(),
+                i.pointer.primary_released(),
+                i.pointer.button_down(PointerButton::Middle),
+                i.key_down(Key::Space),
+                i.modifiers.shift,
+                i.modifiers.alt,
+                i.pointer.delta(),
+            )
+        });
+        let Some(pointer) = pointer else { return Trial::default() };
+        let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
+        let at = map.floor(pointer);
+        if middle && inside || matches!(self.gesture, Gesture::Panning) {
+            self.view.pan -= map.floor_vector(delta);
+            ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
+        }
+        if let Some(thing) = self.placing.clone() {
+            // Dragged here, the press began elsewhere.
+            let dropped = released && !canvas.clicked() && !canvas.drag_stopped();
+            return self.put_down(&thing, at, inside, pressed, dropped, map, alt);
+        }
+        if pressed && inside {
+            canvas.request_focus();
+            ui.ctx().memory_mut(|memory| memory.surrender_focus(canvas.id));
+            self.stroke += 1;
+            self.begin_gesture(pointer, at, map, space, shift);
+        }
+        if let Gesture::Pressed { at: from, record } = self.gesture.clone()
+            && from.distance(pointer) > SLACK
+        {
+            if !self.selected.contains(&record) {
+                self.select_only(record);
+            }
+            self.gesture = Gesture::Moving { from: map.floor(from), edges: Edges::ALL };
+        }
+        let trial = match &self.gesture {
+            Gesture::Moving { from, edges } => self.moving(at - *from, *edges, map, alt),
+            Gesture::Lasso { from } => Trial { lasso: Some(around(*from, at)), ..Trial::default() },
+            _ => Trial::default(),
+        };
+        if inside && matches!(self.gesture, Gesture::None) {
+            self.hover(ui, pointer, map);
+        }
+        if released {
+            self.end_gesture(&trial, shift);
+        }
+        trial
+    }
+
+    fn begin_gesture(&mut self, pointer: Pos2, at: Vec2, map: ScreenFromFloor, space: bool, shift: bool) {
+        if space {
+            self.gesture = Gesture::Panning;
+            return;
+        }
+        if let Some(edges) = self.handle_under(pointer, map) {
+            self.gesture = Gesture::Moving { from: at, edges };
+            return;
+        }
+        match self.document.item_at(&self.items, self.page, at) {
+            // A region is behind everything: a drag across it selects, a click takes it.
+            Some(record) if record.list() == Some(List::Regions) && !self.selected.contains(&record) => {
+                self.gesture = Gesture::Lasso { from: at };
+            }
+            Some(record) if shift => self.toggle(record),
+            Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
+            None => self.gesture = Gesture::Lasso { from: at },
+        }
+    }
+
+    fn end_gesture(&mut self, trial: &Trial, shift: bool) {
+        match std::mem::take(&mut self.gesture) {
+            Gesture::Pressed { record, .. } => self.select_only(record),
+            Gesture::Moving { .. } if !trial.areas.is_empty() => {
+                let areas = trial.areas.clone();
+                self.move_to(&areas);
+            }
+            Gesture::Lasso { from } => {
+                let Some(area) = trial.lasso else { return };
+                if !shift {
+                    self.selected.clear();
+                }
+                if area.size().max_element() < 0.01 {
+                    let record = self.document.item_at(&self.items, self.page, from);
+                    self.selected.extend(record);
+                    return;
+                }
+                let page = self.page;
+                let inside = self.items.iter().filter(|item| {
+                    item.record.list() == Some(List::Widgets)
+                        && !item.is_group
+                        && item.is_on(page)
+                        && item.area.overlaps(area)
+                });
+                let found: Vec<Address> = inside.map(|item| item.record.clone()).collect();
+                for record in found {
+                    if !self.selected.contains(&record) {
+                        self.selected.push(record);
+                    }
+                }
+            }
+            _ => {}
+        }
+    }
+
+    pub(super) fn toggle(&mut self, record: Address) {
+        match self.selected.iter().position(|other| *other == record) {
+            Some(at) => drop(self.selected.remove(at)),
+            None => self.selected.push(record),
+        }
+    }
+
+    /// Which edges a handle of the selected thing under the pointer drags.
+    fn handle_under(&self, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
+        let [item] = self.selected_items()[..] else { return None };
+        if !can_be_sized(item) {
+            return None;
+        }
+        let near = handles(map.rect(item.area)).into_iter().find(|(at, _)| at.distance(pointer) <= NEAR);
+        near.map(|(_, edges)| edges)
+    }
+
+    fn hover(&self, ui: &Ui, pointer: Pos2, map: ScreenFromFloor) {
+        let icon = match self.handle_under(pointer, map) {
+            Some(Edges { north: false, south: false, .. }) => CursorIcon::ResizeHorizontal,
+            Some(Edges { east: false, west: false, .. }) => CursorIcon::ResizeVertical,
+            Some(edges) if edges.north == edges.east => CursorIcon::ResizeNeSw,
+            Some(_) => CursorIcon::ResizeNwSe,
+            None if ui.input(|i| i.key_down(Key::Space)) => CursorIcon::Grab,
+            None => CursorIcon::Default,
+        };
+        ui.ctx().set_cursor_icon(icon);
+    }
+
+    /// What comes of moving what is selected by `by`.
+    fn moving(&self, by: Vec2, edges: Edges, map: ScreenFromFloor, alt: bool) -> Trial {
+        let items = self.selected_items();
+        let Some(all) = crate::edit::around(items.iter().map(|item| item.area)) else {
+            return Trial::default();
+        };
+        let moved = edges.moved(all, by, LEAST_M);
+        let (snapped, guides) = self.snapped(moved, edges, map, alt);
+        let shift = snapped.min - all.min;
+        let areas: Vec<Rect> = match items[..] {
+            [_] => vec![snapped],
+            _ => items.iter().map(|item| Rect::new(item.area.min + shift, item.area.max + shift)).collect(),
+        };
+        let pairs: Vec<(&Item, Rect)> = items.iter().copied().zip(areas.iter().copied()).collect();
+        let tried = self.document.placing(&pairs).and_then(|edits| self.document.trial(&edits));
+        let (layout, refused) = match tried {
+            Ok(layout) => (Some(layout), None),
+            Err(refusal) => (None, Some(refusal.short())),
+        };
+        Trial { layout, refused, areas, guides, lasso: None }
+    }
+
+    fn snapped(&self, area: Rect, edges: Edges, map: ScreenFromFloor, alt: bool) -> (Rect, Vec<Guide>) {
+        if alt {
+            return (area, Vec::new());
+        }
+        let others = self.items.iter().filter(|item| {
+            matches!(item.record.list(), Some(List::Widgets | List::Regions | List::Stances))
+                && item.is_on(self.page)
+                && !item.is_group
+                && !self.selected.iter().any(|selected| item.record.is_within(selected))
+        });
+        let neighbours: Vec<Rect> = others.map(|item| item.area).collect();
+        let geometry = &self.document.floor().geometry;
+        let grid = Grid { geometry, neighbours: &neighbours, reach_m: PULL / map.scale() };
+        grid.snap(area, edges)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "what the pointer does in one frame")]
+    fn put_down(
+        &mut self,
+        thing: &super::palette::Thing,
+        at: Vec2,
+        inside: bool,
+        pressed: bool,
+        dropped: bool,
+        map: ScreenFromFloor,
+        alt: bool,
+    ) -> Trial {
+        if !inside {
+            return Trial::default();
+        }
+        let size = thing.size(&self.document.floor().geometry);
+        let area = Rect::from_centre_size(at, size);
+        let (area, guides) = self.snapped(area, Edges::ALL, map, alt);
+        // Dragged here, it is put down where the button comes up; after a click, where it goes down.
+        if pressed || dropped {
+            if self.put(thing, area) || dropped {
+                self.placing = None;
+            }
+            return Trial::default();
+        }
+        Trial { areas: vec![area], guides, ..Trial::default() }
+    }
+
+    /// What is selected, what it snaps to, and what is wrong.
+    fn marks(&self, ui: &Ui, rect: egui::Rect, map: ScreenFromFloor, theme: &Theme, trial: &Trial) {
+        let painter = ui.painter_at(rect);
+        let accent = color(theme.accent);
+        for finding in &self.findings {
+            let Some(widget) = self.layout().widgets.get(finding.widget) else { continue };
+            if widget.page.is_some_and(|page| page != self.page) || trial.layout.is_some() {
+                continue;
+            }
+            let colour = color(match finding.severity {
+                Severity::Error => theme.fault,
+                Severity::Warning => theme.warning,
+            });
+            let shown = map.rect(widget.area);
+            painter.rect_stroke(shown.expand(2.0), 4, Stroke::new(1.5, colour), StrokeKind::Outside);
+            let measure = finding.expected.as_str();
+            let text = format!("{} {measure}", finding.rule.code);
+            label(&painter, pos2(shown.left(), shown.bottom() + 3.0), &text, colour, theme);
+        }
+        let is_moving = !trial.areas.is_empty();
+        for item in self.selected_items() {
+            let shown = map.rect(item.area);
+            let colour = if is_moving { accent.gamma_multiply(0.4) } else { accent };
+            painter.rect_stroke(shown, 2, Stroke::new(2.0, colour), StrokeKind::Outside);
+        }
+        if let ([item], false) = (&self.selected_items()[..], is_moving)
+            && can_be_sized(item)
+        {
+            for (at, _) in handles(map.rect(item.area)) {
+                let square = egui::Rect::from_center_size(at, vec2(2.0 * HANDLE, 2.0 * HANDLE));
+                painter.rect(square, 2, color(theme.plate), Stroke::new(1.5, accent), StrokeKind::Inside);
+            }
+        }
+        let bad = color(theme.fault);
+        for area in &trial.areas {
+            let shown = map.rect(*area);
+            let colour = if trial.refused.is_some() { bad } else { accent };
+            painter.rect(
+                shown,
+                2,
+                colour.gamma_multiply(0.12),
+                Stroke::new(2.0, colour),
+                StrokeKind::Outside,
+            );
+            let size = area.size() * 100.0;
+            let text = format!("{:.1} x {:.1} cm", size.x, size.y);
+            label(&painter, pos2(shown.left(), shown.top() - 20.0), &text, colour, theme);
+        }
+        if let (Some(refused), Some(area)) = (&trial.refused, trial.areas.first()) {
+            label(
+                &painter,
+                pos2(map.rect(*area).left(), map.rect(*area).bottom() + 4.0),
+                refused,
+                bad,
+                theme,
+            );
+        }
+        for guide in &trial.guides {
+            let at = map.point(Vec2::splat(guide.at_m));
+            let line = if guide.is_upright {
+                [pos2(at.x, rect.top()), pos2(at.x, rect.bottom())]
+            } else {
+                [pos2(rect.left(), at.y), pos2(rect.right(), at.y)]
+            };
+            painter.line_segment(line, Stroke::new(1.0, accent));
+        }
+        if let Some(lasso) = trial.lasso {
+            let shown = map.rect(lasso);
+            painter.rect(shown, 0, accent.gamma_multiply(0.1), Stroke::new(1.0, accent), StrokeKind::Inside);
+        }
+    }
+
+    /// Tells screen readers and tests what is where.
+    fn names(&self, ui: &Ui, map: ScreenFromFloor) {
+        for item in self.items.iter().filter(|item| item.is_on(self.page) && !item.is_group) {
+            let id = ui.scope_id().with(("record", item.record.to_string()));
+            let node = ui.interact(map.rect(item.area), id, Sense::hover());
+            let is_selected = self.selected.contains(&item.record);
+            node.widget_info(|| {
+                WidgetInfo::selected(
+                    Role::ListItem,
+                    true,
+                    is_selected,
+                    format!("On the floor: {}", item.name),
+                )
+            });
+        }
+    }
+}
+
+/// What would come of a gesture if it ended now.
+#[derive(Default)]
+struct Trial {
+    /// The layout; `None` where it is refused, or nothing is changed.
+    layout: Option<Layout>,
+    /// Why it would be refused.
+    refused: Option<String>,
+    /// The areas of what is selected, or of what is put down.
+    areas: Vec<Rect>,
+    guides: Vec<Guide>,
+    lasso: Option<Rect>,
+}
+
+fn can_be_sized(item: &Item) -> bool {
+    !item.is_group && item.widgets.len() <= 1
+}
+
+fn around(a: Vec2, b: Vec2) -> Rect {
+    Rect::new(a.min(b), a.max(b))
+}
+
+/// The handles around `shown`, with what each drags.
+fn handles(shown: egui::Rect) -> [(Pos2, Edges); 8] {
+    let (x, y) = (shown.center().x, shown.center().y);
+    let edges = |west, east, south, north| Edges { west, east, south, north };
+    [
+        (shown.left_top(), edges(true, false, false, true)),
+        (shown.right_top(), edges(false, true, false, true)),
+        (shown.left_bottom(), edges(true, false, true, false)),
+        (shown.right_bottom(), edges(false, true, true, false)),
+        (pos2(shown.left(), y), edges(true, false, false, false)),
+        (pos2(shown.right(), y), edges(false, true, false, false)),
+        (pos2(x, shown.bottom()), edges(false, false, true, false)),
+        (pos2(x, shown.top()), edges(false, false, false, true)),
+    ]
+}
+
+/// Small text on a plate, so that it can be read on anything.
+fn label(painter: &egui::Painter, at: Pos2, text: &str, colour: Color32, theme: &Theme) {
+    let galley = painter.layout_no_wrap(text.to_owned(), FontId::proportional(11.5), colour);
+    let plate = Align2::LEFT_TOP.anchor_size(at, galley.size() + vec2(8.0, 2.0));
+    painter.rect_filled(plate, 3, color(theme.plate).gamma_multiply(0.92));
+    painter.galley(plate.min + vec2(4.0, 1.0), galley, colour);
+}

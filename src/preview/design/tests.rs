@@ -1,0 +1,230 @@
+//! Design mode without a display: found by name, worked by mouse and keyboard, judged by the text that comes of it.
+
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, channel};
+
+use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
+use egui_kittest::Harness;
+use egui_kittest::kittest::Queryable;
+
+use super::*;
+use crate::engine::Snapshot;
+use crate::preview::{PreviewInput, PreviewOptions};
+use crate::schema::{builtin_layout, parse_layout};
+
+struct Desk {
+    window: Harness<'static, App>,
+    commands: Receiver<PreviewCommand>,
+}
+
+impl Desk {
+    fn on(text: &str, path: Option<PathBuf>) -> Self {
+        let floor = Arc::new(Floor::default());
+        let kinds = Arc::new(Kinds::builtin());
+        let layout = Arc::new(parse_layout(text, "it", &kinds, &floor.geometry).unwrap().layout);
+        let (_, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+        let (sender, commands) = channel();
+        let input = PreviewInput {
+            floor,
+            layout,
+            source: "simulated floor".into(),
+            snapshots,
+            events: channel().1,
+            layouts: channel().1,
+            notices: channel().1,
+            scopes: None,
+            feet: None,
+            choices: vec!["map".into()],
+            effects: Vec::new(),
+            design: Some(DesignInput { name: "it.ron".into(), text: text.into(), path, kinds }),
+            commands: sender,
+        };
+        let app = App::new(input, &PreviewOptions::default());
+        let window = Harness::builder()
+            .with_size(vec2(1400.0, 860.0))
+            .with_step_dt(1.0 / 60.0)
+            .build_ui_state(|ui, app: &mut App| app.show(ui), app);
+        let mut desk = Self { window, commands };
+        desk.key(Key::F2);
+        desk
+    }
+
+    fn map() -> Self {
+        Self::on(builtin_layout("map").unwrap(), None)
+    }
+
+    fn designer(&self) -> &Designer {
+        self.window.state().designer.as_ref().unwrap()
+    }
+
+    fn text(&self) -> String {
+        self.designer().document.text().to_owned()
+    }
+
+    fn key(&mut self, key: Key) {
+        self.window.key_press(key);
+        self.window.run_steps(3);
+    }
+
+    fn command(&mut self, modifiers: Modifiers, key: Key) {
+        self.window.key_press_modifiers(modifiers, key);
+        self.window.run_steps(3);
+    }
+
+    fn click(&mut self, label: &str) {
+        self.window.get_by_label(label).click();
+        self.window.run_steps(3);
+    }
+
+    fn place(&self, name: &str) -> Pos2 {
+        self.window.get_by_label(&format!("On the floor: {name}")).rect().center()
+    }
+
+    fn button(&mut self, pos: Pos2, pressed: bool) {
+        let modifiers = Modifiers::NONE;
+        self.window.event(Event::PointerButton { pos, button: PointerButton::Primary, pressed, modifiers });
+        self.window.run_steps(1);
+    }
+
+    fn drag(&mut self, from: Pos2, to: Pos2) {
+        self.window.event(Event::PointerMoved(from));
+        self.window.run_steps(1);
+        self.button(from, true);
+        for step in 1..=8_u8 {
+            self.window.event(Event::PointerMoved(from + (to - from) * (f32::from(step) / 8.0)));
+            self.window.run_steps(1);
+        }
+        self.button(to, false);
+        self.window.run_steps(2);
+    }
+
+    fn area(&self, name: &str) -> Rect {
+        let layout = self.designer().layout();
+        layout.widgets[layout.widget_index(name).unwrap()].area
+    }
+}
+
+#[test]
+fn a_drag_moves_a_control_as_one_step_and_the_floor_gets_the_layout() {
+    let mut desk = Desk::map();
+    let first = desk.text();
+    let (home, before) = (desk.place("home"), desk.area("home"));
+    desk.drag(home, home + vec2(0.0, -90.0));
+    assert!(desk.area("home").min.y > before.min.y + 0.1, "{:?}", desk.area("home"));
+    assert_eq!(desk.area("home").size(), before.size());
+    let changed: Vec<_> = first
+        .lines()
+        .zip(desk.text().lines().map(str::to_owned))
+        .filter(|(a, b)| a != b)
+        .map(|(a, _)| a.trim().to_owned())
+        .collect();
+    assert!(matches!(&changed[..], [line] if line.starts_with("(id: \"home\"")), "{changed:?}");
+    let layout = desk.designer().layout().clone();
+    let told = desk.commands.try_iter().last();
+    assert!(matches!(told, Some(PreviewCommand::Try { layout: shown, .. }) if *shown == layout));
+    desk.command(Modifiers::COMMAND, Key::Z);
+    assert_eq!(desk.text(), first);
+    desk.command(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z);
+    assert_eq!(desk.designer().layout(), &layout);
+}
+
+#[test]
+fn what_cannot_be_is_refused_where_it_is_dropped() {
+    let mut desk = Desk::map();
+    let first = desk.text();
+    let (home, west) = (desk.place("home"), desk.place("pan_west"));
+    desk.drag(home, west);
+    assert_eq!(desk.text(), first);
+    assert!(desk.window.query_all_by_label_contains("overlaps").next().is_some());
+}
+
+#[test]
+fn a_layout_is_built_from_an_empty_floor_by_keyboard() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.ron");
+    let empty = crate::edit::Template::Empty.text(&Floor::default().geometry);
+    std::fs::write(&path, &empty).unwrap();
+    let mut desk = Desk::on(&empty, Some(path.clone()));
+    for kind in ["button", "switch", "slider"] {
+        desk.window.get_by_label(&format!("Put down: {kind}")).focus();
+        desk.window.run_steps(1);
+        desk.key(Key::Enter);
+    }
+    let ids: Vec<_> = desk.designer().layout().widgets.iter().map(|widget| widget.id.to_string()).collect();
+    assert_eq!(ids, ["button", "switch", "slider"]);
+    let before = desk.area("slider");
+    desk.command(Modifiers::COMMAND, Key::ArrowUp);
+    assert!((desk.area("slider").min.y - before.min.y - 0.01).abs() < 1e-4);
+    desk.command(Modifiers::COMMAND, Key::D);
+    assert_eq!(desk.designer().layout().widgets.len(), 4);
+    desk.command(Modifiers::COMMAND, Key::S);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
+    assert!(desk.text().starts_with(&empty[..200]), "comments stay");
+}
+
+#[test]
+fn the_lasso_selects_and_delete_takes_out() {
+    let mut desk = Desk::map();
+    let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
+    desk.drag(north + vec2(-130.0, -60.0), south + vec2(130.0, 40.0));
+    assert_eq!(desk.designer().selected.len(), 4, "{:?}", desk.designer().selected);
+    desk.key(Key::Delete);
+    assert_eq!(desk.designer().layout().widgets.len(), 3);
+    assert!(desk.text().contains("// Panning: four buttons"));
+}
+
+#[test]
+fn the_text_beside_the_floor_is_read_as_it_is_typed() {
+    let mut desk = Desk::map();
+    desk.click("Text");
+    let home = desk.place("home");
+    desk.drag(home, home);
+    assert_eq!(desk.designer().selected.len(), 1);
+    let text = desk.window.get_by_label("Text of the layout");
+    text.focus();
+    desk.window.run_steps(2);
+    desk.window.event(Event::Text("oops".into()));
+    desk.window.run_steps(2);
+    assert!(desk.window.query_all_by_label_contains("The floor keeps the last text").next().is_some());
+    assert_eq!(desk.designer().layout().widgets.len(), 7);
+}
+
+#[test]
+fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
+    let text = builtin_layout("map")
+        .unwrap()
+        .replace("at: (0.2, 2.2), size: (0.6, 0.6)", "at: (0.2, 2.2), size: (0.25, 0.6)");
+    let mut desk = Desk::on(&text, None);
+    desk.window.get_by_label_contains(" warning").click();
+    desk.window.run_steps(3);
+    assert!(desk.window.query_all_by_label_contains("U101").next().is_some());
+    desk.click("Make it 12 cm: do it");
+    assert!((desk.area("home").size().x - 0.12).abs() < 1e-4, "{:?}", desk.area("home"));
+    assert!(desk.window.query_all_by_label_contains("U101").next().is_none());
+    let sections = desk
+        .designer()
+        .document
+        .properties(&desk.designer().selected[0], desk.designer().selected_items().first().copied());
+    let press = sections.iter().flat_map(|part| &part.properties).find(|one| one.name == "press_n").unwrap();
+    assert_eq!(
+        (press.value.as_str(), &press.origin),
+        ("60", &crate::edit::Origin::Kind("round_button".into()))
+    );
+}
+
+#[test]
+fn a_draft_is_offered_and_a_change_outside_is_merged() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.ron");
+    let text = builtin_layout("map").unwrap();
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.path().join(".mine.ron.draft"), text.replace("\"Home\"", "\"Start\"")).unwrap();
+    let mut desk = Desk::on(text, Some(path.clone()));
+    desk.click("Recover the draft");
+    assert!(desk.text().contains("\"Start\""));
+    std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
+    desk.window.run_steps(60);
+    assert!(desk.text().contains("\"Start\"") && desk.text().contains("\"Scale\""));
+    desk.command(Modifiers::COMMAND, Key::S);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
+}
