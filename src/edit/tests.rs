@@ -216,13 +216,6 @@ fn undone_and_redone(count: usize) {
 
 #[test]
 fn edits_are_taken_back_to_the_first_byte_and_done_again_to_the_last() {
-    undone_and_redone(1_000);
-}
-
-/// The same with 10,000, which takes half a minute.
-#[test]
-#[ignore = "long: 10,000 edits"]
-fn ten_thousand_edits_are_taken_back_and_done_again() {
     undone_and_redone(10_000);
 }
 
