@@ -130,7 +130,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let input = PreviewInput {
         floor: Arc::new(stage.floor),
         layout: Arc::new(layout),
-        warnings: told_of(&warnings),
+        warnings: Warnings::from(&warnings),
         source: stage.name,
         snapshots: session.take_snapshots(),
         events,
@@ -246,17 +246,19 @@ struct Desk {
 impl Desk {
     /// `opened` if somebody chose it in the window.
     fn take(&self, name: &str, opened: bool, read: Result<(Layout, Diagnostics), String>) {
-        let name = name.to_string();
-        let news = match read {
-            Ok((layout, warnings)) => {
-                let loaded = Arc::new(layout.clone());
-                let revision = self.session.set_layout(layout);
-                let warnings = told_of(&warnings);
-                LayoutNews::Loaded { layout: loaded, revision, name, opened, warnings }
+        match read {
+            Ok((layout, warnings)) => self.put(name, opened, layout, Warnings::from(&warnings)),
+            Err(diagnostics) => {
+                let _ = self.news.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
             }
-            Err(diagnostics) => LayoutNews::Refused { name, diagnostics },
-        };
-        let _ = self.news.send(news);
+        }
+    }
+
+    fn put(&self, name: &str, opened: bool, layout: Layout, warnings: Warnings) {
+        let loaded = Arc::new(layout.clone());
+        let revision = self.session.set_layout(layout);
+        let name = name.to_owned();
+        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, opened, warnings });
     }
 }
 
@@ -268,13 +270,6 @@ fn watch(files: &LayoutArgs, floor: &Floor, desk: &Desk) -> Result<Option<Watch>
         let read = read.and_then(|_| own.reviewed(&floor).map_err(|failure| failure.to_string()));
         desk.take(&name, false, read);
     })
-}
-
-fn told_of(warnings: &Diagnostics) -> Warnings {
-    Warnings {
-        count: warnings.warnings() + warnings.errors(),
-        text: if warnings.is_empty() { String::new() } else { warnings.to_string() },
-    }
 }
 
 /// What the wishes of the person at the window need.
@@ -295,8 +290,8 @@ impl Obeyed {
                         self.open(choice);
                         continue;
                     }
-                    PreviewCommand::Try { layout, name } => {
-                        self.desk.take(&name, Ok(Arc::unwrap_or_clone(layout)));
+                    PreviewCommand::Try { layout, name, warnings } => {
+                        self.desk.put(&name, false, Arc::unwrap_or_clone(layout), warnings);
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {

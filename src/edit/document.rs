@@ -98,6 +98,14 @@ impl Document {
         ergonomics::review(self.layout(), &self.floor)
     }
 
+    /// Everything that `underfoot check` would warn of, with its places.
+    #[must_use]
+    pub fn review(&self) -> Diagnostics {
+        let mut all = self.warnings().clone();
+        all.merge(self.loaded.places.locate(&self.findings()));
+        all
+    }
+
     /// The kinds that its controls can be made of.
     #[must_use]
     pub fn kinds(&self) -> &Arc<Kinds> {

@@ -11,7 +11,7 @@ use crate::feel::{Effect, Gesture};
 use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
 use crate::scene::Shoe;
-use crate::schema::NamedEffect;
+use crate::schema::{Diagnostics, NamedEffect};
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
 /// A shoe that the window moves; its `length_m` is the sole's, a centimetre more than the bare foot's.
@@ -67,6 +67,13 @@ pub struct Warnings {
     pub text: String,
 }
 
+impl From<&Diagnostics> for Warnings {
+    fn from(all: &Diagnostics) -> Self {
+        let text = if all.is_empty() { String::new() } else { all.to_string() };
+        Self { count: all.warnings() + all.errors(), text }
+    }
+}
+
 /// What became of a layout file that changed.
 #[derive(Clone, Debug)]
 pub enum LayoutNews {
@@ -104,6 +111,8 @@ pub enum PreviewCommand {
         layout: Arc<Layout>,
         /// What to say about it: `map.ron`.
         name: String,
+        /// What feet and eyes will have trouble with in it.
+        warnings: Warnings,
     },
     /// Switch a control on or off, as an app would.
     Enable {

@@ -58,10 +58,10 @@ pub use diagnostic::{Diagnostic, Diagnostics, Severity};
 pub use effect::parse_effect;
 pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
-#[cfg(feature = "save")]
-pub use keep_comments::keep_comments;
 #[cfg(feature = "edit")]
 pub(crate) use ground::ground_fields;
+#[cfg(feature = "save")]
+pub use keep_comments::keep_comments;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, folder_beside, load_layout, parse_layout};
 pub use places::Places;

@@ -2,6 +2,12 @@
 
 use glam::Vec2;
 
+use crate::floor::Rect;
+use crate::widget::{DialSpec, Track};
+
+/// How far from a dial's middle a foot goes round it, in halves of its smaller side: well off the hub, well inside.
+const ROUND: f32 = 0.6;
+
 /// The way of a foot that slides over the floor, in floor metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Slide {
@@ -24,6 +30,28 @@ pub enum Slide {
 }
 
 impl Slide {
+    /// Along the track of a slider on `area`, from one share (0 to 1) of it to another.
+    pub(super) fn along(track: Track, area: Rect, from: f32, to: f32) -> Self {
+        let size = area.size();
+        let at = |share: f32| area.min + track.place_at(share, size) * size;
+        match (track, track.circle(size)) {
+            (Track::Arc { from_degrees, to_degrees }, Some((centre, _))) => {
+                let sweep = (to_degrees - from_degrees).to_radians() * (to - from);
+                Self::Arc { from: at(from), centre: area.centre() + centre, sweep }
+            }
+            _ => Self::Line { from: at(from), to: at(to) },
+        }
+    }
+
+    /// Round a dial on `area`, from where its needle is at the share `from`: clockwise to more.
+    pub(super) fn round(spec: &DialSpec, area: Rect, from: f32, to: f32) -> Self {
+        let turn = spec.turn_degrees.to_radians();
+        let angle = std::f32::consts::FRAC_PI_2 + turn * (0.5 - from);
+        let radius = ROUND * 0.5 * area.size().min_element();
+        let centre = area.centre();
+        Self::Arc { from: centre + Vec2::from_angle(angle) * radius, centre, sweep: turn * (from - to) }
+    }
+
     /// Where the foot is a share (0 to 1) of the way along.
     #[must_use]
     pub fn at(self, share: f32) -> Vec2 {

@@ -9,6 +9,7 @@ use glam::Vec2;
 use super::performance::Performance;
 use super::person::{MoveError, Person};
 use super::script::Script;
+use super::slide::Slide;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::units::Newtons;
@@ -181,17 +182,18 @@ impl Visitor<'_> {
         for _ in 0..times {
             match &widget.behaviour {
                 Behaviour::Slider(slider) => {
-                    let place = |share: f32| at(slider.track.place_at(share, size));
+                    let way = |from, to| Slide::along(slider.track, widget.area, from, to);
                     // What is too long for one reach is dragged about its middle.
                     performance
-                        .drag(place(0.25), place(0.75), SLIDE_M_S, force)
-                        .or_else(|_| performance.drag(place(0.4), place(0.6), SLIDE_M_S, force))?;
+                        .drag(way(0.25, 0.75), SLIDE_M_S, force)
+                        .or_else(|_| performance.drag(way(0.4, 0.6), SLIDE_M_S, force))?;
                 }
                 Behaviour::Pad(_) => {
-                    performance.drag(at(Vec2::splat(0.35)), at(Vec2::splat(0.65)), SLIDE_M_S, force)?;
+                    let [from, to] = [0.35, 0.65].map(|share| at(Vec2::splat(share)));
+                    performance.drag(Slide::Line { from, to }, SLIDE_M_S, force)?;
                 }
-                Behaviour::Dial(_) => {
-                    performance.drag(at(Vec2::new(0.85, 0.5)), at(Vec2::new(0.5, 0.85)), SLIDE_M_S, force)?;
+                Behaviour::Dial(dial) => {
+                    performance.drag(Slide::round(dial, widget.area, 0.4, 0.6), SLIDE_M_S, force)?;
                 }
                 // The middle of one that has several parts may be between them.
                 Behaviour::Stepper(spec) => performance.press(at(upper(spec.axis)), force, hold)?,

@@ -86,7 +86,7 @@ fn common(replayed: &Output, whole: &str) -> usize {
 #[test]
 fn a_disk_that_fills_while_a_session_is_recorded_leaves_what_it_took() {
     let folder = tempfile::tempdir().unwrap();
-    let (whole, events) = record(folder.path());
+    let (whole, events) = record(folder.path(), None);
     let script = "trap '' XFSZ; ulimit -f 8192; exec \"$0\" \"$@\"";
     let output = std::process::Command::new("sh")
         .args(["-c", script, env!("CARGO_BIN_EXE_underfoot")])
@@ -111,7 +111,7 @@ fn a_disk_that_fills_while_a_session_is_recorded_leaves_what_it_took() {
 #[test]
 fn a_killed_recording_replays_up_to_its_last_moments() {
     let folder = tempfile::tempdir().unwrap();
-    let (_, events) = record(folder.path());
+    let (_, events) = record(folder.path(), None);
     let path = folder.path().join("killed.mcap");
     let mut session = underfoot()
         .current_dir(folder.path())

@@ -17,7 +17,7 @@ use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
 use super::app::App;
-use super::feed::PreviewCommand;
+use super::feed::{PreviewCommand, Warnings};
 use crate::edit::{Address, Document, Edit, Item, LayoutFile, List, Refusal, Saving};
 use crate::ergonomics::Finding;
 use crate::floor::{Floor, Rect};
@@ -98,7 +98,7 @@ enum Ask {
 
 impl Designer {
     /// `None` for a layout that can't be read: there is nothing to edit then.
-    pub(super) fn new(input: DesignInput, floor: &Arc<Floor>) -> Option<Self> {
+    pub(super) fn new(input: &DesignInput, floor: &Arc<Floor>) -> Option<Self> {
         let document = Document::read(&input.name, &input.text, &input.kinds, floor).ok()?;
         let file = match &input.path {
             Some(path) => LayoutFile::open(path).map(|(file, _)| file).ok()?,
@@ -445,7 +445,7 @@ impl App {
             if let Some((feet, sink)) = &mut self.feet {
                 feet.lift_working();
                 feet.lift_standing();
-                sink.set(&[]);
+                sink.lead(0.0, &[]);
             }
         } else {
             self.try_layout();
@@ -484,7 +484,8 @@ impl App {
         let Some(designer) = &self.designer else { return };
         let layout = Arc::new(designer.layout().clone());
         let name = designer.file.name();
-        self.command(PreviewCommand::Try { layout, name });
+        let warnings = Warnings::from(&designer.document.review());
+        self.command(PreviewCommand::Try { layout, name, warnings });
     }
 
     /// The window in Design mode.

@@ -9,7 +9,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::*;
 use crate::engine::Snapshot;
-use crate::preview::{PreviewInput, PreviewOptions};
+use crate::preview::{PreviewInput, PreviewOptions, Warnings};
 use crate::schema::{builtin_layout, parse_layout};
 
 struct Desk {
@@ -27,6 +27,7 @@ impl Desk {
         let input = PreviewInput {
             floor,
             layout,
+            warnings: Warnings::default(),
             source: "simulated floor".into(),
             snapshots,
             events: channel().1,
@@ -34,6 +35,7 @@ impl Desk {
             notices: channel().1,
             scopes: None,
             feet: None,
+            shoes: None,
             choices: vec!["map".into()],
             effects: Vec::new(),
             design: Some(DesignInput { name: "it.ron".into(), text: text.into(), path, kinds }),

@@ -34,7 +34,7 @@ impl App {
                 match happened {
                     Happened::Event(event) => show(ui, theme, event),
                     Happened::GaveWay { material, count, at, .. } => {
-                        gave_way(ui, theme, material, *count, *at)
+                        gave_way(ui, theme, material, *count, *at);
                     }
                 }
             }

@@ -258,7 +258,8 @@ impl App {
 
     fn draw_projected(&mut self, ui: &Ui, picture: Rect, size: Vec2) {
         let floor = self.floor.geometry.bounds();
-        let homography = self.projection.placement.and_then(|placement| placement.from_floor(floor, size));
+        let homography =
+            self.projection.placement.and_then(|placement| placement.floor_to_picture(floor, size));
         let Some(homography) = homography else { return };
         let view = View {
             show: Show::PROJECTOR,

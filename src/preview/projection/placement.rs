@@ -44,7 +44,7 @@ impl Placement {
     /// From floor metres to points of a picture of `size` points.
     ///
     /// `None` for corners that make no picture; [`Placement::moved`] never lets them.
-    pub(super) fn from_floor(&self, floor: Rect, size: Vec2) -> Option<Homography> {
+    pub(super) fn floor_to_picture(&self, floor: Rect, size: Vec2) -> Option<Homography> {
         let (min, max) = (floor.min.as_dvec2(), floor.max.as_dvec2());
         // North-west, then clockwise, as the corners on the picture.
         let mut from = [DVec2::new(min.x, max.y), max, DVec2::new(max.x, min.y), min];
@@ -161,7 +161,7 @@ mod tests {
         let size = Vec2::new(1920.0, 1080.0);
         let upright = Placement::fit(1.5, 1920.0 / 1080.0);
         let at = |placement: Placement, x: f64, y: f64| {
-            placement.from_floor(floor(), size).unwrap().map(DVec2::new(x, y))
+            placement.floor_to_picture(floor(), size).unwrap().map(DVec2::new(x, y))
         };
         let corner = |index: usize| (upright.corners[index] * size).as_dvec2();
         let (north_west, south_west) = ((0.0, 1.216), (0.0, 0.0));

@@ -6,10 +6,7 @@ use super::{Stage, Written};
 use crate::floor::Rect;
 use crate::sim::definition::{Drag, End};
 use crate::sim::slide::Slide;
-use crate::widget::{Behaviour, DialSpec, Track};
-
-/// How far from a dial's middle a foot goes round it, in halves of its smaller side: well off the hub, well inside.
-const ROUND: f32 = 0.6;
+use crate::widget::Behaviour;
 
 impl Stage<'_> {
     /// The way of a drag, in floor metres; `None` after it has reported what can't be dragged so.
@@ -27,12 +24,12 @@ impl Stage<'_> {
             Behaviour::Slider(spec) => {
                 let what = format!("is a share of \"{id}\", which is a slider");
                 let [from, to] = self.ends(step, written, shares, &what, "0.5")?.map(|(_, share)| share);
-                Some(along(spec.track, area, from, to))
+                Some(Slide::along(spec.track, area, from, to))
             }
             Behaviour::Dial(spec) => {
                 let what = format!("is a share of \"{id}\", which is a dial");
                 let [from, to] = self.ends(step, written, shares, &what, "0.5")?.map(|(_, share)| share);
-                Some(round(spec, area, from, to))
+                Some(Slide::round(spec, area, from, to))
             }
             Behaviour::Pad(_) => {
                 let what = format!("is a place on \"{id}\", which is a pad");
@@ -77,26 +74,4 @@ fn shares(end: End) -> Option<f32> {
 
 fn places(end: End) -> Option<Vec2> {
     if let End::Place(place) = end { Some(place) } else { None }
-}
-
-/// Along the track of a slider.
-fn along(track: Track, area: Rect, from: f32, to: f32) -> Slide {
-    let size = area.size();
-    let at = |share: f32| area.min + track.place_at(share, size) * size;
-    match (track, track.circle(size)) {
-        (Track::Arc { from_degrees, to_degrees }, Some((centre, _))) => {
-            let sweep = (to_degrees - from_degrees).to_radians() * (to - from);
-            Slide::Arc { from: at(from), centre: area.centre() + centre, sweep }
-        }
-        _ => Slide::Line { from: at(from), to: at(to) },
-    }
-}
-
-/// Round a dial, from where its needle is at the share `from`: clockwise to more.
-fn round(spec: &DialSpec, area: Rect, from: f32, to: f32) -> Slide {
-    let turn = spec.turn_degrees.to_radians();
-    let angle = std::f32::consts::FRAC_PI_2 + turn * (0.5 - from);
-    let radius = ROUND * 0.5 * area.size().min_element();
-    let centre = area.centre();
-    Slide::Arc { from: centre + Vec2::from_angle(angle) * radius, centre, sweep: turn * (from - to) }
 }
