@@ -13,8 +13,8 @@ use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    self, DesignInput, FootSink, LayoutNews, PreviewCommand, PreviewError, PreviewFoot, PreviewInput,
-    PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
+    self, DesignInput, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewError, PreviewFoot,
+    PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
 };
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema::{self, Diagnostics};
@@ -244,21 +244,21 @@ struct Desk {
 }
 
 impl Desk {
-    /// `opened` if somebody chose it in the window.
-    fn take(&self, name: &str, opened: bool, read: Result<(Layout, Diagnostics), String>) {
+    /// Puts what was read on the floor, or tells why that can't be.
+    fn take(&self, name: &str, cause: LayoutCause, read: Result<(Layout, Diagnostics), String>) {
         match read {
-            Ok((layout, warnings)) => self.put(name, opened, layout, Warnings::from(&warnings)),
+            Ok((layout, warnings)) => self.put(name, cause, layout, Warnings::from(&warnings)),
             Err(diagnostics) => {
                 let _ = self.news.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
             }
         }
     }
 
-    fn put(&self, name: &str, opened: bool, layout: Layout, warnings: Warnings) {
+    fn put(&self, name: &str, cause: LayoutCause, layout: Layout, warnings: Warnings) {
         let loaded = Arc::new(layout.clone());
         let revision = self.session.set_layout(layout);
         let name = name.to_owned();
-        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, opened, warnings });
+        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
     }
 }
 
@@ -268,7 +268,7 @@ fn watch(files: &LayoutArgs, floor: &Floor, desk: &Desk) -> Result<Option<Watch>
     Watch::start(files, floor.geometry, move |read| {
         let read = read.map_err(|wrong| wrong.to_string());
         let read = read.and_then(|_| own.reviewed(&floor).map_err(|failure| failure.to_string()));
-        desk.take(&name, false, read);
+        desk.take(&name, LayoutCause::Saved, read);
     })
 }
 
@@ -291,7 +291,7 @@ impl Obeyed {
                         continue;
                     }
                     PreviewCommand::Try { layout, name, warnings } => {
-                        self.desk.put(&name, false, Arc::unwrap_or_clone(layout), warnings);
+                        self.desk.put(&name, LayoutCause::Designed, Arc::unwrap_or_clone(layout), warnings);
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {
@@ -325,11 +325,11 @@ impl Obeyed {
     fn open(&mut self, choice: usize) {
         let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
         self.files.layout = Some(PathBuf::from(&name));
-        self.show(&name, true);
+        self.show(&name, LayoutCause::Opened);
     }
 
-    fn show(&self, name: &str, opened: bool) {
-        self.desk.take(name, opened, self.files.reviewed(&self.floor).map_err(|failure| failure.to_string()));
+    fn show(&self, name: &str, cause: LayoutCause) {
+        self.desk.take(name, cause, self.files.reviewed(&self.floor).map_err(|failure| failure.to_string()));
     }
 
     /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
@@ -350,7 +350,7 @@ impl Obeyed {
                 let layout = self.files.layout.as_ref();
                 let layout =
                     layout.map_or_else(|| DEFAULT_LAYOUT.to_owned(), |layout| layout.display().to_string());
-                self.show(&layout, false);
+                self.show(&layout, LayoutCause::Saved);
                 format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
             }
             Err(error) => error.to_string(),

@@ -115,6 +115,11 @@ impl App {
         }
     }
 
+    /// Whether the drawing board is open.
+    pub(super) fn is_designing(&self) -> bool {
+        self.designer.as_ref().is_some_and(|designer| designer.is_open)
+    }
+
     /// One frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
@@ -124,7 +129,7 @@ impl App {
         self.top_bar(ui);
         self.help_bar(ui);
         self.notices(ui);
-        if self.designer.as_ref().is_some_and(|designer| designer.is_open) {
+        if self.is_designing() {
             self.design(ui);
             return self.request_next_frame(ui);
         }

@@ -5,7 +5,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Align, Key, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo, vec2};
 
 use super::app::App;
-use super::feed::PreviewCommand;
+use super::feed::{LayoutCause, PreviewCommand};
 use super::style::{panel_colour, panel_frame, pill, quiet};
 use crate::egui_painter::color;
 use crate::scene::Theme;
@@ -68,8 +68,9 @@ impl App {
                 self.design_choice(index);
             }
         }
+        // The drawing board has its own count, which leads to each.
         let count = self.messages.warnings.count;
-        if count > 0 {
+        if count > 0 && !self.is_designing() {
             let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
             let text = RichText::new(text).color(color(self.theme.warning));
             let button =
@@ -82,8 +83,9 @@ impl App {
             Some(file) if file.diagnostics.is_some() => {
                 pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
             }
-            Some(file) if self.now_s - file.at_s < TELL_S => {
-                let what = if file.opened { "opened" } else { "saved changes loaded" };
+            Some(file) if self.now_s - file.at_s < TELL_S && file.cause != Some(LayoutCause::Designed) => {
+                let is_opened = file.cause == Some(LayoutCause::Opened);
+                let what = if is_opened { "opened" } else { "saved changes loaded" };
                 pill(ui, self.theme.good, &self.theme, &format!("{}: {what}", file.name));
             }
             Some(file) => {
@@ -200,7 +202,19 @@ impl App {
         let theme = &self.theme;
         let frame = panel_frame(theme, Margin::symmetric(14, 5));
         Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
-            let steps: &[(&str, &str)] = if self.feet.is_some() {
+            let steps: &[(&str, &str)] = if self.is_designing() {
+                &[
+                    ("Drag", "move"),
+                    ("Corners", "size"),
+                    ("Arrows", "nudge"),
+                    ("Alt", "no snapping"),
+                    ("Shift-click", "select more"),
+                    ("Ctrl-D, Delete", "double, remove"),
+                    ("Ctrl-Z", "undo"),
+                    ("Wheel", "zoom"),
+                    ("F2", "try it"),
+                ]
+            } else if self.feet.is_some() {
                 &[
                     ("Hold", "press"),
                     ("Drag", "slide"),

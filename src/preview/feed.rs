@@ -74,6 +74,17 @@ impl From<&Diagnostics> for Warnings {
     }
 }
 
+/// Why there is another layout on the floor.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LayoutCause {
+    /// Somebody chose it in the window.
+    Opened,
+    /// Its file was saved by another program.
+    Saved,
+    /// Somebody designs it in the window, who need not be told.
+    Designed,
+}
+
 /// What became of a layout file that changed.
 #[derive(Clone, Debug)]
 pub enum LayoutNews {
@@ -86,8 +97,8 @@ pub enum LayoutNews {
         revision: u64,
         /// What to say about it: `map.ron`.
         name: String,
-        /// Whether somebody chose it in the window; otherwise its file has changed.
-        opened: bool,
+        /// Why it came.
+        cause: LayoutCause,
         /// What the program would print of it as warnings; empty if nothing.
         warnings: Warnings,
     },

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use super::feed::{LayoutNews, Warnings};
+use super::feed::{LayoutCause, LayoutNews, Warnings};
 use crate::engine::Snapshot;
 use crate::layout::Layout;
 use crate::units::Instant;
@@ -70,8 +70,8 @@ pub(super) struct FileNote {
     pub(super) at_s: f64,
     /// All problems; `None` if it was loaded.
     pub(super) diagnostics: Option<String>,
-    /// Whether somebody chose it in the window.
-    pub(super) opened: bool,
+    /// Why it came; `None` if it did not.
+    pub(super) cause: Option<LayoutCause>,
 }
 
 impl Messages {
@@ -121,13 +121,13 @@ impl Messages {
         }
         for news in self.layouts.try_iter() {
             self.file = Some(match news {
-                LayoutNews::Loaded { layout, revision, name, opened, warnings } => {
+                LayoutNews::Loaded { layout, revision, name, cause, warnings } => {
                     self.coming.push_back((layout, revision));
                     self.warnings = warnings;
-                    FileNote { name, at_s: now_s, diagnostics: None, opened }
+                    FileNote { name, at_s: now_s, diagnostics: None, cause: Some(cause) }
                 }
                 LayoutNews::Refused { name, diagnostics } => {
-                    FileNote { name, at_s: now_s, diagnostics: Some(diagnostics), opened: false }
+                    FileNote { name, at_s: now_s, diagnostics: Some(diagnostics), cause: None }
                 }
             });
         }
@@ -229,7 +229,7 @@ mod tests {
 
     fn loaded(title: &str, revision: u64) -> LayoutNews {
         let (name, warnings) = ("map.ron".into(), Warnings::default());
-        LayoutNews::Loaded { layout: named(title), revision, name, opened: false, warnings }
+        LayoutNews::Loaded { layout: named(title), revision, name, cause: LayoutCause::Saved, warnings }
     }
 
     #[test]

@@ -29,7 +29,8 @@ mod zoom;
 
 pub use design::DesignInput;
 pub use feed::{
-    FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed, Warnings,
+    FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed,
+    Warnings,
 };
 pub use projection::ProjectionOptions;
 

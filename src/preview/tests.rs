@@ -11,7 +11,8 @@ use glam::Vec2;
 use super::ProjectionOptions;
 use super::app::App;
 use super::{
-    FootSink, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed, Warnings,
+    FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed,
+    Warnings,
 };
 use crate::engine::Snapshot;
 use crate::floor::{Corner, Floor, SensorId, TileId};
@@ -180,7 +181,7 @@ impl Room {
 }
 
 fn loaded(layout: Arc<Layout>, name: String) -> LayoutNews {
-    LayoutNews::Loaded { layout, revision: 0, name, opened: false, warnings: Warnings::default() }
+    LayoutNews::Loaded { layout, revision: 0, name, cause: LayoutCause::Saved, warnings: Warnings::default() }
 }
 
 fn middle_of(name: &str) -> Vec2 {
@@ -585,7 +586,9 @@ fn warnings_are_counted_and_listed_and_an_opened_layout_is_not_called_saved() {
     assert!(!room.says("warning"));
     let warnings = Warnings { count: 2, text: "warning[U101]: \"home\" is 4.0 cm wide".into() };
     let (layout, name) = (Arc::new(map()), "map".to_owned());
-    room.layouts.send(LayoutNews::Loaded { layout, revision: 0, name, opened: true, warnings }).unwrap();
+    room.layouts
+        .send(LayoutNews::Loaded { layout, revision: 0, name, cause: LayoutCause::Opened, warnings })
+        .unwrap();
     room.run(3);
     assert!(room.says("map: opened") && !room.says("saved"));
     assert!(!room.says("U101"));

@@ -117,7 +117,7 @@ impl App {
             let pressed = ui.interact(response.rect, response.id.with("mouse"), Sense::drag());
             let place = pressed.interact_pointer_pos().filter(|_| pressed.is_pointer_button_down_on());
             let foot = place.map(|at| foot_at(map.floor(at)));
-            hand.set(foot.into_iter().collect());
+            hand.lead(ui.input(|i| i.unstable_dt), vec![foot.into_iter().collect()]);
             self.is_played = pressed.is_pointer_button_down_on();
             if self.is_played {
                 ui.ctx().request_repaint();

@@ -24,12 +24,16 @@ pub(super) struct Inspector {
     of: Option<(Address, u64)>,
 }
 
+/// Its width, in points.
+const INSPECTOR_PX: f32 = 330.0;
+
 impl Designer {
     /// The inspector.
     pub(super) fn side_panel(&mut self, ui: &mut Ui, theme: &Theme) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
-        let panel = Panel::right("inspector").frame(frame).resizable(true);
-        panel.default_size(316.0).size_range(240.0..=520.0).show(ui, |ui| {
+        // As wide whatever it shows: the floor beside it must not move under the pointer.
+        let panel = Panel::right("inspector").frame(frame).resizable(false);
+        panel.exact_size(INSPECTOR_PX).show(ui, |ui| {
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
                 self.inspector(ui, theme);
@@ -220,7 +224,7 @@ impl Designer {
     fn typed(&mut self, ui: &mut Ui, property: &Property, is_text: bool) -> Option<String> {
         let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
         let typed = self.inspector.typed.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
-        let field = ui.add(TextEdit::singleline(typed).desired_width(ui.available_width() - 26.0));
+        let field = ui.add(TextEdit::singleline(typed).desired_width(ui.available_width() - 48.0));
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &property.name));
         let done = field.lost_focus() && typed != shown;
         if !done {
