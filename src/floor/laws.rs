@@ -1,5 +1,6 @@
 //! The laws that force sensors follow: what a voltage stands for, in newtons.
 
+use super::exp::exp;
 use crate::format::{Num, num, record};
 
 record! {
@@ -70,7 +71,7 @@ impl Exponential {
     #[must_use]
     #[inline]
     pub fn newtons(&self, volts: f32) -> f32 {
-        self.a_n * (self.b_per_volt * volts).exp()
+        self.a_n * exp(self.b_per_volt * volts)
     }
 
     /// The voltage at which the law gives `force` newtons; NaN for a negative force.

@@ -7,6 +7,7 @@
 mod calibration;
 mod contact_id;
 mod drive;
+mod exp;
 mod geometry;
 mod hardware;
 mod laws;
@@ -26,4 +27,4 @@ pub use network::{Network, NotANetwork};
 pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
-pub(crate) use {network::NETWORK, record::DAY};
+pub(crate) use {exp::exp, network::NETWORK, record::DAY};

@@ -7,6 +7,7 @@ mod sequence;
 mod stream;
 mod swap;
 mod tare;
+mod window;
 
 use std::time::Duration;
 
@@ -501,18 +502,23 @@ impl Assembler {
     fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
         self.done = slot;
+        let (mut is_taring, mut is_doubtful, mut has_news) = (false, false, false);
         for board in &mut self.boards {
             board.apply(buffer, at_ns, &mut self.frame, &mut self.health, &mut self.counters);
+            is_taring |= board.stream.awaited && board.is_taring();
+            is_doubtful |= board.casts_doubt();
+            has_news |= board.stream.presence.has_news();
         }
-        self.started |= !self.boards.iter().any(|board| board.stream.awaited && board.is_taring());
+        self.started |= !is_taring;
         if self.started {
             let next = self.frame.at + Duration::from_micros(u64::from(self.counters.frames > 0));
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame);
-            self.frame.calibrated =
-                !self.health.is_foreign() && !self.boards.iter().any(BoardTrack::casts_doubt);
-            self.boards.iter_mut().for_each(|board| board.stream.presence.show());
+            self.frame.calibrated = !self.health.is_foreign() && !is_doubtful;
+            if has_news {
+                self.boards.iter_mut().for_each(|board| board.stream.presence.show());
+            }
         }
         self.started
     }

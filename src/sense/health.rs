@@ -12,6 +12,7 @@
 
 mod creep;
 mod drift;
+mod intake;
 mod jump;
 mod plate;
 mod report;
@@ -24,6 +25,7 @@ use crate::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use crate::sense::{ForceFrame, Quality, corners};
 use crate::units::{Instant, Newtons};
 
+pub(super) use intake::Lanes;
 pub use report::SensorHealth;
 pub use trouble::Trouble;
 
@@ -88,9 +90,9 @@ pub(super) struct Health {
     /// How far each may be followed: 20 % of the sensor's range.
     limits: Vec<[f32; 4]>,
     ends: Vec<[End; 4]>,
-    /// Tiles with a sensor that goes by the nominal law: what a plate allows cannot be held against
-    /// forces that may be off by a third.
-    guessed: Vec<bool>,
+    /// Sensors that go by the nominal law: what a plate allows cannot be held against forces that may be off by a
+    /// third.
+    guessed: Vec<[bool; 4]>,
     sensors: Vec<[Sensor; 4]>,
     slow: Vec<Slow>,
     /// Tiles with a reading to be examined in this frame.
@@ -114,17 +116,6 @@ pub(super) struct Health {
     /// Whether boards make the newtons themselves: then the file says nothing of them.
     by_boards: bool,
     jumps: Jumps,
-}
-
-/// By whose law a reading became a force.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Law {
-    /// The one measured and kept in the floor file.
-    Measured,
-    /// The nominal part's: nobody has measured its own.
-    Nominal,
-    /// The board's, which sends newtons.
-    Board,
 }
 
 /// How much a sensor may read at first, in newtons, on a floor that is the file's: far more than zeros drift in a day.
@@ -154,7 +145,7 @@ impl Health {
             visited: [None; SHARES],
             limits: (0..tiles).map(limits).collect(),
             ends: vec![[End::Within; 4]; tiles],
-            guessed: vec![false; tiles],
+            guessed: vec![[false; 4]; tiles],
             sensors: vec![[Sensor::default(); 4]; tiles],
             slow: vec![Slow::default(); tiles],
             loud: Vec::with_capacity(4 * tiles),
@@ -179,21 +170,7 @@ impl Health {
         self.zeros[tile][corner] + self.crept[tile][corner]
     }
 
-    /// Notes that a sensor has read `force` newtons (tared, zero taken off) by this law, at this end of its
-    /// converter.
-    pub(super) fn note(&mut self, tile: u32, corner: usize, force: f32, end: End, law: Law) {
-        self.ends[tile as usize][corner] = end;
-        self.jumps.note(tile as usize);
-        self.guessed[tile as usize] |= law == Law::Nominal;
-        self.by_boards |= law == Law::Board;
-        let is_loud = force.abs() > LOUD_N || end.is_odd();
-        // A tile may come four times if its sensors are on boards of their own, never more often.
-        if is_loud && self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
-            self.loud.push(tile);
-        }
-    }
-
-    /// Marks in `frame`, whose forces have all been noted, what cannot be trusted.
+    /// Marks in `frame`, whose forces have all been taken, what cannot be trusted.
     pub(super) fn inspect(&mut self, frame: &mut ForceFrame) {
         self.number = self.number.wrapping_add(1);
         let mut loud = std::mem::take(&mut self.loud);
@@ -228,7 +205,7 @@ impl Health {
         if is_connected(quality, sensors) {
             let out = sensors.map(|sensor| sensor.is_out());
             let alone = plate::unanswered(forces, out);
-            let measured = !self.guessed[tile] && !foreign;
+            let measured = self.guessed[tile] == [false; 4] && !foreign;
             let before = self.read[tile];
             let twist = self.twist.range();
             for (corner, sensor) in sensors.iter_mut().enumerate() {
@@ -311,13 +288,13 @@ impl Health {
                 self.laden += usize::from(laden);
                 self.strange += usize::from(strange && !laden);
             }
-            if !guessed[tile] && !foreign {
+            if guessed[tile] == [false; 4] && !foreign {
                 slow.judge(&block, alone, twist.range(), sensors);
             }
             let is_sound = sensors.iter().all(|sensor| sensor.trouble().is_none());
             let has_lifted = block.lows.into_iter().any(corners::has_lifted)
                 || block.ends.iter().any(|end| end.reads_nothing());
-            if is_sound && !guessed[tile] && !has_lifted && !block.ends.contains(&End::High) {
+            if is_sound && guessed[tile] == [false; 4] && !has_lifted && !block.ends.contains(&End::High) {
                 twist.learn(block.means);
             }
             if is_sound && !block.ends.contains(&End::High) {

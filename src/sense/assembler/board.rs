@@ -1,9 +1,12 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
+use arrayvec::ArrayVec;
+
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
+use super::window::{NARROW, Trust, WIDE, Window, put_narrow, put_wide, windows};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
-use crate::sense::health::{End, Health, LOUD_N, Law};
+use crate::sense::health::{Health, LOUD_N};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
@@ -11,14 +14,8 @@ use crate::wire::{LinkCounters, Readings};
 /// How many slots may wait for their boards at once.
 pub(super) const BUFFERS: usize = 4;
 
-/// Counts up to which a sensor reads nothing (0.5 %: the converter's offset and noise).
-const NOTHING: u16 = 327;
-
 /// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
 const RESTS_N: f32 = 1.0;
-
-/// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
-const MOST_N: f32 = 50_000.0;
 
 /// One board: its stream, its wiring, and what it read in the slots that wait.
 #[derive(Clone, Debug)]
@@ -26,9 +23,14 @@ pub(super) struct BoardTrack {
     pub(super) stream: Stream,
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
-    waiting: [Option<Readings>; BUFFERS],
+    /// The same, as sensors are worked on side by side.
+    wide: Vec<Window<WIDE>>,
+    narrow: Vec<Window<NARROW>>,
+    /// Which of `kept` wait.
+    waits: [bool; BUFFERS],
+    kept: [Readings; BUFFERS],
     /// What its last packet read, and whether that was no news under a load.
-    last: Option<Readings>,
+    last: Readings,
     repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
     sends_counts: bool,
@@ -41,24 +43,24 @@ pub(super) struct BoardTrack {
 
 /// What one channel measures. Small, for a large floor has many.
 #[derive(Clone, Copy, Debug)]
-struct Channel {
-    tile: u32,
-    corner: Corner,
-    /// Whether its law is the nominal part's or its own.
-    law: Law,
+pub(super) struct Channel {
+    pub(super) tile: u32,
+    pub(super) corner: Corner,
+    /// Whether its law is the nominal part's, since nobody has measured its own.
+    pub(super) is_nominal: bool,
     /// Counts from which on it reads "at least".
-    saturated: u16,
-    calibration: Calibration,
-    tare: f32,
+    pub(super) saturated: u16,
+    pub(super) calibration: Calibration,
+    pub(super) tare: f32,
     /// Whether so much rests on it while the floor is empty that it never reads nothing.
-    bears: bool,
+    pub(super) bears: bool,
 }
 
 impl Channel {
     fn new(tile: u32, corner: Corner, calibration: Calibration, tare: f32) -> Self {
-        let law = if calibration == Calibration::NOMINAL { Law::Nominal } else { Law::Measured };
+        let is_nominal = calibration == Calibration::NOMINAL;
         let saturated = calibration.saturated();
-        let mut channel = Self { tile, corner, law, saturated, calibration, tare, bears: false };
+        let mut channel = Self { tile, corner, is_nominal, saturated, calibration, tare, bears: false };
         channel.set_tare(tare);
         channel
     }
@@ -66,20 +68,6 @@ impl Channel {
     fn set_tare(&mut self, tare: f32) {
         self.tare = tare;
         self.bears = tare > self.calibration.force(0).0 + RESTS_N;
-    }
-
-    /// Where in the converter's range `count` lies. A sensor on which next to nothing
-    /// rests while the floor is empty is never missed: it may well read nothing.
-    fn end(&self, count: u16) -> End {
-        if count >= self.saturated {
-            End::High
-        } else if count > NOTHING {
-            End::Within
-        } else if self.bears {
-            End::Low
-        } else {
-            End::Bare
-        }
     }
 }
 
@@ -100,17 +88,21 @@ impl BoardTrack {
             Some(Channel::new(u32::try_from(tile).ok()?, corner, floor.law(sensor), tare))
         };
         let channels: Vec<_> = wiring.iter().map(|sensor| sensor.and_then(channel)).collect();
-        let has_nominal = channels.iter().flatten().any(|channel| channel.law == Law::Nominal);
+        let has_nominal = channels.iter().flatten().any(|channel| channel.is_nominal);
         let tare = match tare {
             Tare::FromFloor => TareState::FromFloor,
             Tare::AtStart(rules) => TareState::Measuring(TareMeter::new(channels.len(), rules)),
         };
+        let (wide, narrow) = windows(&channels, 4 * floor.geometry.tile_count());
         Self {
             stream: Stream::default(),
             geometry: floor.geometry,
             channels,
-            waiting: Default::default(),
-            last: None,
+            wide,
+            narrow,
+            waits: [false; BUFFERS],
+            kept: std::array::from_fn(|_| Readings::Counts(ArrayVec::new())),
+            last: Readings::Counts(ArrayVec::new()),
             repeats: false,
             sends_counts: false,
             has_nominal,
@@ -124,13 +116,14 @@ impl BoardTrack {
     }
 
     pub(super) const fn has(&self, buffer: usize) -> bool {
-        self.waiting[buffer].is_some()
+        self.waits[buffer]
     }
 
     /// Keeps `readings` until the frame of `buffer`'s slot is made.
     pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
         self.sends_counts = matches!(readings, Readings::Counts(_));
-        self.waiting[buffer] = Some(readings.clone());
+        self.waits[buffer] = true;
+        copy(readings, &mut self.kept[buffer]);
     }
 
     /// Whether `readings` are, count for count, those of the packet before, although something rests on the
@@ -139,9 +132,9 @@ impl BoardTrack {
     /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
     /// end of their range, nor of boards that send newtons, which may have smoothed them.
     pub(super) fn note_repeats(&mut self, readings: &Readings, health: &Health) -> bool {
-        let is_same = self.last.as_ref() == Some(readings);
+        let is_same = self.last == *readings;
         if !is_same {
-            self.last = Some(readings.clone());
+            copy(readings, &mut self.last);
         }
         self.repeats = is_same && !self.is_taring() && self.bears_load(readings, health);
         self.repeats
@@ -153,22 +146,20 @@ impl BoardTrack {
     }
 
     fn bears_load(&self, readings: &Readings, health: &Health) -> bool {
-        let Readings::Counts(counts) = readings else { return false };
-        let channels = self.channels.iter().zip(counts);
-        channels.filter_map(|(channel, count)| channel.as_ref().zip(*count)).any(|(channel, count)| {
-            let zero = channel.tare + health.zero(channel.tile as usize, channel.corner.index());
-            channel.end(count) == End::Within && channel.calibration.force(count).0 - zero > LOUD_N
-        })
+        let zero = |tile, corner| health.zero(tile, corner);
+        let wide = self.wide.iter().flat_map(|window| window.net(readings, zero));
+        let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(readings, zero)));
+        matches!(readings, Readings::Counts(_)) && all.any(|force| force > LOUD_N)
     }
 
     /// Forgets what waits in `buffer`; true if there was something.
     pub(super) fn clear(&mut self, buffer: usize) -> bool {
-        self.waiting[buffer].take().is_some()
+        std::mem::take(&mut self.waits[buffer])
     }
 
     /// Number of its sensors that send counts which nobody has calibrated.
     pub(super) fn uncalibrated(&self) -> usize {
-        let nominal = |channel: &&Channel| channel.law == Law::Nominal;
+        let nominal = |channel: &&Channel| channel.is_nominal;
         if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
@@ -187,25 +178,21 @@ impl BoardTrack {
         matches!(self.tare, TareState::FromFloor)
     }
 
-    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `means`, channel by
-    /// channel; `None` if these are not for its channels. `misses` is space for sorting.
-    pub(super) fn misfit(&self, means: &[f32], is_counts: bool, misses: &mut Vec<f32>) -> Option<f32> {
-        if means.len() != self.channels.len() {
+    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `mean`; `None` if that is
+    /// not for its channels, or if it would miss it by no less than `below`. `misses` is space for sorting.
+    pub(super) fn misfit(&self, mean: &Readings, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
+        if mean.len() != self.channels.len() {
             return None;
         }
-        let force = |channel: &Channel, mean: f32| {
-            if is_counts { channel.calibration.force(mean.round() as u16).0 } else { mean }
-        };
-        let channels = self.channels.iter().zip(means);
-        let read = channels
-            .filter_map(|(channel, mean)| Some((channel.as_ref()?, *mean)))
-            .filter(|(_, mean)| mean.is_finite());
         misses.clear();
-        misses.extend(read.map(|(channel, mean)| (force(channel, mean) - channel.tare).abs()));
-        if misses.is_empty() {
+        misses.extend(self.wide.iter().flat_map(|window| window.misses(mean)));
+        misses.extend(self.narrow.iter().flat_map(|window| window.misses(mean)));
+        let middle = misses.len() / 2;
+        // To count is far less work than to sort, and most places fit worse than the best so far.
+        let is_less = |below: f32| misses.iter().filter(|miss| **miss < below).count() > middle;
+        if misses.is_empty() || !below.is_none_or(is_less) {
             return None;
         }
-        let middle = misses.len() / 2;
         Some(*misses.select_nth_unstable_by(middle, f32::total_cmp).1)
     }
 
@@ -258,14 +245,14 @@ impl BoardTrack {
         health: &mut Health,
         counters: &mut LinkCounters,
     ) {
-        let readings = buffer.and_then(|buffer| self.waiting[buffer].take());
-        if let Some(readings) = &readings {
-            self.measure_tare(readings, at_ns);
+        let buffer = buffer.filter(|&buffer| self.clear(buffer));
+        if let Some(buffer) = buffer {
+            self.measure_tare(buffer, at_ns);
         }
         let quality = self.quality();
-        match readings {
-            Some(readings) if !self.is_taring() => {
-                counters.bad_readings += self.write(&readings, quality, frame, health);
+        match buffer {
+            Some(buffer) if !self.is_taring() => {
+                counters.bad_readings += self.write(buffer, quality, frame, health);
             }
             _ if quality == Quality::Stale => self.mark_stale(frame),
             _ => {}
@@ -273,50 +260,15 @@ impl BoardTrack {
     }
 
     /// Writes calibrated and tared forces; gives the number of bad readings.
-    fn write(
-        &self,
-        readings: &Readings,
-        quality: Quality,
-        frame: &mut ForceFrame,
-        health: &mut Health,
-    ) -> u64 {
+    fn write(&self, buffer: usize, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
+        let (readings, is_foreign) = (&self.kept[buffer], health.is_foreign());
+        let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign };
         let mut bad = 0;
-        let foreign = health.is_foreign();
-        let mut put = |channel: &Channel, force: f32, end: End, law: Law| {
-            let (tile, corner) = (channel.tile as usize, channel.corner.index());
-            let force = force - channel.tare - health.zero(tile, corner);
-            // NaN is not within any range.
-            let own = if !(-MOST_N..=MOST_N).contains(&force) {
-                bad += 1;
-                Quality::Faulty
-            } else if self.is_swapped {
-                Quality::Faulty
-            } else {
-                frame.forces[tile][corner] = force;
-                health.note(channel.tile, corner, force, end, law);
-                if end == End::High || law == Law::Nominal || foreign {
-                    Quality::Degraded
-                } else {
-                    Quality::Live
-                }
-            };
-            frame.quality[tile][corner] = own.max(quality);
-        };
-        match readings {
-            Readings::Counts(counts) => {
-                for (channel, &count) in self.channels.iter().zip(counts) {
-                    let Some(channel) = channel else { continue };
-                    let force = count.map_or(f32::NAN, |count| channel.calibration.force(count).0);
-                    let end = count.map_or(End::Within, |count| channel.end(count));
-                    put(channel, force, end, channel.law);
-                }
-            }
-            Readings::Newtons(forces) => {
-                for (channel, &force) in self.channels.iter().zip(forces) {
-                    let Some(channel) = channel else { continue };
-                    put(channel, force, End::Within, Law::Board);
-                }
-            }
+        for window in &self.wide {
+            bad += put_wide(window, readings, trust, frame, health);
+        }
+        for window in &self.narrow {
+            bad += put_narrow(window, readings, trust, frame, health);
         }
         bad
     }
@@ -328,8 +280,9 @@ impl BoardTrack {
         }
     }
 
-    fn measure_tare(&mut self, readings: &Readings, at_ns: i64) {
+    fn measure_tare(&mut self, buffer: usize, at_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
+        let readings = &self.kept[buffer];
         let forces = self.channels.iter().enumerate().map(|(number, channel)| match (channel, readings) {
             (None, _) => f32::NAN,
             (Some(channel), Readings::Counts(counts)) => {
@@ -346,6 +299,7 @@ impl BoardTrack {
                         channel.set_tare(mean);
                     }
                 }
+                (self.wide, self.narrow) = windows(&self.channels, 4 * self.geometry.tile_count());
                 self.tare = TareState::Taken;
             }
             Some(Found::Noisy { channel, mean, deviation }) => {
@@ -358,5 +312,17 @@ impl BoardTrack {
                 });
             }
         }
+    }
+}
+
+/// Makes `to` what `from` is, without moving more than there is.
+fn copy(from: &Readings, to: &mut Readings) {
+    match (from, to) {
+        (Readings::Counts(from), Readings::Counts(to)) => {
+            to.clear();
+            // Both have the same room.
+            let _ = to.try_extend_from_slice(from);
+        }
+        (from, to) => *to = from.clone(),
     }
 }

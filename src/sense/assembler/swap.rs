@@ -45,8 +45,8 @@ struct Block {
     sums: Vec<f32>,
     packets: u16,
     is_counts: bool,
-    /// The means of the last whole block; NaN for channels that gave nothing.
-    means: Vec<f32>,
+    /// The means of the last whole block, for channels that gave anything.
+    mean: Option<Readings>,
     /// By how much it missed its own tares.
     own: f32,
     /// How many other places it has been compared with since it was last compared with all.
@@ -64,7 +64,6 @@ impl Swaps {
         let most = boards.iter().map(BoardTrack::channel_count).max().unwrap_or(0);
         let block = |board: &BoardTrack| Block {
             sums: Vec::with_capacity(board.channel_count()),
-            means: Vec::with_capacity(board.channel_count()),
             ..Block::default()
         };
         Self {
@@ -104,8 +103,10 @@ impl Swaps {
     fn compare(&mut self, number: usize, boards: &[BoardTrack]) -> bool {
         let Self { blocks, misses, .. } = self;
         let block = &mut blocks[number];
-        let mut misfit = |place: usize| boards[place].misfit(&block.means, block.is_counts, misses);
-        block.own = misfit(number).unwrap_or(0.0);
+        let mean = block.mean.take();
+        let mut misfit =
+            |place: usize, below: Option<f32>| boards[place].misfit(mean.as_ref()?, below, misses);
+        block.own = misfit(number, None).unwrap_or(0.0);
         if block.own <= LEAST_N {
             (block.compared, block.nearest, block.best) = (0, None, None);
             return true;
@@ -114,8 +115,8 @@ impl Swaps {
         let until = (block.compared + COMPARED).min(others);
         for step in block.compared..until {
             let place = (number + 1 + step) % boards.len();
-            let Some((by, place)) = misfit(place).zip(u16::try_from(place).ok()) else { continue };
-            if block.nearest.is_none_or(|(least, _)| by < least) {
+            let below = block.nearest.map(|(least, _)| least);
+            if let Some((by, place)) = misfit(place, below).zip(u16::try_from(place).ok()) {
                 block.nearest = Some((by, place));
             }
         }
@@ -201,8 +202,12 @@ impl Block {
 
     fn finish(&mut self) {
         let packets = f32::from(self.packets);
-        self.means.clear();
-        self.means.extend(self.sums.drain(..).map(|sum| sum / packets));
+        let means = self.sums.drain(..).map(|sum| sum / packets);
+        self.mean = Some(if self.is_counts {
+            Readings::Counts(means.map(|mean| mean.is_finite().then(|| mean.round() as u16)).collect())
+        } else {
+            Readings::Newtons(means.collect())
+        });
         self.packets = 0;
     }
 }

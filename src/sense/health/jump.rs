@@ -20,22 +20,24 @@ const MOST_N: f32 = 300.0;
 /// cut off and is back, and as long as a board may be silent).
 const DOUBTED_FOR: Duration = Duration::from_millis(100);
 
-/// What one tile read last.
-#[derive(Clone, Copy, Debug, Default)]
-struct Last {
-    /// When; `None` before the first time.
-    at: Option<Instant>,
-    forces: [f32; 4],
-    /// Until when the tile is not believed.
-    doubted_until: Instant,
-    /// Whether it has been read for the frame in the making.
-    is_new: bool,
-}
+/// Less change than this is no jump, whichever of a tile's sensors are known to be out, however it is rounded.
+const CALM_N: f32 = 0.9 * MOST_N;
+
+/// Tiles that are looked at together.
+const BLOCK: usize = 16;
 
 /// Watches every tile for loads that jump.
 #[derive(Clone, Debug)]
 pub(super) struct Jumps {
-    tiles: Vec<Last>,
+    /// When each tile was read last; `None` before the first time.
+    at: Vec<Option<Instant>>,
+    /// What it read then.
+    forces: Vec<[f32; 4]>,
+    /// Which sensors have been read for the frame in the making.
+    news: Vec<[bool; 4]>,
+    /// Until when each tile is not believed, and until when any is not.
+    doubted_until: Vec<Instant>,
+    any_until: Instant,
     count: u64,
     /// The tile of the last jump and its height, in newtons.
     last: Option<(usize, f32)>,
@@ -43,12 +45,20 @@ pub(super) struct Jumps {
 
 impl Jumps {
     pub(super) fn new(tiles: usize) -> Self {
-        Self { tiles: vec![Last::default(); tiles], count: 0, last: None }
+        Self {
+            at: vec![None; tiles],
+            forces: vec![[0.0; 4]; tiles],
+            news: vec![[false; 4]; tiles],
+            doubted_until: vec![Instant::START; tiles],
+            any_until: Instant::START,
+            count: 0,
+            last: None,
+        }
     }
 
-    /// Notes that a sensor of `tile` has been read.
-    pub(super) fn note(&mut self, tile: usize) {
-        self.tiles[tile].is_new = true;
+    /// For each sensor, four to a tile, whether it has been read for the frame in the making: to be set.
+    pub(super) fn news(&mut self) -> &mut [bool] {
+        self.news.as_flattened_mut()
     }
 
     /// Takes from tiles whose load has jumped, for a while, whatever quality they had.
@@ -56,24 +66,42 @@ impl Jumps {
     /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
     pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]]) {
         let now = frame.at;
-        for (tile, (last, sensors)) in self.tiles.iter_mut().zip(sensors).enumerate() {
-            if std::mem::take(&mut last.is_new) {
-                let forces = frame.forces[tile];
-                let before = std::mem::replace(&mut last.forces, forces);
-                let elapsed = last.at.replace(now).map(|at| now.since(at));
-                let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
-                let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
-                // After silence whatever was held is cancelled anyway, and anybody may have come.
-                let spans = elapsed.filter(|elapsed| *elapsed < DOUBTED_FOR);
-                if spans.is_some_and(|elapsed| jump > MOST_N * (1e3 * elapsed.as_secs_f32()).max(1.0)) {
-                    last.doubted_until = now + DOUBTED_FOR;
-                    self.count += 1;
-                    self.last = Some((tile, jump));
+        for from in (0..self.forces.len()).step_by(BLOCK) {
+            let block = from..(from + BLOCK).min(self.forces.len());
+            let forces = &frame.forces[block.clone()];
+            if is_calm(&self.forces[block.clone()], forces, &self.news[block.clone()]) {
+                self.forces[block.clone()].copy_from_slice(forces);
+                self.at[block.clone()].fill(Some(now));
+            } else {
+                block.clone().for_each(|tile| self.compare(tile, frame.forces[tile], &sensors[tile], now));
+            }
+            self.news[block].fill([false; 4]);
+        }
+        if now < self.any_until {
+            for (quality, until) in frame.quality.iter_mut().zip(&self.doubted_until) {
+                if now < *until {
+                    *quality = [Quality::Faulty; 4];
                 }
             }
-            if now < last.doubted_until {
-                frame.quality[tile] = [Quality::Faulty; 4];
-            }
+        }
+    }
+
+    /// Compares what `tile` reads with what it read before, if it has been read.
+    fn compare(&mut self, tile: usize, forces: [f32; 4], sensors: &[Sensor; 4], now: Instant) {
+        if self.news[tile] == [false; 4] {
+            return;
+        }
+        let before = std::mem::replace(&mut self.forces[tile], forces);
+        let elapsed = self.at[tile].replace(now).map(|at| now.since(at));
+        let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
+        let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
+        // After silence whatever was held is cancelled anyway, and anybody may have come.
+        let spans = elapsed.filter(|elapsed| *elapsed < DOUBTED_FOR);
+        if spans.is_some_and(|elapsed| jump > MOST_N * (1e3 * elapsed.as_secs_f32()).max(1.0)) {
+            self.doubted_until[tile] = now + DOUBTED_FOR;
+            self.any_until = self.any_until.max(now + DOUBTED_FOR);
+            self.count += 1;
+            self.last = Some((tile, jump));
         }
     }
 
@@ -81,6 +109,21 @@ impl Jumps {
     pub(super) const fn found(&self) -> (u64, Option<(usize, f32)>) {
         (self.count, self.last)
     }
+}
+
+/// Whether all of some tiles have been read, and none of their loads can have jumped.
+///
+/// Without branches, over plain arrays.
+fn is_calm(before: &[[f32; 4]], forces: &[[f32; 4]], news: &[[bool; 4]]) -> bool {
+    let mut calm = true;
+    for (before, now) in before.iter().zip(forces) {
+        let [sw, se, nw, ne] = [0, 1, 2, 3].map(|corner| (now[corner] - before[corner]).abs());
+        calm &= (sw + se) + (nw + ne) < CALM_N;
+    }
+    for news in news {
+        calm &= news[0] | news[1] | news[2] | news[3];
+    }
+    calm
 }
 
 #[cfg(test)]
@@ -98,7 +141,7 @@ mod tests {
             frame.quality.fill([Quality::Live; 4]);
             if let Some(newtons) = newtons {
                 frame.forces[0] = [0.25 * newtons; 4];
-                jumps.note(0);
+                jumps.news().fill(true);
             }
             jumps.mark(&mut frame, &[[Sensor::default(); 4]]);
             if frame.quality[0] == [Quality::Faulty; 4] {

@@ -7,7 +7,7 @@ use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64Mcg;
 
-use super::{End, Health, Law, Trouble};
+use super::{Health, LOUD_N, Trouble};
 use crate::floor::{Corner, Floor};
 use crate::sense::ForceFrame;
 
@@ -116,13 +116,10 @@ impl Walk {
                     };
                 }
                 self.frame.forces[tile][corner] = reads - self.health.zero(tile, corner);
-                self.health.note(
-                    tile as u32,
-                    corner,
-                    self.frame.forces[tile][corner],
-                    End::Within,
-                    Law::Measured,
-                );
+                self.health.jumps.news()[4 * tile + corner] = true;
+                if self.frame.forces[tile][corner].abs() > LOUD_N {
+                    self.health.note_loud(4 * tile + corner);
+                }
             }
         }
         self.health.inspect(&mut self.frame);

@@ -1,0 +1,305 @@
+//! From what the channels of a board read to the forces of sensors, many side by side.
+
+// Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
+#![allow(clippy::needless_range_loop)]
+
+use multiversion::multiversion;
+
+use super::board::Channel;
+use crate::floor::{Calibration, LawKind, exp};
+use crate::sense::health::{End, Health, LOUD_N, Lanes};
+use crate::sense::{ForceFrame, Quality};
+use crate::wire::{MAX_CHANNELS, Readings};
+
+/// Sensors that are worked on together: those of as many tiles as most boards have.
+pub(super) const WIDE: usize = 32;
+
+/// The sensors of one tile.
+pub(super) const NARROW: usize = 4;
+
+/// Counts up to which a sensor reads nothing (0.5 %: the converter's offset and noise).
+const NOTHING: u16 = 327;
+
+/// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
+const MOST_N: f32 = 50_000.0;
+
+/// Sensors that follow each other, tile by tile and corner by corner, and the channels that read them.
+#[derive(Clone, Debug)]
+pub(super) struct Window<const LANES: usize> {
+    /// Number of the first sensor, four to a tile.
+    first: usize,
+    /// Which channel reads each sensor, if any does.
+    channels: [u8; LANES],
+    wired: [bool; LANES],
+    /// Both numbers of exponential laws; of no meaning unless all are such.
+    factors: [f32; LANES],
+    exponents: [f32; LANES],
+    /// The laws, if some are not exponential.
+    laws: Option<Box<[Calibration; LANES]>>,
+    tares: [f32; LANES],
+    /// Counts from which on each reads "at least".
+    saturated: [u16; LANES],
+    /// Whether so much rests on each while the floor is empty that it never reads nothing.
+    bears: [bool; LANES],
+    nominal: [bool; LANES],
+}
+
+/// What the sensors of a window have read, in newtons.
+#[derive(Clone, Debug)]
+pub(super) struct Read<const LANES: usize> {
+    /// Tare not yet taken off; NaN where nothing was read.
+    forces: [f32; LANES],
+    ends: [End; LANES],
+    by_board: bool,
+}
+
+/// How far a packet can be believed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trust {
+    pub quality: Quality,
+    /// Whether it may be another board's.
+    pub is_swapped: bool,
+    /// Whether the floor may be another one.
+    pub is_foreign: bool,
+}
+
+/// What was found while it was written.
+struct Found<const LANES: usize> {
+    /// Number of readings that were no forces.
+    bad: u32,
+    /// Whether any sensor's newtons were used.
+    is_used: bool,
+    /// Whether any sensor asks for its tile to be examined, and which.
+    is_any_loud: bool,
+    loud: [bool; LANES],
+}
+
+/// The windows that `channels` are read through, on a floor with so many `sensors`.
+///
+/// Of two channels that read the same sensor the later one counts; those beyond [`MAX_CHANNELS`] can't be read.
+pub(super) fn windows(
+    channels: &[Option<Channel>],
+    sensors: usize,
+) -> (Vec<Window<WIDE>>, Vec<Window<NARROW>>) {
+    let sensor = |channel: &Channel| 4 * channel.tile as usize + channel.corner.index();
+    let wired = channels.iter().take(MAX_CHANNELS).enumerate();
+    let mut wired: Vec<(usize, u8, Channel)> =
+        wired.filter_map(|(number, channel)| channel.map(|it| (sensor(&it), number as u8, it))).collect();
+    wired.sort_by_key(|(sensor, number, _)| (*sensor, *number));
+    let (mut wide, mut narrow) = (Vec::new(), Vec::new());
+    let mut rest = wired.as_slice();
+    while let Some((first, ..)) = rest.first() {
+        let first = first - first % NARROW;
+        let within = |lanes: usize| rest.partition_point(|(sensor, ..)| *sensor < first + lanes);
+        let taken = if within(WIDE) > NARROW && sensors >= WIDE {
+            let (part, _) = rest.split_at(within(WIDE));
+            wide.push(Window::new(first.min(sensors - WIDE), part));
+            part.len()
+        } else {
+            let (part, _) = rest.split_at(within(NARROW));
+            narrow.push(Window::new(first, part));
+            part.len()
+        };
+        rest = &rest[taken..];
+    }
+    (wide, narrow)
+}
+
+impl<const LANES: usize> Window<LANES> {
+    fn new(first: usize, wired: &[(usize, u8, Channel)]) -> Self {
+        let mut window = Self {
+            first,
+            channels: [0; LANES],
+            wired: [false; LANES],
+            factors: [0.0; LANES],
+            exponents: [0.0; LANES],
+            laws: None,
+            tares: [0.0; LANES],
+            saturated: [u16::MAX; LANES],
+            bears: [false; LANES],
+            nominal: [false; LANES],
+        };
+        let mut laws = Box::new([Calibration::NOMINAL; LANES]);
+        for (sensor, number, channel) in wired {
+            let lane = sensor - first;
+            window.channels[lane] = *number;
+            window.wired[lane] = true;
+            [window.factors[lane], window.exponents[lane]] = channel.calibration.numbers();
+            laws[lane] = channel.calibration;
+            window.tares[lane] = channel.tare;
+            window.saturated[lane] = channel.saturated;
+            window.bears[lane] = channel.bears;
+            window.nominal[lane] = channel.is_nominal;
+        }
+        window.laws = laws.iter().any(|law| law.kind() != LawKind::Exponential).then_some(laws);
+        window
+    }
+
+    /// What the sensors have read.
+    #[inline(always)]
+    fn read(&self, readings: &Readings) -> Read<LANES> {
+        match readings {
+            Readings::Newtons(newtons) => {
+                let force = |lane: usize| newtons.get(usize::from(self.channels[lane])).copied();
+                let forces = std::array::from_fn(|lane| force(lane).unwrap_or(f32::NAN));
+                Read { forces, ends: [End::Within; LANES], by_board: true }
+            }
+            Readings::Counts(counts) => {
+                let mut all = [None; MAX_CHANNELS];
+                let length = counts.len().min(MAX_CHANNELS);
+                all[..length].copy_from_slice(&counts[..length]);
+                let counts = self.channels.map(|channel| all[usize::from(channel) % MAX_CHANNELS]);
+                let mut read = self.convert(&counts);
+                if let Some(laws) = &self.laws {
+                    for lane in 0..LANES {
+                        read.forces[lane] = counts[lane].map_or(f32::NAN, |count| laws[lane].force(count).0);
+                    }
+                }
+                read
+            }
+        }
+    }
+
+    /// Turns counts into forces by exponential laws, and says where in the converters' ranges they lie.
+    ///
+    /// A sensor on which next to nothing rests while the floor is empty is never missed: it may well read nothing.
+    #[inline(always)]
+    fn convert(&self, counts: &[Option<u16>; LANES]) -> Read<LANES> {
+        let mut read = Read { forces: [0.0; LANES], ends: [End::Within; LANES], by_board: false };
+        let raw = counts.map(|count| count.unwrap_or(NOTHING + 1));
+        for lane in 0..LANES {
+            let volts = Calibration::volts(raw[lane]);
+            read.forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
+        }
+        for lane in 0..LANES {
+            let end = if self.bears[lane] { End::Low } else { End::Bare };
+            let end = if raw[lane] > NOTHING { End::Within } else { end };
+            read.ends[lane] = if raw[lane] >= self.saturated[lane] { End::High } else { end };
+        }
+        let is_any_missing = counts.iter().fold(false, |missing, count| missing | count.is_none());
+        if is_any_missing {
+            for lane in 0..LANES {
+                if counts[lane].is_none() {
+                    read.forces[lane] = f32::NAN;
+                }
+            }
+        }
+        read
+    }
+
+    /// Writes tared forces and their qualities.
+    #[inline(always)]
+    fn write(&self, read: &Read<LANES>, trust: Trust, into: Lanes<'_, LANES>) -> Found<LANES> {
+        // All is read before anything is written: the compiler need not fear that it is the same.
+        let (zeros, crept, mut forces) = (*into.zeros, *into.crept, *into.forces);
+        let (mut quality, mut ends, mut guessed, mut news) =
+            (*into.quality, *into.ends, *into.guessed, *into.news);
+        let (mut is_force, mut is_used) = ([false; LANES], [false; LANES]);
+        let mut loud = [false; LANES];
+        for lane in 0..LANES {
+            let force = read.forces[lane] - self.tares[lane] - (zeros[lane] + crept[lane]);
+            // NaN is not within any range.
+            is_force[lane] = (force >= -MOST_N) & (force <= MOST_N);
+            is_used[lane] = is_force[lane] & self.wired[lane] & !trust.is_swapped;
+            loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
+            forces[lane] = if is_used[lane] { force } else { forces[lane] };
+        }
+        for lane in 0..LANES {
+            let (end, is_used) = (read.ends[lane], is_used[lane]);
+            let is_nominal = self.nominal[lane] & !read.by_board;
+            ends[lane] = if is_used { end } else { ends[lane] };
+            loud[lane] |= is_used & ((end == End::Low) | (end == End::High));
+            guessed[lane] |= is_used & is_nominal;
+            news[lane] |= is_used;
+            let is_doubtful = (end == End::High) | is_nominal | trust.is_foreign;
+            let own = if is_doubtful { Quality::Degraded } else { Quality::Live };
+            let own = if is_used { own } else { Quality::Faulty };
+            let own = if (own as u8) > (trust.quality as u8) { own } else { trust.quality };
+            quality[lane] = if self.wired[lane] { own } else { quality[lane] };
+        }
+        let mut found = Found { bad: 0, is_used: false, is_any_loud: false, loud };
+        for lane in 0..LANES {
+            found.bad += u32::from(self.wired[lane] & !is_force[lane]);
+            found.is_used |= is_used[lane];
+            found.is_any_loud |= loud[lane];
+        }
+        (*into.forces, *into.quality, *into.ends) = (forces, quality, ends);
+        (*into.guessed, *into.news) = (guessed, news);
+        found
+    }
+
+    /// The net force of each sensor that is within its range, with what is taken off its reading besides its tare.
+    pub(super) fn net<'a>(
+        &'a self,
+        readings: &Readings,
+        zero: impl Fn(usize, usize) -> f32 + 'a,
+    ) -> impl Iterator<Item = f32> + 'a {
+        let read = self.read(readings);
+        (0..LANES).filter_map(move |lane| {
+            let sensor = self.first + lane;
+            let force = read.forces[lane] - (self.tares[lane] + zero(sensor / 4, sensor % 4));
+            let is_known = self.wired[lane] && read.ends[lane] == End::Within && force.is_finite();
+            is_known.then_some(force)
+        })
+    }
+
+    /// By how much what each of the sensors has read misses its tare.
+    pub(super) fn misses<'a>(&'a self, readings: &Readings) -> impl Iterator<Item = f32> + 'a {
+        let read = self.read(readings);
+        (0..LANES).filter_map(move |lane| {
+            let force = read.forces[lane];
+            (self.wired[lane] && force.is_finite()).then(|| (force - self.tares[lane]).abs())
+        })
+    }
+}
+
+/// Puts what the sensors of a wide window have read into `frame`; the answer is how many readings were no forces.
+pub(super) fn put_wide(
+    window: &Window<WIDE>,
+    readings: &Readings,
+    trust: Trust,
+    frame: &mut ForceFrame,
+    health: &mut Health,
+) -> u64 {
+    let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
+    note(window.first, write_wide(window, readings, trust, lanes), readings, health)
+}
+
+/// The same for a narrow one.
+pub(super) fn put_narrow(
+    window: &Window<NARROW>,
+    readings: &Readings,
+    trust: Trust,
+    frame: &mut ForceFrame,
+    health: &mut Health,
+) -> u64 {
+    let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
+    note(window.first, window.write(&window.read(readings), trust, lanes), readings, health)
+}
+
+fn note<const LANES: usize>(
+    first: usize,
+    found: Found<LANES>,
+    readings: &Readings,
+    health: &mut Health,
+) -> u64 {
+    if found.is_used && matches!(readings, Readings::Newtons(_)) {
+        health.note_newtons();
+    }
+    if found.is_any_loud {
+        let loud = (first..).zip(found.loud).filter(|(_, loud)| *loud);
+        loud.for_each(|(sensor, _)| health.note_loud(sensor));
+    }
+    found.bad.into()
+}
+
+/// Without branches, over plain arrays: compiled for what the processor offers.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+fn write_wide<'a>(
+    window: &Window<WIDE>,
+    readings: &Readings,
+    trust: Trust,
+    into: Lanes<'a, WIDE>,
+) -> Found<WIDE> {
+    window.write(&window.read(readings), trust, into)
+}

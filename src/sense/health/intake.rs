@@ -1,0 +1,50 @@
+//! Where what sensors have read is put, many side by side.
+
+use super::{End, Health};
+use crate::sense::{ForceFrame, Quality};
+
+/// What is known and what is to be written of `LANES` sensors that follow each other, four to a tile.
+pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
+    pub zeros: &'a [f32; LANES],
+    pub crept: &'a [f32; LANES],
+    pub forces: &'a mut [f32; LANES],
+    pub quality: &'a mut [Quality; LANES],
+    pub ends: &'a mut [End; LANES],
+    /// Whether each goes by the nominal law.
+    pub guessed: &'a mut [bool; LANES],
+    /// Whether each has been read for the frame in the making.
+    pub news: &'a mut [bool; LANES],
+}
+
+impl Health {
+    /// The sensors from number `first` on, in tile-index order; `None` if the floor has not got so many.
+    pub(in crate::sense) fn lanes<'a, const LANES: usize>(
+        &'a mut self,
+        first: usize,
+        frame: &'a mut ForceFrame,
+    ) -> Option<Lanes<'a, LANES>> {
+        Some(Lanes {
+            zeros: self.zeros.as_flattened().get(first..)?.first_chunk()?,
+            crept: self.crept.as_flattened().get(first..)?.first_chunk()?,
+            forces: frame.forces.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            quality: frame.quality.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            ends: self.ends.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            guessed: self.guessed.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            news: self.jumps.news().get_mut(first..)?.first_chunk_mut()?,
+        })
+    }
+
+    /// Notes that a sensor, by its number, asks for its tile to be examined.
+    pub(in crate::sense) fn note_loud(&mut self, sensor: usize) {
+        let tile = (sensor / 4) as u32;
+        // A tile may come four times if its sensors are on boards of their own, never more often.
+        if self.loud.last() != Some(&tile) && self.loud.len() < self.loud.capacity() {
+            self.loud.push(tile);
+        }
+    }
+
+    /// Notes that boards make newtons themselves.
+    pub(in crate::sense) fn note_newtons(&mut self) {
+        self.by_boards = true;
+    }
+}
