@@ -37,6 +37,8 @@ pub(super) struct Eq4 {
     /// The clusters of this frame, heaviest first.
     found: Vec<Found>,
     owned: Vec<u32>,
+    /// Places in `found`, ordered by name.
+    order: Vec<u32>,
     /// The last time between two frames, and the smoothing that goes with it.
     smoothing: (f32, f32),
 }
@@ -69,6 +71,7 @@ impl Eq4 {
             now: Vec::with_capacity(room),
             found: Vec::with_capacity(room),
             owned: Vec::with_capacity(room),
+            order: Vec::with_capacity(room),
             smoothing: (0.0, 0.0),
         }
     }
@@ -89,7 +92,7 @@ impl Eq4 {
         self.now.clear();
         for position in 0..self.found.len() {
             let found = self.found[position];
-            let Some(members) = clusters.get(found.cluster as usize) else { continue };
+            let members = clusters.get(found.cluster as usize).unwrap_or_default();
             let past = self.recognise(tiles.list(), members, &found);
             let (id, velocity) = match past {
                 Some(past) => {
@@ -106,10 +109,17 @@ impl Eq4 {
                 taken: false,
                 claim: 0.0,
             });
-            self.describe(tiles, members, &found, pool.add(id), velocity);
+        }
+        // Names are small, contacts are not: these are made in their order rather than put into it.
+        self.order.clear();
+        self.order.extend(0..self.now.len() as u32);
+        self.order.sort_unstable_by_key(|&position| self.now[position as usize].id);
+        for &position in &self.order {
+            let (found, now) = (&self.found[position as usize], &self.now[position as usize]);
+            let members = clusters.get(found.cluster as usize).unwrap_or_default();
+            self.describe(tiles, members, found, pool.add(now.id), now.velocity);
         }
         self.remember(tiles.list(), clusters);
-        pool.sort_by_id();
     }
 
     fn name(&mut self) -> ContactId {

@@ -82,11 +82,7 @@ impl Tracker {
                 }
                 None if self.is_pending(tile, dt) => {
                     // Until that is sure, it counts to the nearest.
-                    let nearest = self
-                        .near
-                        .around(centroid)
-                        .map(|which| (self.tracks[which].centre().distance(centroid), which));
-                    let nearest = nearest.min_by(first_of_least);
+                    let nearest = self.near.distances(centroid).min_by(first_of_least);
                     if let Some((_, which)) = nearest {
                         self.tracks[which].tiles.push(position);
                         self.owner[position as usize] = which as u32;
@@ -112,9 +108,8 @@ impl Tracker {
     /// Whether it is not yet sure enough that a load lies beyond all feet near it.
     fn is_pending(&mut self, tile: &LoadedTile, dt: f64) -> bool {
         let place = tile.centroid.as_dvec2();
-        let is_near = self.near.around(place).any(|which| {
-            self.tracks[which].centre().distance(place) < ASTRIDE_M && self.tracks[which].age > 0.0
-        });
+        let mut near = self.near.distances(place);
+        let is_near = near.any(|(distance, which)| distance < ASTRIDE_M && self.tracks[which].age > 0.0);
         if !is_near {
             return false;
         }
@@ -164,7 +159,7 @@ impl Tracker {
 
     /// The standing foot beside which one lands at `place`, if there is one.
     fn touchdown_at(&self, place: DVec2) -> Option<Touchdown> {
-        let near = self.near.around(place).map(|which| (self.tracks[which].centre().distance(place), which));
+        let near = self.near.distances(place);
         let (_, existing) = near.filter(|&(distance, _)| distance < ASTRIDE_M).min_by(first_of_least)?;
         let existing = &self.tracks[existing];
         (existing.is_slow() && !existing.shared)

@@ -16,7 +16,7 @@ impl Tracker {
         self.near.renew(self.tracks.iter().map(Track::centre));
         for which in 0..self.tracks.len() {
             let foot = &self.tracks[which];
-            let gone = if foot.shared { self.is_empty(foot, tiles.list()) } else { self.is_rim(foot) };
+            let gone = if foot.shared { self.is_empty(foot, tiles) } else { self.is_rim(foot) };
             let foot = &mut self.tracks[which];
             let change = if gone { 1.0 } else { -RECOVERS };
             foot.empty_s = (foot.empty_s + change * dt).max(0.0);
@@ -37,9 +37,9 @@ impl Tracker {
     }
 
     /// Whether the place of a foot that shares its tiles is proven empty.
-    fn is_empty(&self, foot: &Track, list: &[LoadedTile]) -> bool {
+    fn is_empty(&self, foot: &Track, tiles: &LoadedTiles) -> bool {
         let all: f64 = foot.force() + self.mates(foot).map(Track::force).sum::<f64>();
-        if foot.force() >= LIGHT_N.max(LIGHT_SHARE * all) || self.has_own(foot, list) {
+        if foot.force() >= LIGHT_N.max(LIGHT_SHARE * all) || self.has_own(foot, tiles.list()) {
             return false;
         }
         let sigma = foot.covariance[FORCE][FORCE].sqrt();
@@ -49,13 +49,16 @@ impl Tracker {
         // Of three that share tiles, the division is anybody's guess: the light one is the price of a wrong one.
         let crowd = self.mates(foot).nth(1).is_some();
         crowd && foot.age > LANDS_S && foot.force() < GONE_SHARE * all
-            || self.stands_on_nothing(foot, list, all)
+            || self.stands_on_nothing(foot, tiles, all)
     }
 
     /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.
-    pub(super) fn stands_on_nothing(&self, foot: &Track, list: &[LoadedTile], all: f64) -> bool {
-        let near = list
-            .iter()
+    pub(super) fn stands_on_nothing(&self, foot: &Track, tiles: &LoadedTiles, all: f64) -> bool {
+        let at = (foot.centre() / self.cells.pitch).floor().as_ivec2();
+        let around = (at.y - 2..=at.y + 2)
+            .flat_map(|row| (at.x - 2..=at.x + 2).filter_map(move |column| tiles.find(column, row)));
+        let near = around
+            .map(|position| &tiles.list()[position])
             .filter(|tile| tile.centre.as_dvec2().distance(foot.centre()) < self.cells.pitch * 1.5);
         let on: f64 = near.map(|tile| foot.on(self.cells.of(tile)).share()).sum();
         // As far as it is known where it stands.
@@ -85,10 +88,9 @@ impl Tracker {
     fn is_rim(&self, foot: &Track) -> bool {
         let (place, force) = (foot.centre(), foot.force());
         foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self.near.around(place).map(|other| &self.tracks[other]).any(|other| {
-                other.id != foot.id
-                    && force < RIM_SHARE * other.force()
-                    && other.centre().distance(place) < RIM_M
+            && self.near.distances(place).filter(|&(distance, _)| distance < RIM_M).any(|(_, other)| {
+                let other = &self.tracks[other];
+                other.id != foot.id && force < RIM_SHARE * other.force()
             })
     }
 

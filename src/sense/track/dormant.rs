@@ -96,7 +96,7 @@ impl Tracker {
                 continue;
             };
             let all = self.tracks[existing].force();
-            if self.stands_on_nothing(&self.dormant[at].foot, tiles.list(), all) {
+            if self.stands_on_nothing(&self.dormant[at].foot, tiles, all) {
                 self.dormant.swap_remove(at);
                 continue;
             }

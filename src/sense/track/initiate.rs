@@ -114,11 +114,9 @@ impl Tracker {
     }
 
     /// Whether no other track is within a stride.
-    fn is_far_from_all(&self, foot: &Track) -> bool {
-        let place = foot.centre();
-        let mut others =
-            self.near.around(place).map(|other| &self.tracks[other]).filter(|other| other.id != foot.id);
-        others.all(|other| other.centre().distance(place) > STRIDE_M)
+    fn is_far_from_all(&self, which: usize) -> bool {
+        let mut others = self.near.distances(self.tracks[which].centre());
+        others.all(|(distance, other)| other == which || distance > STRIDE_M)
     }
 
     /// A foot whose load has been added to tiles where the track itself cannot have put it.
@@ -160,7 +158,7 @@ impl Tracker {
     fn second(&mut self, which: usize, list: &[LoadedTile], dt: f64) -> Option<Candidate> {
         let foot = &self.tracks[which];
         let seen = Whole::of(foot.tiles.iter().map(|&position| &list[position as usize]), self.cells.pitch);
-        let alone = self.is_far_from_all(foot);
+        let alone = self.is_far_from_all(which);
         let mut explanation = foot.explanation;
         let second = explanation.update(foot, &seen, list, alone, dt);
         self.tracks[which].explanation = explanation;

@@ -173,12 +173,10 @@ impl Tracker {
     fn note_partners(&mut self) {
         for which in 0..self.tracks.len() {
             let here = self.tracks[which].centre();
-            let others =
-                self.near.around(here).filter(|&other| other != which && self.tracks[other].age > SEEN_S);
-            let nearest = others
-                .map(|other| (self.tracks[other].centre().distance(here), other))
-                .filter(|&(distance, _)| distance < STRIDE_M)
-                .min_by(first_of_least);
+            let others = self.near.distances(here).filter(|&(distance, other)| {
+                distance < STRIDE_M && other != which && self.tracks[other].age > SEEN_S
+            });
+            let nearest = others.min_by(first_of_least);
             if let Some((_, other)) = nearest {
                 if self.tracks[which].age < LANDING_S {
                     self.tracks[which].body_n = self.tracks[other].body_of_owner();

@@ -15,8 +15,16 @@ pub(super) struct Near {
     rows: i32,
     /// Per square, the foot that was put there last.
     last: Vec<u32>,
-    /// Per foot: its square, and the foot that was put there before it.
-    tracks: Vec<(u32, u32)>,
+    tracks: Vec<Neighbour>,
+}
+
+/// Where a foot is. Kept apart from all else that is known of it, so that a look around touches little memory.
+#[derive(Clone, Copy, Debug)]
+struct Neighbour {
+    place: DVec2,
+    square: u32,
+    /// The foot that was put into that square before it.
+    before: u32,
 }
 
 impl Near {
@@ -34,8 +42,8 @@ impl Near {
 
     /// Takes down where everybody is now, foot by foot in their order.
     pub(super) fn renew(&mut self, places: impl Iterator<Item = DVec2>) {
-        for &(square, _) in &self.tracks {
-            self.last[square as usize] = UNASSIGNED;
+        for foot in &self.tracks {
+            self.last[foot.square as usize] = UNASSIGNED;
         }
         self.tracks.clear();
         places.for_each(|place| self.add(place));
@@ -45,12 +53,13 @@ impl Near {
     pub(super) fn add(&mut self, place: DVec2) {
         let square = self.square(place);
         let before = std::mem::replace(&mut self.last[square], self.tracks.len() as u32);
-        self.tracks.push((square as u32, before));
+        self.tracks.push(Neighbour { place, square: square as u32, before });
     }
 
     /// Foot `which` is elsewhere now.
     pub(super) fn moved(&mut self, which: usize, place: DVec2) {
-        let (new, (old, before)) = (self.square(place), self.tracks[which]);
+        let (new, Neighbour { square: old, before, .. }) = (self.square(place), self.tracks[which]);
+        self.tracks[which].place = place;
         if new == old as usize {
             return;
         }
@@ -58,28 +67,27 @@ impl Near {
         if after == which as u32 {
             self.last[old as usize] = before;
         } else {
-            while self.tracks[after as usize].1 != which as u32 {
-                after = self.tracks[after as usize].1;
+            while self.tracks[after as usize].before != which as u32 {
+                after = self.tracks[after as usize].before;
             }
-            self.tracks[after as usize].1 = before;
+            self.tracks[after as usize].before = before;
         }
         let before = std::mem::replace(&mut self.last[new], which as u32);
-        self.tracks[which] = (new as u32, before);
+        self.tracks[which] = Neighbour { place, square: new as u32, before };
     }
 
     /// All feet within a stride of `place` and some that are farther away, in no order.
-    pub(super) fn around(&self, place: DVec2) -> impl Iterator<Item = usize> {
+    pub(super) fn around(&self, place: DVec2) -> Around<'_> {
         let (column, row) = self.column_and_row(place);
-        let columns = (column - 1).max(0)..=(column + 1).min(self.columns - 1);
-        let rows = (row - 1).max(0)..=(row + 1).min(self.rows - 1);
-        rows.flat_map(move |row| columns.clone().map(move |column| row * self.columns + column))
-            .flat_map(|square| self.from(self.last[square as usize]))
+        let (west, east) = ((column - 1).max(0), (column + 1).min(self.columns - 1));
+        let (south, north) = ((row - 1).max(0), (row + 1).min(self.rows - 1));
+        let first = self.last[(south * self.columns + west) as usize];
+        Around { near: self, west, east, north, column: west, row: south, next: first }
     }
 
-    /// The foot `which` and those put into its square before it.
-    fn from(&self, which: u32) -> impl Iterator<Item = usize> {
-        let known = |which: u32| (which != UNASSIGNED).then_some(which as usize);
-        std::iter::successors(known(which), move |&which| known(self.tracks[which].1))
+    /// The same, each with its distance from `place`, in metres.
+    pub(super) fn distances(&self, place: DVec2) -> impl Iterator<Item = (f64, usize)> {
+        self.around(place).map(move |which| (self.tracks[which].place.distance(place), which))
     }
 
     /// The square of a place; places beyond the floor belong to its outermost squares.
@@ -91,6 +99,38 @@ impl Near {
     fn column_and_row(&self, place: DVec2) -> (i32, i32) {
         let at = (place / STRIDE_M).floor().as_ivec2();
         (at.x.clamp(0, self.columns - 1), at.y.clamp(0, self.rows - 1))
+    }
+}
+
+/// The feet in some squares, square by square.
+pub(super) struct Around<'a> {
+    near: &'a Near,
+    west: i32,
+    east: i32,
+    north: i32,
+    column: i32,
+    row: i32,
+    next: u32,
+}
+
+impl Iterator for Around<'_> {
+    type Item = usize;
+
+    #[inline]
+    fn next(&mut self) -> Option<usize> {
+        while self.next == UNASSIGNED {
+            if self.column < self.east {
+                self.column += 1;
+            } else if self.row < self.north {
+                (self.column, self.row) = (self.west, self.row + 1);
+            } else {
+                return None;
+            }
+            self.next = self.near.last[(self.row * self.near.columns + self.column) as usize];
+        }
+        let which = self.next as usize;
+        self.next = self.near.tracks[which].before;
+        Some(which)
     }
 }
 

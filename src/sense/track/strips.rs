@@ -154,7 +154,7 @@ impl Strips {
     /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
         let Whole { force, middle, doubt } = Whole::of(tiles.clone(), pitch);
-        let mut sums = Self { force, middle, doubt, pitch, ..Self::default() };
+        let mut sums = Self { strips: ArrayVec::new(), force, middle, doubt, pitch };
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
