@@ -2,21 +2,26 @@
 
 mod fields;
 mod fine_line;
+mod rounded;
 mod transform;
 mod warped;
 
 pub use transform::ScreenFromFloor;
 pub use warped::paint_warped;
 
-use egui::epaint::{self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, RectShape, TextShape};
-use egui::{Color32, CornerRadius, FontFamily, FontId, Pos2, Rect, Shape, StrokeKind, pos2, vec2};
+use egui::epaint::{self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, TextShape};
+use egui::{Color32, FontFamily, FontId, Pos2, Rect, Shape, pos2, vec2};
 use glam::Vec2;
 
 use self::fields::Fields;
 use self::fine_line::FineLine;
+use self::rounded::{Rounded, on_pixels};
 use crate::floor;
 use crate::layout::Colour;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
+
+/// Radius up to which egui has pictures of discs, in points: two triangles each.
+const LARGEST_DISC: f32 = 8.0;
 
 /// What is kept from frame to frame: one for each place where a scene is drawn.
 #[derive(Default)]
@@ -64,10 +69,7 @@ impl Brush<'_> {
     fn mark(&mut self, scene: &Scene, mark: &Mark) {
         match mark {
             Mark::Box { area, radius_m, paint } => {
-                let rect = self.map.rect(*area);
-                let radius = CornerRadius::from(radius_m * self.map.scale());
-                let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
-                self.painter.add(RectShape::new(rect, radius, fill, stroke, StrokeKind::Middle));
+                self.rounded(self.map.rect(*area), radius_m * self.map.scale(), paint);
                 self.dashes(scene, mark, paint);
             }
             Mark::Ellipse { centre, radii, paint } => {
@@ -76,7 +78,10 @@ impl Brush<'_> {
                 let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
                 // egui strokes ellipses outside their edge, boxes along it.
                 let radius = (radius - egui::Vec2::splat(0.5 * stroke.width)).max(egui::Vec2::splat(0.1));
-                if radius.x == radius.y {
+                if radius.x == radius.y && radius.x > LARGEST_DISC {
+                    let area = Rect::from_center_size(centre, 2.0 * radius + egui::Vec2::splat(stroke.width));
+                    self.rounded(area, f32::INFINITY, paint);
+                } else if radius.x == radius.y {
                     self.painter.add(CircleShape { center: centre, radius: radius.x, fill, stroke });
                 } else {
                     self.painter.add(EllipseShape { center: centre, radius, fill, stroke, angle: 0.0 });
@@ -106,6 +111,36 @@ impl Brush<'_> {
                 self.band(scene.points(*points), *reach, near, far);
             }
             Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
+            Mark::Halo { area, radius_m, reach_m, ink } => {
+                let scale = self.map.scale();
+                let shape = Rounded::new(self.map.rect(*area), radius_m * scale, self.pixels_per_point());
+                let mut mesh = Mesh::default();
+                shape.halo(&mut mesh, reach_m * scale, ink_color(*ink));
+                self.painter.add(Shape::mesh(mesh));
+            }
+        }
+    }
+
+    fn pixels_per_point(&self) -> f32 {
+        self.painter.ctx().pixels_per_point()
+    }
+
+    /// A box with round corners; with endless ones it is a circle.
+    fn rounded(&self, rect: Rect, radius: f32, paint: &Paint) {
+        let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
+        let is_round = radius == f32::INFINITY;
+        let rect = if is_round { rect } else { on_pixels(rect, stroke.width, self.pixels_per_point()) };
+        let shape = Rounded::new(rect, radius, self.pixels_per_point());
+        let mut mesh = Mesh::default();
+        if fill != Color32::TRANSPARENT {
+            let edge_is_hidden = stroke.width * self.pixels_per_point() >= 1.0 && stroke.color.a() >= 150;
+            shape.fill(&mut mesh, fill, edge_is_hidden);
+        }
+        if stroke.width > 0.0 {
+            shape.stroke(&mut mesh, stroke);
+        }
+        if !mesh.is_empty() {
+            self.painter.add(Shape::mesh(mesh));
         }
     }
 

@@ -268,7 +268,7 @@ impl Pond {
     fn picture(&self, feet: &[Foot]) -> Scene {
         let snapshot = self.snapshot();
         let shoes: Vec<Shoe> = feet.iter().map(Shoe::from).collect();
-        let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
+        let show = Show { ruler: true, ..Show::PROJECTOR };
         let mut scene = Scene::new();
         let view = View {
             show,

@@ -5,7 +5,7 @@ use std::fmt::{self, Write};
 use glam::Vec2;
 
 use crate::floor::Rect;
-use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene};
+use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke};
 
 /// The drawing as a stand-alone SVG document, one user unit to a millimetre of floor.
 ///
@@ -104,7 +104,21 @@ impl Page {
             Mark::Field { area, columns, inks } => self.field(*area, *columns as usize, scene.inks(*inks)),
             Mark::Band { points, reach, near, far } => self.band(scene.points(*points), *reach, *near, *far),
             Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
+            Mark::Halo { area, radius_m, reach_m, ink } => self.halo(*area, *radius_m, *reach_m, *ink),
         }
+    }
+
+    /// Lines around the edge, one over the other, each wider than the last.
+    fn halo(&mut self, area: Rect, radius_m: f32, reach_m: f32, ink: Ink) -> fmt::Result {
+        const LINES: u8 = 3;
+        for line in 1..=LINES {
+            let width = reach_m * f32::from(line) / f32::from(LINES);
+            let stroke = Stroke::new(width, Ink::faint(ink.colour, ink.opacity / f32::from(LINES)));
+            let (area, radius_m) = (area.grown(0.5 * width), radius_m + 0.5 * width);
+            let paint = Paint::stroke(stroke);
+            self.mark(&Scene::new(), &Mark::Box { area, radius_m, paint })?;
+        }
+        Ok(())
     }
 
     /// Strips that each change from west to east.

@@ -20,12 +20,13 @@ use super::rate::Rate;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
+use super::trails::Trails;
 use super::watch::Watch;
 use super::zoom::Zoom;
 use crate::egui_painter::Palette;
 use crate::engine::Snapshot;
 use crate::floor::Floor;
-use crate::scene::{Scene, Shoe, Theme};
+use crate::scene::{Scene, Shoe, Show, Theme};
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
@@ -49,8 +50,9 @@ pub(super) struct App {
     pub(super) scene: Scene,
     pub(super) palette: Palette,
     pub(super) theme: Theme,
-    /// Whether sensor forces are drawn on the floor.
-    pub(super) marks: bool,
+    /// What is drawn over the floor.
+    pub(super) show: Show,
+    pub(super) trails: Trails,
     pub(super) choices: Vec<String>,
     /// `None` where there are no effects to tune.
     pub(super) tuner: Option<Tuner>,
@@ -105,7 +107,8 @@ impl App {
             scene: Scene::new(),
             palette: Palette::default(),
             theme: options.theme,
-            marks: true,
+            show: Show::WINDOW,
+            trails: Trails::default(),
             now_s: 0.0,
             window_frames: Rate::default(),
             frames: Rate::default(),
@@ -167,6 +170,7 @@ impl App {
             feed(&mut self.shoes);
         }
         self.watch.observe(now_s, snapshot, fresh);
+        self.trails.update(now_s, snapshot);
         self.selection.follow(snapshot);
         self.scopes.update(&self.floor, snapshot, self.selection.tile(), elapsed_s);
         self.frame_count += 1;
@@ -180,7 +184,8 @@ impl App {
         let now = Instant::now();
         self.due = (self.due + PICTURE).max(now);
         let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
-        if is_held || self.scopes.are_moving() {
+        let fades = self.show.trails && !self.trails.all().is_empty();
+        if is_held || fades || self.scopes.are_moving() {
             // Never zero: that would ask for two frames.
             ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
         }

@@ -2,13 +2,16 @@
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Align, Key, Layout, Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo, vec2};
+use eframe::egui::containers::menu::{MenuButton, MenuConfig};
+use eframe::egui::{
+    Align, Key, Layout, Margin, Panel, PopupCloseBehavior, RichText, ScrollArea, Ui, WidgetInfo, vec2,
+};
 
 use super::app::App;
 use super::feed::{LayoutCause, PreviewCommand};
 use super::style::{panel_colour, panel_frame, pill, quiet};
 use crate::egui_painter::color;
-use crate::scene::Theme;
+use crate::scene::{Show, Theme};
 use crate::wire::LinkState;
 
 /// Width of the window below which the top bar takes two lines, in points.
@@ -121,8 +124,12 @@ impl App {
         let texts = [
             (
                 74.0,
-                format!("{} fps", rate(self.window_frames.per_second())),
-                "Frames a second in this window",
+                match self.window_frames.per_second() {
+                    // A window that has nothing new to show draws nothing.
+                    Some(rate) if rate < 2.0 => "at rest".to_owned(),
+                    drawn => format!("{} fps", rate(drawn)),
+                },
+                "Frames a second in this window, which draws when something changes",
             ),
             (96.0, format!("{} frames/s", rate(self.frames.per_second())), "Sensor frames a second"),
         ];
@@ -148,10 +155,7 @@ impl App {
         if panel.on_hover_text("Figures, events and actuators at the side").clicked() {
             self.panel_wanted = Some(!shown);
         }
-        let sensors = ui.add(egui::Button::selectable(self.marks, "Sensors").frame_when_inactive(true));
-        if sensors.on_hover_text("Show each sensor’s force on the floor").clicked() {
-            self.marks = !self.marks;
-        }
+        self.layers_menu(ui);
         if self.scopes.is_fed() {
             let muted = self.snapshots.output_buffer().muted.all;
             let button = ui.add(egui::Button::selectable(muted, "Mute").frame_when_inactive(true));
@@ -187,6 +191,26 @@ impl App {
                 feet.stand(place.map_or(south, |area| area.centre()).clamp(floor.min, floor.max));
             }
         }
+    }
+
+    /// What is laid over the floor, to be switched on and off; the menu stays open meanwhile.
+    fn layers_menu(&mut self, ui: &mut Ui) {
+        let config = MenuConfig::new().close_behavior(PopupCloseBehavior::CloseOnClickOutside);
+        MenuButton::new("Layers").config(config).ui(ui, |ui| {
+            ui.set_min_width(170.0);
+            for (name, layer) in Show::LAYERS {
+                ui.checkbox(layer(&mut self.show), name);
+            }
+            ui.separator();
+            ui.horizontal(|ui| {
+                if ui.button("All").clicked() {
+                    Show::LAYERS.iter().for_each(|(_, layer)| *layer(&mut self.show) = true);
+                }
+                if ui.button("Usual").clicked() {
+                    self.show = Show::WINDOW;
+                }
+            });
+        });
     }
 
     /// Mutes everything, or nothing any more, where nobody is writing.

@@ -41,7 +41,7 @@ impl App {
         let rect = ui.available_rect_before_wrap();
         let canvas = ui.allocate_rect(rect, Sense::drag());
         canvas.widget_info(|| WidgetInfo::labeled(Role::Canvas, true, "Floor"));
-        let show = Show { sensors: self.marks, ..Show::WINDOW };
+        let show = self.show;
         self.zoom_by_wheel(ui, &canvas, show);
         let map = self.zoom.map(scene::extent(&self.floor.geometry, show), rect.shrink(6.0));
         self.look_at_tiles(ui, &canvas, map);
@@ -81,6 +81,7 @@ impl App {
             show,
             shoes: &self.shoes,
             levels: self.scopes.levels(),
+            trails: self.trails.all(),
             chosen: self.selection.pinned(),
             ..View::new(
                 &self.floor.geometry,

@@ -15,8 +15,8 @@ use crate::wire::LinkState;
 /// Time between looks: one for each frame of a window.
 const EVERY: Duration = Duration::from_nanos(16_666_667);
 
-/// How often the window draws although nothing has changed: figures such as rates and counters go on.
-const AT_LEAST: Duration = Duration::from_secs(1);
+/// How often the window draws although nothing has changed: figures such as rates go on.
+const AT_LEAST: Duration = Duration::from_secs(4);
 
 /// The same while something is wrong, such as a lost link, of which the window counts the tenths of seconds.
 const IN_TROUBLE: Duration = Duration::from_millis(100);
@@ -129,6 +129,8 @@ fn differ(one: &Snapshot, other: &Snapshot) -> bool {
         || one.page != other.page
         || one.layout_revision != other.layout_revision
         || one.boards_live != other.boards_live
+        || one.counters.lost != other.counters.lost
+        || one.counters.refused() != other.counters.refused()
         || one.muted.all != other.muted.all
         || one.muted.tiles != other.muted.tiles
         || one.labels != other.labels
@@ -188,7 +190,7 @@ mod tests {
             let now = begun + EVERY * look as u32;
             drawn += u32::from(pace.is_due(&noisy, true, false, now));
         }
-        assert!(drawn <= 5, "{drawn} in five seconds");
+        assert!(drawn <= 2, "{drawn} in five seconds");
         let foot = Snapshot { link: LinkState::Live, ..pressing(&map()) };
         assert!(pace.is_due(&foot, true, false, begun + EVERY * 301));
         assert!(!pace.is_due(&foot, true, false, begun + EVERY * 302), "it rests");

@@ -24,6 +24,7 @@ mod style;
 #[cfg(test)]
 mod tests;
 mod trace;
+mod trails;
 mod watch;
 mod zoom;
 

@@ -91,6 +91,13 @@ impl Scene {
         self.marks.push(Mark::Box { area, radius_m, paint });
     }
 
+    /// Adds a shade that fades away within `reach_m` around a rectangle with corners rounded by `radius_m`; a larger
+    /// radius than fits is cut down.
+    pub fn add_halo(&mut self, area: Rect, radius_m: f32, reach_m: f32, ink: Ink) {
+        let radius_m = radius_m.clamp(0.0, 0.5 * area.size().min_element().max(0.0));
+        self.marks.push(Mark::Halo { area, radius_m, reach_m, ink });
+    }
+
     /// Adds an ellipse.
     pub fn add_ellipse(&mut self, centre: Vec2, radii: Vec2, paint: Paint) {
         self.marks.push(Mark::Ellipse { centre, radii, paint });
@@ -181,6 +188,11 @@ impl Scene {
                 }
                 Mark::Path { paint, .. } => paint.magnify(by),
                 Mark::Field { area, .. } => *area = Rect::new(place(area.min), place(area.max)),
+                Mark::Halo { area, radius_m, reach_m, .. } => {
+                    *area = Rect::new(place(area.min), place(area.max));
+                    *radius_m *= by;
+                    *reach_m *= by;
+                }
                 Mark::Band { reach, .. } => *reach *= by,
                 Mark::Text { lettering, .. } => {
                     lettering.at = place(lettering.at);

@@ -32,7 +32,10 @@ const MOST_STOPS: f32 = 20.5;
 /// Draws every control in the layout's order.
 pub(super) fn draw_all(scene: &mut Scene, view: &View<'_>) {
     for (index, widget) in view.layout.widgets.iter().enumerate() {
-        let state = view.widget_state(index);
+        let mut state = view.widget_state(index);
+        if !view.show.engagement {
+            state.press_share = 0.0;
+        }
         if !state.hidden {
             draw(scene, view, view.as_apps_set(index, widget).as_ref().unwrap_or(widget), state);
         }

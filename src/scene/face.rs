@@ -145,18 +145,24 @@ impl<'a> Face<'a> {
     fn shadow(&self, scene: &mut Scene) {
         let south = Vec2::new(0.0, 0.006);
         let area = Rect::new(self.area.min - south, self.area.max - south);
-        for (reach, opacity) in [(0.015, 0.045), (0.010, 0.065), (0.006, 0.09)] {
-            // Around the edge; the face hides what lies inside it.
-            let stroke = Stroke::new(reach + 0.010, Ink::faint(self.theme.shadow, opacity));
-            self.shaped(scene, area.grown(0.5 * (reach - 0.010)), Paint::stroke(stroke));
-        }
+        // From inside the edge, where the face hides it: the shift to the south leaves no gap in the north.
+        self.halo(scene, area.grown(-0.006), 0.018, Ink::faint(self.theme.shadow, 0.26));
     }
 
     /// A halo in the lit colour around a pressed face.
     fn glow(&self, scene: &mut Scene) {
-        for (reach, opacity) in [(0.026, 0.10), (0.018, 0.16), (0.010, 0.26)] {
-            let stroke = Stroke::new(reach, Ink::faint(self.widget.look.lit, opacity));
-            self.shaped(scene, self.area.grown(0.5 * reach), Paint::stroke(stroke));
+        self.halo(scene, self.area, 0.030, Ink::faint(self.widget.look.lit, 0.55));
+    }
+
+    fn halo(&self, scene: &mut Scene, area: Rect, reach_m: f32, ink: Ink) {
+        let size = area.size();
+        match self.shape {
+            Shape::Round if size.x != size.y => {
+                let stroke = Stroke::new(0.5 * reach_m, Ink::faint(ink.colour, 0.6 * ink.opacity));
+                scene.add_ellipse(area.centre(), 0.5 * size, Paint::stroke(stroke));
+            }
+            Shape::Round => scene.add_halo(area, 0.5 * size.x, reach_m, ink),
+            Shape::Box => scene.add_halo(area, self.radius_m, reach_m, ink),
         }
     }
 

@@ -76,7 +76,7 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec
     let (at, radius) = (contact.centroid, radius_m(contact.force.0));
     let edge = Stroke::new(0.003, Ink::faint(colour, 0.9));
     scene.add_circle(at, radius, Paint::fill(Ink::faint(colour, 0.22)).with_stroke(edge));
-    if leads {
+    if leads && view.show.cursors {
         cursor_ring(scene, view, at, radius);
     }
     let cross = |width: f32, ink| Paint::stroke(Stroke::new(width, ink));

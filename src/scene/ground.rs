@@ -7,7 +7,6 @@ use super::widths::CAP_HEIGHT;
 use super::{Scene, View, outline, terrain};
 use crate::engine::TileState;
 use crate::floor::{Corner, Rect, TileId};
-use crate::layout::Colour;
 use crate::sense::Quality;
 use crate::wire::LinkState;
 
@@ -17,14 +16,17 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
     let slab = view.geometry.bounds();
     // On a floor of a few tiles all of it has to stay within the margin.
     let by = super::magnification(view.geometry).min(1.0);
-    rim(scene, slab, 0.010, theme.shadow, &[(0.032 * by, 0.016), (0.022 * by, 0.030), (0.013 * by, 0.045)]);
+    // A soft shadow, a little further to the south, as under a lamp at the floor's far end.
+    let south = Vec2::new(0.0, 0.006);
+    let shade = Rect::new(slab.min - south, slab.max - south);
+    scene.add_halo(shade.grown(-0.006), 0.010, 0.036 * by, Ink::faint(theme.shadow, 0.11));
     // Where plates touch, a seam of 2 mm on each side keeps them apart to the eye.
     let gap = (0.5 * (view.geometry.pitch_m() - view.geometry.tile_m())).max(0.0022 * seen_from(view));
     seams(scene, view, gap);
     for (index, tile) in view.geometry.tiles().enumerate() {
         let load = view.snapshot.tiles.get(index).map_or(0.0, |state| state.force.0).max(0.0);
         // Full colour at 700 N, one person on one foot; the root shows light steps too.
-        let share = if view.show.sensors { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
+        let share = if view.show.loads { (load / 700.0).sqrt().min(1.0) * 0.55 } else { 0.0 };
         let cell = Rect::from_centre_size(view.geometry.centre(tile), Vec2::splat(view.geometry.pitch_m()));
         if terrain::hides(view, cell) {
             continue;
@@ -66,17 +68,6 @@ fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
     for row in 1..view.geometry.rows() {
         let west = slab.min + Vec2::new(0.0, f32::from(row) * pitch_m);
         scene.add_line(west, west + Vec2::new(size.x, 0.0), stroke);
-    }
-}
-
-/// A soft shadow around `area` as strokes outside its edge, each a reach in metres and an opacity.
-fn rim(scene: &mut Scene, area: Rect, radius_m: f32, colour: Colour, layers: &[(f32, f32)]) {
-    for (reach, opacity) in layers {
-        // From the edge outwards; a little further to the south, as under a lamp at the floor's far end.
-        let around = area.grown(0.5 * reach);
-        let around = Rect::new(around.min - Vec2::new(0.0, 0.006), around.max - Vec2::new(0.0, 0.006));
-        let stroke = Stroke::new(*reach, Ink::faint(colour, *opacity));
-        scene.add_box(around, radius_m + 0.5 * reach, Paint::stroke(stroke));
     }
 }
 

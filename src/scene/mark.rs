@@ -187,6 +187,17 @@ pub enum Mark {
         /// The ink at the other side.
         far: Ink,
     },
+    /// A shade around an upright rectangle, strongest at its edge; the inside stays free.
+    Halo {
+        /// Where it begins.
+        area: Rect,
+        /// Radius of the corners there, in metres; at most half its smaller side.
+        radius_m: f32,
+        /// How far from there nothing is left of it, in metres.
+        reach_m: f32,
+        /// The ink at the edge.
+        ink: Ink,
+    },
     /// One line of text.
     Text {
         /// Its letters: see [`super::Scene::letters`].

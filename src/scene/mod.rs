@@ -21,6 +21,7 @@ mod feet;
 mod fit;
 mod ground;
 mod icon;
+mod layers;
 mod mark;
 mod outline;
 #[cfg(test)]
@@ -39,7 +40,7 @@ pub use outline::outline_of;
 #[cfg(feature = "lab")]
 pub(crate) use outline::sole;
 pub use theme::Theme;
-pub use view::{Shoe, Show, View};
+pub use view::{Shoe, Show, Trail, View};
 
 use glam::Vec2;
 
@@ -84,6 +85,7 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     scene.clear(bounds, view.theme.canvas);
     ground::plates(scene, view);
     terrain::draw(scene, view);
+    layers::health(scene, view);
     ground::unknown(scene, view);
     if view.show.ruler {
         ground::ruler(scene, view);
@@ -91,13 +93,19 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     ground::regions(scene, view);
     ground::stances(scene, view);
     control::draw_all(scene, view);
-    ground::actuators(scene, view);
+    if view.show.actuators {
+        ground::actuators(scene, view);
+    }
+    layers::tiles(scene, view);
     ground::sensors(scene, view);
     ground::chosen(scene, view);
     feet::shoes(scene, view);
+    layers::trails(scene, view);
+    layers::uncertainty(scene, view);
     if view.show.contacts {
         feet::contacts(scene, view);
     }
+    layers::ignored(scene, view);
     let by = magnification(view.geometry);
     let wide = Geometry::default().bounds().size().x;
     if view.show.header {

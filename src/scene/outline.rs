@@ -12,7 +12,9 @@ use crate::floor::Rect;
 /// For painters that break outlines into dashes themselves.
 pub fn outline_of(scene: &Scene, mark: &Mark, visit: impl FnMut(Vec2)) {
     match *mark {
-        Mark::Box { area, radius_m, .. } => box_arc(area, radius_m, 1.0).for_each(visit),
+        Mark::Box { area, radius_m, .. } | Mark::Halo { area, radius_m, .. } => {
+            box_arc(area, radius_m, 1.0).for_each(visit);
+        }
         Mark::Ellipse { centre, radii, .. } => {
             ellipse_arc(Rect::from_centre_size(centre, 2.0 * radii), 1.0).for_each(visit);
         }

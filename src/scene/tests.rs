@@ -354,7 +354,7 @@ fn nonsense_in_a_snapshot_draws_nothing_that_is_not_finite() {
     draw(&mut scene, &view);
     for mark in scene.marks() {
         let finite = match mark {
-            Mark::Box { area, radius_m, .. } => {
+            Mark::Box { area, radius_m, .. } | Mark::Halo { area, radius_m, .. } => {
                 area.min.is_finite() && area.max.is_finite() && radius_m.is_finite()
             }
             Mark::Ellipse { centre, radii, .. } => centre.is_finite() && radii.is_finite(),

@@ -46,8 +46,26 @@ impl From<&crate::sim::Foot> for Shoe {
 pub struct Show {
     /// The sensors with their forces. Sensors that are broken or silent are shown even without.
     pub sensors: bool,
-    /// Contacts and cursors.
+    /// The plates' colour under load, and the force on each of them.
+    pub loads: bool,
+    /// Where the load of each tile acts.
+    pub centroids: bool,
+    /// Contacts: circles whose area follows the force.
     pub contacts: bool,
+    /// Around each contact the ellipse that holds its true place 95 times in 100.
+    pub uncertainty: bool,
+    /// The way each contact came: see [`View::trails`].
+    pub trails: bool,
+    /// Rings around the contacts that operate controls.
+    pub cursors: bool,
+    /// On each control how far the force on it has come to its threshold.
+    pub engagement: bool,
+    /// Why presses were ignored, for some seconds on the controls that did not answer.
+    pub ignored: bool,
+    /// What the actuators do.
+    pub actuators: bool,
+    /// How far each sensor can be believed, as a quarter of its plate.
+    pub health: bool,
     /// Tile numbers along the floor's west and south sides.
     pub ruler: bool,
     /// A strip above the floor with the layout's title and the time.
@@ -57,20 +75,64 @@ pub struct Show {
 }
 
 impl Show {
-    /// Everything that is seen in a window.
-    pub const WINDOW: Self =
-        Self { sensors: true, contacts: true, ruler: true, header: false, legend: false };
+    /// Everything that is seen in a window at first.
+    pub const WINDOW: Self = Self {
+        sensors: true,
+        loads: true,
+        contacts: true,
+        cursors: true,
+        ignored: true,
+        ruler: true,
+        ..Self::PROJECTOR
+    };
 
     /// Everything that is seen in a picture of a floor at work.
-    pub const PICTURE: Self = Self { sensors: true, contacts: true, ruler: true, header: true, legend: true };
+    pub const PICTURE: Self = Self { ignored: false, header: true, legend: true, ..Self::WINDOW };
 
     /// A layout alone.
-    pub const LAYOUT: Self =
-        Self { sensors: false, contacts: false, ruler: true, header: true, legend: false };
+    pub const LAYOUT: Self = Self { ruler: true, header: true, ..Self::PROJECTOR };
 
     /// What a projector throws onto the floor: controls, no marks on them, nothing around.
-    pub const PROJECTOR: Self =
-        Self { sensors: false, contacts: false, ruler: false, header: false, legend: false };
+    pub const PROJECTOR: Self = Self {
+        sensors: false,
+        loads: false,
+        centroids: false,
+        contacts: false,
+        uncertainty: false,
+        trails: false,
+        cursors: false,
+        engagement: true,
+        ignored: false,
+        actuators: true,
+        health: false,
+        ruler: false,
+        header: false,
+        legend: false,
+    };
+
+    /// What can be laid over the floor, by name, for a menu.
+    pub const LAYERS: [(&'static str, fn(&mut Self) -> &mut bool); 11] = [
+        ("Sensor forces", |show| &mut show.sensors),
+        ("Tile forces", |show| &mut show.loads),
+        ("Tile centroids", |show| &mut show.centroids),
+        ("Contacts", |show| &mut show.contacts),
+        ("Uncertainty", |show| &mut show.uncertainty),
+        ("Trails", |show| &mut show.trails),
+        ("Cursors", |show| &mut show.cursors),
+        ("Engagement", |show| &mut show.engagement),
+        ("Ignored presses", |show| &mut show.ignored),
+        ("Actuators", |show| &mut show.actuators),
+        ("Sensor health", |show| &mut show.health),
+    ];
+}
+
+/// Where a contact has been of late.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trail {
+    /// Its places, in floor metres, oldest first.
+    pub points: Vec<Vec2>,
+    /// Whether it operates controls.
+    pub leads: bool,
 }
 
 /// All that one drawing shows.
@@ -91,6 +153,8 @@ pub struct View<'a> {
     pub shoes: &'a [Shoe],
     /// What each tile's actuator does, in tile-index order: 0 (still) to 1 (full scale); may be shorter.
     pub levels: &'a [f32],
+    /// Where contacts have been, for the layer of that name.
+    pub trails: &'a [Trail],
     /// A tile to be outlined.
     pub chosen: Option<TileId>,
 }
@@ -104,7 +168,17 @@ impl<'a> View<'a> {
         snapshot: &'a Snapshot,
         theme: &'a Theme,
     ) -> Self {
-        Self { geometry, layout, snapshot, theme, show: Show::WINDOW, shoes: &[], levels: &[], chosen: None }
+        Self {
+            geometry,
+            layout,
+            snapshot,
+            theme,
+            show: Show::WINDOW,
+            shoes: &[],
+            levels: &[],
+            trails: &[],
+            chosen: None,
+        }
     }
 
     /// The state of the control at `index`, at rest where the snapshot does not fit the layout.

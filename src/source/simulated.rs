@@ -21,6 +21,13 @@ pub enum Pace {
     RealTime,
 }
 
+/// How long an empty floor rests between bursts of milliseconds: waking up for each costs more than to simulate it.
+/// The first touch is felt so much later at most, a third of a frame of the window.
+const REST: Duration = Duration::from_millis(4);
+
+/// Milliseconds without feet after which a floor counts as empty.
+const EMPTY_MS: u64 = 1000;
+
 /// A simulated floor as a source of packets: one packet per board and millisecond,
 /// from millisecond 0, with sequence numbers that start at 0.
 pub struct SimulatedSource {
@@ -30,6 +37,8 @@ pub struct SimulatedSource {
     feet: Vec<Foot>,
     /// Milliseconds simulated so far; the last one's packets are being handed out.
     ticks: u64,
+    /// The last of them with a foot on the floor or above it.
+    visited: u64,
     /// The next board of this millisecond.
     board: usize,
     /// When this millisecond's packets came into being.
@@ -62,6 +71,7 @@ impl SimulatedSource {
             clock,
             feet: Vec::new(),
             ticks: 0,
+            visited: 0,
             board,
             received: Instant::START,
             over: false,
@@ -93,8 +103,11 @@ impl SimulatedSource {
     fn wait(&mut self, due: Instant, patience: Duration) -> bool {
         let Clock::Host(clock) = &self.clock else { return true };
         clock.start();
-        let left = due.since(clock.now());
+        let mut left = due.since(clock.now());
         if !left.is_zero() {
+            if self.ticks > self.visited + EMPTY_MS {
+                left += REST;
+            }
             clock.sleep(left.min(patience));
         }
         left <= patience
@@ -121,6 +134,9 @@ impl SensorSource for SimulatedSource {
             }
             self.floor.step(&self.feet);
             self.ticks += 1;
+            if !self.feet.is_empty() {
+                self.visited = self.ticks;
+            }
             self.board = 0;
             // Stamped with its own millisecond also when that is caught up: nothing was late on the way.
             self.received = due;
@@ -268,6 +284,40 @@ mod tests {
             assert_eq!(next().received.since(began), Duration::from_millis(101));
             assert!(host.elapsed().abs_diff(host_began).abs_diff(Duration::from_millis(101)) < CATCH_UP);
         }
+    }
+
+    /// Nobody, for so many milliseconds, and then one foot.
+    struct Late(u64);
+
+    impl FootDriver for Late {
+        fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool {
+            let came = at >= Instant::from_millis(self.0);
+            if came { Slide(9000).feet(at, feet) } else { true }
+        }
+    }
+
+    #[test]
+    fn an_empty_floor_wakes_seldom_and_loses_no_millisecond() {
+        let host = ByHand::default();
+        let floor = Floor::of(Geometry::of_paper_tiles(6, 1).unwrap());
+        let floor = SimFloor::new(&floor, SimConfig::default(), 8);
+        let driver = Box::new(Late(2000));
+        let mut source = SimulatedSource::on(floor, driver, Pace::RealTime, Arc::new(host.clone()));
+        let mut moments = |milliseconds: usize| {
+            let mut seen: Vec<Duration> = Vec::new();
+            for _ in 0..milliseconds {
+                let packet = std::iter::repeat_with(|| source.next(Duration::from_millis(5)).unwrap());
+                assert!(packet.take(9).flatten().next().is_some());
+                if seen.last() != Some(&host.elapsed()) {
+                    seen.push(host.elapsed());
+                }
+            }
+            seen.len()
+        };
+        assert!(moments(1000) > 900, "somebody may have just left");
+        assert!(moments(900) < 250, "nobody is there");
+        moments(200);
+        assert!(moments(500) > 450, "a foot is there");
     }
 
     #[test]

@@ -60,7 +60,8 @@ impl App {
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Light);
-        let inset = FloorView::new(Theme::LIGHT, Show { sensors: false, ruler: false, ..Show::WINDOW });
+        let inset =
+            FloorView::new(Theme::LIGHT, Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW });
         let projected = FloorView::new(Theme::DARK, Show::PROJECTOR);
         let feet = FootInput::new(free);
         let is_played = false;

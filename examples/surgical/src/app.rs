@@ -80,7 +80,8 @@ impl App {
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Dark);
-        let inset = FloorView::new(Theme::DARK, Show { sensors: false, ruler: false, ..Show::WINDOW });
+        let inset =
+            FloorView::new(Theme::DARK, Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW });
         let projected = FloorView::new(Theme::DARK, Show::PROJECTOR);
         let (feet, film) = (FootInput::new(free), Film::default());
         let (is_played, project, drag) = (false, false, [0.0; 2]);

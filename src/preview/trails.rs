@@ -1,0 +1,93 @@
+//! Where contacts have been of late.
+
+use crate::engine::Snapshot;
+use crate::scene::Trail;
+use crate::sense::ContactId;
+
+/// How long a place is remembered, in seconds.
+const KEPT_S: f64 = 2.0;
+
+/// A contact that stays within this adds no place, in metres: sway is not a way.
+const STEP_M: f32 = 0.004;
+
+/// Most places of one contact: a mouse at 60 frames a second leaves no more.
+const MOST: usize = 128;
+
+/// The latest places of each contact.
+#[derive(Debug, Default)]
+pub(super) struct Trails {
+    /// Of each contact its name and the moments of its trail's places.
+    of: Vec<(ContactId, Vec<f64>)>,
+    trails: Vec<Trail>,
+}
+
+impl Trails {
+    /// Takes in where contacts are at `now_s`.
+    pub(super) fn update(&mut self, now_s: f64, snapshot: &Snapshot) {
+        for contact in &snapshot.contacts {
+            let at = self.of.iter().position(|(id, _)| *id == contact.id).unwrap_or_else(|| {
+                self.of.push((contact.id, Vec::new()));
+                self.trails.push(Trail::default());
+                self.of.len() - 1
+            });
+            let (Some((_, moments)), Some(trail)) = (self.of.get_mut(at), self.trails.get_mut(at)) else {
+                continue;
+            };
+            trail.leads = snapshot.cursors.iter().flatten().any(|cursor| cursor.contact == contact.id);
+            let last = trail.points.last();
+            if last.is_none_or(|last| last.distance(contact.centroid) >= STEP_M) && moments.len() < MOST {
+                moments.push(now_s);
+                trail.points.push(contact.centroid);
+            }
+        }
+        for ((_, moments), trail) in self.of.iter_mut().zip(&mut self.trails) {
+            let old = moments.iter().take_while(|moment| now_s - **moment > KEPT_S).count();
+            moments.drain(..old);
+            trail.points.drain(..old);
+        }
+        self.of.retain(|(_, moments)| !moments.is_empty());
+        self.trails.retain(|trail| !trail.points.is_empty());
+    }
+
+    /// What is left of them.
+    pub(super) fn all(&self) -> &[Trail] {
+        &self.trails
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::Vec2;
+
+    use super::*;
+    use crate::scene::sample::{at_rest, map, step_on};
+
+    #[test]
+    fn a_trail_follows_its_contact_and_fades_after_it_has_gone() {
+        let mut trails = Trails::default();
+        for frame in 0..60 {
+            let mut snapshot = at_rest(&map());
+            step_on(&mut snapshot, 1, Vec2::new(0.3 + 0.01 * frame as f32, 1.0), 300.0, Vec2::ZERO);
+            trails.update(f64::from(frame) / 60.0, &snapshot);
+        }
+        assert_eq!(trails.all().len(), 1);
+        assert_eq!(trails.all()[0].points.len(), 60);
+        let nobody = at_rest(&map());
+        trails.update(2.5, &nobody);
+        assert_eq!(trails.all()[0].points.len(), 30, "what is younger than two seconds");
+        trails.update(3.1, &nobody);
+        assert!(trails.all().is_empty() && trails.of.is_empty());
+    }
+
+    #[test]
+    fn a_contact_that_sways_leaves_no_trail_of_a_thousand_places() {
+        let mut trails = Trails::default();
+        for frame in 0..600 {
+            let mut snapshot = at_rest(&map());
+            let sway = 0.001 * (frame as f32).sin();
+            step_on(&mut snapshot, 1, Vec2::new(0.3 + sway, 1.0), 300.0, Vec2::ZERO);
+            trails.update(f64::from(frame) / 60.0, &snapshot);
+        }
+        assert!(trails.all()[0].points.len() <= 1);
+    }
+}

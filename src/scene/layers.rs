@@ -1,0 +1,218 @@
+//! What can be laid over the floor to see how it senses: loads of tiles, uncertainty, trails, ignored presses, health.
+
+use std::f32::consts::TAU;
+use std::time::Duration;
+
+use glam::Vec2;
+
+use super::mark::{Ink, Paint, Stroke};
+use super::{Scene, View};
+use crate::floor::{Corner, Rect};
+use crate::sense::{Covariance, Quality};
+use crate::wire::LinkState;
+
+/// Loads below this are not written on their tile: noise alone would make them flicker.
+const LEAST_N: f32 = 5.0;
+
+/// How long the reason of an ignored press stays on its control.
+const TOLD: Duration = Duration::from_secs(5);
+
+/// Under the controls: what each sensor is worth, as a quarter of its plate.
+pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
+    if !view.show.health || view.snapshot.link == LinkState::Waiting {
+        return;
+    }
+    let theme = view.theme;
+    for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
+        let plate = view.geometry.plate(view.geometry.tile_at_index(index)).grown(-0.004);
+        let half = 0.5 * plate.size();
+        for (corner, quality) in Corner::ALL.into_iter().zip(state.quality) {
+            // The worse, the heavier, so that the map reads without its colours.
+            let ink = match quality {
+                Quality::Live => Ink::faint(theme.good, 0.14),
+                Quality::Degraded => Ink::faint(theme.warning, 0.34),
+                Quality::Stale => Ink::faint(theme.stale, 0.5),
+                Quality::Faulty => Ink::faint(theme.fault, 0.66),
+            };
+            let side = Vec2::new(
+                f32::from(u8::from(matches!(corner, Corner::SouthEast | Corner::NorthEast))),
+                f32::from(u8::from(matches!(corner, Corner::NorthWest | Corner::NorthEast))),
+            );
+            let quarter = Rect::from_min_size(plate.min + side * half, half).grown(-0.002);
+            scene.add_box(quarter, 0.004, Paint::fill(ink));
+        }
+    }
+}
+
+/// The force on each tile, and where it acts.
+pub(super) fn tiles(scene: &mut Scene, view: &View<'_>) {
+    let theme = view.theme;
+    let by = super::magnification(view.geometry).clamp(0.3, 4.0);
+    for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
+        if !state.force.0.is_finite() || state.force.0 < LEAST_N {
+            continue;
+        }
+        if let Some(at) = state.centroid.filter(|at| view.show.centroids && at.is_finite()) {
+            let ink = Ink::solid(theme.contact);
+            let arm = 0.012 * by;
+            let corners = [Vec2::Y, Vec2::X, Vec2::NEG_Y, Vec2::NEG_X].map(|way| at + arm * way);
+            let paint = Paint::fill(Ink::faint(theme.plate, 0.9)).with_stroke(Stroke::new(0.003 * by, ink));
+            scene.add_path(corners, true, paint);
+        }
+        if view.show.loads {
+            let plate = view.geometry.plate(view.geometry.tile_at_index(index));
+            let middle = Vec2::new(plate.max.x - 0.040 * by, plate.min.y + 0.020 * by);
+            let ground = Paint::fill(Ink::faint(theme.plate, 0.88));
+            let ink = Ink::solid(theme.ink);
+            scene.add_badge(middle, 0.020 * by, ink, ground, format_args!("{:.0} N", state.force.0));
+        }
+    }
+}
+
+/// The way each contact came, fading behind it.
+pub(super) fn trails(scene: &mut Scene, view: &View<'_>) {
+    if !view.show.trails {
+        return;
+    }
+    for trail in view.trails {
+        let colour = if trail.leads { view.theme.cursor } else { view.theme.contact };
+        // Three stretches, the oldest faintest.
+        let third = trail.points.len().div_ceil(3).max(1);
+        for (part, opacity) in (0..3).zip([0.25, 0.45, 0.75]) {
+            let from = (part * third).saturating_sub(1);
+            let stretch = trail.points.iter().take((part + 1) * third).skip(from).copied();
+            let stretch = stretch.filter(|point| point.is_finite());
+            scene.add_path(stretch, false, Paint::stroke(Stroke::new(0.004, Ink::faint(colour, opacity))));
+        }
+    }
+}
+
+/// The ellipse that holds each contact's true place 95 times in 100.
+pub(super) fn uncertainty(scene: &mut Scene, view: &View<'_>) {
+    if !view.show.uncertainty {
+        return;
+    }
+    for contact in view.snapshot.contacts.iter().filter(|contact| contact.centroid.is_finite()) {
+        let (long, short) = contact.covariance.ellipse_95_m();
+        if !(long.is_finite() && short.is_finite()) {
+            continue;
+        }
+        // Wider than the floor says no more than as wide as it.
+        let most = view.geometry.bounds().size().max_element();
+        let radii = Vec2::new(long, short).clamp(Vec2::splat(0.002), Vec2::splat(most));
+        let turn = Vec2::from_angle(direction(contact.covariance));
+        let rim = (0..40).map(|step| {
+            let round = Vec2::from_angle(TAU * step as f32 / 40.0);
+            contact.centroid + turn.rotate(radii * round)
+        });
+        let stroke = Stroke::new(0.003, Ink::faint(view.theme.ink, 0.8));
+        scene.add_path(rim, true, Paint::fill(Ink::faint(view.theme.ink, 0.07)).with_stroke(stroke));
+    }
+}
+
+/// The angle from east to the longer axis of a covariance, in radians.
+fn direction(Covariance { xx, xy, yy }: Covariance) -> f32 {
+    let angle = 0.5 * (2.0 * xy).atan2(xx - yy);
+    if angle.is_finite() { angle } else { 0.0 }
+}
+
+/// Why presses led to nothing, on the controls that did not answer.
+pub(super) fn ignored(scene: &mut Scene, view: &View<'_>) {
+    if !view.show.ignored {
+        return;
+    }
+    let (theme, now) = (view.theme, view.snapshot.at);
+    let by = super::magnification(view.geometry).clamp(0.3, 4.0);
+    let floor = view.geometry.bounds();
+    for (widget, state) in view.layout.widgets.iter().zip(&view.snapshot.widgets) {
+        let told = view.snapshot.ignored.iter().rev().find(|press| press.id == widget.id);
+        let Some(press) = told.filter(|press| !state.pressed && now.since(press.at) < TOLD) else { continue };
+        let size_m = 0.022 * by;
+        let text = format!("{:.0} N: {}", press.force.0, press.why);
+        let half = 0.5 * (super::widths::width(&text) * size_m + size_m);
+        let south = Vec2::new(widget.area.centre().x, widget.area.min.y - 0.8 * size_m);
+        // Within the floor, also for a control at its edge.
+        let low = (floor.min + Vec2::new(half, size_m)).min(floor.centre());
+        let middle = south.clamp(low, (floor.max - Vec2::new(half, size_m)).max(low));
+        let plate = Paint::fill(Ink::solid(theme.plate))
+            .with_stroke(Stroke::new(0.0025 * by, Ink::solid(theme.warning)));
+        scene.add_badge(middle, size_m, Ink::solid(theme.warning), plate, format_args!("{text}"));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::sample::{at_rest, map, pressing};
+    use super::super::{Mark, Show, Theme, Trail};
+    use super::*;
+    use crate::engine::{Ignored, IgnoredPress, Snapshot};
+    use crate::floor::Geometry;
+    use crate::sense::ContactId;
+    use crate::units::{Instant, Newtons};
+
+    const BARE: Show = Show { sensors: false, contacts: false, ..Show::PROJECTOR };
+
+    fn marks(snapshot: &Snapshot, show: Show, trails: &[Trail]) -> Scene {
+        let (layout, geometry) = (map(), Geometry::default());
+        let mut scene = Scene::new();
+        let view = View { show, trails, ..View::new(&geometry, &layout, snapshot, &Theme::LIGHT) };
+        super::super::draw(&mut scene, &view);
+        scene
+    }
+
+    #[test]
+    fn each_layer_adds_marks_of_its_own_and_none_while_it_is_off() {
+        let mut snapshot = Snapshot { link: LinkState::Live, ..pressing(&map()) };
+        let press = IgnoredPress {
+            at: snapshot.at,
+            id: map().widgets[3].id.clone(),
+            contact: ContactId(7),
+            force: Newtons(12.0),
+            why: Ignored::TooLight,
+        };
+        snapshot.ignored.push(press);
+        let trails = [Trail { points: (0..9).map(|at| Vec2::splat(0.1 * at as f32)).collect(), leads: true }];
+        let count = |show: Show| marks(&snapshot, show, &trails).marks().len();
+        let bare = count(BARE);
+        for (name, layer) in Show::LAYERS {
+            let mut show = Show { engagement: false, actuators: false, ..BARE };
+            let without = count(show);
+            *layer(&mut show) = true;
+            let with = count(show);
+            // Rings lie on contacts, and nothing moves an actuator here.
+            let is_alone = !matches!(name, "Cursors" | "Actuators");
+            assert_eq!(with > without, is_alone, "{name}: {without} and {with} of {bare}");
+        }
+    }
+
+    #[test]
+    fn an_ellipse_lies_along_its_longer_axis() {
+        let along = Covariance { xx: 4e-4, xy: 3e-4, yy: 4e-4 };
+        assert!((direction(along) - TAU / 8.0).abs() < 1e-5);
+        assert!((direction(Covariance { xx: 1e-4, xy: 0.0, yy: 9e-4 }).abs() - TAU / 4.0).abs() < 1e-5);
+        let nothing = Covariance { xx: f32::NAN, xy: f32::NAN, yy: f32::NAN };
+        assert_eq!(direction(nothing), 0.0);
+    }
+
+    #[test]
+    fn the_reason_of_an_ignored_press_goes_away_and_stays_on_the_floor() {
+        let mut snapshot = at_rest(&map());
+        snapshot.at = Instant::from_millis(60_000);
+        let told = |snapshot: &Snapshot| {
+            let scene = marks(snapshot, Show { ignored: true, ..BARE }, &[]);
+            scene.texts().filter(|(text, _)| text.ends_with("too light")).count()
+        };
+        for (age_ms, expected) in [(0, 1), (4000, 1), (6000, 0)] {
+            snapshot.ignored = vec![IgnoredPress {
+                at: Instant::from_millis(60_000 - age_ms),
+                id: map().widgets[0].id.clone(),
+                contact: ContactId(7),
+                force: Newtons(12.0),
+                why: Ignored::TooLight,
+            }];
+            assert_eq!(told(&snapshot), expected, "{age_ms} ms");
+        }
+        let scene = marks(&snapshot, Show { ignored: true, ..BARE }, &[]);
+        assert!(!scene.marks().iter().any(|mark| matches!(mark, Mark::Field { .. })));
+    }
+}
