@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::Ui;
 
 use super::PreviewOptions;
+use super::bars::TELL_S;
 use super::design::Designer;
 use super::feed::{FootSink, PreviewCommand, PreviewInput, ShoeFeed};
 use super::feet::MouseFeet;
@@ -26,7 +27,7 @@ use super::zoom::Zoom;
 use crate::egui_painter::Palette;
 use crate::engine::Snapshot;
 use crate::floor::Floor;
-use crate::scene::{Scene, Shoe, Show, Theme};
+use crate::scene::{self, Scene, Shoe, Show, Theme};
 
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
@@ -183,12 +184,23 @@ impl App {
     fn request_next_frame(&mut self, ui: &Ui) {
         let now = Instant::now();
         self.due = (self.due + PICTURE).max(now);
+        if self.shows_for_a_while() {
+            ui.ctx().request_repaint_after(Duration::from_millis(500));
+        }
         let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
         let fades = self.show.trails && !self.trails.all().is_empty();
         if is_held || fades || self.scopes.are_moving() {
             // Never zero: that would ask for two frames.
             ui.ctx().request_repaint_after((self.due - now).max(Duration::from_micros(100)));
         }
+    }
+
+    /// Whether something is on the screen that goes away by itself.
+    fn shows_for_a_while(&self) -> bool {
+        let snapshot = self.snapshots.output_buffer();
+        let ignored = snapshot.ignored.last();
+        ignored.is_some_and(|press| snapshot.at.since(press.at) < 2 * scene::TOLD)
+            || self.messages.file.as_ref().is_some_and(|file| self.now_s - file.at_s < 2.0 * TELL_S)
     }
 
     /// Tells the program; one that hung up does not want to know.

@@ -18,7 +18,7 @@ use crate::wire::LinkState;
 const TWO_LINES: f32 = 1010.0;
 
 /// How long the window tells that a saved file was loaded, in seconds.
-const TELL_S: f64 = 6.0;
+pub(super) const TELL_S: f64 = 6.0;
 
 impl App {
     /// Title, file and rates.

@@ -11,11 +11,14 @@ pub(super) struct Rate {
 /// How often the figure changes: slow enough to be read.
 const WINDOW_S: f64 = 0.5;
 
+/// Pause after which what was counted says nothing of the present: a window that has nothing to draw pauses for less.
+const LONGEST_S: f64 = 30.0;
+
 impl Rate {
     /// Takes the `count` of it so far at `now_s`; a count that went down starts anew.
     pub(super) fn observe(&mut self, now_s: f64, count: u64) {
         let passed = now_s - self.since_s;
-        if count < self.count_then || passed > 10.0 * WINDOW_S {
+        if count < self.count_then || passed > LONGEST_S {
             *self = Self { since_s: now_s, count_then: count, per_second: None };
         } else if passed >= WINDOW_S {
             let per_second = Some(((count - self.count_then) as f64 / passed) as f32);

@@ -31,7 +31,9 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
         if terrain::hides(view, cell) {
             continue;
         }
-        let colour = theme.plate.mix(theme.load, share);
+        let is_active = view.layout.regions.iter().any(|region| tints_plates(view, region.area, cell));
+        let plate = if is_active { theme.plate.mix(theme.accent, TINT) } else { theme.plate };
+        let colour = plate.mix(theme.load, share);
         scene.add_box(cell.grown(-gap), 0.008, Paint::fill(Ink::solid(colour)));
     }
     // On a large floor plates are drawn to whole pixels, which would close every other seam.
@@ -42,6 +44,20 @@ pub(super) fn plates(scene: &mut Scene, view: &View<'_>) {
 
 /// How much of the accent's colour an active area has.
 const TINT: f32 = 0.045;
+
+/// Whether the plate of `cell` shows by its own colour that it is active: a region of whole plates needs no sheet over
+/// them, which would be painted once more pixel by pixel.
+fn tints_plates(view: &View<'_>, region: Rect, cell: Rect) -> bool {
+    let pitch_m = view.geometry.pitch_m();
+    let is_whole = |edge: Vec2| {
+        let off = (edge - view.geometry.bounds().min) / pitch_m;
+        (off - off.round()).abs().max_element() < 1e-3
+    };
+    is_whole(region.min)
+        && is_whole(region.max)
+        && super::holds(region, cell)
+        && view.layout.grounds.is_empty()
+}
 
 /// How much wider seams are on a floor larger than the paper's, which is seen from farther away: or half of them would
 /// fall between a screen's pixels. No more than a plate can spare.
@@ -100,9 +116,16 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
 pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for region in &view.layout.regions {
-        let area = region.area.grown(-0.010);
-        let stroke = Stroke::new(0.003, Ink::faint(theme.accent, 0.45));
-        scene.add_box(area, 0.022, Paint::fill(Ink::faint(theme.accent, TINT)).with_stroke(stroke));
+        let is_tinted = view.geometry.tiles().all(|tile| {
+            let middle = view.geometry.centre(tile);
+            let cell = Rect::from_centre_size(middle, Vec2::splat(view.geometry.pitch_m()));
+            !region.area.overlaps(cell.grown(-1e-4)) || tints_plates(view, region.area, cell)
+        });
+        let area = region.area.grown(-0.004);
+        let stroke = Paint::stroke(Stroke::new(0.003, Ink::faint(theme.accent, 0.45)));
+        let paint =
+            if is_tinted { stroke } else { Paint { fill: Some(Ink::faint(theme.accent, TINT)), ..stroke } };
+        scene.add_box(area, 0.012, paint);
         let size_m = 0.024;
         let lettering = Lettering {
             at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),

@@ -15,7 +15,7 @@ use crate::wire::LinkState;
 const LEAST_N: f32 = 5.0;
 
 /// How long the reason of an ignored press stays on its control.
-const TOLD: Duration = Duration::from_secs(5);
+pub const TOLD: Duration = Duration::from_secs(5);
 
 /// Under the controls: what each sensor is worth, as a quarter of its plate.
 pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
@@ -124,9 +124,14 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>) {
     let (theme, now) = (view.theme, view.snapshot.at);
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
     let floor = view.geometry.bounds();
-    for (widget, state) in view.layout.widgets.iter().zip(&view.snapshot.widgets) {
-        let told = view.snapshot.ignored.iter().rev().find(|press| press.id == widget.id);
-        let Some(press) = told.filter(|press| !state.pressed && now.since(press.at) < TOLD) else { continue };
+    let mut told = Vec::new();
+    for press in view.snapshot.ignored.iter().rev().filter(|press| now.since(press.at) < TOLD) {
+        // A foot that slides over a row of controls is told where it ended.
+        if told.contains(&press.contact) {
+            continue;
+        }
+        told.push(press.contact);
+        let Some(widget) = view.layout.widgets.iter().find(|widget| widget.id == press.id) else { continue };
         let size_m = 0.022 * by;
         let text = format!("{:.0} N: {}", press.force.0, press.why);
         let half = 0.5 * (super::widths::width(&text) * size_m + size_m);

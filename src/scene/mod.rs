@@ -35,12 +35,13 @@ mod view;
 mod widths;
 
 pub use board::Scene;
+pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::outline_of;
 #[cfg(feature = "lab")]
 pub(crate) use outline::sole;
 pub use theme::Theme;
-pub use view::{Shoe, Show, Trail, View};
+pub use view::{Layer, Shoe, Show, Trail, View};
 
 use glam::Vec2;
 

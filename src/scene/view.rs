@@ -41,6 +41,9 @@ impl From<&crate::sim::Foot> for Shoe {
     }
 }
 
+/// One layer of a [`Show`], to be read or switched.
+pub type Layer = fn(&mut Show) -> &mut bool;
+
 /// Which parts of the floor's state are drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Show {
@@ -111,7 +114,7 @@ impl Show {
     };
 
     /// What can be laid over the floor, by name, for a menu.
-    pub const LAYERS: [(&'static str, fn(&mut Self) -> &mut bool); 11] = [
+    pub const LAYERS: [(&'static str, Layer); 11] = [
         ("Sensor forces", |show| &mut show.sensors),
         ("Tile forces", |show| &mut show.loads),
         ("Tile centroids", |show| &mut show.centroids),
