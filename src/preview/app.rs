@@ -61,6 +61,8 @@ pub(super) struct App {
     /// Whether somebody wants the side panel; `None` while the window's width decides.
     pub(super) panel_wanted: Option<bool>,
     pub(super) lists_warnings: bool,
+    /// What lines of the list of events have to contain; empty for all.
+    pub(super) wanted_events: String,
     /// By how much the window's own size has enlarged everything.
     enlarged: f32,
     /// `None` where nothing can be designed.
@@ -87,6 +89,7 @@ impl App {
             projection,
             panel_wanted: None,
             lists_warnings: false,
+            wanted_events: String::new(),
             enlarged: 1.0,
             selection: Selection::new(&input.floor.geometry),
             scopes: Scopes::new(input.scopes, &input.floor),

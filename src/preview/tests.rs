@@ -375,6 +375,29 @@ fn events_are_listed_newest_first() {
 }
 
 #[test]
+fn the_list_of_events_is_searched_and_copied() {
+    let mut room = Room::simulated();
+    for (at, id) in [(100, "home"), (200, "time")] {
+        room.events.send(event(at, id)).unwrap();
+    }
+    room.run(2);
+    room.window.get_by_label("Search events").focus();
+    room.run(1);
+    room.window.event(Event::Text("hom".into()));
+    room.run(2);
+    assert!(room.says("home pressed") && !room.says("time pressed"));
+    // Keys that are typed press nothing and mute nothing.
+    assert!(room.commands.try_recv().is_err());
+    room.window.get_by_label("Copy events").click();
+    room.window.step();
+    let copied = room.window.output().platform_output.commands.iter().find_map(|command| match command {
+        egui::OutputCommand::CopyText(text) => Some(text.clone()),
+        _ => None,
+    });
+    assert!(copied.is_some_and(|text| text.contains("\"home\"") && !text.contains("\"time\"")));
+}
+
+#[test]
 fn a_lost_floor_is_said_across_the_view() {
     let mut room = Room::simulated();
     let mut snapshot = at_rest(&map());

@@ -19,6 +19,8 @@ use super::report::OwnedReport;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::units::Instant;
+#[cfg(feature = "preview")]
+use crate::widget::WidgetEvent;
 use crate::widget::{EventKind, WidgetId};
 use crate::wire::LinkState;
 
@@ -244,6 +246,15 @@ fn write_all(jobs: &Receiver<Job>, mut out: impl Write, unwritten: &AtomicU64) {
             }
         }
     }
+}
+
+/// One event as [`JsonSink`] writes it, without the end of the line.
+#[cfg(feature = "preview")]
+pub(crate) fn event_line(event: &WidgetEvent) -> String {
+    let mut line = Vec::new();
+    // A vector takes everything.
+    let _ = write_line(&Job::Told(OwnedReport::Event(event.clone())), &mut line);
+    String::from_utf8_lossy(&line).trim_end().to_owned()
 }
 
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {

@@ -1,13 +1,16 @@
 //! The side panel's list of events.
 
+use std::collections::VecDeque;
+
 use eframe::egui::accesskit::Role;
-use eframe::egui::{ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{ScrollArea, Sense, TextEdit, Ui, WidgetInfo, vec2};
 
 use super::super::app::App;
 use super::super::messages::Happened;
 use super::super::style::{Row, quiet, section};
 use crate::egui_painter::color;
 use crate::scene::Theme;
+use crate::sink::event_line;
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
 
@@ -22,13 +25,17 @@ impl App {
         section(ui, theme, "Events", |ui| {
             ui.label(quiet(theme, format!("{} so far", self.messages.event_count)).size(12.0));
         });
+        self.search_events(ui);
+        let theme = &self.theme;
         let left = height - (ui.cursor().top() - top) - 8.0;
         ui.spacing_mut().item_spacing.y = 0.0;
-        let recent = &self.messages.recent;
+        let wanted = self.wanted_events.to_lowercase();
+        let recent: Vec<&Happened> =
+            self.messages.recent.iter().filter(|happened| is_wanted(happened, &wanted)).collect();
         let area = ScrollArea::vertical().id_salt("events").max_height(left).min_scrolled_height(left);
         area.auto_shrink(false).show_rows(ui, LINE, recent.len().max(1), |ui, lines| {
             if recent.is_empty() {
-                ui.label(quiet(theme, "nothing yet"));
+                ui.label(quiet(theme, if wanted.is_empty() { "nothing yet" } else { "nothing with that" }));
             }
             for happened in lines.filter_map(|line| recent.get(line)) {
                 match happened {
@@ -41,6 +48,43 @@ impl App {
         });
         ui.spacing_mut().item_spacing.y = 5.0;
     }
+}
+
+impl App {
+    /// A field that says which events are listed, and a button that copies these.
+    fn search_events(&mut self, ui: &mut Ui) {
+        ui.horizontal(|ui| {
+            let room = (ui.available_width() - 70.0).max(60.0);
+            let field = TextEdit::singleline(&mut self.wanted_events).hint_text("Search").desired_width(room);
+            let field = ui.add(field);
+            field.widget_info(|| WidgetInfo::labeled(Role::SearchInput, true, "Search events"));
+            let copy = ui.button("Copy").on_hover_text("The listed events as JSON lines, oldest first");
+            copy.widget_info(|| WidgetInfo::labeled(Role::Button, true, "Copy events"));
+            if copy.clicked() {
+                ui.ctx().copy_text(exported(&self.messages.recent, &self.wanted_events));
+            }
+        });
+    }
+}
+
+/// Whether a line has to do with `wanted`, which is in lower case: its control, its event or its material.
+fn is_wanted(happened: &Happened, wanted: &str) -> bool {
+    let words = match happened {
+        Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
+        Happened::GaveWay { material, .. } => format!("{material} gave way"),
+    };
+    wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
+}
+
+/// The events that are listed, as the program writes them with `--json`, oldest first.
+fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
+    let wanted = wanted.to_lowercase();
+    let listed = recent.iter().rev().filter(|happened| is_wanted(happened, &wanted));
+    let lines = listed.filter_map(|happened| match happened {
+        Happened::Event(event) => Some(event_line(event) + "\n"),
+        Happened::GaveWay { .. } => None,
+    });
+    lines.collect()
 }
 
 /// Ground that gave way, so many times.
@@ -90,5 +134,34 @@ fn value(kind: EventKind) -> String {
         EventKind::Changed(Value::Pair(pair)) => format!("{:.2} {:.2}", pair.x, pair.y),
         EventKind::Swiped(direction) => direction.name().into(),
         _ => String::new(),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn listed() -> VecDeque<Happened> {
+        let event = |at, id| Happened::Event(crate::preview::tests::event(at, id));
+        let at = Instant::from_millis(150);
+        let ground = Happened::GaveWay { ground: 0, material: "Ice", count: 3, at };
+        [event(200, "zoom"), ground, event(100, "home")].into()
+    }
+
+    #[test]
+    fn events_are_found_by_any_part_of_their_words() {
+        let found = |wanted: &str| listed().iter().filter(|happened| is_wanted(happened, wanted)).count();
+        assert_eq!(["", "zo", "pressed", "zoom pressed", "gave", "zoom gave"].map(found), [3, 1, 2, 1, 1, 0]);
+    }
+
+    #[test]
+    fn the_list_is_copied_as_json_lines_in_the_order_of_time() {
+        let text = exported(&listed(), "PRESSED");
+        let ids: Vec<String> = text
+            .lines()
+            .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
+            .map(|line| format!("{} {}", line["t_s"], line["id"].as_str().unwrap()))
+            .collect();
+        assert_eq!(ids, ["0.1 home", "0.2 zoom"]);
     }
 }
