@@ -4,6 +4,8 @@ use std::path::{Path, PathBuf};
 
 use clap::Args;
 #[cfg(feature = "preview")]
+use underfoot::edit::Template;
+#[cfg(feature = "preview")]
 use underfoot::ergonomics;
 #[cfg(feature = "preview")]
 use underfoot::floor::Floor;
@@ -55,7 +57,16 @@ impl LayoutArgs {
     /// As [`LayoutArgs::load`], with everything that `underfoot check` would warn of, and nothing on standard error.
     #[cfg(feature = "preview")]
     pub(crate) fn reviewed(&self, floor: &Floor) -> Result<(Layout, Diagnostics), Failure> {
-        let loaded = self.read(&floor.geometry)?;
+        let is_empty =
+            |path: &&Path| std::fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() == 0);
+        let loaded = match self.path().filter(is_empty) {
+            // What is designed in an empty file begins so.
+            Some(path) => {
+                let text = Template::Empty.text(&floor.geometry);
+                schema::parse_layout(&text, &path.display().to_string(), &self.kinds()?, &floor.geometry)?
+            }
+            None => self.read(&floor.geometry)?,
+        };
         let mut warnings = loaded.warnings;
         warnings.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
         Ok((loaded.layout, warnings))

@@ -8,6 +8,7 @@ use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::thread;
 use std::time::Duration;
 
+use underfoot::edit;
 use underfoot::feel::{Renderer, ScopeReader};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
@@ -120,9 +121,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .start()?;
 
     let desk = Desk { session: session.clone(), news };
-    let _watch = watch(&args.layout, &floor, &desk)?;
+    let watch = desk.watch(&args.layout)?;
     let choices = args.choices();
-    let told = Obeyed { files: args.layout.clone(), choices: choices.clone(), floor, desk };
+    let told = Obeyed { files: args.layout.clone(), watch, choices: choices.clone(), floor, desk };
     told.process_commands(wished, notice_sender);
 
     let scopes = scopes.try_iter().last().flatten();
@@ -219,14 +220,19 @@ impl Args {
 
     /// The layout as text, to be designed.
     fn design(&self) -> Result<Option<DesignInput>, Failure> {
-        let kinds = Arc::new(self.layout.kinds()?);
         let path = self.layout.path().map(std::path::Path::to_path_buf);
         let name = self.layout.layout.as_deref().and_then(std::path::Path::to_str).unwrap_or(DEFAULT_LAYOUT);
         let text = match &path {
             Some(path) => std::fs::read_to_string(path).ok(),
             None => schema::builtin_layout(name).map(str::to_owned),
         };
-        Ok(text.map(|text| DesignInput { name: name.to_owned(), text, path, kinds }))
+        let files = self.layout.clone();
+        let kinds_of = Box::new(move |path: Option<&std::path::Path>| {
+            let layout = path.map(std::path::Path::to_path_buf);
+            LayoutArgs { layout, ..files.clone() }.kinds().map(Arc::new)
+        });
+        let state = preview::usual_state();
+        Ok(text.map(|text| DesignInput { name: name.to_owned(), text, path, kinds_of, state }))
     }
 
     /// The layout given and the built-in ones.
@@ -260,21 +266,21 @@ impl Desk {
         let name = name.to_owned();
         let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
     }
-}
 
-fn watch(files: &LayoutArgs, floor: &Floor, desk: &Desk) -> Result<Option<Watch>, Failure> {
-    let name = files.path().map(|path| path.display().to_string()).unwrap_or_default();
-    let (desk, own, floor) = (desk.clone(), files.clone(), floor.clone());
-    Watch::start(files, floor.geometry, move |read| {
-        let read = read.map_err(|wrong| wrong.to_string());
-        let read = read.and_then(|_| own.reviewed(&floor).map_err(|failure| failure.to_string()));
-        desk.take(&name, LayoutCause::Saved, read);
-    })
+    /// Tells the window, which has the text, of each change of the files.
+    fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
+        let news = self.news.clone();
+        Watch::on_change(files, move || {
+            let _ = news.send(LayoutNews::Changed);
+        })
+    }
 }
 
 /// What the wishes of the person at the window need.
 struct Obeyed {
     files: LayoutArgs,
+    /// Ends with the next one.
+    watch: Option<Watch>,
     choices: Vec<String>,
     floor: Floor,
     desk: Desk,
@@ -290,8 +296,16 @@ impl Obeyed {
                         self.open(choice);
                         continue;
                     }
-                    PreviewCommand::Try { layout, name, warnings } => {
-                        self.desk.put(&name, LayoutCause::Designed, Arc::unwrap_or_clone(layout), warnings);
+                    PreviewCommand::Watch(path) => {
+                        self.files.layout = path;
+                        match self.desk.watch(&self.files) {
+                            Ok(watch) => self.watch = watch,
+                            Err(failure) => drop(notices.send(failure.to_string())),
+                        }
+                        continue;
+                    }
+                    PreviewCommand::Try { layout, name, warnings, cause } => {
+                        self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {
@@ -325,11 +339,8 @@ impl Obeyed {
     fn open(&mut self, choice: usize) {
         let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
         self.files.layout = Some(PathBuf::from(&name));
-        self.show(&name, LayoutCause::Opened);
-    }
-
-    fn show(&self, name: &str, cause: LayoutCause) {
-        self.desk.take(name, cause, self.files.reviewed(&self.floor).map_err(|failure| failure.to_string()));
+        let read = self.files.reviewed(&self.floor).map_err(|failure| failure.to_string());
+        self.desk.take(&name, LayoutCause::Opened, read);
     }
 
     /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
@@ -344,13 +355,10 @@ impl Obeyed {
         }
         // What somebody has written beside the numbers stays.
         let old = std::fs::read_to_string(&path).unwrap_or_default();
-        let text = schema::keep_comments(&old, text);
+        let text = edit::refit(&old, text);
         match schema::save_text(&text, &path) {
             Ok(_) => {
-                let layout = self.files.layout.as_ref();
-                let layout =
-                    layout.map_or_else(|| DEFAULT_LAYOUT.to_owned(), |layout| layout.display().to_string());
-                self.show(&layout, LayoutCause::Saved);
+                let _ = self.desk.news.send(LayoutNews::Changed);
                 format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
             }
             Err(error) => error.to_string(),

@@ -13,8 +13,9 @@ use underfoot::schema::{self, Diagnostics};
 use super::failure::Failure;
 use super::layout_args::LayoutArgs;
 
-/// How long a file must be left alone before it is read: editors write in several steps.
-const QUIET: Duration = Duration::from_millis(200);
+/// How long a file must be left alone before it is read: editors write in several steps, which follow each other within
+/// some milliseconds.
+const QUIET: Duration = Duration::from_millis(80);
 
 /// Watches files for as long as it lives.
 pub(crate) struct Watch {
@@ -31,13 +32,24 @@ impl Watch {
         tell: impl Fn(Result<Layout, Diagnostics>) + Send + 'static,
     ) -> Result<Option<Self>, Failure> {
         let Some(path) = files.path().map(PathBuf::from) else { return Ok(None) };
+        let own = files.clone();
+        Self::on_change(files, move || tell(read(&own, &path, &geometry)))
+    }
+
+    /// Calls `tell` each time the layout's file or a kind's or an effect's file is saved.
+    ///
+    /// Gives `None` for a built-in layout, which has no file.
+    pub(crate) fn on_change(
+        files: &LayoutArgs,
+        tell: impl Fn() + Send + 'static,
+    ) -> Result<Option<Self>, Failure> {
+        let Some(path) = files.path() else { return Ok(None) };
         let folders: Vec<PathBuf> =
             [files.kinds_folder(), files.effects_folder()].into_iter().flatten().collect();
         // Many editors replace the file, which would end a watch on the file itself.
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
         let folder = folder.map_or_else(|| PathBuf::from("."), PathBuf::from);
         let watched: Vec<PathBuf> = std::iter::once(folder).chain(folders.iter().cloned()).collect();
-        let files = files.clone();
         let name = path.file_name().map(ToOwned::to_owned);
         let on_change = move |events: DebounceEventResult| {
             let Ok(events) = events else { return };
@@ -52,7 +64,7 @@ impl Watch {
                 })
             });
             if concerns_us {
-                tell(read(&files, &path, &geometry));
+                tell();
             }
         };
         let failed = |error: notify_debouncer_full::notify::Error| {

@@ -3,7 +3,7 @@
 use std::ops::Range;
 use std::sync::Arc;
 
-use super::address::{Address, list_of};
+use super::address::{Address, List, list_of};
 use super::change::{Edit, is_record};
 use super::history::History;
 use super::refusal::Refusal;
@@ -110,6 +110,20 @@ impl Document {
     #[must_use]
     pub fn kinds(&self) -> &Arc<Kinds> {
         &self.kinds
+    }
+
+    /// Makes its controls of other kinds from now on; whether they differ.
+    ///
+    /// # Errors
+    /// What is wrong with the layout when it is made of them; nothing is changed then.
+    pub fn make_of(&mut self, kinds: &Arc<Kinds>) -> Result<bool, Diagnostics> {
+        if *self.kinds == **kinds {
+            return Ok(false);
+        }
+        let read = read(&self.name, &self.text, kinds, &self.floor)?;
+        self.kinds = Arc::clone(kinds);
+        self.show(self.text.to_string(), read);
+        Ok(true)
     }
 
     /// The floor it is placed on.
@@ -251,6 +265,12 @@ impl Document {
             Some(format!("{},\n", Lines(&self.text).piece(element).text))
         });
         texts.collect()
+    }
+
+    /// How many records the list of `parent` has.
+    #[must_use]
+    pub fn count(&self, parent: &Address, list: List) -> usize {
+        parent.find(&self.root).and_then(|parent| list_of(parent, list)).map_or(0, |list| list.elements.len())
     }
 
     /// Where the record is written; `None` if there is none.

@@ -73,6 +73,12 @@ impl LayoutFile {
         name.map_or_else(|| UNTITLED.to_owned(), |name| name.to_string_lossy().into_owned())
     }
 
+    /// What the file is known to hold.
+    #[must_use]
+    pub fn known(&self) -> &str {
+        &self.base
+    }
+
     /// Whether `text` is what the file is known to hold.
     #[must_use]
     pub fn holds(&self, text: &str) -> bool {

@@ -40,6 +40,20 @@ pub struct Property {
     pub origin: Origin,
 }
 
+impl Property {
+    /// Its name alone: that of a field within a field without the outer one.
+    #[must_use]
+    pub fn short(&self) -> &str {
+        self.name.rsplit('.').next().unwrap_or_default()
+    }
+
+    /// Whether it is a place or a size: two lengths in the layout's unit.
+    #[must_use]
+    pub fn is_place(&self) -> bool {
+        self.name == "at" || self.name == "size"
+    }
+}
+
 /// Fields that belong together.
 #[derive(Clone, Debug)]
 pub struct Section {
@@ -86,7 +100,7 @@ impl Document {
             let field = FieldDescription { name, about: about.into(), shape, default: None };
             self.property(record, name.to_owned(), &field, None, &[])
         });
-        let mut sections = vec![Section { title: "Record".into(), properties: own.collect() }];
+        let mut sections = vec![Section { title: "What and where".into(), properties: own.collect() }];
         let widget =
             item.filter(|item| !item.is_group).and_then(|item| self.layout().widgets.get(item.widgets.start));
         if record.list() == Some(List::Widgets)

@@ -12,7 +12,8 @@ use crate::format::number::plain;
 use crate::widget::{Axis, Behaviour, Track};
 
 /// Fields that say where something stands beside its neighbour.
-const RELATIVE: [&str; 6] = [NEIGHBOURS[0], NEIGHBOURS[1], NEIGHBOURS[2], NEIGHBOURS[3], "gap", "align"];
+pub(super) const RELATIVE: [&str; 6] =
+    [NEIGHBOURS[0], NEIGHBOURS[1], NEIGHBOURS[2], NEIGHBOURS[3], "gap", "align"];
 
 impl Document {
     /// What gives `items` these areas, in floor metres. Of a group or a grid only the place counts: it keeps its size.
@@ -61,14 +62,14 @@ impl Document {
     }
 
     /// Two numbers written for a field.
-    fn pair(&self, record: &Address, field: &str) -> Option<glam::DVec2> {
+    pub(super) fn pair(&self, record: &Address, field: &str) -> Option<glam::DVec2> {
         let (east, north) = self.written(record, field)?.trim_matches(['(', ')']).split_once(',')?;
         let number = |text: &str| text.trim().trim_end_matches(',').trim_end().parse::<f64>().ok();
         Some(glam::DVec2::new(number(east)?, number(north)?))
     }
 
     /// Where the places count from of the list that `record` is in, in the layout's units.
-    fn origin(&self, record: &Address) -> Result<glam::DVec2, Refusal> {
+    pub(super) fn origin(&self, record: &Address) -> Result<glam::DVec2, Refusal> {
         let Some((parent, List::Widgets, _)) = record.split() else { return Ok(glam::DVec2::ZERO) };
         if parent.list() != Some(List::Widgets) {
             return Ok(glam::DVec2::ZERO);
@@ -169,7 +170,7 @@ fn other(axis: Axis) -> &'static str {
 }
 
 /// Two numbers as files write them: to a ten-thousandth of a unit, which is below 0.1 mm.
-fn pair(east: f64, north: f64) -> String {
+pub(super) fn pair(east: f64, north: f64) -> String {
     let written = |value: f64| {
         let value = (value * 1e4).round() / 1e4;
         plain(if value == 0.0 { 0.0 } else { value })

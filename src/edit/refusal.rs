@@ -17,6 +17,9 @@ pub enum Refusal {
     /// What was to be put in is no record.
     #[error("this is not a record such as (id: \"home\", kind: \"button\", at: (1, 1), size: (1, 1))")]
     NotARecord,
+    /// What is to be one group stands in several lists, such as those of two pages.
+    #[error("only what stands in one list can be one group, and regions, places to stand and grounds can't")]
+    Apart,
     /// Where it is follows from a neighbour in a group that has no place of its own.
     #[error("{0} stands where its group stands; give the group a place of its own first")]
     PlacedByGroup(Address),

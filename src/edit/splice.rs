@@ -224,7 +224,8 @@ impl<'t> Lines<'t> {
         }
     }
 
-    fn replace(self, old: &Outline, value: &str) -> Vec<Splice> {
+    /// Writes `value` in place of a value, as little as will do.
+    pub(super) fn replace(self, old: &Outline, value: &str) -> Vec<Splice> {
         let written = &self.0[old.span.clone()];
         let number = |text: &str| text.trim().parse::<f64>().ok();
         if written == value || (number(written).is_some() && number(written) == number(value)) {

@@ -23,6 +23,8 @@ mod space;
 
 pub use place_error::{Zone, predicted_error_m};
 pub use rules::{RULES, Rule, rule};
+#[cfg(feature = "preview")]
+pub(crate) use space::{REACH_M, STEP_AWAY_M, footing};
 
 use crate::floor::Floor;
 use crate::format::diagnostic::Severity;

@@ -18,9 +18,9 @@ const SEQUENTIAL_M: f32 = 0.05;
 /// Between pedals for one foot, in any order.
 const RANDOM_M: f32 = 0.10;
 /// As far as a foot reaches without the body.
-const REACH_M: f32 = 0.8;
+pub(crate) const REACH_M: f32 = 0.8;
 /// Beyond a long step.
-const STEP_AWAY_M: f32 = 1.2;
+pub(crate) const STEP_AWAY_M: f32 = 1.2;
 /// Half of a shoe's width and length: the middle of a foot keeps as far from a stance zone's edges.
 const HALF_SHOE: Vec2 = Vec2::new(0.06, 0.13);
 /// From one value of a slider to the next.
@@ -87,7 +87,7 @@ fn neighbours(subject: &mut Subject<'_>) {
 }
 
 /// Where the middle of a foot can be that stands within the zone.
-fn footing(stance: &Stance) -> Rect {
+pub(crate) fn footing(stance: &Stance) -> Rect {
     let margin = HALF_SHOE.min(0.5 * stance.area.size());
     Rect::new(stance.area.min + margin, stance.area.max - margin)
 }

@@ -40,7 +40,7 @@ pub(crate) mod source;
 pub(crate) mod suggest;
 mod syntax;
 pub(crate) mod text;
-mod words;
+pub(crate) mod words;
 
 pub(crate) use codec::{
     Codec, Flag, Flat, Follow, Id, List, Name, Named, Num, OneOf, Opt, Own, Pair, Rec, Text, list, num,

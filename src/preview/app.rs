@@ -94,7 +94,7 @@ impl App {
             selection: Selection::new(&input.floor.geometry),
             scopes: Scopes::new(input.scopes, &input.floor),
             messages,
-            designer: input.design.as_ref().and_then(|design| Designer::new(design, &input.floor)),
+            designer: input.design.and_then(|design| Designer::new(design, &input.floor)),
             feet: input.feet.map(|sink| (MouseFeet::new(), sink)),
             shoe_feed: input.shoes,
             shoes: Vec::new(),

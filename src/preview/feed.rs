@@ -1,5 +1,6 @@
 //! What the program hands to the window and takes from it.
 
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender};
 
@@ -88,6 +89,8 @@ pub enum LayoutCause {
 /// What became of a layout file that changed.
 #[derive(Clone, Debug)]
 pub enum LayoutNews {
+    /// Its file, or that of a kind or an effect, was saved: the window, which has the text, takes it in.
+    Changed,
     /// The engine was given this one.
     Loaded {
         /// The layout.
@@ -124,7 +127,12 @@ pub enum PreviewCommand {
         name: String,
         /// What feet and eyes will have trouble with in it.
         warnings: Warnings,
+        /// Why it comes.
+        cause: LayoutCause,
     },
+    /// Tell of changes to this file from now on, and to those of its kinds and effects; `None` for a layout that has
+    /// no file.
+    Watch(Option<PathBuf>),
     /// Switch a control on or off, as an app would.
     Enable {
         /// Which control.

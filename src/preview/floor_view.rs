@@ -110,7 +110,7 @@ impl App {
             self.zoom.about(pointer, by, extent, screen);
         }
         if panned != egui::Vec2::ZERO {
-            self.zoom.pan(panned, extent, screen);
+            self.zoom.pan(panned, screen);
         }
     }
 

@@ -55,6 +55,8 @@ pub(super) struct Messages {
     coming: VecDeque<(Arc<Layout>, u64)>,
     /// What became of the layout file last.
     pub(super) file: Option<FileNote>,
+    /// Whether files have changed that the layout is made of.
+    pub(super) files_changed: bool,
     /// What feet and eyes will have trouble with in the layout.
     pub(super) warnings: Warnings,
     /// Sentences for the person at the window, oldest first.
@@ -91,6 +93,7 @@ impl Messages {
             layout,
             coming: VecDeque::new(),
             file: None,
+            files_changed: false,
             warnings: Warnings::default(),
             notes: VecDeque::new(),
         }
@@ -121,6 +124,10 @@ impl Messages {
         }
         for news in self.layouts.try_iter() {
             self.file = Some(match news {
+                LayoutNews::Changed => {
+                    self.files_changed = true;
+                    continue;
+                }
                 LayoutNews::Loaded { layout, revision, name, cause, warnings } => {
                     self.coming.push_back((layout, revision));
                     self.warnings = warnings;

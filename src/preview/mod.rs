@@ -28,7 +28,7 @@ mod trails;
 mod watch;
 mod zoom;
 
-pub use design::DesignInput;
+pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
     FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed,
     Warnings,

@@ -47,11 +47,11 @@ impl Zoom {
         let under = self.map(bounds, screen).floor(pointer);
         self.by = (self.by * by).clamp(1.0, NEAREST);
         let moved = self.map(bounds, screen).point(under) - pointer;
-        self.pan(-moved, bounds, screen);
+        self.pan(-moved, screen);
     }
 
     /// Moves what is seen by `way` points, as far as there is floor.
-    pub(super) fn pan(&mut self, way: Vec2, _: floor::Rect, screen: Rect) {
+    pub(super) fn pan(&mut self, way: Vec2, screen: Rect) {
         let most = 0.5 * screen.size() * (1.0 - 1.0 / self.by);
         let off = self.off - way / self.by;
         self.off = vec2(off.x.clamp(-most.x, most.x), off.y.clamp(-most.y, most.y));
@@ -74,7 +74,7 @@ mod tests {
         let under = zoom.map(bounds, screen).floor(pointer);
         zoom.about(pointer, 3.0, bounds, screen);
         assert!(zoom.is_closer() && zoom.map(bounds, screen).floor(pointer).distance(under) < 1e-3);
-        zoom.pan(vec2(1e6, -1e6), bounds, screen);
+        zoom.pan(vec2(1e6, -1e6), screen);
         let shown = zoom.map(bounds, screen).rect(bounds);
         assert!(shown.intersects(screen));
         zoom.about(pointer, 1e-9, bounds, screen);

@@ -25,8 +25,6 @@ mod floor_text;
 mod goto;
 mod ground;
 mod inherit;
-#[cfg(feature = "save")]
-mod keep_comments;
 mod kind;
 mod lists;
 #[cfg(feature = "ergonomics")]
@@ -60,8 +58,6 @@ pub use floor::{load_floor, parse_floor};
 pub use floor_text::write_floor;
 #[cfg(feature = "edit")]
 pub(crate) use ground::ground_fields;
-#[cfg(feature = "save")]
-pub use keep_comments::keep_comments;
 pub use kind::{Kind, Kinds};
 pub use page::{Loaded, folder_beside, load_layout, parse_layout};
 pub use places::Places;

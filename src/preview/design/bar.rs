@@ -1,13 +1,13 @@
 //! The strip of Design mode: files, steps, order; and the questions that only a person can answer.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Margin, Panel, Ui, WidgetInfo};
 
-use super::{Ask, Asking, Designer};
-use crate::edit::{Address, Align, LayoutFile, Template, align, distribute};
+use super::{Ask, Asking, Designer, shelf};
+use crate::edit::{Address, Align, Template, align, distribute};
 use crate::egui_painter::color;
 use crate::floor::Rect;
 use crate::preview::style::{panel_colour, panel_frame, pill, quiet};
@@ -44,6 +44,10 @@ impl Designer {
                     self.turn();
                 }
                 self.arrange(ui);
+                ui.menu_button("Show", |ui| {
+                    ui.checkbox(&mut self.seen_to_scale.shoes, "Shoes in true size");
+                    ui.checkbox(&mut self.seen_to_scale.reach, "How far feet reach");
+                });
                 ui.separator();
                 if button(ui, true, "Fit", "See the whole floor; the wheel zooms, Space and drag moves") {
                     self.fit();
@@ -65,11 +69,15 @@ impl Designer {
         let is_saved = self.is_saved();
         ui.menu_button("File", |ui| {
             ui.menu_button("New", |ui| {
+                let geometry = self.document.floor().geometry;
+                ui.label(format!("for a floor of {} x {} tiles", geometry.columns(), geometry.rows()))
+                    .on_hover_text(
+                        "The window's floor; underfoot preview --grid 8x4 opens it with another one",
+                    );
                 for template in Template::ALL {
                     if ui.button(template.name()).clicked() {
                         let text = template.text(&self.document.floor().geometry);
-                        let file = LayoutFile::untitled(Path::new(""), "");
-                        self.begin("untitled.ron", &text, file);
+                        self.begin_untitled("untitled.ron", &text);
                         ui.close();
                     }
                 }
@@ -78,15 +86,28 @@ impl Designer {
                 for name in choices.iter().filter(|name| schema::builtin_layout(name).is_some()) {
                     if ui.button(name).clicked() {
                         let text = schema::builtin_layout(name).unwrap_or_default();
-                        self.begin(name, text, LayoutFile::untitled(Path::new(""), text));
+                        self.begin_untitled(name, text);
                         ui.close();
                     }
                 }
             });
-            for (to, name) in [(Ask::Open, "Open file"), (Ask::SaveAs, "Save as")] {
-                if ui.button(name).clicked() {
-                    let path = self.file.path().map(|path| path.display().to_string());
-                    self.asking = Some(Asking { to, path: path.unwrap_or_else(|| self.file.name()) });
+            let recent = shelf::recent(&self.state);
+            ui.add_enabled_ui(!recent.is_empty(), |ui| {
+                ui.menu_button("Open recent", |ui| {
+                    for path in &recent {
+                        let name = path.file_name().unwrap_or_default().to_string_lossy();
+                        if ui.button(name).on_hover_text(path.display().to_string()).clicked() {
+                            self.open(path);
+                            ui.close();
+                        }
+                    }
+                });
+            });
+            for (to, name, keys) in
+                [(Ask::Open, "Open file", "Ctrl+O"), (Ask::SaveAs, "Save as", "Ctrl+Shift+S")]
+            {
+                if ui.add(egui::Button::new(name).shortcut_text(keys)).clicked() {
+                    self.ask_for(to);
                     ui.close();
                 }
             }
@@ -102,25 +123,53 @@ impl Designer {
     fn arrange(&mut self, ui: &mut Ui) {
         let items = self.selected_items();
         let areas: Vec<Rect> = items.iter().map(|item| item.area).collect();
-        let mut wanted = None;
-        ui.add_enabled_ui(areas.len() > 1, |ui| {
+        let (mut wanted, mut does) = (None, None);
+        let is_group = matches!(items[..], [item] if item.is_group);
+        let count = areas.len();
+        ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
-                let names = ["West edges", "Centres", "East edges", "South edges", "Middles", "North edges"];
-                for (how, name) in Align::ALL.into_iter().zip(names) {
-                    if ui.button(format!("Align {}", name.to_lowercase())).clicked() {
-                        wanted = Some(align(&areas, how));
+                let entries: [(bool, &str, &str, fn(&mut Self)); 6] = [
+                    (count > 0, "Group", "Ctrl+G", Self::group),
+                    (is_group, "Ungroup", "Ctrl+Shift+G", Self::ungroup),
+                    (count == 1, "To the front", "Ctrl+]", |designer| designer.reorder(false)),
+                    (count == 1, "To the back", "Ctrl+[", |designer| designer.reorder(true)),
+                    (true, "Lock or unlock", "Ctrl+L", |designer| {
+                        designer.turn_lock(&designer.selected.clone())
+                    }),
+                    (true, "Hide or show", "Ctrl+H", |designer| {
+                        designer.turn_hidden(&designer.selected.clone())
+                    }),
+                ];
+                for (is_on, name, keys, action) in entries {
+                    let button = egui::Button::new(name).shortcut_text(keys);
+                    if ui.add_enabled(is_on, button).clicked() {
+                        does = Some(action);
                         ui.close();
                     }
                 }
-                for (axis, name) in ["west to east", "south to north"].into_iter().enumerate() {
-                    let button = egui::Button::new(format!("Distribute {name}"));
-                    if ui.add_enabled(areas.len() > 2, button).clicked() {
-                        wanted = Some(distribute(&areas, axis));
-                        ui.close();
+                ui.separator();
+                ui.add_enabled_ui(count > 1, |ui| {
+                    let names =
+                        ["West edges", "Centres", "East edges", "South edges", "Middles", "North edges"];
+                    for (how, name) in Align::ALL.into_iter().zip(names) {
+                        if ui.button(format!("Align {}", name.to_lowercase())).clicked() {
+                            wanted = Some(align(&areas, how));
+                            ui.close();
+                        }
                     }
-                }
+                    for (axis, name) in ["west to east", "south to north"].into_iter().enumerate() {
+                        let button = egui::Button::new(format!("Distribute {name}"));
+                        if ui.add_enabled(areas.len() > 2, button).clicked() {
+                            wanted = Some(distribute(&areas, axis));
+                            ui.close();
+                        }
+                    }
+                });
             });
         });
+        if let Some(does) = does {
+            does(self);
+        }
         if let Some(areas) = wanted {
             self.move_to(&areas);
         }
@@ -228,21 +277,14 @@ impl Designer {
     fn answer(&mut self, asking: &Asking) -> bool {
         let path = PathBuf::from(asking.path.trim());
         match asking.to {
-            Ask::Open => match LayoutFile::open(&path) {
-                Ok((file, text)) => {
-                    self.begin(&path.display().to_string(), &text, file);
-                    !self.message.as_ref().is_some_and(|message| message.is_bad)
-                }
-                Err(error) => {
-                    self.complain(format!("{} can't be opened: {error}", path.display()));
-                    false
-                }
-            },
+            Ask::Open => self.open(&path),
             Ask::SaveAs => {
                 let text = self.document.file_text();
                 match self.file.save_as(&text, &path) {
                     Ok(()) => {
                         self.document.rename(&path.display().to_string());
+                        self.slot = None;
+                        shelf::note_recent(&self.state, &path);
                         self.say(format!("Saved in {}", path.display()));
                         true
                     }

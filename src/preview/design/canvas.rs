@@ -1,5 +1,7 @@
 //! The floor as a drawing board: what is selected, moved, sized, put down, and what is wrong with it.
 
+use std::borrow::Cow;
+
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
@@ -12,10 +14,12 @@ use super::Designer;
 use crate::edit::{Address, Edges, Grid, Guide, Item, List};
 use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
 use crate::engine::Snapshot;
+use crate::ergonomics::{REACH_M, STEP_AWAY_M, footing};
 use crate::floor::Rect;
 use crate::format::diagnostic::Severity;
 use crate::layout::Layout;
-use crate::scene::{self, Show, Theme, View};
+use crate::scene::{self, Shoe, Show, Theme, View};
+use crate::units::Newtons;
 
 /// Half the side of a handle, and how near the pointer must be to it, in points.
 const HANDLE: f32 = 5.0;
@@ -45,28 +49,6 @@ pub(super) enum Gesture {
     Panning,
 }
 
-/// Which part of the floor is seen.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Zoom {
-    /// 1 for the whole floor.
-    factor: f32,
-    /// How far the middle of the view is from that of the floor, in metres.
-    pan: Vec2,
-}
-
-impl Default for Zoom {
-    fn default() -> Self {
-        Self { factor: 1.0, pan: Vec2::ZERO }
-    }
-}
-
-impl Zoom {
-    fn map(self, bounds: Rect, screen: egui::Rect) -> ScreenFromFloor {
-        let seen = Rect::from_centre_size(bounds.centre() + self.pan, bounds.size() / self.factor);
-        ScreenFromFloor::fit(seen, screen)
-    }
-}
-
 impl Designer {
     /// The floor, in what is left of the window.
     pub(super) fn canvas(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
@@ -76,17 +58,22 @@ impl Designer {
         let geometry = self.document.floor().geometry;
         let show = Show { sensors: false, contacts: false, ..Show::WINDOW };
         let bounds = scene::extent(&geometry, show);
-        self.zoom(ui, &canvas, bounds, rect.shrink(14.0));
-        let map = self.view.map(bounds, rect.shrink(14.0));
-        let trial = self.gestures(ui, &canvas, map);
+        let screen = rect.shrink(14.0);
+        self.zoom(ui, &canvas, bounds, screen);
+        let map = self.view.map(bounds, screen);
+        let trial = self.gestures(ui, &canvas, map, screen);
         let shown = trial.layout.as_ref().unwrap_or_else(|| self.document.layout());
+        let shown = self.without_hidden(shown);
         let snapshot = Snapshot { page: self.page, ..Snapshot::default() };
-        let view = View { show, ..View::new(&geometry, shown, &snapshot, theme) };
+        let pointer = canvas.hover_pos().map(|at| map.floor(at));
+        let shoes = self.shoes(pointer);
+        let view = View { show, shoes: &shoes, ..View::new(&geometry, &shown, &snapshot, theme) };
         let mut scene = std::mem::take(&mut self.scene);
         scene::draw(&mut scene, &view);
         let painter = ui.painter_at(rect);
         egui_painter::paint(&painter, palette, &scene, map);
         self.scene = scene;
+        self.reach(&painter, map, theme);
         self.marks(ui, rect, map, theme, &trial);
         self.names(ui, map);
     }
@@ -98,21 +85,23 @@ impl Designer {
         let (wheel, pinch) = ui.input(|i| (i.smooth_scroll_delta().y, i.zoom_delta()));
         let by = pinch * (wheel * 0.004).exp();
         if (by - 1.0).abs() > 1e-4 {
-            let under = self.view.map(bounds, screen).floor(pointer);
-            self.view.factor = (self.view.factor * by).clamp(0.5, 12.0);
-            // What is under the pointer stays there.
-            let now = self.view.map(bounds, screen).floor(pointer);
-            self.view.pan += under - now;
+            self.view.about(pointer, by, bounds, screen);
         }
     }
 
     /// The whole floor again.
     pub(super) fn fit(&mut self) {
-        self.view = Zoom::default();
+        self.view = crate::preview::zoom::Zoom::default();
     }
 
     /// Follows the pointer; what would come of it if it let go now.
-    fn gestures(&mut self, ui: &Ui, canvas: &egui::Response, map: ScreenFromFloor) -> Trial {
+    fn gestures(
+        &mut self,
+        ui: &Ui,
+        canvas: &egui::Response,
+        map: ScreenFromFloor,
+        screen: egui::Rect,
+    ) -> Trial {
         let (pointer, pressed, released, middle, space, shift, alt, delta) = ui.input(|i| {
             (
                 i.pointer.interact_pos().or(i.pointer.hover_pos()),
@@ -129,7 +118,7 @@ impl Designer {
         let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
         let at = map.floor(pointer);
         if middle && inside || matches!(self.gesture, Gesture::Panning) {
-            self.view.pan -= map.floor_vector(delta);
+            self.view.pan(delta, screen);
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
         if let Some(thing) = self.placing.clone() {
@@ -160,7 +149,7 @@ impl Designer {
             self.hover(ui, pointer, map);
         }
         if released {
-            self.end_gesture(&trial, shift);
+            self.end_gesture(&trial, shift, map);
         }
         trial
     }
@@ -174,19 +163,25 @@ impl Designer {
             self.gesture = Gesture::Moving { from: at, edges };
             return;
         }
-        match self.document.item_at(&self.items, self.page, at) {
+        match self.touched(at) {
             // A region is behind everything: a drag across it selects, a click takes it.
             Some(record) if record.list() == Some(List::Regions) && !self.selected.contains(&record) => {
                 self.gesture = Gesture::Lasso { from: at };
             }
             Some(record) if shift => self.toggle(record),
             Some(record) => self.gesture = Gesture::Pressed { at: pointer, record },
+            // What is locked is chosen in the list.
             None => self.gesture = Gesture::Lasso { from: at },
         }
     }
 
-    fn end_gesture(&mut self, trial: &Trial, shift: bool) {
+    fn end_gesture(&mut self, trial: &Trial, shift: bool, map: ScreenFromFloor) {
         match std::mem::take(&mut self.gesture) {
+            // A second click on a group takes what is in it.
+            Gesture::Pressed { record, at } if self.selected == [record.clone()] => {
+                let inner = self.document.item_at(&self.items, self.page, map.floor(at));
+                self.select_only(inner.filter(|inner| inner.is_within(&record)).unwrap_or(record));
+            }
             Gesture::Pressed { record, .. } => self.select_only(record),
             Gesture::Moving { .. } if !trial.areas.is_empty() => {
                 let areas = trial.areas.clone();
@@ -198,7 +193,7 @@ impl Designer {
                     self.selected.clear();
                 }
                 if area.size().max_element() < 0.01 {
-                    let record = self.document.item_at(&self.items, self.page, from);
+                    let record = self.touched(from);
                     self.selected.extend(record);
                     return;
                 }
@@ -208,8 +203,10 @@ impl Designer {
                         && !item.is_group
                         && item.is_on(page)
                         && item.area.overlaps(area)
+                        && !self.is_locked(&item.record)
+                        && !self.is_hidden(&item.record)
                 });
-                let found: Vec<Address> = inside.map(|item| item.record.clone()).collect();
+                let found: Vec<Address> = inside.map(|item| group_of(&item.record)).collect();
                 for record in found {
                     if !self.selected.contains(&record) {
                         self.selected.push(record);
@@ -217,6 +214,86 @@ impl Designer {
                 }
             }
             _ => {}
+        }
+    }
+
+    /// What is taken hold of at `point`: a group as a whole, unless something in it is selected. What is locked or
+    /// hidden is let be.
+    fn touched(&self, point: Vec2) -> Option<Address> {
+        let free = |item: &&Item| !self.is_locked(&item.record) && !self.is_hidden(&item.record);
+        let free: Vec<Item> = self.items.iter().filter(free).cloned().collect();
+        let record = self.document.item_at(&free, self.page, point)?;
+        let group = group_of(&record);
+        let is_entered = self.selected.iter().any(|one| *one != group && one.is_within(&group));
+        Some(if is_entered { record } else { group })
+    }
+
+    /// `layout` without what is hidden.
+    fn without_hidden<'l>(&self, layout: &'l Layout) -> Cow<'l, Layout> {
+        if self.hidden.is_empty() {
+            return Cow::Borrowed(layout);
+        }
+        let hidden: Vec<&Item> = self.items.iter().filter(|item| self.is_hidden(&item.record)).collect();
+        let is_left = |list: List, index: usize| {
+            !hidden.iter().any(|item| match list {
+                List::Widgets => item.widgets.contains(&index),
+                _ => item.record == Address::of(list, index),
+            })
+        };
+        let mut layout = layout.clone();
+        keep(&mut layout.widgets, |index| is_left(List::Widgets, index));
+        keep(&mut layout.stances, |index| is_left(List::Stances, index));
+        let grounds: Vec<bool> = self
+            .items
+            .iter()
+            .filter(|item| item.record.list() == Some(List::Grounds))
+            .map(|item| !self.is_hidden(&item.record))
+            .collect();
+        keep(&mut layout.grounds, |index| grounds.get(index).copied().unwrap_or(true));
+        Cow::Owned(layout)
+    }
+
+    /// Two shoes on each place to stand, and one under the pointer, where they are asked for.
+    fn shoes(&self, pointer: Option<Vec2>) -> Vec<Shoe> {
+        /// A sole that 95 of 100 people can stand on.
+        const LENGTH_M: f32 = 0.30;
+        /// From the middle of one sole to that of the other.
+        const APART_M: f32 = 0.20;
+        if !self.seen_to_scale.shoes {
+            return Vec::new();
+        }
+        let shoe = |position: Vec2, left: bool| Shoe {
+            position,
+            heading_rad: 0.0,
+            length_m: LENGTH_M,
+            force: Newtons(0.0),
+            roll: 0.5,
+            left,
+        };
+        let stances = self.layout().stances.iter().map(|stance| stance.area.centre());
+        let pairs = stances.flat_map(|at| {
+            let half = Vec2::new(0.5 * APART_M, 0.0);
+            [shoe(at - half, true), shoe(at + half, false)]
+        });
+        pairs.chain(pointer.map(|at| shoe(at, false))).collect()
+    }
+
+    /// How far feet reach from each place to stand, without a step and with one, where that is asked for.
+    fn reach(&self, painter: &egui::Painter, map: ScreenFromFloor, theme: &Theme) {
+        if !self.seen_to_scale.reach {
+            return;
+        }
+        let colour = color(theme.accent).gamma_multiply(0.8);
+        for stance in &self.layout().stances {
+            for (far, text) in [(REACH_M, "reach"), (STEP_AWAY_M, "one step")] {
+                let line: Vec<Pos2> =
+                    rounded(footing(stance), far).into_iter().map(|at| map.point(at)).collect();
+                let north = line.iter().copied().min_by(|a, b| a.y.total_cmp(&b.y));
+                painter.extend(egui::Shape::dashed_line(&line, Stroke::new(1.5, colour), 7.0, 5.0));
+                if let Some(at) = north {
+                    label(painter, at + vec2(-24.0, -8.0), &format!("{text}, {far:.1} m"), colour, theme);
+                }
+            }
         }
     }
 
@@ -230,7 +307,7 @@ impl Designer {
     /// Which edges a handle of the selected thing under the pointer drags.
     fn handle_under(&self, pointer: Pos2, map: ScreenFromFloor) -> Option<Edges> {
         let [item] = self.selected_items()[..] else { return None };
-        if !can_be_sized(item) {
+        if !can_be_sized(item) || self.is_locked(&item.record) {
             return None;
         }
         let near = handles(map.rect(item.area)).into_iter().find(|(at, _)| at.distance(pointer) <= NEAR);
@@ -320,7 +397,8 @@ impl Designer {
         let accent = color(theme.accent);
         for finding in &self.findings {
             let Some(widget) = self.layout().widgets.get(finding.widget) else { continue };
-            if widget.page.is_some_and(|page| page != self.page) || trial.layout.is_some() {
+            let is_hidden = || self.document.found_in(finding).is_none_or(|record| self.is_hidden(&record));
+            if widget.page.is_some_and(|page| page != self.page) || trial.layout.is_some() || is_hidden() {
                 continue;
             }
             let colour = color(match finding.severity {
@@ -388,7 +466,8 @@ impl Designer {
 
     /// Tells screen readers and tests what is where.
     fn names(&self, ui: &Ui, map: ScreenFromFloor) {
-        for item in self.items.iter().filter(|item| item.is_on(self.page) && !item.is_group) {
+        let is_seen = |item: &&Item| item.is_on(self.page) && !item.is_group && !self.is_hidden(&item.record);
+        for item in self.items.iter().filter(is_seen) {
             let id = ui.scope_id().with(("record", item.record.to_string()));
             let node = ui.interact(map.rect(item.area), id, Sense::hover());
             let is_selected = self.selected.contains(&item.record);
@@ -415,6 +494,40 @@ struct Trial {
     areas: Vec<Rect>,
     guides: Vec<Guide>,
     lasso: Option<Rect>,
+}
+
+/// The outermost group that it is in; itself where it is in none.
+fn group_of(record: &Address) -> Address {
+    let mut outermost = record.clone();
+    while let Some((parent, ..)) =
+        outermost.split().filter(|(parent, ..)| parent.list() == Some(List::Widgets))
+    {
+        outermost = parent;
+    }
+    outermost
+}
+
+/// Leaves out those for which `is_left` says no.
+fn keep<T>(all: &mut Vec<T>, is_left: impl Fn(usize) -> bool) {
+    let mut index = 0;
+    all.retain(|_| {
+        index += 1;
+        is_left(index - 1)
+    });
+}
+
+/// A closed line that keeps `far` from `area`.
+fn rounded(area: Rect, far: f32) -> Vec<Vec2> {
+    let corners = [area.max, Vec2::new(area.min.x, area.max.y), area.min, Vec2::new(area.max.x, area.min.y)];
+    let arc = |(quarter, corner): (usize, Vec2)| {
+        (0..=16_u8).map(move |part| {
+            let turn = quarter as f32 + f32::from(part) / 16.0;
+            corner + far * Vec2::from_angle(turn * std::f32::consts::FRAC_PI_2)
+        })
+    };
+    let mut line: Vec<Vec2> = corners.into_iter().enumerate().flat_map(arc).collect();
+    line.extend(line.first().copied());
+    line
 }
 
 fn can_be_sized(item: &Item) -> bool {

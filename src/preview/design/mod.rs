@@ -4,35 +4,32 @@
 
 mod bar;
 mod canvas;
+mod files;
 mod inspector;
+mod keys;
+mod modes;
 mod palette;
+mod shelf;
 #[cfg(test)]
 mod tests;
 mod text;
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
-use super::app::App;
-use super::feed::{PreviewCommand, Warnings};
-use crate::edit::{Address, Document, Edit, Item, LayoutFile, List, Refusal, Saving};
+use super::feed::PreviewCommand;
+use super::zoom::Zoom;
+use crate::edit::{Address, Document, Edit, Item, LayoutFile, List, Refusal};
 use crate::ergonomics::Finding;
 use crate::floor::{Floor, Rect};
 use crate::layout::Layout;
 use crate::scene::Scene;
-use crate::schema::{self, Kinds};
+use crate::schema::{Diagnostics, Kinds};
 
-/// How long a draft may be behind, in seconds.
-const DRAFT_S: f64 = 2.0;
-
-/// How often the file is looked at for what other programs write, in seconds.
-const LOOK_S: f64 = 0.5;
-
-/// How far an arrow key moves, in metres; with Shift, and with Alt.
-const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
+pub use shelf::usual_state;
 
 /// What Design mode begins with.
 pub struct DesignInput {
@@ -43,8 +40,13 @@ pub struct DesignInput {
     /// Its file; `None` for a layout that has none, such as a shipped one.
     pub path: Option<PathBuf>,
     /// The kinds that controls can be made of.
-    pub kinds: Arc<Kinds>,
+    pub kinds_of: KindsOf,
+    /// Where drafts of layouts without a file and the list of recent files are kept, as [`usual_state`].
+    pub state: PathBuf,
 }
+
+/// Reads the kinds that the layout in this file can be made of; those of a layout without a file for `None`.
+pub type KindsOf = Box<dyn Fn(Option<&Path>) -> Result<Arc<Kinds>, Diagnostics>>;
 
 /// The layout that is edited, and what is selected and under way.
 pub(super) struct Designer {
@@ -61,7 +63,7 @@ pub(super) struct Designer {
     gesture: canvas::Gesture,
     /// What is put down with the next click.
     placing: Option<palette::Thing>,
-    view: canvas::Zoom,
+    view: Zoom,
     scene: Scene,
     stroke: u64,
     /// What could not be done, or was.
@@ -74,8 +76,40 @@ pub(super) struct Designer {
     /// What another program has written where this one has as well.
     conflict: Option<(String, Vec<String>)>,
     drafted_s: f64,
-    looked_s: f64,
     inspector: inspector::Inspector,
+    kinds_of: KindsOf,
+    state: PathBuf,
+    /// Where the draft is while there is no file.
+    slot: Option<shelf::Slot>,
+    /// The file that the program watches.
+    watched: Option<PathBuf>,
+    /// What can't be taken hold of on the floor, and what is not drawn, by [`Designer::key_of`].
+    locked: BTreeSet<String>,
+    hidden: BTreeSet<String>,
+    seen_to_scale: Scale,
+    /// Which part of the window F6 led to, and the one that is to get the keyboard in this frame.
+    pane: Option<Pane>,
+    focus: Option<Pane>,
+    /// Frames until the file is saved: what is being typed counts first.
+    saves_in: u8,
+    /// What the floor is asked to do.
+    wish: Option<PreviewCommand>,
+}
+
+/// What else is drawn in its true size.
+#[derive(Clone, Copy, Debug, Default)]
+struct Scale {
+    shoes: bool,
+    reach: bool,
+}
+
+/// A part of the window that F6 leads to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Pane {
+    Things,
+    Floor,
+    Fields,
+    Text,
 }
 
 /// A sentence about what was done.
@@ -98,13 +132,21 @@ enum Ask {
 
 impl Designer {
     /// `None` for a layout that can't be read: there is nothing to edit then.
-    pub(super) fn new(input: &DesignInput, floor: &Arc<Floor>) -> Option<Self> {
-        let document = Document::read(&input.name, &input.text, &input.kinds, floor).ok()?;
-        let file = match &input.path {
-            Some(path) => LayoutFile::open(path).map(|(file, _)| file).ok()?,
-            None => LayoutFile::untitled(Path::new(""), &input.text),
+    pub(super) fn new(input: DesignInput, floor: &Arc<Floor>) -> Option<Self> {
+        let DesignInput { name, text, path, kinds_of, state } = input;
+        let kinds = kinds_of(path.as_deref()).ok()?;
+        let (file, text, slot) = match &path {
+            Some(path) => LayoutFile::open(path).map(|(file, text)| (file, text, None)).ok()?,
+            None => {
+                let (file, slot) = files::untitled(&state, &text, true);
+                (file, text, slot)
+            }
         };
+        let document = Document::read(&name, &files::begun(&text, floor), &kinds, floor).ok()?;
         let left_over = file.left_over().ok().flatten();
+        if let Some(path) = &path {
+            shelf::note_recent(&state, path);
+        }
         Some(Self {
             is_open: false,
             document,
@@ -116,7 +158,7 @@ impl Designer {
             page: 0,
             gesture: canvas::Gesture::None,
             placing: None,
-            view: canvas::Zoom::default(),
+            view: Zoom::default(),
             scene: Scene::new(),
             stroke: 0,
             message: None,
@@ -125,8 +167,18 @@ impl Designer {
             left_over,
             conflict: None,
             drafted_s: 0.0,
-            looked_s: 0.0,
             inspector: inspector::Inspector::default(),
+            kinds_of,
+            state,
+            slot,
+            watched: path,
+            locked: BTreeSet::new(),
+            hidden: BTreeSet::new(),
+            seen_to_scale: Scale::default(),
+            pane: None,
+            focus: None,
+            saves_in: 0,
+            wish: None,
         })
     }
 
@@ -195,6 +247,9 @@ impl Designer {
 
     /// Gives what is selected new areas.
     fn move_to(&mut self, areas: &[Rect]) {
+        if self.holds_locked() {
+            return;
+        }
         let items = self.selected_items();
         let moved: Vec<(&Item, Rect)> = items.into_iter().zip(areas.iter().copied()).collect();
         match self.document.placing(&moved) {
@@ -204,6 +259,9 @@ impl Designer {
     }
 
     fn nudge(&mut self, by: Vec2) {
+        if self.holds_locked() {
+            return;
+        }
         let items = self.selected_items();
         let moved: Vec<(&Item, Rect)> =
             items.iter().map(|item| (*item, Rect::new(item.area.min + by, item.area.max + by))).collect();
@@ -216,6 +274,9 @@ impl Designer {
     }
 
     fn delete(&mut self) {
+        if self.holds_locked() {
+            return;
+        }
         let edits = self.document.deleting(&self.selected);
         if self.edit(&edits) {
             self.selected.clear();
@@ -223,6 +284,9 @@ impl Designer {
     }
 
     fn turn(&mut self) {
+        if self.holds_locked() {
+            return;
+        }
         let edits = self.document.turning(&self.selected_items());
         match edits {
             Ok(edits) => drop(self.edit(&edits)),
@@ -287,229 +351,99 @@ impl Designer {
         }
     }
 
-    fn save(&mut self) {
-        let Some(path) = self.file.path().map(Path::to_path_buf) else {
-            self.asking = Some(Asking { to: Ask::SaveAs, path: self.file.name() });
-            return;
-        };
-        let text = self.document.file_text();
-        match self.file.save(&text) {
-            Ok(Saving::Saved) => self.say(format!("Saved in {}", path.display())),
-            Ok(other) => {
-                if self.take_in(other) {
-                    self.save();
+    /// What a record is remembered by while others come and go: its id, or its place in the text.
+    fn key_of(&self, record: &Address) -> String {
+        self.document.id_of(record).map_or_else(|| record.to_string(), str::to_owned)
+    }
+
+    /// Whether it, or the group it is in, is one of `keys`.
+    fn is_in(&self, keys: &BTreeSet<String>, record: &Address) -> bool {
+        if keys.is_empty() {
+            return false;
+        }
+        let mut next = Some(record.clone());
+        while let Some(record) = next {
+            if record.split().is_some() && keys.contains(&self.key_of(&record)) {
+                return true;
+            }
+            next = record.split().map(|(parent, ..)| parent);
+        }
+        false
+    }
+
+    fn is_locked(&self, record: &Address) -> bool {
+        self.is_in(&self.locked, record)
+    }
+
+    fn is_hidden(&self, record: &Address) -> bool {
+        self.is_in(&self.hidden, record)
+    }
+
+    fn turn_lock(&mut self, records: &[Address]) {
+        let keys: Vec<String> = records.iter().map(|record| self.key_of(record)).collect();
+        turn(&mut self.locked, keys);
+    }
+
+    fn turn_hidden(&mut self, records: &[Address]) {
+        let keys: Vec<String> = records.iter().map(|record| self.key_of(record)).collect();
+        turn(&mut self.hidden, keys);
+    }
+
+    /// Whether something that is selected is locked, which is said then.
+    fn holds_locked(&mut self) -> bool {
+        let locked = self.selected.iter().find(|record| self.is_locked(record)).cloned();
+        if let Some(record) = &locked {
+            self.complain(format!("{} is locked; Ctrl+L unlocks it", self.key_of(record)));
+        }
+        locked.is_some()
+    }
+
+    fn group(&mut self) {
+        match self.document.grouping(&self.selected_items()) {
+            Ok((edits, at)) => {
+                if self.edit(&edits) {
+                    self.selected = vec![at];
                 }
             }
-            Err(error) => self.complain(error.to_string()),
+            Err(refusal) => self.complain(refusal.short()),
         }
     }
 
-    /// Takes in what another program has written; whether that was merged.
-    fn take_in(&mut self, saving: Saving) -> bool {
-        match saving {
-            Saving::Saved => false,
-            Saving::Merged(text) => match self.document.write(&text, None) {
-                Ok(()) => {
-                    self.say(format!("{} was changed outside: both changes are here", self.file.name()));
-                    true
+    fn ungroup(&mut self) {
+        let group = self.selected_items().first().copied().cloned();
+        match group.map(|group| self.document.ungrouping(&self.items, &group)) {
+            Some(Ok((edits, places))) => {
+                if self.edit(&edits) {
+                    self.selected = places;
                 }
-                Err(_) => {
-                    let theirs = self.file.outside().ok().flatten().unwrap_or(text);
-                    self.conflict = Some((theirs, Vec::new()));
-                    false
-                }
-            },
-            Saving::Conflict { theirs, records } => {
-                self.conflict = Some((theirs, records));
-                false
             }
+            Some(Err(refusal)) => self.complain(refusal.short()),
+            None => {}
         }
     }
 
-    /// Looks after the draft and the file.
-    fn keep(&mut self, now_s: f64) {
-        if now_s - self.looked_s >= LOOK_S && self.conflict.is_none() {
-            self.looked_s = now_s;
-            if let Ok(Some(theirs)) = self.file.outside() {
-                let mine = self.document.file_text();
-                let saving = self.file.take_in(&mine, theirs);
-                self.take_in(saving);
-            }
-        }
-        if now_s - self.drafted_s >= DRAFT_S && self.left_over.is_none() {
-            self.drafted_s = now_s;
-            let text = self.document.file_text();
-            if let Err(error) = self.file.keep_draft(&text) {
-                self.complain(format!("no draft is kept: {error}"));
-            }
+    /// Puts what is selected behind (`first`) or in front of all else in its list: what comes later is drawn on top.
+    fn reorder(&mut self, first: bool) {
+        let [record] = &self.selected[..] else { return };
+        let Some((parent, list, _)) = record.split() else { return };
+        let count = self.document.count(&parent, list);
+        let to = if first { 0 } else { count.saturating_sub(1) };
+        if self.edit(&[Edit::Reorder { record: record.clone(), to }]) {
+            self.selected = vec![parent.entry(list, to)];
         }
     }
 
-    /// Begins with another text: a template, a file.
-    fn begin(&mut self, name: &str, text: &str, file: LayoutFile) {
-        let (kinds, floor) = (Arc::clone(self.document.kinds()), Arc::clone(self.document.floor()));
-        match Document::read(name, text, &kinds, &floor) {
-            Ok(document) => {
-                let revision = self.document.revision() + 1;
-                self.document = document;
-                self.document.begin_at(revision);
-                self.left_over = file.left_over().ok().flatten();
-                (self.file, self.seen, self.conflict, self.message) = (file, None, None, None);
-                self.selected.clear();
-            }
-            Err(problems) => self.complain(problems.to_string()),
-        }
-    }
-
-    fn keys(&mut self, ui: &Ui) {
-        // What is typed into a field is meant for that.
-        if ui.ctx().text_edit_focused() {
-            return;
-        }
-        let command = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, key));
-        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)) || command(Key::Y) {
-            self.redo();
-        }
-        if command(Key::Z) {
-            self.undo();
-        }
-        if command(Key::S) {
-            self.save();
-        }
-        if command(Key::D) {
-            self.duplicate();
-        }
-        if command(Key::A) {
-            let page = self.page;
-            let all = self
-                .items
-                .iter()
-                .filter(|item| item.record.list() == Some(List::Widgets) && item.is_on(page));
-            self.selected = all.map(|item| item.record.clone()).collect();
-        }
-        let pressed = |key: Key| ui.input(|i| i.key_pressed(key) && !i.modifiers.command);
-        if pressed(Key::Delete) || pressed(Key::Backspace) {
-            self.delete();
-        }
-        if pressed(Key::R) {
-            self.turn();
-        }
-        if pressed(Key::Escape) {
-            self.placing = None;
-            self.gesture = canvas::Gesture::None;
-            self.selected.clear();
-        }
-        let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {
-            (true, _) => NUDGE_M[1],
-            (_, true) => NUDGE_M[2],
-            _ => NUDGE_M[0],
-        });
-        // A focused list or field moves by arrows itself.
-        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
-        for (key, way) in [
-            (Key::ArrowLeft, Vec2::NEG_X),
-            (Key::ArrowRight, Vec2::X),
-            (Key::ArrowDown, Vec2::NEG_Y),
-            (Key::ArrowUp, Vec2::Y),
-        ] {
-            if (is_free || ui.input(|i| i.modifiers.command)) && ui.input(|i| i.key_pressed(key)) {
-                if !ui.input(|i| {
-                    i.events.iter().any(|event| matches!(event, egui::Event::Key { repeat: true, .. }))
-                }) {
-                    self.stroke += 1;
-                }
-                self.nudge(way * step);
-            }
-        }
-        for event in ui.input(|i| i.events.clone()) {
-            match event {
-                egui::Event::Copy => ui.ctx().copy_text(self.document.copy(&self.selected)),
-                egui::Event::Cut => {
-                    ui.ctx().copy_text(self.document.copy(&self.selected));
-                    self.delete();
-                }
-                egui::Event::Paste(text) => self.paste(&text),
-                _ => {}
-            }
-        }
+    /// Whether this part of the window is to get the keyboard now.
+    fn leads_to(&mut self, pane: Pane) -> bool {
+        self.focus.take_if(|wanted| *wanted == pane).is_some()
     }
 }
 
-impl App {
-    /// Changes between Design and Try; what was designed is on the floor then.
-    pub(super) fn turn_mode(&mut self) {
-        let Some(designer) = &mut self.designer else { return };
-        designer.is_open = !designer.is_open;
-        if designer.is_open {
-            // Nobody stands on a drawing board.
-            if let Some((feet, sink)) = &mut self.feet {
-                feet.lift_working();
-                feet.lift_standing();
-                sink.lead(0.0, &[]);
-            }
-        } else {
-            self.try_layout();
-        }
-    }
-
-    /// F2 changes the mode.
-    pub(super) fn handle_mode_key(&mut self, ui: &Ui) {
-        if ui.input(|i| i.key_pressed(Key::F2)) {
-            self.turn_mode();
-        }
-    }
-
-    /// The button that does the same.
-    pub(super) fn mode_button(&mut self, ui: &mut Ui) {
-        let Some(designer) = &self.designer else { return };
-        let button = egui::Button::selectable(designer.is_open, "Design").frame_when_inactive(true);
-        if ui.add(button).on_hover_text("Design the layout, or try it with feet; F2 does the same").clicked()
-        {
-            self.turn_mode();
-        }
-    }
-
-    /// Goes along when another layout is put on the floor by name.
-    pub(super) fn design_choice(&mut self, choice: usize) {
-        let (Some(designer), Some(name)) = (&mut self.designer, self.choices.get(choice)) else { return };
-        match (schema::builtin_layout(name), LayoutFile::open(Path::new(name))) {
-            (_, Ok((file, text))) => designer.begin(name, &text, file),
-            (Some(text), _) => designer.begin(name, text, LayoutFile::untitled(Path::new(""), text)),
-            (None, Err(error)) => designer.complain(error.to_string()),
-        }
-    }
-
-    /// Gives the floor the layout that is on the screen.
-    fn try_layout(&mut self) {
-        let Some(designer) = &self.designer else { return };
-        let layout = Arc::new(designer.layout().clone());
-        let name = designer.file.name();
-        let warnings = Warnings::from(&designer.document.review());
-        self.command(PreviewCommand::Try { layout, name, warnings });
-    }
-
-    /// The window in Design mode.
-    pub(super) fn design(&mut self, ui: &mut Ui) {
-        let now_s = self.now_s;
-        let Some(mut designer) = self.designer.take() else { return };
-        designer.refresh();
-        let before = designer.document.revision();
-        let theme = self.theme;
-        designer.keys(ui);
-        designer.bar(ui, &theme, &self.choices);
-        designer.questions(ui, &theme);
-        designer.palette_panel(ui, &theme, &mut self.palette);
-        designer.side_panel(ui, &theme);
-        designer.text_panel(ui, &theme);
-        let frame = egui::Frame::new();
-        egui::CentralPanel::default().frame(frame).show(ui, |ui| {
-            designer.canvas(ui, &theme, &mut self.palette);
-        });
-        designer.keep(now_s);
-        let is_changed = designer.document.revision() != before;
-        self.designer = Some(designer);
-        if is_changed {
-            self.try_layout();
-        }
+/// Puts `keys` in, or takes them out if all of them are in.
+fn turn(set: &mut BTreeSet<String>, keys: Vec<String>) {
+    if keys.iter().all(|key| set.contains(key)) {
+        set.retain(|key| !keys.contains(key));
+    } else {
+        set.extend(keys);
     }
 }

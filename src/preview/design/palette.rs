@@ -6,7 +6,7 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Key, Margin, Panel, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use glam::Vec2;
 
-use super::Designer;
+use super::{Designer, Pane};
 use crate::edit::{Address, Edit, List};
 use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
 use crate::engine::Snapshot;
@@ -69,14 +69,15 @@ impl Designer {
                 ui.set_width(ui.available_width() - 8.0);
                 section(ui, theme, "Put down", |_| {});
                 let kinds: Vec<String> = self.document.kinds().iter().map(|kind| kind.name.clone()).collect();
+                let mut is_led = self.leads_to(Pane::Things);
                 for kind in kinds {
-                    self.thing(ui, theme, palette, Thing::Control(kind));
+                    self.thing(ui, theme, palette, Thing::Control(kind), std::mem::take(&mut is_led));
                 }
                 for thing in [Thing::Region, Thing::Stance] {
-                    self.thing(ui, theme, palette, thing);
+                    self.thing(ui, theme, palette, thing, false);
                 }
                 for name in ["Ice", "Snow", "Gravel", "Sand", "Wood"] {
-                    self.thing(ui, theme, palette, Thing::Ground(name));
+                    self.thing(ui, theme, palette, Thing::Ground(name), false);
                 }
                 if ui.button("Add a page").clicked() {
                     self.add_page();
@@ -86,9 +87,15 @@ impl Designer {
         });
     }
 
-    fn thing(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette, thing: Thing) {
+    fn thing(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette, thing: Thing, is_led: bool) {
         let size = vec2(ui.available_width(), PICTURE + 6.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
+        if is_led {
+            response.request_focus();
+        }
+        if response.gained_focus() {
+            response.scroll_to_me(None);
+        }
         let name = thing.name();
         response.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Put down: {name}")));
         if ui.is_rect_visible(rect) {
@@ -259,6 +266,8 @@ impl Designer {
             }
         }
         let mut chosen = None;
+        let (mut locks, mut hides) = (None, None);
+        let mut is_led = self.leads_to(Pane::Floor);
         for item in self.items.iter().filter(|item| item.is_on(self.page)) {
             let what = match item.record.list() {
                 Some(List::Regions) => "Region",
@@ -269,9 +278,44 @@ impl Designer {
             };
             let is_selected = self.selected.contains(&item.record);
             let name = if item.name.is_empty() { item.record.to_string() } else { item.name.clone() };
-            if ui.selectable_label(is_selected, format!("{what} {name}")).clicked() {
-                chosen = Some(item.record.clone());
-            }
+            let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(List::Widgets));
+            let (is_locked, is_hidden) = (self.is_locked(&item.record), self.is_hidden(&item.record));
+            ui.horizontal(|ui| {
+                let (lock, eye) = (if is_locked { "🔒" } else { "🔓" }, if is_hidden { "🚫" } else { "👁" });
+                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
+                    ui.spacing_mut().item_spacing.x = 2.0;
+                    for (sign, does, is_on, wish) in
+                        [(eye, "Hide", is_hidden, &mut hides), (lock, "Lock", is_locked, &mut locks)]
+                    {
+                        let colour = if is_on { theme.ink } else { theme.quiet.mix(theme.plate, 0.4) };
+                        let text = egui::RichText::new(sign).size(11.0).color(color(colour));
+                        let button = ui.add(egui::Button::new(text).frame(false));
+                        button.widget_info(|| {
+                            WidgetInfo::selected(Role::Button, true, is_on, format!("{does}: {name}"))
+                        });
+                        if button.on_hover_text(does).clicked() {
+                            *wish = Some(item.record.clone());
+                        }
+                    }
+                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
+                        ui.add_space(if is_inner { 12.0 } else { 0.0 });
+                        let row = egui::Button::selectable(is_selected, format!("{what} {name}")).truncate();
+                        let row = ui.add(row);
+                        if std::mem::take(&mut is_led) {
+                            row.request_focus();
+                        }
+                        if row.clicked() {
+                            chosen = Some(item.record.clone());
+                        }
+                    });
+                });
+            });
+        }
+        if let Some(record) = locks {
+            self.turn_lock(&[record]);
+        }
+        if let Some(record) = hides {
+            self.turn_hidden(&[record]);
         }
         if let Some(record) = chosen {
             if ui.input(|i| i.modifiers.shift) { self.toggle(record) } else { self.select_only(record) }

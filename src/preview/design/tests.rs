@@ -1,29 +1,38 @@
 //! Design mode without a display: found by name, worked by mouse and keyboard, judged by the text that comes of it.
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
+use tempfile::TempDir;
 
 use super::*;
 use crate::engine::Snapshot;
-use crate::preview::{PreviewInput, PreviewOptions, Warnings};
+use crate::preview::app::App;
+use crate::preview::{LayoutNews, PreviewInput, PreviewOptions, Warnings};
 use crate::schema::{builtin_layout, parse_layout};
 
 struct Desk {
     window: Harness<'static, App>,
     commands: Receiver<PreviewCommand>,
+    news: Sender<LayoutNews>,
+    state: TempDir,
 }
 
 impl Desk {
     fn on(text: &str, path: Option<PathBuf>) -> Self {
+        Self::with(text, path, tempfile::tempdir().unwrap())
+    }
+
+    fn with(text: &str, path: Option<PathBuf>, state: TempDir) -> Self {
         let floor = Arc::new(Floor::default());
         let kinds = Arc::new(Kinds::builtin());
         let layout = Arc::new(parse_layout(text, "it", &kinds, &floor.geometry).unwrap().layout);
         let (_, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
         let (sender, commands) = channel();
+        let (news, layouts) = channel();
         let input = PreviewInput {
             floor,
             layout,
@@ -31,14 +40,20 @@ impl Desk {
             source: "simulated floor".into(),
             snapshots,
             events: channel().1,
-            layouts: channel().1,
+            layouts,
             notices: channel().1,
             scopes: None,
             feet: None,
             shoes: None,
             choices: vec!["map".into()],
             effects: Vec::new(),
-            design: Some(DesignInput { name: "it.ron".into(), text: text.into(), path, kinds }),
+            design: Some(DesignInput {
+                name: "it.ron".into(),
+                text: text.into(),
+                path,
+                kinds_of: Box::new(move |_| Ok(Arc::clone(&kinds))),
+                state: state.path().into(),
+            }),
             commands: sender,
         };
         let app = App::new(input, &PreviewOptions::default());
@@ -46,7 +61,7 @@ impl Desk {
             .with_size(vec2(1400.0, 860.0))
             .with_step_dt(1.0 / 60.0)
             .build_ui_state(|ui, app: &mut App| app.show(ui), app);
-        let mut desk = Self { window, commands };
+        let mut desk = Self { window, commands, news, state };
         desk.key(Key::F2);
         desk
     }
@@ -225,7 +240,8 @@ fn a_draft_is_offered_and_a_change_outside_is_merged() {
     desk.click("Recover the draft");
     assert!(desk.text().contains("\"Start\""));
     std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
-    desk.window.run_steps(60);
+    desk.news.send(LayoutNews::Changed).unwrap();
+    desk.window.run_steps(2);
     assert!(desk.text().contains("\"Start\"") && desk.text().contains("\"Scale\""));
     desk.command(Modifiers::COMMAND, Key::S);
     assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());

@@ -8,7 +8,7 @@ use eframe::egui::text::CCursor;
 use eframe::egui::text_selection::CCursorRange;
 use eframe::egui::{Margin, Panel, ScrollArea, TextEdit, Ui, WidgetInfo};
 
-use super::Designer;
+use super::{Designer, Pane};
 use crate::edit::Address;
 use crate::egui_painter::color;
 use crate::preview::style::{panel_frame, quiet};
@@ -65,6 +65,9 @@ impl Designer {
         let edit = TextEdit::multiline(&mut self.text.text).id(id).code_editor().desired_width(f32::INFINITY);
         let shown = edit.frame(egui::Frame::new()).show(ui);
         let response = &shown.response.response;
+        if self.leads_to(Pane::Text) {
+            response.request_focus();
+        }
         response.widget_info(|| WidgetInfo::labeled(Role::MultilineTextInput, true, "Text of the layout"));
         if response.changed() {
             let text = self.text.text.clone();

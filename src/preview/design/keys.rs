@@ -1,0 +1,144 @@
+//! What keys do in Design mode.
+
+use eframe::egui::{self, Key, Modifiers, Ui};
+use glam::Vec2;
+
+use super::{Ask, Designer, Pane, canvas};
+use crate::edit::{List, Template};
+
+/// How far an arrow key moves, in metres; with Shift, and with Alt.
+const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
+
+impl Designer {
+    /// The keys that count also while something is typed.
+    pub(super) fn keys_anywhere(&mut self, ui: &Ui) {
+        let back = ui.input_mut(|i| i.consume_key(Modifiers::SHIFT, Key::F6));
+        if back || ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::F6)) {
+            let mut panes = vec![Pane::Things, Pane::Floor, Pane::Fields];
+            panes.extend(self.text.is_open.then_some(Pane::Text));
+            let at = self.pane.and_then(|pane| panes.iter().position(|other| *other == pane));
+            let next = match (at, back) {
+                (None, false) => 0,
+                (None, true) => panes.len() - 1,
+                (Some(at), false) => (at + 1) % panes.len(),
+                (Some(at), true) => (at + panes.len() - 1) % panes.len(),
+            };
+            self.pane = panes.get(next).copied();
+            self.focus = self.pane;
+        }
+        let is_typing = ui.ctx().text_edit_focused();
+        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)) {
+            self.ask_for(Ask::SaveAs);
+        }
+        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, Key::S)) {
+            if let Some(id) = ui.memory(|memory| memory.focused()).filter(|_| is_typing && !self.text.is_open)
+            {
+                ui.memory_mut(|memory| memory.surrender_focus(id));
+            }
+            self.saves_in = if is_typing { 3 } else { 1 };
+        }
+        if self.saves_in > 0 {
+            self.saves_in -= 1;
+            if self.saves_in == 0 { self.save() } else { ui.ctx().request_repaint() }
+        }
+    }
+
+    /// All of them.
+    pub(super) fn keys(&mut self, ui: &Ui) {
+        self.keys_anywhere(ui);
+        // What is typed into a field is meant for that.
+        if ui.ctx().text_edit_focused() {
+            return;
+        }
+        let command = |key: Key| ui.input_mut(|i| i.consume_key(Modifiers::COMMAND, key));
+        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::Z)) || command(Key::Y) {
+            self.redo();
+        }
+        if command(Key::Z) {
+            self.undo();
+        }
+        if command(Key::O) {
+            self.ask_for(Ask::Open);
+        }
+        if command(Key::N) {
+            let text = Template::Empty.text(&self.document.floor().geometry);
+            self.begin_untitled("untitled.ron", &text);
+        }
+        if command(Key::D) {
+            self.duplicate();
+        }
+        if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::G)) {
+            self.ungroup();
+        }
+        if command(Key::G) {
+            self.group();
+        }
+        let selected = self.selected.clone();
+        if command(Key::L) {
+            self.turn_lock(&selected);
+        }
+        if command(Key::H) {
+            self.turn_hidden(&selected);
+        }
+        if command(Key::OpenBracket) {
+            self.reorder(true);
+        }
+        if command(Key::CloseBracket) {
+            self.reorder(false);
+        }
+        if command(Key::A) {
+            let page = self.page;
+            let all = self
+                .items
+                .iter()
+                .filter(|item| item.record.list() == Some(List::Widgets) && item.is_on(page))
+                .filter(|item| !self.is_locked(&item.record) && !self.is_hidden(&item.record));
+            self.selected = all.map(|item| item.record.clone()).collect();
+        }
+        let pressed = |key: Key| ui.input(|i| i.key_pressed(key) && !i.modifiers.command);
+        if pressed(Key::Delete) || pressed(Key::Backspace) {
+            self.delete();
+        }
+        if pressed(Key::R) {
+            self.turn();
+        }
+        if pressed(Key::Escape) {
+            self.placing = None;
+            self.gesture = canvas::Gesture::None;
+            self.selected.clear();
+        }
+        let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {
+            (true, _) => NUDGE_M[1],
+            (_, true) => NUDGE_M[2],
+            _ => NUDGE_M[0],
+        });
+        // A focused list or field moves by arrows itself.
+        let is_free = ui.ctx().memory(|memory| memory.focused().is_none());
+        for (key, way) in [
+            (Key::ArrowLeft, Vec2::NEG_X),
+            (Key::ArrowRight, Vec2::X),
+            (Key::ArrowDown, Vec2::NEG_Y),
+            (Key::ArrowUp, Vec2::Y),
+        ] {
+            if (is_free || ui.input(|i| i.modifiers.command)) && ui.input(|i| i.key_pressed(key)) {
+                if !ui.input(|i| {
+                    i.events.iter().any(|event| matches!(event, egui::Event::Key { repeat: true, .. }))
+                }) {
+                    self.stroke += 1;
+                }
+                self.nudge(way * step);
+            }
+        }
+        for event in ui.input(|i| i.events.clone()) {
+            match event {
+                egui::Event::Copy => ui.ctx().copy_text(self.document.copy(&self.selected)),
+                egui::Event::Cut => {
+                    ui.ctx().copy_text(self.document.copy(&self.selected));
+                    self.delete();
+                }
+                egui::Event::Paste(text) => self.paste(&text),
+                _ => {}
+            }
+        }
+    }
+}

@@ -1,0 +1,104 @@
+//! What outlives a window: drafts of layouts that have no file yet, and which files were open last.
+
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+
+use crate::schema::write_over;
+
+/// Most files in the list.
+const RECENT: usize = 8;
+
+/// Most drafts of layouts without a file that are kept side by side.
+const SLOTS: usize = 32;
+
+/// Where drafts of layouts without a file and the list of recent files are kept: `underfoot` in the folder that the
+/// system names for the state of programs, or in the one for temporary files.
+#[must_use]
+pub fn usual_state() -> PathBuf {
+    let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let folder = if cfg!(target_os = "windows") {
+        of("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        of("HOME").map(|home| home.join("Library/Application Support"))
+    } else {
+        of("XDG_STATE_HOME").or_else(|| Some(of("HOME")?.join(".local/state")))
+    };
+    folder.unwrap_or_else(std::env::temp_dir).join("underfoot")
+}
+
+/// A folder for the draft of one layout without a file; no other window uses it meanwhile.
+#[derive(Debug)]
+pub(super) struct Slot {
+    pub(super) folder: PathBuf,
+    /// Locked; a process that ends lets go of it, however it ends.
+    _lock: File,
+}
+
+/// Folders for drafts that no window uses, each taken when it is asked for.
+pub(super) fn slots(state: &Path) -> impl Iterator<Item = Slot> {
+    (1..=SLOTS).filter_map(move |number| {
+        let folder = state.join(format!("untitled-{number}"));
+        fs::create_dir_all(&folder).ok()?;
+        let lock = File::options().create(true).append(true).open(folder.join("lock")).ok()?;
+        lock.try_lock().ok()?;
+        Some(Slot { folder, _lock: lock })
+    })
+}
+
+fn list(state: &Path) -> PathBuf {
+    state.join("recent")
+}
+
+/// The files that were open last, the latest first; those that are gone are left out.
+pub(super) fn recent(state: &Path) -> Vec<PathBuf> {
+    let text = fs::read_to_string(list(state)).unwrap_or_default();
+    text.lines().take(RECENT).map(PathBuf::from).filter(|path| path.is_file()).collect()
+}
+
+/// Puts a file first in the list. A list that can't be kept is shorter next time, which nobody need be told of.
+pub(super) fn note_recent(state: &Path, path: &Path) {
+    let Ok(path) = fs::canonicalize(path) else { return };
+    let mut all = recent(state);
+    all.retain(|other| *other != path);
+    all.insert(0, path);
+    all.truncate(RECENT);
+    let text: String = all.iter().filter_map(|path| Some(format!("{}\n", path.to_str()?))).collect();
+    if let Err(error) = fs::create_dir_all(state)
+        .map_err(|error| error.to_string())
+        .and_then(|()| write_over(&text, &list(state)).map_err(|error| error.to_string()))
+    {
+        tracing::debug!("the list of recent files is not kept: {error}");
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn two_windows_never_share_a_draft_and_one_that_ended_leaves_its_own() {
+        let state = tempfile::tempdir().unwrap();
+        let first = slots(state.path()).next().unwrap();
+        let second = slots(state.path()).next().unwrap();
+        assert_ne!(first.folder, second.folder);
+        let folder = first.folder.clone();
+        drop(first);
+        assert_eq!(slots(state.path()).next().unwrap().folder, folder);
+    }
+
+    #[test]
+    fn the_latest_file_is_first_and_those_that_are_gone_are_left_out() {
+        let state = tempfile::tempdir().unwrap();
+        let files: Vec<PathBuf> = (0..RECENT + 3).map(|n| state.path().join(format!("{n}.ron"))).collect();
+        for file in &files {
+            fs::write(file, "").unwrap();
+            note_recent(state.path(), file);
+        }
+        note_recent(state.path(), &files[5]);
+        let listed = recent(state.path());
+        assert_eq!(listed.len(), RECENT);
+        assert_eq!(listed[0].file_name(), files[5].file_name());
+        fs::remove_file(&files[5]).unwrap();
+        assert_eq!(recent(state.path()).len(), RECENT - 1);
+    }
+}
