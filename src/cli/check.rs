@@ -25,6 +25,9 @@ pub(crate) struct Args {
     /// Folder of effects to add; without it, an `effects` folder beside each layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     effects: Option<PathBuf>,
+    /// Print each layout as it comes out on standard output: every value of every control, be it written or from its kind.
+    #[arg(long, conflicts_with = "json")]
+    resolved: bool,
     /// Print the diagnostics as one JSON array on standard output.
     #[arg(long)]
     json: bool,
@@ -62,7 +65,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     match bad {
         0 => {
-            if !args.json {
+            if !args.json && !args.resolved {
                 outln!("{} good", count(args.layouts.len()));
             }
             Ok(())
@@ -81,6 +84,9 @@ fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
     let read = files.kinds().and_then(|kinds| schema::load_layout(path, &kinds, &floor.geometry));
     match read {
         Ok(loaded) => {
+            if args.resolved {
+                outln!("{}", schema::write_layout(&loaded.layout));
+            }
             let mut problems = loaded.warnings;
             problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
             problems

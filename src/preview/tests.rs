@@ -100,7 +100,9 @@ impl Room {
                 name: "map".into(),
                 text: builtin_layout("map").unwrap().into(),
                 path: None,
-                kinds: Arc::new(Kinds::builtin()),
+                kinds_of: Box::new(|_| Ok(Arc::new(Kinds::builtin()))),
+                // Where no folder can be.
+                state: "/dev/null/underfoot".into(),
             }),
             commands: sender,
         };

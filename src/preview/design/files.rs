@@ -167,8 +167,8 @@ pub(super) fn untitled(state: &Path, text: &str, left_over: bool) -> (LayoutFile
     let slot = older
         .find(|slot| file(slot).left_over().ok().flatten().is_some())
         .or_else(|| shelf::slots(state).find(|slot| !has_draft(slot)));
-    // Without such a folder the draft is the one for temporary files.
-    let folder = slot.as_ref().map_or_else(std::env::temp_dir, |slot| slot.folder.clone());
+    // Without such a folder keeping a draft fails, and says so.
+    let folder = slot.as_ref().map_or_else(|| state.join("untitled"), |slot| slot.folder.clone());
     (LayoutFile::untitled(&folder, text), slot)
 }
 

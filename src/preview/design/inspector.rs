@@ -43,6 +43,9 @@ const INSPECTOR_PX: f32 = 330.0;
 const NAME_PX: f32 = 96.0;
 const TYPED_PX: f32 = 122.0;
 
+/// Height of a row.
+const ROW_PX: f32 = 24.0;
+
 /// Fields that no record does without.
 const KEPT: [&str; 3] = ["id", "kind", "at"];
 
@@ -99,7 +102,12 @@ impl Designer {
                 |ui| {
                     for property in &part.properties {
                         let is_led = std::mem::take(&mut is_led);
-                        wanted = self.property(ui, theme, &record, property, is_led).or(wanted.take());
+                        // What has the keyboard keeps it, also when a warning comes or goes above.
+                        let id = egui::Id::unique(("field", record.to_string(), &property.name));
+                        let row = ui.scope_builder(egui::UiBuilder::new().scope_id(id), |ui| {
+                            self.property(ui, theme, &record, property, is_led)
+                        });
+                        wanted = row.inner.or(wanted.take());
                     }
                 },
             );
@@ -162,7 +170,7 @@ impl Designer {
                 if property.is_place() { format!("{short} ({})", self.unit_name()) } else { short.into() };
             let name = RichText::new(name).color(color(if is_written { theme.ink } else { theme.quiet }));
             ui.allocate_ui_with_layout(
-                egui::vec2(NAME_PX, 20.0),
+                egui::vec2(NAME_PX, ROW_PX),
                 egui::Layout::left_to_right(egui::Align::Center),
                 |ui| {
                     ui.set_min_width(NAME_PX);
@@ -192,6 +200,9 @@ impl Designer {
                 Origin::Kind(kind) => {
                     let text = quiet(theme, format!("from {kind}")).size(11.5);
                     ui.add(egui::Label::new(text).truncate()).on_hover_text(source);
+                }
+                Origin::Default if !property.value.is_empty() => {
+                    ui.label(quiet(theme, "default").size(11.5));
                 }
                 _ => {}
             }
@@ -297,7 +308,7 @@ impl Designer {
                 .max_decimals(4)
                 .custom_parser(move |text| length(text, unit))
                 .update_while_editing(false);
-            let drag = ui.add_sized([66.0, 20.0], drag);
+            let drag = ui.add_sized([66.0, ROW_PX], drag);
             let name = format!("{} {}", property.name, names[side]);
             drag.widget_info(|| WidgetInfo::labeled(Role::SpinButton, true, &name));
             drag.on_hover_text(format!("{}: in {}, or with cm or m behind it", names[side], self.unit_name()))
@@ -393,9 +404,12 @@ impl Designer {
 
     /// A field that is typed; what was typed, once that is done.
     fn typed(&mut self, ui: &mut Ui, property: &Property, is_text: bool) -> (Option<String>, Response) {
+        // What nobody has written is not there to be edited: it may be words.
+        let is_default = property.origin == Origin::Default;
         let shown = if is_text { property.value.trim_matches('"') } else { &property.value };
+        let (shown, hint) = if is_default { ("", shown) } else { (shown, "") };
         let typed = self.inspector.typed.entry(property.name.clone()).or_insert_with(|| shown.to_owned());
-        let field = ui.add(TextEdit::singleline(typed).desired_width(TYPED_PX));
+        let field = ui.add(TextEdit::singleline(typed).hint_text(hint).desired_width(TYPED_PX));
         field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, &property.name));
         if field.gained_focus()
             && let Some(mut state) = TextEdit::load_state(ui.ctx(), field.id)

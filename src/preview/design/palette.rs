@@ -46,16 +46,18 @@ impl Thing {
         }
     }
 
-    /// How large it is put down, in metres.
+    /// How large it is put down, in metres: full twentieths of a tile.
     pub(super) fn size(&self, geometry: &Geometry) -> Vec2 {
-        match self {
+        let grid = 0.05 * geometry.pitch_m();
+        let size = match self {
             Self::Control(kind) => {
                 let wide = ["slider", "fader", "stepper", "selector", "lean", "pad"];
                 if wide.iter().any(|name| kind.contains(name)) { WIDE_M } else { SMALL_M }
             }
             Self::Region | Self::Ground(_) => Vec2::splat(2.0 * geometry.pitch_m()),
             Self::Stance => Vec2::new(2.0, 1.0) * geometry.pitch_m(),
-        }
+        };
+        (size / grid).round() * grid
     }
 }
 
@@ -65,6 +67,18 @@ impl Designer {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
         let panel = Panel::left("palette").frame(frame).resizable(true);
         panel.default_size(190.0).size_range(150.0..=300.0).show(ui, |ui| {
+            let half = 0.5 * ui.available_height();
+            let below = Panel::bottom("on the floor").frame(egui::Frame::new()).resizable(true);
+            below.default_size(0.36 * ui.available_height()).size_range(90.0..=half.max(91.0)).show(
+                ui,
+                |ui| {
+                    section(ui, theme, "On the floor", |_| {});
+                    ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
+                        ui.set_width(ui.available_width() - 8.0);
+                        self.list(ui, theme);
+                    });
+                },
+            );
             ScrollArea::vertical().auto_shrink(false).show(ui, |ui| {
                 ui.set_width(ui.available_width() - 8.0);
                 section(ui, theme, "Put down", |_| {});
@@ -82,7 +96,6 @@ impl Designer {
                 if ui.button("Add a page").clicked() {
                     self.add_page();
                 }
-                self.list(ui, theme);
             });
         });
     }
@@ -105,7 +118,7 @@ impl Designer {
             if is_chosen {
                 ui.painter().rect_filled(rect, 6, color(theme.accent).gamma_multiply(0.2));
             }
-            let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), vec2(62.0, PICTURE));
+            let picture = egui::Rect::from_min_size(rect.min + vec2(5.0, 3.0), vec2(54.0, PICTURE));
             if let Thing::Control(kind) = &thing {
                 self.picture(ui, theme, palette, kind, picture);
             } else {
@@ -168,12 +181,9 @@ impl Designer {
         let mut drawn = Scene::new();
         scene::draw(&mut drawn, &view);
         let map = ScreenFromFloor::fit(area.grown(0.01), picture);
-        egui_painter::paint(
-            &ui.painter().with_clip_rect(picture.intersect(ui.clip_rect())),
-            palette,
-            &drawn,
-            map,
-        );
+        // Without the floor around it.
+        let clip = map.rect(area.grown(0.004)).intersect(ui.clip_rect());
+        egui_painter::paint(&ui.painter().with_clip_rect(clip), palette, &drawn, map);
     }
 
     /// Puts `thing` with its middle at `at`, in floor metres.
@@ -221,7 +231,7 @@ impl Designer {
         let steps = ((within.size() - size) / step).max(Vec2::ZERO).floor();
         for row in 0..=steps.y as u32 {
             for column in 0..=steps.x as u32 {
-                let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.03);
+                let at = within.min + Vec2::new(column as f32, row as f32) * step + Vec2::splat(0.2 * step);
                 let area = Rect::from_min_size(at.min(within.max - size), size);
                 // Half a shoe of room (rule U102), where there is some.
                 let wide = area.grown(0.06);
@@ -255,7 +265,6 @@ impl Designer {
 
     /// What there is on the shown page, to be selected by name.
     fn list(&mut self, ui: &mut Ui, theme: &Theme) {
-        section(ui, theme, "On the floor", |_| {});
         if self.layout().pages.len() > 1 {
             let names: Vec<String> = self.layout().pages.iter().map(|page| page.id.to_string()).collect();
             for (number, name) in names.iter().enumerate() {
@@ -281,15 +290,13 @@ impl Designer {
             let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(List::Widgets));
             let (is_locked, is_hidden) = (self.is_locked(&item.record), self.is_hidden(&item.record));
             ui.horizontal(|ui| {
-                let (lock, eye) = (if is_locked { "🔒" } else { "🔓" }, if is_hidden { "🚫" } else { "👁" });
                 ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
                     ui.spacing_mut().item_spacing.x = 2.0;
-                    for (sign, does, is_on, wish) in
-                        [(eye, "Hide", is_hidden, &mut hides), (lock, "Lock", is_locked, &mut locks)]
+                    for (sign, is_on, wish) in
+                        [(Sign::Hide, is_hidden, &mut hides), (Sign::Lock, is_locked, &mut locks)]
                     {
-                        let colour = if is_on { theme.ink } else { theme.quiet.mix(theme.plate, 0.4) };
-                        let text = egui::RichText::new(sign).size(11.0).color(color(colour));
-                        let button = ui.add(egui::Button::new(text).frame(false));
+                        let button = sign.button(ui, theme, is_on);
+                        let does = if sign == Sign::Hide { "Hide" } else { "Lock" };
                         button.widget_info(|| {
                             WidgetInfo::selected(Role::Button, true, is_on, format!("{does}: {name}"))
                         });
@@ -303,6 +310,9 @@ impl Designer {
                         let row = ui.add(row);
                         if std::mem::take(&mut is_led) {
                             row.request_focus();
+                        }
+                        if row.gained_focus() {
+                            row.scroll_to_me(None);
                         }
                         if row.clicked() {
                             chosen = Some(item.record.clone());
@@ -323,5 +333,57 @@ impl Designer {
         if self.items.is_empty() {
             ui.label(quiet(theme, "Nothing yet"));
         }
+    }
+}
+
+/// What stands behind a row of the list.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Sign {
+    Hide,
+    Lock,
+}
+
+impl Sign {
+    /// Drawn, for the window's font has neither; faint while it is off.
+    fn button(self, ui: &mut Ui, theme: &Theme, is_on: bool) -> egui::Response {
+        let (rect, response) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
+        let is_touched = response.hovered() || response.has_focus();
+        let ink = if is_on || is_touched { theme.ink } else { theme.quiet.mix(theme.plate, 0.5) };
+        let line = egui::Stroke::new(1.3, color(ink));
+        let (painter, at) = (ui.painter(), rect.center());
+        if response.has_focus() {
+            painter.rect_stroke(
+                rect,
+                4,
+                egui::Stroke::new(2.0, color(theme.accent)),
+                egui::StrokeKind::Inside,
+            );
+        }
+        match self {
+            Self::Hide => {
+                painter.add(egui::epaint::EllipseShape::stroke(at, vec2(6.0, 3.6), line));
+                painter.circle_filled(at, 1.8, color(ink));
+                if is_on {
+                    painter.line_segment([at + vec2(-5.5, 5.5), at + vec2(5.5, -5.5)], line);
+                }
+            }
+            Self::Lock => {
+                let body = egui::Rect::from_min_max(at + vec2(-4.0, -0.5), at + vec2(4.0, 5.5));
+                painter.rect(
+                    body,
+                    1,
+                    color(ink).gamma_multiply(f32::from(u8::from(is_on))),
+                    line,
+                    egui::StrokeKind::Middle,
+                );
+                // An open one has its shackle aside.
+                let aside = if is_on { 0.0 } else { 3.0 };
+                let points =
+                    [(-2.5, -0.5), (-2.5, -4.0), (2.5, -4.0), (2.5, if is_on { -0.5 } else { -2.5 })];
+                let points = points.map(|(x, y)| at + vec2(x + aside, y));
+                painter.add(egui::Shape::line(points.to_vec(), line));
+            }
+        }
+        response
     }
 }

@@ -1,0 +1,98 @@
+"""A window of underfoot on a display of its own, worked by real mouse and key input (Xvfb, xdotool, ImageMagick)."""
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import time
+
+SIZE = (1400, 900)
+
+
+class Window:
+    """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`."""
+
+    def __init__(self, program, arguments, folder=None, shots=None):
+        for needed in ("Xvfb", "xdotool", "import"):
+            if shutil.which(needed) is None:
+                sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
+        self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
+        self.shots = shots
+        self.steps = 0
+        read, write = os.pipe()
+        screen = ["-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"]
+        self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), *screen], pass_fds=[write],
+                                       stderr=subprocess.DEVNULL)
+        os.close(write)
+        number = os.read(read, 16).decode().strip()
+        self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1",
+                        XDG_STATE_HOME=os.path.join(self.folder, "state"),
+                        XDG_DATA_HOME=os.path.join(self.folder, "data"))
+        self.env.pop("WAYLAND_DISPLAY", None)
+        self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
+                                        cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
+                                        stderr=open(os.path.join(self.folder, "messages"), "w"))
+        self.id = self.x("search", "--sync", "--onlyvisible", "--name", "underfoot").split()[-1]
+        self.x("windowsize", "--sync", self.id, *SIZE)
+        self.x("windowmove", self.id, 0, 0)
+        self.x("windowfocus", self.id)
+        time.sleep(2)
+
+    def x(self, *arguments):
+        """One command of xdotool."""
+        done = subprocess.run(["xdotool", *map(str, arguments)], env=self.env, check=True, capture_output=True)
+        return done.stdout.decode()
+
+    def move(self, x, y):
+        self.x("mousemove", x, y)
+        time.sleep(0.06)
+
+    def click(self, x, y, settle=0.25):
+        self.steps += 1
+        self.move(x, y)
+        self.x("mousedown", 1)
+        time.sleep(0.05)
+        self.x("mouseup", 1)
+        time.sleep(settle)
+
+    def drag(self, start, end, seconds=0.5, hold=0.0):
+        self.steps += 1
+        self.move(*start)
+        self.x("mousedown", 1)
+        time.sleep(0.1)
+        for step in range(1, 21):
+            share = step / 20
+            self.x("mousemove", *(round(a + (b - a) * share) for a, b in zip(start, end)))
+            time.sleep(seconds / 20)
+        time.sleep(hold)
+        self.x("mouseup", 1)
+        time.sleep(0.25)
+
+    def key(self, *keys, settle=0.12):
+        for key in keys:
+            self.steps += 1
+            self.x("key", "--clearmodifiers", key)
+            time.sleep(settle)
+
+    def type(self, text):
+        """Types into the field that has the keyboard, in place of what it says."""
+        self.steps += 1
+        self.x("key", "--clearmodifiers", "ctrl+a")
+        self.x("type", "--clearmodifiers", "--delay", 15, text)
+        time.sleep(0.1)
+
+    def shot(self, name):
+        if self.shots:
+            os.makedirs(self.shots, exist_ok=True)
+            subprocess.run(["import", "-window", "root", os.path.join(self.shots, name + ".png")], env=self.env,
+                           check=True)
+
+    def events(self):
+        with open(os.path.join(self.folder, "events")) as events:
+            return events.read()
+
+    def close(self):
+        self.program.terminate()
+        self.program.wait(10)
+        self.server.terminate()
+        self.server.wait(10)
