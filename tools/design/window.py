@@ -12,13 +12,15 @@ SIZE = (1400, 900)
 class Window:
     """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`."""
 
-    def __init__(self, program, arguments, folder=None, shots=None):
+    def __init__(self, program, arguments, folder=None, shots=None, pace=0.15):
         for needed in ("Xvfb", "xdotool", "import"):
             if shutil.which(needed) is None:
                 sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
         self.folder = folder or tempfile.mkdtemp(prefix="underfoot-design-")
         self.shots = shots
         self.steps = 0
+        # What comes sooner than the next frame may count as one: on a busy machine, slower.
+        self.pace = pace
         read, write = os.pipe()
         screen = ["-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"]
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), *screen], pass_fds=[write],
@@ -45,15 +47,15 @@ class Window:
 
     def move(self, x, y):
         self.x("mousemove", x, y)
-        time.sleep(0.06)
+        time.sleep(self.pace)
 
-    def click(self, x, y, settle=0.25):
+    def click(self, x, y, settle=0.0):
         self.steps += 1
         self.move(x, y)
         self.x("mousedown", 1)
-        time.sleep(0.05)
+        time.sleep(self.pace)
         self.x("mouseup", 1)
-        time.sleep(settle)
+        time.sleep(max(self.pace, settle))
 
     def drag(self, start, end, seconds=0.5, hold=0.0):
         self.steps += 1
@@ -68,18 +70,19 @@ class Window:
         self.x("mouseup", 1)
         time.sleep(0.25)
 
-    def key(self, *keys, settle=0.12):
+    def key(self, *keys, settle=0.0):
         for key in keys:
             self.steps += 1
             self.x("key", "--clearmodifiers", key)
-            time.sleep(settle)
+            time.sleep(max(self.pace, settle))
 
     def type(self, text):
         """Types into the field that has the keyboard, in place of what it says."""
         self.steps += 1
         self.x("key", "--clearmodifiers", "ctrl+a")
+        time.sleep(self.pace)
         self.x("type", "--clearmodifiers", "--delay", 15, text)
-        time.sleep(0.1)
+        time.sleep(self.pace)
 
     def shot(self, name):
         if self.shots:

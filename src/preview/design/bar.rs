@@ -14,6 +14,9 @@ use crate::preview::style::{panel_colour, panel_frame, pill, quiet};
 use crate::scene::Theme;
 use crate::schema;
 
+/// What a menu entry does.
+type Action = fn(&mut Designer);
+
 impl Designer {
     /// Files, steps, arrangement, and what is wrong, counted.
     pub(super) fn bar(&mut self, ui: &mut Ui, theme: &Theme, choices: &[String]) {
@@ -128,16 +131,16 @@ impl Designer {
         let count = areas.len();
         ui.add_enabled_ui(count > 0, |ui| {
             ui.menu_button("Arrange", |ui| {
-                let entries: [(bool, &str, &str, fn(&mut Self)); 6] = [
+                let entries: [(bool, &str, &str, Action); 6] = [
                     (count > 0, "Group", "Ctrl+G", Self::group),
                     (is_group, "Ungroup", "Ctrl+Shift+G", Self::ungroup),
                     (count == 1, "To the front", "Ctrl+]", |designer| designer.reorder(false)),
                     (count == 1, "To the back", "Ctrl+[", |designer| designer.reorder(true)),
                     (true, "Lock or unlock", "Ctrl+L", |designer| {
-                        designer.turn_lock(&designer.selected.clone())
+                        designer.turn_lock(&designer.selected.clone());
                     }),
                     (true, "Hide or show", "Ctrl+H", |designer| {
-                        designer.turn_hidden(&designer.selected.clone())
+                        designer.turn_hidden(&designer.selected.clone());
                     }),
                 ];
                 for (is_on, name, keys, action) in entries {

@@ -395,7 +395,7 @@ impl Designer {
     fn marks(&self, ui: &Ui, rect: egui::Rect, map: ScreenFromFloor, theme: &Theme, trial: &Trial) {
         let painter = ui.painter_at(rect);
         let accent = color(theme.accent);
-        for finding in &self.findings {
+        for (number, finding) in self.findings.iter().enumerate() {
             let Some(widget) = self.layout().widgets.get(finding.widget) else { continue };
             let is_hidden = || self.document.found_in(finding).is_none_or(|record| self.is_hidden(&record));
             if widget.page.is_some_and(|page| page != self.page) || trial.layout.is_some() || is_hidden() {
@@ -409,7 +409,10 @@ impl Designer {
             painter.rect_stroke(shown.expand(2.0), 4, Stroke::new(1.5, colour), StrokeKind::Outside);
             let measure = finding.expected.as_str();
             let text = format!("{} {measure}", finding.rule.code);
-            label(&painter, pos2(shown.left(), shown.bottom() + 3.0), &text, colour, theme);
+            // One below the other, where a control has several.
+            let above = self.findings[..number].iter().filter(|other| other.widget == finding.widget).count();
+            let at = pos2(shown.left(), shown.bottom() + 3.0 + 17.0 * above as f32);
+            label(&painter, at, &text, colour, theme);
         }
         let is_moving = !trial.areas.is_empty();
         for item in self.selected_items() {

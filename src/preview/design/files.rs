@@ -58,6 +58,10 @@ impl Designer {
         let kinds = (self.kinds_of)(self.file.path()).map_err(|problems| problems.to_string())?;
         self.document.make_of(&kinds).map_err(|problems| problems.to_string())?;
         let Some(theirs) = self.file.outside().map_err(|error| error.to_string())? else { return Ok(()) };
+        // What can't be read is no change that could be put together with mine.
+        let document = &self.document;
+        Document::read(document.name(), &theirs, document.kinds(), document.floor())
+            .map_err(|problems| problems.to_string())?;
         let (mine, known) = (self.document.file_text(), self.file.known().to_owned());
         match self.file.take_in(&mine, theirs) {
             Saving::Merged(text) => {

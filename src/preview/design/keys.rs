@@ -12,18 +12,17 @@ const NUDGE_M: [f32; 3] = [0.01, 0.05, 0.001];
 impl Designer {
     /// The keys that count also while something is typed.
     pub(super) fn keys_anywhere(&mut self, ui: &Ui) {
-        let back = ui.input_mut(|i| i.consume_key(Modifiers::SHIFT, Key::F6));
-        if back || ui.input_mut(|i| i.consume_key(Modifiers::NONE, Key::F6)) {
+        // Several within one frame of a busy machine count each.
+        let count = |modifiers| ui.input_mut(|i| i.count_and_consume_key(modifiers, Key::F6));
+        let (back, on) = (count(Modifiers::SHIFT), count(Modifiers::NONE));
+        if back + on > 0 {
             let mut panes = vec![Pane::Things, Pane::Floor, Pane::Fields];
             panes.extend(self.text.is_open.then_some(Pane::Text));
+            let count = panes.len();
             let at = self.pane.and_then(|pane| panes.iter().position(|other| *other == pane));
-            let next = match (at, back) {
-                (None, false) => 0,
-                (None, true) => panes.len() - 1,
-                (Some(at), false) => (at + 1) % panes.len(),
-                (Some(at), true) => (at + panes.len() - 1) % panes.len(),
-            };
-            self.pane = panes.get(next).copied();
+            // Before the first one, or behind the last.
+            let at = at.unwrap_or(if back > 0 { count } else { count - 1 });
+            self.pane = panes.get((at + on + back * (count - 1)) % count).copied();
             self.focus = self.pane;
         }
         let is_typing = ui.ctx().text_edit_focused();

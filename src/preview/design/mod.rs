@@ -410,15 +410,14 @@ impl Designer {
     }
 
     fn ungroup(&mut self) {
-        let group = self.selected_items().first().copied().cloned();
-        match group.map(|group| self.document.ungrouping(&self.items, &group)) {
-            Some(Ok((edits, places))) => {
+        let Some(group) = self.selected_items().first().copied().cloned() else { return };
+        match self.document.ungrouping(&self.items, &group) {
+            Ok((edits, places)) => {
                 if self.edit(&edits) {
                     self.selected = places;
                 }
             }
-            Some(Err(refusal)) => self.complain(refusal.short()),
-            None => {}
+            Err(refusal) => self.complain(refusal.short()),
         }
     }
 

@@ -3,6 +3,7 @@
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
+use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
 use egui_kittest::Harness;
 use egui_kittest::kittest::Queryable;
@@ -92,6 +93,14 @@ impl Desk {
     fn click(&mut self, label: &str) {
         self.window.get_by_label(label).click();
         self.window.run_steps(3);
+    }
+
+    /// What is typed into, beside its name.
+    fn field<'d>(&'d self, name: &'d str) -> egui_kittest::Node<'d> {
+        match self.window.query_by_role_and_label(Role::TextInput, name) {
+            Some(text) => text,
+            None => self.window.get_by_role_and_label(Role::SpinButton, name),
+        }
     }
 
     fn place(&self, name: &str) -> Pos2 {
@@ -266,15 +275,16 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
     let empty = Template::Empty.text(&Floor::default().geometry);
     let mut desk = Desk::with(&empty, Some(path.clone()), tempfile::tempdir().unwrap());
     let field = |desk: &mut Desk, name: &str, text: &str| {
-        desk.window.get_by_label(name).focus();
+        desk.field(name).focus();
         desk.window.run_steps(2);
         fill(desk, text);
     };
     field(&mut desk, "title", "Map navigation");
     desk.click("Region main");
     field(&mut desk, "id", "map");
-    field(&mut desk, "at north", "2");
+    // Less deep first: five tiles from the second row on would leave the floor.
     field(&mut desk, "size depth", "4");
+    field(&mut desk, "at north", "2");
     let controls = [
         ("button", "pan_north", "North", "1.9", "2.9", "0.6", "0.5"),
         ("button", "pan_south", "South", "1.9", "2.2", "0.6", "0.5"),
@@ -379,5 +389,5 @@ fn f6_leads_from_part_to_part_and_a_feel_can_be_heard() {
     desk.click("Hear press");
     assert!(desk.commands.try_iter().any(|told| matches!(told, PreviewCommand::Feel { .. })));
     desk.key(Key::F6);
-    assert!(desk.window.get_by_label("id").is_focused());
+    assert!(desk.field("id").is_focused());
 }
