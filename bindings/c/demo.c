@@ -2,20 +2,23 @@
  *
  *   gcc demo.c $(pkg-config --cflags --libs underfoot) -o demo && ./demo 127.0.0.1:9000 map.ron
  *
- * A third argument names a control: whenever it begins or ends to be held, a line says so with the machine's clock. */
+ * A third argument names a control: whenever it begins or ends to be held, a line says so with the machine's clock.
+ * A fourth is the floor file. SIGTERM ends the floor as Ctrl-C does, SIGUSR1 makes this program fail, and SIGUSR2 closes
+ * the floor. */
 #include <inttypes.h>
 #include <poll.h>
+#include <setjmp.h>
 #include <signal.h>
 #include <stdio.h>
 #include <time.h>
 #include <underfoot.h>
 
-static volatile sig_atomic_t is_asked_to_end;
+static volatile sig_atomic_t asked;
+static jmp_buf failed;
 
-static void ask_to_end(int signal)
+static void note(int signal)
 {
-    (void)signal;
-    is_asked_to_end = 1;
+    asked = signal;
 }
 
 /* Ids are as their layout's author wrote them: what JSON does not take is escaped. */
@@ -51,24 +54,52 @@ static void print_event(const uf_event *event)
     else printf("%" PRId64 "}\n", event->contact);
 }
 
-static void print_held(const char *id, int held)
+/* Says so when the control begins or ends to be held; nothing is held on a floor that is closed. */
+static void look(const uf_session *floor, const char *id)
 {
-    struct timespec now;
-    clock_gettime(CLOCK_MONOTONIC, &now);
-    printf("{\"now_s\":%lld.%09ld,\"id\":", (long long)now.tv_sec, now.tv_nsec);
-    print_text(id);
-    printf(",\"held\":%s}\n", held ? "true" : "false");
+    static int was_held;
+    int held = id && uf_held(floor, id);
+    if (held != was_held) {
+        struct timespec now;
+        clock_gettime(CLOCK_MONOTONIC, &now);
+        printf("{\"now_s\":%lld.%09ld,\"id\":", (long long)now.tv_sec, now.tv_nsec);
+        print_text(id);
+        printf(",\"held\":%s}\n", held ? "true" : "false");
+    }
+    was_held = held;
+}
+
+/* Follows the floor until it is over. Code of one's own may leave it as here, as code does that ends in an error of Lua
+ * or libpng: functions of the library have returned then. */
+static int follow(uf_session *floor, const char *watched)
+{
+    int status;
+    do {
+        struct pollfd ready = { .fd = uf_fd(floor), .events = POLLIN };
+        poll(&ready, 1, 10);
+        if (asked == SIGUSR1) longjmp(failed, 1);
+        if (asked == SIGUSR2) return UF_OVER;
+        if (asked) uf_stop(floor);
+        uf_event event = { .size = sizeof event };
+        while ((status = uf_next(floor, &event, 0)) == UF_OK) {
+            if (event.kind == UF_CONTROL) print_event(&event);
+            if (event.kind == UF_END) fprintf(stderr, "over: %s\n", event.text);
+        }
+        look(floor, watched);
+    } while (status == UF_TIMEOUT);
+    if (status != UF_OVER) fprintf(stderr, "%s\n", uf_status_text(status));
+    return status;
 }
 
 int main(int argc, char **argv)
 {
     if (argc < 3) {
-        fprintf(stderr, "usage: %s ADDRESS LAYOUT [ID]\n", argv[0]);
+        fprintf(stderr, "usage: %s ADDRESS LAYOUT [ID [FLOOR]]\n", argv[0]);
         return 2;
     }
     const char *watched = argc > 3 ? argv[3] : NULL;
     char error[1024];
-    uf_options options = { .size = sizeof options, .every_change = 1 };
+    uf_options options = { .size = sizeof options, .every_change = 1, .floor_path = argc > 4 ? argv[4] : NULL };
     uf_session *floor = uf_session_listen(argv[1], argv[2], &options, error, sizeof error);
     if (!floor) {
         fprintf(stderr, "%s\n", error);
@@ -79,24 +110,12 @@ int main(int argc, char **argv)
     print_text(argv[1]);
     printf("}\n");
 
-    signal(SIGINT, ask_to_end);
-    signal(SIGTERM, ask_to_end);
+    static const int signals[] = { SIGINT, SIGTERM, SIGUSR1, SIGUSR2 };
+    for (size_t at = 0; at < sizeof signals / sizeof *signals; at++) signal(signals[at], note);
 
-    int was_held = 0, status;
-    do {
-        struct pollfd ready = { .fd = uf_fd(floor), .events = POLLIN };
-        poll(&ready, 1, 10);
-        if (is_asked_to_end) uf_stop(floor);
-        uf_event event = { .size = sizeof event };
-        while ((status = uf_next(floor, &event, 0)) == UF_OK) {
-            if (event.kind == UF_CONTROL) print_event(&event);
-            if (event.kind == UF_END) fprintf(stderr, "over: %s\n", event.text);
-        }
-        int held = watched && uf_held(floor, watched);
-        if (held != was_held) print_held(watched, held);
-        was_held = held;
-    } while (status == UF_TIMEOUT);
-    if (status != UF_OVER) fprintf(stderr, "%s\n", uf_status_text(status));
+    volatile int status = UF_PANIC;
+    if (!setjmp(failed)) status = follow(floor, watched);
     uf_close(floor);
+    look(NULL, watched);
     return status != UF_OVER;
 }
