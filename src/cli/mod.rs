@@ -8,6 +8,7 @@ mod output;
 
 mod actuate;
 mod addresses;
+mod area_args;
 mod calibrate;
 #[cfg(feature = "lab")]
 mod capacity;

@@ -20,6 +20,7 @@ use underfoot::source::{Faults, SensorSource};
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;
+use super::area_args::AreaArgs;
 use super::console::Console;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
@@ -42,6 +43,8 @@ pub(crate) struct Args {
     layout: LayoutArgs,
     #[command(flatten)]
     floor: FloorArgs,
+    #[command(flatten)]
+    area: AreaArgs,
     /// Where the boards' packets arrive: an address of this machine and a port. Another machine's boards need the
     /// address of the network card that they are on.
     #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
@@ -77,8 +80,8 @@ pub(crate) struct Args {
 
 /// Serves a floor until it is told to stop.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
-    let floor = args.floor.load()?;
-    let layout = args.layout.load(&floor.geometry)?;
+    let (served, floor) = args.area.of(args.floor.load()?)?;
+    let layout = served.layout(args.layout.load(&served.geometry)?);
     let prefix = args.outputs.prefix.osc_prefix.clone();
     let stop = stop_flag()?;
     let panicked = panic_flag(&stop);
@@ -104,7 +107,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
-    let mut outputs = args.outputs.open(&floor.geometry)?;
+    let mut outputs = args.outputs.open(&served.geometry)?;
     let door = args.web.open()?;
     if let Some(door) = &door {
         outputs.push(door.sink()?);
@@ -122,17 +125,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .layout(layout)
         .method(method)
         .prefix(prefix)
-        .sink(outputs)
+        .sink(served.outputs(outputs))
         .actuators(actuators)
         .latency(latency.clone())
         .realtime()
         .stop_flag(Arc::clone(&stop))
         .start()?;
     let told = session.clone();
-    let watch = Watch::start(&args.layout, floor.geometry, move |read| match read {
+    let (geometry, here) = (served.geometry, served);
+    let watch = Watch::start(&args.layout, geometry, move |read| match read {
         Ok(layout) => {
             info!("the changed layout is on the floor");
-            told.set_layout(layout);
+            told.set_layout(here.layout(layout));
         }
         Err(diagnostics) => {
             errln!("{diagnostics}The last good layout stays on the floor.");
@@ -146,7 +150,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     let apps = args.commands.apps().to_vec();
-    let web = door.map(|door| door.serve(session.clone(), floor.geometry, apps)).transpose()?;
+    let web = door.map(|door| door.serve(session.clone(), geometry, apps)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }

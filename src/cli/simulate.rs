@@ -1,5 +1,6 @@
 //! `underfoot simulate`: a simulated floor that sends real packets.
 
+use std::io;
 use std::net::{SocketAddr, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
@@ -33,9 +34,9 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     sim: SimArgs,
-    /// Where the boards send their packets.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
-    send: SocketAddr,
+    /// Where the boards send their packets; several, with commas between them, where several computers serve areas.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_delimiter = ',')]
+    send: Vec<SocketAddr>,
     /// What the boards send; newtons with --ideal, counts otherwise.
     #[arg(long, value_enum)]
     format: Option<Format>,
@@ -85,7 +86,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         write(path, &sim::press_table(&calibrated, &sim, args.sim.seed))?;
     }
     let sent = args.send_all(&floor, &layout, &sim, encoder)?;
-    errln!("{sent} packets sent to {}.", args.send);
+    let targets: Vec<String> = args.send.iter().map(ToString::to_string).collect();
+    errln!("{sent} packets sent to {}.", targets.join(", "));
     Ok(())
 }
 
@@ -121,9 +123,13 @@ impl Args {
         sim: &SimFloor,
         mut encoder: SensorEncoder,
     ) -> Result<u64, Failure> {
-        let no_socket = |error| Failure::Other(format!("packets can't be sent to {}: {error}", self.send));
-        let here: SocketAddr = if self.send.is_ipv4() { ([0; 4], 0).into() } else { ([0; 16], 0).into() };
-        let socket = UdpSocket::bind(here).map_err(no_socket)?;
+        let no_socket =
+            |to, error: io::Error| Failure::Other(format!("packets can't be sent to {to}: {error}"));
+        let socket_to = |&to: &SocketAddr| {
+            let here: SocketAddr = if to.is_ipv4() { ([0; 4], 0).into() } else { ([0; 16], 0).into() };
+            UdpSocket::bind(here).map(|socket| (socket, to)).map_err(|error| no_socket(to, error))
+        };
+        let sockets: Vec<_> = self.send.iter().map(socket_to).collect::<Result<_, _>>()?;
         let stop = stop_flag()?;
         let until = self.seconds.map(|seconds| Instant::now() + seconds);
         // Boards are punctual.
@@ -144,11 +150,13 @@ impl Args {
                     Err(error) => return Err(error.into()),
                 };
                 let datagram = encoder.encode(&packet).map_err(|error| Failure::Other(error.to_string()))?;
-                match socket.send_to(datagram, self.send) {
-                    Ok(_) => sent += 1,
-                    // Nobody listens yet: a board doesn't mind either.
-                    Err(error) if error.kind() == std::io::ErrorKind::ConnectionRefused => {}
-                    Err(error) => return Err(no_socket(error)),
+                for (socket, to) in &sockets {
+                    match socket.send_to(datagram, *to) {
+                        Ok(_) => sent += 1,
+                        // Nobody listens yet: a board doesn't mind either.
+                        Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {}
+                        Err(error) => return Err(no_socket(*to, error)),
+                    }
                 }
             }
             if !self.again {

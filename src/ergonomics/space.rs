@@ -1,5 +1,7 @@
 //! Room for shoes: sizes, gaps, reach, and how exactly the floor finds a foot.
 
+use std::ops::Range;
+
 use glam::Vec2;
 
 use super::{Part, Subject, cm, predicted_error_m};
@@ -113,9 +115,10 @@ fn reach(subject: &mut Subject<'_>) {
 fn tiles(geometry: &Geometry, area: Rect) -> (TileId, TileId) {
     let inset = Vec2::splat(1e-3);
     let tile = |corner: Vec2| {
-        let side = Vec2::new(f32::from(geometry.columns()) - 1.0, f32::from(geometry.rows()) - 1.0);
-        let at = (corner / geometry.pitch_m()).floor().clamp(Vec2::ZERO, side);
-        TileId::new(at.x as u16, at.y as u16)
+        let at = (corner / geometry.pitch_m()).floor().as_u16vec2();
+        let near = |at: u16, range: Range<u16>| at.clamp(range.start, range.end - 1);
+        let block = geometry.block();
+        TileId::new(near(at.x, block.column_range()), near(at.y, block.row_range()))
     };
     (tile(area.min + inset), tile(area.max - inset))
 }

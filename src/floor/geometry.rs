@@ -6,7 +6,7 @@ use glam::Vec2;
 use serde::Serialize;
 use thiserror::Error;
 
-use super::Rect;
+use super::{Rect, TileBlock};
 use crate::format::Named;
 
 /// One tile, by column (east) and row (north), both from 0 at the south-west.
@@ -104,12 +104,13 @@ impl fmt::Display for SensorId {
     }
 }
 
-/// Where the tiles of one floor and the sensors under them are.
+/// Where the tiles of one floor, or of one part of a larger floor, and the sensors under them are.
 ///
-/// Tiles are numbered row by row from the south-west: `row * columns + column`.
-/// That number, the *tile index*, orders every per-tile array of this crate.
+/// Tiles are numbered row by row from the south-west. That number, the *tile index*, orders every per-tile array of
+/// this crate. A part has indices of its own; its tiles keep their columns and rows, and points their place.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Geometry {
+    first: TileId,
     columns: u16,
     rows: u16,
     tile_m: f32,
@@ -143,6 +144,10 @@ impl Geometry {
     /// Most columns, and most rows, that a floor may have.
     pub const MAX_SIDE: u16 = 256;
 
+    /// The last column, and the last row, at which a part of a larger floor may begin: more than a kilometre of the
+    /// paper's tiles, where a `f32` still tells a tenth of a millimetre.
+    pub const FARTHEST: u16 = 4095;
+
     /// A floor of `columns` x `rows` tiles.
     ///
     /// `tile_m` is the side of one plate, `pitch_m` the distance between the
@@ -171,7 +176,24 @@ impl Geometry {
         if !(0.0..0.5 * tile_m).contains(&sensor_inset_m) {
             return Err(GeometryError::Inset(sensor_inset_m));
         }
-        Ok(Self { columns, rows, tile_m, pitch_m, sensor_inset_m })
+        Ok(Self { first: TileId::new(0, 0), columns, rows, tile_m, pitch_m, sensor_inset_m })
+    }
+
+    /// The same grid as a part of a larger floor, in which its south-west corner is `first`; columns and rows past
+    /// [`Geometry::FARTHEST`] count as that.
+    #[must_use]
+    pub const fn beginning_at(self, first: TileId) -> Self {
+        const fn near(at: u16) -> u16 {
+            if at > Geometry::FARTHEST { Geometry::FARTHEST } else { at }
+        }
+        Self { first: TileId::new(near(first.column), near(first.row)), ..self }
+    }
+
+    /// What of it lies within `block`; `None` if nothing does.
+    #[must_use]
+    pub fn part(&self, block: &TileBlock) -> Option<Self> {
+        let TileBlock { first, columns, rows } = self.block().common(block);
+        (columns > 0 && rows > 0).then_some(Self { first, columns, rows, ..*self })
     }
 
     /// The paper's tiles (30.4 cm, sensors 2 cm inside the edges) in a grid of another size.
@@ -180,6 +202,18 @@ impl Geometry {
     /// [`GeometryError::Grid`] if a side is 0 or above [`Geometry::MAX_SIDE`].
     pub fn of_paper_tiles(columns: u16, rows: u16) -> Result<Self, GeometryError> {
         Self::new(columns, rows, 0.304, 0.304, 0.02)
+    }
+
+    /// The tile in the south-west corner: (0, 0) unless this is a part of a larger floor.
+    #[must_use]
+    pub const fn first(&self) -> TileId {
+        self.first
+    }
+
+    /// Its tiles.
+    #[must_use]
+    pub const fn block(&self) -> TileBlock {
+        TileBlock { first: self.first, columns: self.columns, rows: self.rows }
     }
 
     /// Number of columns, at least 1.
@@ -218,33 +252,33 @@ impl Geometry {
         self.columns as usize * self.rows as usize
     }
 
-    /// The whole floor.
+    /// All of it.
     #[must_use]
     pub fn bounds(&self) -> Rect {
-        Rect::from_min_size(
-            Vec2::ZERO,
-            Vec2::new(f32::from(self.columns), f32::from(self.rows)) * self.pitch_m,
-        )
+        let corner = |column: u16, row: u16| Vec2::new(f32::from(column), f32::from(row)) * self.pitch_m;
+        let TileId { column, row } = self.first;
+        Rect::new(corner(column, row), corner(column + self.columns, row + self.rows))
     }
 
     /// All tiles in index order: row by row from the south-west.
     pub fn tiles(&self) -> impl Iterator<Item = TileId> + use<> {
-        let columns = self.columns;
-        (0..self.rows).flat_map(move |row| (0..columns).map(move |column| TileId::new(column, row)))
+        self.block().tiles()
     }
 
     /// The index of `tile`; `None` if it is not on this floor.
     #[must_use]
     pub fn index(&self, tile: TileId) -> Option<usize> {
-        (tile.column < self.columns && tile.row < self.rows)
-            .then(|| usize::from(tile.row) * usize::from(self.columns) + usize::from(tile.column))
+        let column = tile.column.checked_sub(self.first.column)?;
+        let row = tile.row.checked_sub(self.first.row)?;
+        (column < self.columns && row < self.rows)
+            .then(|| usize::from(row) * usize::from(self.columns) + usize::from(column))
     }
 
     /// The tile at `index`, the inverse of [`Geometry::index`]; meaningless past the last tile.
     #[must_use]
     pub fn tile_at_index(&self, index: usize) -> TileId {
         let columns = usize::from(self.columns);
-        TileId::new((index % columns) as u16, (index / columns) as u16)
+        TileId::new(self.first.column + (index % columns) as u16, self.first.row + (index / columns) as u16)
     }
 
     /// The tile whose pitch cell holds `point`; `None` outside the floor or for NaN.
@@ -252,9 +286,11 @@ impl Geometry {
     pub fn tile_under(&self, point: Vec2) -> Option<TileId> {
         self.bounds().contains(point).then(|| {
             let cell = (point / self.pitch_m).floor();
-            let column = (cell.x as u16).min(self.columns - 1);
-            let row = (cell.y as u16).min(self.rows - 1);
-            TileId::new(column, row)
+            let TileId { column, row } = self.first;
+            TileId::new(
+                (cell.x as u16).clamp(column, column + self.columns - 1),
+                (cell.y as u16).clamp(row, row + self.rows - 1),
+            )
         })
     }
 
@@ -292,7 +328,14 @@ impl Geometry {
 impl Default for Geometry {
     /// The paper's floor: 6 x 6 tiles of 30.4 cm, sensors 2 cm inside the edges.
     fn default() -> Self {
-        Self { columns: 6, rows: 6, tile_m: 0.304, pitch_m: 0.304, sensor_inset_m: 0.02 }
+        Self {
+            first: TileId::new(0, 0),
+            columns: 6,
+            rows: 6,
+            tile_m: 0.304,
+            pitch_m: 0.304,
+            sensor_inset_m: 0.02,
+        }
     }
 }
 
@@ -321,6 +364,27 @@ mod tests {
         assert_eq!(floor.index(TileId::new(3, 0)), None);
         assert_eq!(floor.tile_under(Vec2::new(-0.01, 0.1)), None);
         assert_eq!(floor.tile_under(Vec2::NAN), None);
+    }
+
+    #[test]
+    fn a_part_s_tiles_keep_their_names_and_their_places() {
+        let whole = Geometry::of_paper_tiles(12, 9).unwrap();
+        let block = TileBlock { first: TileId::new(4, 3), columns: 30, rows: 2 };
+        let part = whole.part(&block).unwrap();
+        assert_eq!((part.first(), part.columns(), part.rows()), (TileId::new(4, 3), 8, 2));
+        for (index, tile) in part.tiles().enumerate() {
+            assert_eq!(part.index(tile), Some(index));
+            assert_eq!(part.tile_at_index(index), tile);
+            assert_eq!(part.tile_under(whole.centre(tile)), Some(tile));
+            assert_eq!(part.centre(tile), whole.centre(tile));
+        }
+        for tile in whole.tiles() {
+            assert_eq!(part.index(tile).is_some(), block.contains(tile));
+            assert_eq!(part.bounds().contains(whole.centre(tile)), block.contains(tile));
+        }
+        assert_eq!(part.tile_under(part.bounds().min), Some(part.first()));
+        assert_eq!(whole.part(&TileBlock { first: TileId::new(12, 0), columns: 1, rows: 1 }), None);
+        assert_eq!(whole.part(&whole.block()), Some(whole));
     }
 
     #[test]

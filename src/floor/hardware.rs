@@ -1,7 +1,7 @@
 //! Everything that is known of one floor.
 
 use super::{
-    Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, Network,
+    Area, Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, Network,
     PositionMap, Response, SensorId, TileId,
 };
 use crate::units::Newtons;
@@ -38,6 +38,8 @@ pub struct Floor {
     pub tared: Option<Day>,
     /// Where the boards' packets come from, on the network; nowhere but this machine if it is empty.
     pub allow: Vec<Network>,
+    /// The parts of the floor that a computer of its own serves; empty where one serves them all.
+    pub areas: Vec<Area>,
 }
 
 impl Floor {
@@ -60,6 +62,7 @@ impl Floor {
             map_records: vec![None; tiles],
             tared: None,
             allow: Vec::new(),
+            areas: Vec::new(),
             geometry,
         }
     }
@@ -164,9 +167,10 @@ const TILES_PER_BOARD: u16 = 8;
 
 fn boards_by_row(geometry: &Geometry) -> Vec<Board> {
     let mut boards = Vec::new();
-    for row in 0..geometry.rows() {
-        for west in (0..geometry.columns()).step_by(TILES_PER_BOARD.into()) {
-            let east = (west + TILES_PER_BOARD).min(geometry.columns());
+    let block = geometry.block();
+    for row in block.row_range() {
+        for west in block.column_range().step_by(TILES_PER_BOARD.into()) {
+            let east = (west + TILES_PER_BOARD).min(block.column_range().end);
             let channels = (west..east)
                 .flat_map(|column| {
                     let tile = TileId::new(column, row);

@@ -4,6 +4,8 @@
 //! (right), y north (away from the user), in metres. [`Geometry`] knows where
 //! tiles and sensors are; [`Floor`] adds what is wired to them.
 
+mod area;
+mod block;
 mod calibration;
 mod contact_id;
 mod drive;
@@ -17,6 +19,8 @@ mod record;
 mod rect;
 mod significant;
 
+pub use area::{Area, SENSED_BEYOND_M};
+pub use block::TileBlock;
 pub use calibration::{Calibration, LawKind};
 pub use contact_id::ContactId;
 pub use drive::{Drive, Loudspeaker, Response};

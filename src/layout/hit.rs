@@ -1,9 +1,9 @@
 //! Which control lies at a point.
 
-use glam::{UVec2, Vec2};
+use glam::Vec2;
 
 use super::{Layout, Shape, Widget};
-use crate::floor::{Geometry, Rect, TileId};
+use crate::floor::{Geometry, Rect, TileBlock, TileId};
 
 /// Whether `point` lies on the visible face of `widget`.
 pub(super) fn hits(widget: &Widget, point: Vec2) -> bool {
@@ -61,16 +61,21 @@ impl HitIndex {
 
 /// The tiles whose cells (plate and gap) share ground with `area`.
 fn cells_under(area: Rect, geometry: &Geometry) -> impl Iterator<Item = TileId> {
-    let most = UVec2::new(geometry.columns().into(), geometry.rows().into());
     // Casts cut what is negative to zero.
-    let first = (area.min / geometry.pitch_m()).floor().as_uvec2();
-    let end = (area.max / geometry.pitch_m()).ceil().as_uvec2().min(most);
-    (first.y..end.y)
-        .flat_map(move |row| (first.x..end.x).map(move |column| TileId::new(column as u16, row as u16)))
+    let first = (area.min / geometry.pitch_m()).floor().as_u16vec2();
+    let end = (area.max / geometry.pitch_m()).ceil().as_u16vec2();
+    let cells = TileBlock {
+        first: TileId::new(first.x, first.y),
+        columns: end.x.saturating_sub(first.x),
+        rows: end.y.saturating_sub(first.y),
+    };
+    geometry.block().common(&cells).tiles()
 }
 
 #[cfg(test)]
 mod tests {
+    use glam::UVec2;
+
     use super::*;
     use crate::schema::{Kinds, builtin_layout, parse_layout};
 

@@ -24,7 +24,7 @@ internal! {
 use glam::Vec2;
 
 use crate::feel::Feel;
-use crate::floor::Rect;
+use crate::floor::{Area, Geometry, Rect};
 use crate::widget::{Behaviour, WidgetId};
 
 /// Controls placed on one floor, on one page or on several that take turns.
@@ -74,6 +74,21 @@ impl Layout {
     #[must_use]
     pub fn widget_index(&self, id: &str) -> Option<usize> {
         self.widgets.iter().position(|widget| widget.id == id)
+    }
+
+    /// What of it the computer of `area` serves, on the floor of this `geometry`: the controls whose middle is in the
+    /// area, and the grounds that reach into it. Pages, regions and places to stand stay.
+    ///
+    /// Of the parts for a floor's areas, exactly one has a control.
+    #[must_use]
+    pub fn part(mut self, area: &Area, geometry: &Geometry) -> Self {
+        self.widgets.retain(|widget| area.holds(geometry, widget.area.centre()));
+        let tile_in = |ground: &Ground| {
+            let own = area.tiles.tiles().map(|tile| geometry.plate(tile));
+            own.into_iter().any(|plate| plate.overlaps(ground.spec.area))
+        };
+        self.grounds.retain(tile_in);
+        self
     }
 
     /// The position in [`Layout::pages`] of the page named `id`.

@@ -13,7 +13,9 @@ pub(super) struct Selection {
 impl Selection {
     /// The middle of the floor, until a foot comes.
     pub(super) fn new(geometry: &Geometry) -> Self {
-        Self { tile: TileId::new(geometry.columns() / 2, geometry.rows() / 2), pinned: false }
+        let TileId { column, row } = geometry.first();
+        let tile = TileId::new(column + geometry.columns() / 2, row + geometry.rows() / 2);
+        Self { tile, pinned: false }
     }
 
     /// Goes along with the cursor's heaviest tile, or the heaviest contact's, unless pinned.

@@ -101,12 +101,14 @@ pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
     };
     // Where tiles are smaller than their numbers, only every so many get one.
     let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
-    for column in (0..view.geometry.columns()).step_by(every) {
-        lettering.at = view.geometry.centre(TileId::new(column, 0)) * Vec2::X - Vec2::new(0.0, 0.058 * by);
+    let (block, corner) = (view.geometry.block(), view.geometry.bounds().min);
+    for column in block.column_range().step_by(every) {
+        let middle = Vec2::new(view.geometry.centre(TileId::new(column, 0)).x, corner.y);
+        lettering.at = middle - Vec2::new(0.0, 0.058 * by);
         scene.add_text(lettering, format_args!("{column}"));
     }
-    for row in (0..view.geometry.rows()).step_by(every) {
-        let middle = view.geometry.centre(TileId::new(0, row)) * Vec2::Y;
+    for row in block.row_range().step_by(every) {
+        let middle = Vec2::new(corner.x, view.geometry.centre(TileId::new(0, row)).y);
         lettering.at = middle - Vec2::new(0.048 * by, 0.5 * CAP_HEIGHT * size_m);
         scene.add_text(lettering, format_args!("{row}"));
     }

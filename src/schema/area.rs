@@ -44,7 +44,11 @@ impl Area {
             Units::Tiles => 1.0,
             Units::Metres => Units::Tiles.metres(geometry),
         };
-        Self::new([0.0; 2], [geometry.columns(), geometry.rows()].map(|tiles| f64::from(tiles) * tile))
+        let first = geometry.first();
+        Self::new(
+            [first.column, first.row].map(|tiles| f64::from(tiles) * tile),
+            [geometry.columns(), geometry.rows()].map(|tiles| f64::from(tiles) * tile),
+        )
     }
 
     pub(super) fn min(&self) -> [f64; 2] {

@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use super::diagnostic::Diagnostics;
+use super::floor_areas::{self, AREAS, AreaRecord};
 use super::floor_codecs::Measures;
 use super::floor_parts::{
     ActuatorRecord, BoardRecord, LoudspeakerRecord, MapEntry, ResponseRecord, SensorRecord, all_actuators,
@@ -49,6 +50,9 @@ fn floor(node: Node<'_>) -> Option<Floor> {
     fields.finish();
     let floor = record.floor();
     record.check_channels(node.reader, &floor);
+    if good {
+        floor_areas::check(node.reader, &floor.geometry, &record.areas);
+    }
     good.then_some(floor)
 }
 
@@ -60,6 +64,8 @@ record! {
     pub(super) version: u32 = "version", VERSION => FORMAT_VERSION;
     /// Where tiles and sensors are.
     pub(super) geometry: Geometry = "", Measures;
+    /// The parts of the floor that a computer of its own serves; one computer serves the whole floor if there are none.
+    pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
     /// The boards; unless they are written, each row of tiles has its own, up to eight tiles a board.
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
@@ -74,7 +80,8 @@ record! {
     pub(super) drive: Drive = "drive", Rec => Drive::default();
     /// How strongly all actuators move that have no response of their own.
     pub(super) response: ResponseRecord = "", Flat;
-    /// The actuators; unless they are written, each tile has one, channel by channel in tile order.
+    /// The actuators; unless they are written, each tile has one, channel by channel in tile order, which
+    /// begins anew in each area.
     pub(super) actuators: Option<Vec<ActuatorRecord>> = "actuators", Opt(ACTUATORS) => None;
     /// Loudspeakers beside the floor.
     pub(super) loudspeakers: Vec<LoudspeakerRecord> = "loudspeakers", LOUDSPEAKERS => Vec::new();
@@ -133,7 +140,8 @@ const LOUDSPEAKERS: Distinct<LoudspeakerRecord> = Distinct {
 impl FloorRecord {
     /// The floor that it describes.
     fn floor(&self) -> Floor {
-        let mut floor = Floor::of(self.geometry);
+        let mut floor =
+            Floor::of(self.geometry).with_areas(self.areas.iter().map(AreaRecord::area).collect());
         if let Some(boards) = &self.boards {
             floor.boards = boards.iter().enumerate().map(|(number, board)| board.board(number)).collect();
         }
@@ -157,7 +165,7 @@ impl FloorRecord {
 
     /// The record of `floor`; what is as on [`Floor::of`] its geometry is left out.
     pub(super) fn of(floor: &Floor) -> Self {
-        let usual = Floor::of(floor.geometry);
+        let usual = Floor::of(floor.geometry).with_areas(floor.areas.clone());
         let boards = (floor.boards != usual.boards).then(|| {
             (0..).zip(&floor.boards).map(|(number, board)| BoardRecord::of(board, number)).collect()
         });
@@ -167,6 +175,7 @@ impl FloorRecord {
         Self {
             version: FORMAT_VERSION,
             geometry: floor.geometry,
+            areas: floor.areas.iter().map(AreaRecord::of).collect(),
             boards,
             allow: floor.allow.clone(),
             tared: floor.tared,
@@ -181,8 +190,11 @@ impl FloorRecord {
 
     /// Reports loudspeakers on the channels of actuators.
     fn check_channels(&self, reader: &Reader<'_>, floor: &Floor) {
-        for channel in self.loudspeakers.iter().map(|one| &one.channel).filter(|one| !one.at.is_empty()) {
-            let mut moved = floor.geometry.tiles().zip(&floor.actuators);
+        for loudspeaker in self.loudspeakers.iter().filter(|one| !one.channel.at.is_empty()) {
+            let channel = &loudspeaker.channel;
+            let area = floor.areas.iter().find(|area| area.holds(&floor.geometry, loudspeaker.at));
+            let with_it = |tile| area.is_none_or(|area| area.tiles.contains(tile));
+            let mut moved = floor.geometry.tiles().zip(&floor.actuators).filter(|(tile, _)| with_it(*tile));
             let is_taken = |(_, one): &(_, &Option<crate::floor::Actuator>)| {
                 one.is_some_and(|one| one.channel == channel.value)
             };

@@ -1,5 +1,6 @@
 //! How floor files write tiles, channels and tables.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::fields::Fields;
@@ -14,6 +15,8 @@ use crate::format::{Codec, Follow, Name, Num, Opt, Record, num, record};
 record! {
     /// Where tiles and sensors are.
     struct MeasuresRecord = "Measures";
+    /// The tile in the south-west corner, if this is a part of a larger floor.
+    first: TileId = "first", FIRST => TileId::default();
     /// Tiles from west to east.
     columns: u16 = "columns", SIDE => Geometry::default().columns();
     /// Tiles from south to north.
@@ -25,6 +28,17 @@ record! {
     /// From a tile's edges to its sensors.
     inset_m: f32 = "sensor_inset_m", num(0.0..=2.5).explicit() => Geometry::default().sensor_inset_m();
 }
+
+/// Where a part of a larger floor begins.
+const FIRST: By<TileId> = By {
+    shape: || FieldType::Words("(column, row), each a whole number from 0 to 4095"),
+    read: |node| {
+        node.tuple("(column, row)").and_then(|[column, row]| tile(column, row, [0..FIRST_END, 0..FIRST_END]))
+    },
+    ..TILE
+};
+
+const FIRST_END: u16 = Geometry::FARTHEST + 1;
 
 const SIDE: Num = num(1.0..=Geometry::MAX_SIDE as f64).explicit();
 
@@ -86,6 +100,7 @@ impl Codec<Geometry> for Measures {
         entries: &mut Vec<Entry>,
     ) {
         let record = MeasuresRecord {
+            first: geometry.first(),
             columns: geometry.columns(),
             rows: geometry.rows(),
             tile_m: geometry.tile_m(),
@@ -108,8 +123,9 @@ impl Codec<Geometry> for Measures {
 
 impl MeasuresRecord {
     fn built(&self) -> Result<Geometry, GeometryError> {
-        let Self { columns, rows, tile_m, pitch_m, inset_m } = *self;
-        Geometry::new(columns, rows, tile_m, pitch_m.unwrap_or(tile_m), inset_m)
+        let Self { first, columns, rows, tile_m, pitch_m, inset_m } = *self;
+        let built = Geometry::new(columns, rows, tile_m, pitch_m.unwrap_or(tile_m), inset_m);
+        built.map(|geometry| geometry.beginning_at(first))
     }
 }
 
@@ -121,13 +137,19 @@ struct Grid {
 
 impl Grid {
     fn tile(self, column: Node<'_>, row: Node<'_>) -> Option<TileId> {
-        let most = u32::from(Geometry::MAX_SIDE);
-        let (columns, rows) =
-            self.known.map_or((most, most), |known| (known.columns().into(), known.rows().into()));
-        let column = Node { name: "column", ..column }.whole(0..=columns - 1);
-        let row = Node { name: "row", ..row }.whole(0..=rows - 1);
-        Some(TileId::new(column? as u16, row? as u16))
+        let block = self.known.map(|known| known.block());
+        let any = 0..FIRST_END + Geometry::MAX_SIDE;
+        tile(column, row, block.map_or([any.clone(), any], |block| [block.column_range(), block.row_range()]))
     }
+}
+
+/// A tile within these columns and rows.
+fn tile(column: Node<'_>, row: Node<'_>, [columns, rows]: [Range<u16>; 2]) -> Option<TileId> {
+    let number = |name, node: Node<'_>, range: Range<u16>| {
+        Node { name, ..node }.whole(range.start.into()..=u32::from(range.end) - 1)
+    };
+    let (column, row) = (number("column", column, columns), number("row", row, rows));
+    Some(TileId::new(column? as u16, row? as u16))
 }
 
 /// A tile, as `(column, row)`.
@@ -139,6 +161,18 @@ pub(super) const TILE: By<TileId> = By {
     },
     write: |tile| Text::Plain(tile.to_string()),
     stand_in: TileId::default,
+};
+
+/// How many tiles something is wide and deep, as `(columns, rows)`.
+pub(super) const TILES: By<[u16; 2]> = By {
+    shape: || FieldType::Words("(columns, rows), each a whole number from 1"),
+    read: |node| {
+        let sides = node.tuple::<2>("(columns, rows)")?;
+        let [columns, rows] = sides.map(|side| side.whole(1..=Geometry::MAX_SIDE.into()));
+        Some([columns? as u16, rows? as u16])
+    },
+    write: |[columns, rows]| Text::Plain(format!("({columns}, {rows})")),
+    stand_in: || [1, 1],
 };
 
 /// The sensor on a channel, as `(column, row, corner)`, or `None`.

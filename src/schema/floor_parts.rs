@@ -292,7 +292,7 @@ record! {
     /// A loudspeaker beside the floor.
     pub(super) struct LoudspeakerRecord = "Loudspeaker";
     /// Where it stands, from the floor's south-west corner; also outside of the floor.
-    at: Vec2 = "at_m", Pair { each: num(-1000.0..=1000.0), pattern: "(east, north)", parts: ["east", "north"] };
+    pub(super) at: Vec2 = "at_m", Pair { each: num(-1000.0..=1000.0), pattern: "(east, north)", parts: ["east", "north"] };
     /// Output channel, from 0.
     pub(super) channel: Written<u16> = "channel", At(CHANNEL);
     /// How loud it is: at 0, a cue of 40 N that is heard in full is a full-scale sample.

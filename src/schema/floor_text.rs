@@ -6,7 +6,8 @@ use crate::format::Record;
 use crate::format::text::Text;
 
 /// What is said above a field, and in place of one that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 9] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 10] = [
+    ("areas", &["The parts of the floor that a computer of its own serves."], None),
     (
         "boards",
         &["Which tiles, or which sensors, are on the channels of each board."],

@@ -19,6 +19,7 @@ mod checks;
 mod control;
 mod effect;
 mod floor;
+mod floor_areas;
 mod floor_codecs;
 mod floor_parts;
 mod floor_text;

@@ -94,10 +94,10 @@ impl<R: BufRead> ForceTable<R> {
         let mut row = first;
         loop {
             let Some(index) = self.geometry.index(row.tile) else {
-                let (columns, rows) = (self.geometry.columns(), self.geometry.rows());
+                let block = self.geometry.block();
                 return Err(problem(
                     row.line,
-                    format!("tile {} is not on a floor of {columns} x {rows} tiles; try --grid", row.tile),
+                    format!("tile {} is not on a floor of {block}; try --grid", row.tile),
                 ));
             };
             if self.named.contains(&index) {

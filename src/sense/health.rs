@@ -21,7 +21,7 @@ mod trouble;
 #[cfg(test)]
 mod walks;
 
-use crate::floor::{Corner, Floor, Geometry, SensorId, TileId};
+use crate::floor::{Corner, Floor, Geometry, SensorId, TileBlock, TileId};
 use crate::sense::{ForceFrame, Quality, corners};
 use crate::units::{Instant, Newtons};
 
@@ -317,15 +317,10 @@ impl Health {
 
     /// Whether somebody may be standing with part of a foot on this tile, by what its neighbours carry.
     fn has_loaded_neighbour(&self, tile: usize) -> bool {
-        let id = self.geometry.tile_at_index(tile);
-        let (columns, rows) = (self.geometry.columns(), self.geometry.rows());
-        let around = |at: u16, count: u16| at.saturating_sub(1)..(at + 2).min(count);
-        around(id.row, rows).any(|row| {
-            around(id.column, columns).any(|column| {
-                let other = usize::from(row) * usize::from(columns) + usize::from(column);
-                other != tile && self.slow[other].is_loaded()
-            })
-        })
+        let first = self.geometry.tile_at_index(tile);
+        let around = TileBlock { first, columns: 1, rows: 1 }.grown(1);
+        let others = around.tiles().filter_map(|other| self.geometry.index(other));
+        others.filter(|&other| other != tile).any(|other| self.slow[other].is_loaded())
     }
 
     /// How often a sensor has fallen ill or got well.

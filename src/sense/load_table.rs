@@ -84,8 +84,8 @@ impl LoadTable {
         let (mut table, header) = Table::new(text, &COLUMNS)?;
         let mut sensors: Vec<Option<SensorLoads>> = vec![None; geometry.tile_count() * 4];
         while let Some(row) = table.next_row() {
-            let column = table.whole(&row, 0, geometry.columns());
-            let line = table.whole(&row, 1, geometry.rows());
+            let column = table.whole(&row, 0, geometry.block().column_range());
+            let line = table.whole(&row, 1, geometry.block().row_range());
             let corner = corner(row.text(2));
             if corner.is_none() {
                 table.report(&row, 2, format!("expected sw, se, nw or ne, found {}", shown(row.text(2))));

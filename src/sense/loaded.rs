@@ -11,7 +11,7 @@ use self::threshold::Thresholds;
 use super::corners::is_possible;
 use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading};
 use super::{ForceFrame, Quality};
-use crate::floor::{Geometry, PositionMap};
+use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::{Instant, Newtons};
 
 /// Marks a tile without load in the map from tile to list position.
@@ -112,12 +112,8 @@ impl LoadedTiles {
 
     /// Position in [`Self::list`] of the tile at `column`, `row`; `None` off the floor or without load.
     pub(super) fn find(&self, column: i32, row: i32) -> Option<usize> {
-        let columns = i32::from(self.geometry.columns());
-        let on_floor = (0..columns).contains(&column) && (0..i32::from(self.geometry.rows())).contains(&row);
-        if !on_floor {
-            return None;
-        }
-        let place = *self.place.get((row * columns + column) as usize)?;
+        let tile = TileId::new(column.try_into().ok()?, row.try_into().ok()?);
+        let place = *self.place.get(self.geometry.index(tile)?)?;
         (place != NONE).then_some(place as usize)
     }
 

@@ -71,8 +71,9 @@ impl PressTable {
             }
             let forces: [Option<f32>; 4] = std::array::from_fn(|corner| number(4 + corner, -1e4, 1e5));
             let force = if header == 1 { number(8, 1.0, 1e5).map(Some) } else { Some(None) };
-            let column = table.whole(&row, 2, geometry.columns());
-            let line = table.whole(&row, 3, geometry.rows());
+            let block = geometry.block();
+            let column = table.whole(&row, 2, block.column_range());
+            let line = table.whole(&row, 3, block.row_range());
             let ((Some(x), Some(y)), [Some(sw), Some(se), Some(nw), Some(ne)]) = (point, forces) else {
                 continue;
             };

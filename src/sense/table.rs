@@ -1,7 +1,7 @@
 //! Reading CSV tables of measurements: everything wrong with one at once.
 
 use std::fmt;
-use std::ops::RangeInclusive;
+use std::ops::{Range, RangeInclusive};
 
 /// Something wrong with a table.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -143,16 +143,16 @@ impl<'t> Table<'t> {
         number
     }
 
-    /// The whole number below `end` in one field of `row`.
-    pub(super) fn whole(&mut self, row: &Row<'_>, field: usize, end: u16) -> Option<u16> {
+    /// The whole number of `range` in one field of `row`.
+    pub(super) fn whole(&mut self, row: &Row<'_>, field: usize, range: Range<u16>) -> Option<u16> {
         let written = row.fields.get(field).copied().unwrap_or_default();
-        let number = written.parse::<u16>().ok().filter(|number| *number < end);
+        let number = written.parse::<u16>().ok().filter(|number| range.contains(number));
         if number.is_none() {
-            let most = end.saturating_sub(1);
+            let (least, most) = (range.start, range.end.saturating_sub(1));
             self.report(
                 row,
                 field,
-                format!("expected a whole number from 0 to {most}, found {}", shown(written)),
+                format!("expected a whole number from {least} to {most}, found {}", shown(written)),
             );
         }
         number

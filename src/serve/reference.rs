@@ -1,5 +1,7 @@
 //! Every OSC address of a floor with a layout, in and out: made from the table that the decoder goes by.
 
+use std::ops::Range;
+
 use serde::Serialize;
 
 use crate::floor::{Floor, Geometry};
@@ -240,11 +242,15 @@ fn taken(command: &Command, widget: Option<&Widget>, layout: &Layout, geometry: 
         ArgumentKind::Page => vec![argument("page", "s", &pages(layout))],
         ArgumentKind::Switch => vec![argument("on", "i|f|T|F", "0 or 1; 1 if left out")],
         ArgumentKind::Flag => vec![argument("on", "i|f|T|F", "0 or 1")],
-        ArgumentKind::TileFlag => vec![
-            argument("column", "i", &format!("0 to {}", geometry.columns().saturating_sub(1))),
-            argument("row", "i", &format!("0 to {}", geometry.rows().saturating_sub(1))),
-            argument("on", "i|f|T|F", "0 or 1"),
-        ],
+        ArgumentKind::TileFlag => {
+            let block = geometry.block();
+            let numbers = |range: Range<u16>| format!("{} to {}", range.start, range.end.saturating_sub(1));
+            vec![
+                argument("column", "i", &numbers(block.column_range())),
+                argument("row", "i", &numbers(block.row_range())),
+                argument("on", "i|f|T|F", "0 or 1"),
+            ]
+        }
         ArgumentKind::Value => {
             let Some(widget) = widget else { return Vec::new() };
             let held = Control::new(&widget.behaviour, widget.area.size()).value();

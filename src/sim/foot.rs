@@ -161,8 +161,10 @@ impl Window {
     /// The tiles between two corners of an upright box; `None` if none of them is on the floor.
     fn around(geometry: &Geometry, low: Vec2, high: Vec2) -> Option<Self> {
         let pitch_m = geometry.pitch_m();
-        let last = Vec2::new(f32::from(geometry.columns() - 1), f32::from(geometry.rows() - 1));
-        let first = (low / pitch_m).floor().max(Vec2::ZERO);
+        let TileId { column, row } = geometry.first();
+        let corner = Vec2::new(f32::from(column), f32::from(row));
+        let last = corner + Vec2::new(f32::from(geometry.columns() - 1), f32::from(geometry.rows() - 1));
+        let first = (low / pitch_m).floor().max(corner);
         let end = (high / pitch_m).floor().min(last);
         (first.cmple(end).all()).then(|| {
             let size = (end - first).as_usizevec2() + 1;

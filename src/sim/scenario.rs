@@ -270,8 +270,7 @@ impl Stage<'_> {
         let metres = self.geometry.metres_from_tiles(at);
         let is_there = self.bounds.contains(metres);
         if !is_there {
-            let (columns, rows) = (self.geometry.columns(), self.geometry.rows());
-            let message = format!("({}, {}) is not on this floor of {columns} x {rows} tiles", at.x, at.y);
+            let message = format!("({}, {}) is not on this floor of {}", at.x, at.y, self.geometry.block());
             node.report(Problem::error(node.span(), message));
         }
         is_there.then_some(metres)

@@ -52,9 +52,10 @@ impl fmt::Display for ChannelMap<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let geometry = &self.floor.geometry;
         let width = self.entries().map(|(_, channel)| channel.to_string().len()).max().unwrap_or(1).max(2);
-        for row in (0..geometry.rows()).rev() {
+        let block = geometry.block();
+        for row in block.row_range().rev() {
             write!(f, "row {row:>3} |")?;
-            for column in 0..geometry.columns() {
+            for column in block.column_range() {
                 let index = geometry.index(TileId::new(column, row));
                 match index.and_then(|index| self.floor.actuators.get(index)).copied().flatten() {
                     Some(actuator) => write!(f, " {:>width$}", actuator.channel)?,
@@ -64,7 +65,7 @@ impl fmt::Display for ChannelMap<'_> {
             writeln!(f)?;
         }
         write!(f, " column |")?;
-        for column in 0..geometry.columns() {
+        for column in block.column_range() {
             write!(f, " {column:>width$}")?;
         }
         Ok(())

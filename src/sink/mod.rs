@@ -23,6 +23,7 @@ mod tuio;
 mod udp;
 #[cfg(feature = "wav")]
 mod wav;
+mod within;
 mod worker;
 
 use thiserror::Error;
@@ -51,6 +52,7 @@ pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
+pub use within::Within;
 pub(crate) use worker::Worker;
 
 internal! {

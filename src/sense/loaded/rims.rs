@@ -27,10 +27,13 @@ impl LoadedTiles {
     pub(super) fn gather(&mut self, frame: &ForceFrame) {
         // How far from its tile's centre a centroid may lie for load on the far side's neighbours to be its own.
         let astray_m = REACH_M - 0.5 * self.geometry.pitch_m();
+        let first = self.geometry.first();
         let (columns, rows) = (i32::from(self.geometry.columns()), i32::from(self.geometry.rows()));
         for position in 0..self.list.len() {
             let tile = &self.list[position];
-            let (column, row) = (i32::from(tile.tile.column), i32::from(tile.tile.row));
+            // Counted from the floor's first tile.
+            let (column, row) = (tile.tile.column - first.column, tile.tile.row - first.row);
+            let (column, row) = (i32::from(column), i32::from(row));
             let arm = tile.centroid - tile.centre;
             let sides = |arm: f32, at: i32, count: i32| {
                 let low = at - i32::from(arm < astray_m);

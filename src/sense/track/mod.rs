@@ -56,7 +56,7 @@ use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
 use super::tile::LoadedTile;
 use super::uncertainty::SensorUncertainty;
-use crate::floor::Geometry;
+use crate::floor::{Geometry, TileBlock, TileId};
 
 /// Follows feet over one floor.
 #[derive(Clone, Debug)]
@@ -94,21 +94,25 @@ struct Link {
 #[derive(Clone, Copy, Debug)]
 struct Cells {
     pitch: f64,
-    columns: u16,
-    rows: u16,
+    block: TileBlock,
 }
 
 impl Cells {
-    fn count(&self, axis: Axis) -> i32 {
-        match axis {
-            Axis::East => self.columns.into(),
-            Axis::North => self.rows.into(),
-        }
+    /// Whether the floor has a column or row of this number.
+    fn have(&self, axis: Axis, number: i32) -> bool {
+        let numbers = match axis {
+            Axis::East => self.block.column_range(),
+            Axis::North => self.block.row_range(),
+        };
+        (i32::from(numbers.start)..i32::from(numbers.end)).contains(&number)
     }
 
     /// South-west and north-east corner of the floor.
     fn bounds(&self) -> (DVec2, DVec2) {
-        (DVec2::ZERO, DVec2::new(self.columns.into(), self.rows.into()) * self.pitch)
+        let TileId { column, row } = self.block.first;
+        let corner = DVec2::new(column.into(), row.into());
+        let size = DVec2::new(self.block.columns.into(), self.block.rows.into());
+        (corner * self.pitch, (corner + size) * self.pitch)
     }
 
     fn of(&self, tile: &LoadedTile) -> (DVec2, DVec2) {
@@ -125,8 +129,7 @@ fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
 impl Tracker {
     pub(super) fn new(geometry: &Geometry, doubt: SensorUncertainty) -> Self {
         let room = geometry.tile_count().min(1024);
-        let cells =
-            Cells { pitch: geometry.pitch_m().into(), columns: geometry.columns(), rows: geometry.rows() };
+        let cells = Cells { pitch: geometry.pitch_m().into(), block: geometry.block() };
         Self {
             doubt,
             near: Near::new(&cells, room),

@@ -74,7 +74,7 @@ pub(super) fn observe(
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
             for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
-                if (0..cells.count(axis)).contains(&number) {
+                if cells.have(axis, number) {
                     strips.strip(axis, number);
                 }
             }

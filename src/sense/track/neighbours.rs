@@ -11,6 +11,8 @@ use super::{Cells, UNASSIGNED};
 /// feet are ever touched: what it costs grows with the feet and not with the floor.
 #[derive(Clone, Debug)]
 pub(super) struct Near {
+    /// The floor's south-west corner.
+    corner: DVec2,
     columns: i32,
     rows: i32,
     /// Per square, the foot that was put there last.
@@ -29,10 +31,11 @@ struct Neighbour {
 
 impl Near {
     pub(super) fn new(cells: &Cells, room: usize) -> Self {
-        let (_, size) = cells.bounds();
+        let (corner, end) = cells.bounds();
         let count = |length: f64| (length / STRIDE_M).ceil().max(1.0) as i32;
-        let (columns, rows) = (count(size.x), count(size.y));
+        let (columns, rows) = (count(end.x - corner.x), count(end.y - corner.y));
         Self {
+            corner,
             columns,
             rows,
             last: vec![UNASSIGNED; (columns * rows) as usize],
@@ -97,7 +100,7 @@ impl Near {
     }
 
     fn column_and_row(&self, place: DVec2) -> (i32, i32) {
-        let at = (place / STRIDE_M).floor().as_ivec2();
+        let at = ((place - self.corner) / STRIDE_M).floor().as_ivec2();
         (at.x.clamp(0, self.columns - 1), at.y.clamp(0, self.rows - 1))
     }
 }
@@ -193,10 +196,12 @@ mod tests {
     use rand_pcg::Pcg64Mcg;
 
     use super::*;
+    use crate::floor::{TileBlock, TileId};
 
     #[test]
     fn nobody_within_a_stride_is_overlooked() {
-        let cells = Cells { pitch: 0.304, columns: 20, rows: 9 };
+        let block = TileBlock { first: TileId::default(), columns: 20, rows: 9 };
+        let cells = Cells { pitch: 0.304, block };
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         // Some beside the floor, too: the guess of where a foot lands may lie there.
         let mut place = || DVec2::new(rng.random_range(-0.5..6.5), rng.random_range(-0.5..3.2));

@@ -75,7 +75,7 @@ pub(super) fn place(
     for axis in Axis::BOTH {
         for point in [from, from + ahead * 0.3] {
             let number = (axis.along(point) / cells.pitch).floor() as i32;
-            if (0..cells.count(axis)).contains(&number) {
+            if cells.have(axis, number) {
                 strips.strip(axis, number);
             }
         }

@@ -70,13 +70,13 @@ impl Mixdown {
 
 /// Where each channel is heard between left and right, by the column of its tile, equally loud everywhere.
 fn pans(floor: &Floor, width: usize) -> Vec<[f32; 2]> {
-    let columns = f32::from(floor.geometry.columns());
+    let (west, columns) = (floor.geometry.first().column, f32::from(floor.geometry.columns()));
     let mut pans = vec![[0.0; 2]; width];
     for (tile, actuator) in floor.geometry.tiles().zip(&floor.actuators) {
         if let Some(actuator) = actuator
             && let Some(pan) = pans.get_mut(usize::from(actuator.channel))
         {
-            let (right, left) = ((f32::from(tile.column) + 0.5) / columns * FRAC_PI_2).sin_cos();
+            let (right, left) = ((f32::from(tile.column - west) + 0.5) / columns * FRAC_PI_2).sin_cos();
             *pan = [left, right];
         }
     }

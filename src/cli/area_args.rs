@@ -1,0 +1,61 @@
+//! Options for one computer of several.
+
+use clap::Args;
+use underfoot::floor::{Area, Floor, Geometry};
+use underfoot::layout::Layout;
+use underfoot::sink::{Fanout, Within};
+
+use super::failure::Failure;
+
+/// Which part of a large floor it is about.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct AreaArgs {
+    /// Serve only this area of the floor file: its boards and those within 0.9 m of it, its controls, its actuators.
+    #[arg(long, value_name = "NAME", requires = "floor", conflicts_with = "record")]
+    area: Option<String>,
+}
+
+/// What one computer serves.
+#[derive(Clone, Debug)]
+pub(crate) struct Served {
+    /// Of the whole floor, which layouts and outputs are about.
+    pub(crate) geometry: Geometry,
+    /// `None` for the whole floor.
+    area: Option<Area>,
+}
+
+impl AreaArgs {
+    /// What is served of `floor`, and the part of it that is.
+    pub(crate) fn of(&self, floor: Floor) -> Result<(Served, Floor), Failure> {
+        let geometry = floor.geometry;
+        let Some(id) = &self.area else { return Ok((Served { geometry, area: None }, floor)) };
+        let found = floor.area(id).and_then(|area| Some((area.clone(), floor.part(area)?)));
+        let Some((area, part)) = found else {
+            let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
+            let known = match ids.is_empty() {
+                true => "its floor file has no `areas`".to_owned(),
+                false => format!("there are {}", ids.join(", ")),
+            };
+            return Err(Failure::Other(format!("the floor has no area \"{id}\": {known}")));
+        };
+        Ok((Served { geometry, area: Some(area) }, part))
+    }
+}
+
+impl Served {
+    /// What of `layout` is served here.
+    pub(crate) fn layout(&self, layout: Layout) -> Layout {
+        match &self.area {
+            Some(area) => layout.part(area, &self.geometry),
+            None => layout,
+        }
+    }
+
+    /// `outputs`, told of what is served here.
+    pub(crate) fn outputs(&self, outputs: Fanout) -> Fanout {
+        let Some(area) = &self.area else { return outputs };
+        let mut own = Fanout::new();
+        own.push(Within::new(outputs, area.clone(), self.geometry));
+        own
+    }
+}

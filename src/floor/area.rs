@@ -1,0 +1,168 @@
+//! Areas of a floor that is too large for one computer.
+
+use glam::Vec2;
+
+use super::{Actuator, Board, Floor, Geometry, Rect, TileBlock, TileId};
+
+/// The tiles of a floor that one computer serves: it senses them, decides on their controls and moves their actuators.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Area {
+    /// Unique on the floor.
+    pub id: String,
+    /// Its tiles; no other area has them.
+    pub tiles: TileBlock,
+}
+
+/// How far beyond its area a computer senses, in metres: a step (0.7 m) and the half of a foot, so that both feet of
+/// whoever has one foot in the area are seen whole.
+pub const SENSED_BEYOND_M: f32 = 0.9;
+
+impl Area {
+    /// The tiles that its computer senses: its own and those within [`SENSED_BEYOND_M`] of them.
+    #[must_use]
+    pub fn sensed(&self, geometry: &Geometry) -> TileBlock {
+        let margin = (SENSED_BEYOND_M / geometry.pitch_m()).ceil() as u16;
+        self.tiles.grown(margin).common(&geometry.block())
+    }
+
+    /// Whether `point` of the floor is in this area; a point beyond the floor counts to the tile nearest to it, and one
+    /// that is not a number to the first.
+    ///
+    /// Of a floor's areas, exactly one holds a point.
+    #[must_use]
+    pub fn holds(&self, geometry: &Geometry, point: Vec2) -> bool {
+        self.tiles.contains(nearest_tile(geometry, point))
+    }
+}
+
+impl Floor {
+    /// The area called `id`; `None` if there is none.
+    #[must_use]
+    pub fn area(&self, id: &str) -> Option<&Area> {
+        self.areas.iter().find(|area| area.id == id)
+    }
+
+    /// The same floor in areas, of which each has actuators on the channels of a device of its own: channel by channel
+    /// in the order of its tiles.
+    #[must_use]
+    pub fn with_areas(mut self, areas: Vec<Area>) -> Self {
+        let mut next = vec![0; areas.len()];
+        for (tile, actuator) in self.geometry.tiles().zip(&mut self.actuators) {
+            if let Some(number) = areas.iter().position(|area| area.tiles.contains(tile)) {
+                *actuator = Some(Actuator::nominal(next[number]));
+                next[number] += 1;
+            }
+        }
+        Self { areas, ..self }
+    }
+
+    /// The part of this floor that the computer of `area` serves: what it senses, and the actuators and loudspeakers
+    /// that are its own.
+    ///
+    /// Tiles keep their names and points their places. Boards that measure nothing there are left out, and so is what
+    /// the others measure elsewhere; they keep their addresses. A loudspeaker belongs to the area nearest to it.
+    /// `None` if the floor has no tile there.
+    #[must_use]
+    pub fn part(&self, area: &Area) -> Option<Self> {
+        let geometry = self.geometry.part(&area.sensed(&self.geometry))?;
+        let indices: Vec<usize> =
+            geometry.tiles().map(|tile| self.geometry.index(tile)).collect::<Option<_>>()?;
+        let boards = self.boards.iter().map(|board| Board {
+            address: board.address.clone(),
+            channels: {
+                let here = |sensor: &Option<_>| {
+                    sensor.filter(|sensor: &super::SensorId| geometry.index(sensor.tile).is_some())
+                };
+                board.channels.iter().map(here).collect()
+            },
+        });
+        let own = |index: &usize| area.tiles.contains(self.geometry.tile_at_index(*index));
+        let near = |at: Vec2| area.holds(&self.geometry, at);
+        Some(Self {
+            geometry,
+            boards: boards.filter(|board| board.channels.iter().any(Option::is_some)).collect(),
+            calibration: of(&self.calibration, &indices)?,
+            tare: of(&self.tare, &indices)?,
+            actuators: indices
+                .iter()
+                .map(|index| self.actuators.get(*index).copied().flatten().filter(|_| own(index)))
+                .collect(),
+            drive: self.drive,
+            responses: of(&self.responses, &indices)?,
+            loudspeakers: self.loudspeakers.iter().filter(|one| near(one.at)).copied().collect(),
+            position_maps: of(&self.position_maps, &indices)?,
+            calibration_records: of(&self.calibration_records, &indices)?,
+            map_records: of(&self.map_records, &indices)?,
+            tared: self.tared,
+            allow: self.allow.clone(),
+            areas: Vec::new(),
+        })
+    }
+}
+
+/// The entries of `indices`; `None` if there is none for one of them.
+fn of<T: Clone>(all: &[T], indices: &[usize]) -> Option<Vec<T>> {
+    indices.iter().map(|&index| all.get(index).cloned()).collect()
+}
+
+fn nearest_tile(geometry: &Geometry, point: Vec2) -> TileId {
+    let Rect { min, max } = geometry.bounds();
+    // The far edges belong to no tile's cell, and NaN to none at all.
+    let inside = point.clamp(min, max - 0.5 * geometry.pitch_m());
+    geometry.tile_under(geometry.tile_under(point).map_or(inside, |_| point)).unwrap_or(geometry.first())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::{Corner, SensorId};
+
+    /// Four areas of 6 x 6 tiles.
+    fn hall() -> Floor {
+        let areas = [("sw", 0, 0), ("se", 6, 0), ("nw", 0, 6), ("ne", 6, 6)].map(|(id, column, row)| Area {
+            id: id.into(),
+            tiles: TileBlock { first: TileId::new(column, row), columns: 6, rows: 6 },
+        });
+        Floor::of(Geometry::of_paper_tiles(12, 12).unwrap()).with_areas(areas.into())
+    }
+
+    #[test]
+    fn a_part_has_a_margin_of_three_tiles_and_moves_none_of_them() {
+        let floor = hall();
+        let part = floor.part(floor.area("ne").unwrap()).unwrap();
+        assert_eq!(part.geometry.block(), TileBlock { first: TileId::new(3, 3), columns: 9, rows: 9 });
+        assert_eq!(part.actuators.iter().flatten().count(), 36);
+        for (index, tile) in part.geometry.tiles().enumerate() {
+            let whole = floor.geometry.index(tile).unwrap();
+            let is_own = tile.column >= 6 && tile.row >= 6;
+            assert_eq!(part.actuators[index], floor.actuators[whole].filter(|_| is_own), "{tile}");
+        }
+        // Each computer's device has the channels of its own tiles.
+        assert_eq!(part.channel_count(), 36);
+    }
+
+    #[test]
+    fn boards_keep_their_addresses_and_their_channels_places() {
+        let floor = hall();
+        let part = floor.part(floor.area("nw").unwrap()).unwrap();
+        // Each row has a board of eight tiles and one of four; the part has nine columns.
+        assert_eq!(part.boards.len(), 18);
+        let far = part.boards.iter().find(|board| board.address == "/underfoot/board/7").unwrap();
+        let sensor = SensorId { tile: TileId::new(8, 3), corner: Corner::SouthWest };
+        assert_eq!((far.channels.len(), far.channels[0], far.channels[4]), (16, Some(sensor), None));
+    }
+
+    #[test]
+    fn every_point_is_in_one_area() {
+        let floor = hall();
+        let side = 12.0 * 0.304;
+        for point in [(0.0, 0.0), (side, side), (side / 2.0, side / 2.0), (1.82, 1.83), (-3.0, 99.0)]
+            .map(Vec2::from)
+            .into_iter()
+            .chain([Vec2::NAN, Vec2::new(f32::INFINITY, f32::NEG_INFINITY)])
+        {
+            let holders = floor.areas.iter().filter(|area| area.holds(&floor.geometry, point));
+            assert_eq!(holders.count(), 1, "{point}");
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! The areas of a floor that several computers serve.
+
+use super::fields::Fields;
+use super::floor_codecs::{TILE, TILES};
+use super::problem::Problem;
+use super::reader::Reader;
+use crate::floor::{Area, Geometry, TileBlock, TileId};
+use crate::format::codec::{At, Distinct, Seen, Written};
+use crate::format::{Id, record};
+
+record! {
+    /// The tiles of a large floor that one computer serves.
+    pub(super) struct AreaRecord = "Area";
+    /// Unique among the floor's areas.
+    id: Written<String> = "id", At(Id);
+    /// Its tile in the south-west corner.
+    first: TileId = "at", TILE;
+    /// How many tiles it is wide and deep.
+    size: [u16; 2] = "size", TILES;
+}
+
+/// The areas of a floor; more computers than this no floor has.
+pub(super) const AREAS: Distinct<AreaRecord> =
+    Distinct { entry: "area", most: 1024, about: AreaRecord::told_apart };
+
+impl AreaRecord {
+    fn told_apart(_: usize, area: &Self, fields: &Fields<'_>, seen: &mut Seen) {
+        if !fields.have_failed(&["id"]) {
+            seen.check(fields, format!("the area \"{}\"", area.id.value), area.id.at.clone());
+        }
+    }
+
+    pub(super) fn area(&self) -> Area {
+        let [columns, rows] = self.size;
+        Area { id: self.id.value.clone(), tiles: TileBlock { first: self.first, columns, rows } }
+    }
+
+    pub(super) fn of(area: &Area) -> Self {
+        let TileBlock { first, columns, rows } = area.tiles;
+        Self { id: area.id.clone().into(), first, size: [columns, rows] }
+    }
+}
+
+/// Reports areas that leave the floor or share tiles, and tiles that no area has.
+pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRecord]) {
+    let floor = geometry.block();
+    let blocks: Vec<TileBlock> = records.iter().map(|record| record.area().tiles).collect();
+    let mut sound = true;
+    for (number, (record, block)) in records.iter().zip(&blocks).enumerate() {
+        let mut report = |message: String, expected: String| {
+            sound = false;
+            reader.report(Problem::error(record.id.at.clone(), message).expected(expected));
+        };
+        let id = &record.id.value;
+        if block.common(&floor) != *block {
+            report(format!("the area \"{id}\" has tiles beyond the floor"), format!("the floor has {floor}"));
+        }
+        let both = |(_, other): &(&AreaRecord, &TileBlock)| !other.common(block).is_empty();
+        if let Some((other, shared)) = records.iter().zip(&blocks).take(number).find(both) {
+            let tile = shared.common(block).first;
+            let message = format!("the areas \"{}\" and \"{id}\" share tile {tile}", other.id.value);
+            report(message, "expected each tile in one area".into());
+        }
+    }
+    let Some(last) = records.last().filter(|_| sound) else { return };
+    if let Some(bare) = geometry.tiles().find(|tile| !blocks.iter().any(|block| block.contains(*tile))) {
+        let problem = Problem::error(last.id.at.clone(), format!("tile {bare} is in no area"));
+        reader.report(problem.expected("expected areas that cover the floor"));
+    }
+}

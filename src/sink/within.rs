@@ -1,0 +1,46 @@
+//! Tells of what is in one area of a floor.
+
+use crate::floor::{Area, Geometry};
+use crate::sense::Contact;
+use crate::sink::{EventSink, Report};
+use crate::units::Instant;
+
+/// Passes everything on but contacts beyond an area: the computer that serves the area next to it tells of those.
+pub struct Within<S> {
+    inner: S,
+    area: Area,
+    /// The whole floor.
+    geometry: Geometry,
+    contacts: Vec<Contact>,
+}
+
+impl<S: EventSink> Within<S> {
+    /// Tells `inner` of contacts whose centroid is in `area` of the floor of this `geometry`.
+    pub fn new(inner: S, area: Area, geometry: Geometry) -> Self {
+        Self { inner, area, geometry, contacts: Vec::new() }
+    }
+}
+
+impl<S: EventSink> EventSink for Within<S> {
+    fn report(&mut self, report: Report<'_>) {
+        let Report::Contacts(at, contacts) = report else { return self.inner.report(report) };
+        let own = contacts.iter().filter(|contact| self.area.holds(&self.geometry, contact.centroid));
+        self.contacts.clear();
+        self.contacts.extend(own.cloned());
+        self.inner.report(Report::Contacts(at, &self.contacts));
+    }
+
+    fn poll(&mut self, now: Instant) {
+        self.inner.poll(now);
+    }
+
+    fn dropped(&self) -> u64 {
+        self.inner.dropped()
+    }
+}
+
+impl<S> std::fmt::Debug for Within<S> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Within").field("area", &self.area).finish_non_exhaustive()
+    }
+}
