@@ -189,7 +189,7 @@ impl<const LANES: usize> Window<LANES> {
 
     /// Writes tared forces and their qualities.
     #[inline(always)]
-    fn write(&self, read: &Read<LANES>, trust: Trust, into: Lanes<'_, LANES>) -> Found<LANES> {
+    fn write(&self, read: &Read<LANES>, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
         // All is read before anything is written: the compiler need not fear that it is the same.
         let (zeros, crept, mut forces) = (*into.zeros, *into.crept, *into.forces);
         let (mut quality, mut ends, mut guessed, mut news) =
@@ -198,8 +198,8 @@ impl<const LANES: usize> Window<LANES> {
         let mut loud = [false; LANES];
         for lane in 0..LANES {
             let force = read.forces[lane] - self.tares[lane] - (zeros[lane] + crept[lane]);
-            // NaN is not within any range.
-            is_force[lane] = (force >= -MOST_N) & (force <= MOST_N);
+            // NaN is at most nothing.
+            is_force[lane] = force.abs() <= MOST_N;
             is_used[lane] = is_force[lane] & self.wired[lane] & !trust.is_swapped;
             loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
             forces[lane] = if is_used[lane] { force } else { forces[lane] };
@@ -262,7 +262,7 @@ pub(super) fn put_wide(
     health: &mut Health,
 ) -> u64 {
     let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, write_wide(window, readings, trust, lanes), readings, health)
+    note(window.first, &write_wide(window, readings, trust, lanes), readings, health)
 }
 
 /// The same for a narrow one.
@@ -273,13 +273,13 @@ pub(super) fn put_narrow(
     frame: &mut ForceFrame,
     health: &mut Health,
 ) -> u64 {
-    let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, window.write(&window.read(readings), trust, lanes), readings, health)
+    let Some(mut lanes) = health.lanes(window.first, frame) else { return 0 };
+    note(window.first, &window.write(&window.read(readings), trust, &mut lanes), readings, health)
 }
 
 fn note<const LANES: usize>(
     first: usize,
-    found: Found<LANES>,
+    found: &Found<LANES>,
     readings: &Readings,
     health: &mut Health,
 ) -> u64 {
@@ -287,7 +287,7 @@ fn note<const LANES: usize>(
         health.note_newtons();
     }
     if found.is_any_loud {
-        let loud = (first..).zip(found.loud).filter(|(_, loud)| *loud);
+        let loud = (first..).zip(&found.loud).filter(|(_, loud)| **loud);
         loud.for_each(|(sensor, _)| health.note_loud(sensor));
     }
     found.bad.into()
@@ -299,7 +299,7 @@ fn write_wide<'a>(
     window: &Window<WIDE>,
     readings: &Readings,
     trust: Trust,
-    into: Lanes<'a, WIDE>,
+    mut into: Lanes<'a, WIDE>,
 ) -> Found<WIDE> {
-    window.write(&window.read(readings), trust, into)
+    window.write(&window.read(readings), trust, &mut into)
 }
