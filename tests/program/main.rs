@@ -7,6 +7,7 @@ mod pages;
 mod sender;
 
 mod app;
+mod areas;
 mod calibrate;
 mod clients;
 mod console;

@@ -1,4 +1,5 @@
-//! Sensing as a whole, on recorded forces.
+//! Sensing as a whole, on recorded and simulated forces.
 
+mod areas;
 mod feet;
 mod robust;

@@ -1,0 +1,137 @@
+//! A hall whose two areas are served by two processes, each of them a computer in the field.
+
+use std::io::{BufRead, BufReader};
+use std::path::Path;
+use std::process::Stdio;
+use std::time::Duration;
+
+use serde_json::Value;
+
+use crate::end_to_end::{Served, free_port, said, terminate, underfoot};
+
+/// Two areas side by side.
+const HALL: &str = r#"Floor(
+    columns: 12,
+    rows: 6,
+    areas: [(id: "west", at: (0, 0), size: (6, 6)), (id: "east", at: (6, 0), size: (6, 6))],
+)"#;
+
+/// One button in each area and one over their border, whose middle is in the east.
+const BUTTONS: &str = r#"Page(
+    title: "Hall",
+    regions: [(id: "hall", at: (0, 0), size: (12, 6))],
+    widgets: [
+        (id: "ticket", kind: "button", at: (2, 3), size: (0.8, 0.8), label: "Ticket"),
+        (id: "border", kind: "button", at: (5.7, 3), size: (0.8, 0.8), label: "Border"),
+        (id: "door", kind: "button", at: (9, 3), size: (0.8, 0.8), label: "Door"),
+    ],
+)"#;
+
+const VISIT: &str = r#"Scenario(
+    title: "Across the hall",
+    steps: [
+        Wait(ms: 1200),
+        Enter(from: West, at: (2.4, 2.4)),
+        Press(widget: "ticket", force_n: 140, hold_ms: 300),
+        WalkTo(at: (6.1, 2.4)),
+        Press(widget: "border", force_n: 140, hold_ms: 300),
+        WalkTo(at: (9.4, 2.4)),
+        Press(widget: "door", force_n: 140, hold_ms: 300),
+        Leave(to: East),
+    ],
+)"#;
+
+/// One of the hall's computers.
+struct Computer {
+    process: Served,
+    address: String,
+}
+
+impl Computer {
+    fn start(folder: &Path, area: &[&str]) -> Self {
+        let address = format!("127.0.0.1:{}", free_port());
+        let mut process = underfoot()
+            .args(["run", "hall_buttons.ron", "--floor", "hall.ron", "--listen", &address])
+            .args(["--json", "--json-contacts", "--no-osc"])
+            .args(area)
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map(Served)
+            .unwrap();
+        let mut line = String::new();
+        BufReader::new(process.0.stderr.take().unwrap()).read_line(&mut line).unwrap();
+        assert!(line.starts_with("Listening on"), "{line}");
+        Self { process, address }
+    }
+
+    /// Ends it; the answer is all it told.
+    fn told(mut self) -> Vec<Value> {
+        let out = self.process.0.stdout.take().unwrap();
+        let reader = std::thread::spawn(move || -> Vec<Value> {
+            let lines = BufReader::new(out).lines().map_while(Result::ok);
+            lines.filter_map(|line| serde_json::from_str(&line).ok()).collect()
+        });
+        terminate(&self.process.0);
+        reader.join().unwrap()
+    }
+}
+
+/// What controls did, in order.
+fn done(told: &[Value]) -> Vec<String> {
+    let event = |line: &Value| Some(format!("{} {}", line["id"].as_str()?, line["event"].as_str()?));
+    told.iter().filter_map(event).collect()
+}
+
+#[test]
+fn two_computers_serve_a_hall_between_them() {
+    let folder = tempfile::tempdir().unwrap();
+    let folder = folder.path();
+    for (name, text) in [("hall.ron", HALL), ("hall_buttons.ron", BUTTONS), ("visit.ron", VISIT)] {
+        std::fs::write(folder.join(name), text).unwrap();
+    }
+    let areas: [&[&str]; 3] = [&["--area", "west"], &["--area", "east"], &[]];
+    let computers = areas.map(|area| Computer::start(folder, area));
+    let addresses: Vec<&str> = computers.iter().map(|computer| computer.address.as_str()).collect();
+    // Boards send to whom it concerns; these send to all, as a switch would.
+    let simulated = underfoot()
+        .args(["simulate", "hall_buttons.ron", "--floor", "hall.ron", "--scenario", "visit.ron"])
+        .args(["--send", &addresses.join(",")])
+        .current_dir(folder)
+        .output()
+        .unwrap();
+    assert!(simulated.status.success(), "{}", said(&simulated));
+    // The last packets are on their way.
+    std::thread::sleep(Duration::from_millis(200));
+    let [west, east, whole] = computers.map(Computer::told);
+
+    let of = |id: &str| ["pressed", "released", "clicked"].map(|event| format!("{id} {event}"));
+    assert_eq!(done(&west), of("ticket"));
+    assert_eq!(done(&east), [of("border"), of("door")].concat());
+    assert_eq!(done(&whole), [of("ticket"), of("border"), of("door")].concat());
+
+    // Each tells of the feet in its own area, by their place on the whole floor.
+    let border_m = 6.0 * 0.304;
+    let places = |told: &[Value]| -> Vec<f64> {
+        let contacts = told.iter().filter_map(|line| line["contacts"].as_array()).flatten();
+        contacts.filter_map(|contact| contact["x_m"].as_f64()).collect()
+    };
+    let (west, east) = (places(&west), places(&east));
+    assert!(west.len() > 100 && east.len() > 100, "{} and {}", west.len(), east.len());
+    assert!(west.iter().all(|east_m| *east_m < border_m + 1e-6), "{west:?}");
+    assert!(east.iter().all(|east_m| *east_m >= border_m - 1e-6), "{east:?}");
+}
+
+#[test]
+fn an_area_that_the_floor_lacks_is_refused_by_name() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("hall.ron"), HALL).unwrap();
+    let refused = underfoot()
+        .args(["run", "--floor", "hall.ron", "--area", "north"])
+        .current_dir(folder.path())
+        .output()
+        .unwrap();
+    assert!(!refused.status.success());
+    assert!(said(&refused).contains("no area \"north\": there are west, east"), "{}", said(&refused));
+}
