@@ -74,9 +74,11 @@ impl TileBlock {
 }
 
 impl fmt::Display for TileBlock {
+    /// Where it begins is said unless that is a floor's corner.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { first, columns, rows } = self;
-        write!(f, "{columns} x {rows} tiles from {first}")
+        write!(f, "{columns} x {rows} tiles")?;
+        if *first == TileId::new(0, 0) { Ok(()) } else { write!(f, " from {first}") }
     }
 }
 

@@ -2,7 +2,8 @@
 
 use std::io::{BufRead, BufReader};
 use std::path::Path;
-use std::process::Stdio;
+use std::process::{ChildStderr, Stdio};
+use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
 use serde_json::Value;
@@ -17,9 +18,10 @@ const HALL: &str = r#"Floor(
 )"#;
 
 /// One button in each area and one over their border, whose middle is in the east.
-const BUTTONS: &str = r#"Page(
+const BUTTONS: &str = r#"Layout(
+    version: 1,
     title: "Hall",
-    regions: [(id: "hall", at: (0, 0), size: (12, 6))],
+    regions: [(id: "hall", at: (0, 3), size: (12, 3))],
     widgets: [
         (id: "ticket", kind: "button", at: (2, 3), size: (0.8, 0.8), label: "Ticket"),
         (id: "border", kind: "button", at: (5.7, 3), size: (0.8, 0.8), label: "Border"),
@@ -31,11 +33,11 @@ const VISIT: &str = r#"Scenario(
     title: "Across the hall",
     steps: [
         Wait(ms: 1200),
-        Enter(from: West, at: (2.4, 2.4)),
+        Enter(from: West, at: (2.4, 2.2)),
         Press(widget: "ticket", force_n: 140, hold_ms: 300),
-        WalkTo(at: (6.1, 2.4)),
+        WalkTo(at: (6.1, 2.2)),
         Press(widget: "border", force_n: 140, hold_ms: 300),
-        WalkTo(at: (9.4, 2.4)),
+        WalkTo(at: (9.4, 2.2)),
         Press(widget: "door", force_n: 140, hold_ms: 300),
         Leave(to: East),
     ],
@@ -45,6 +47,10 @@ const VISIT: &str = r#"Scenario(
 struct Computer {
     process: Served,
     address: String,
+    /// Reads what it tells, all the time.
+    reader: JoinHandle<Vec<Value>>,
+    /// Kept open, or what it says would fail.
+    _chatter: BufReader<ChildStderr>,
 }
 
 impl Computer {
@@ -52,7 +58,7 @@ impl Computer {
         let address = format!("127.0.0.1:{}", free_port());
         let mut process = underfoot()
             .args(["run", "hall_buttons.ron", "--floor", "hall.ron", "--listen", &address])
-            .args(["--json", "--json-contacts", "--no-osc"])
+            .args(["--json", "--json-contacts", "--no-osc", "--wav", &format!("out{}.wav", area.concat())])
             .args(area)
             .current_dir(folder)
             .stdout(Stdio::piped())
@@ -60,21 +66,20 @@ impl Computer {
             .spawn()
             .map(Served)
             .unwrap();
+        let mut chatter = BufReader::new(process.0.stderr.take().unwrap());
         let mut line = String::new();
-        BufReader::new(process.0.stderr.take().unwrap()).read_line(&mut line).unwrap();
+        chatter.read_line(&mut line).unwrap();
         assert!(line.starts_with("Listening on"), "{line}");
-        Self { process, address }
+        let out = BufReader::new(process.0.stdout.take().unwrap());
+        let parsed = |line: String| serde_json::from_str(&line).ok();
+        let reader = thread::spawn(move || out.lines().map_while(Result::ok).filter_map(parsed).collect());
+        Self { process, address, reader, _chatter: chatter }
     }
 
     /// Ends it; the answer is all it told.
-    fn told(mut self) -> Vec<Value> {
-        let out = self.process.0.stdout.take().unwrap();
-        let reader = std::thread::spawn(move || -> Vec<Value> {
-            let lines = BufReader::new(out).lines().map_while(Result::ok);
-            lines.filter_map(|line| serde_json::from_str(&line).ok()).collect()
-        });
+    fn told(self) -> Vec<Value> {
         terminate(&self.process.0);
-        reader.join().unwrap()
+        self.reader.join().unwrap()
     }
 }
 
@@ -103,7 +108,7 @@ fn two_computers_serve_a_hall_between_them() {
         .unwrap();
     assert!(simulated.status.success(), "{}", said(&simulated));
     // The last packets are on their way.
-    std::thread::sleep(Duration::from_millis(200));
+    thread::sleep(Duration::from_millis(200));
     let [west, east, whole] = computers.map(Computer::told);
 
     let of = |id: &str| ["pressed", "released", "clicked"].map(|event| format!("{id} {event}"));
