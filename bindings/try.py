@@ -273,10 +273,11 @@ def believed_for(underfoot, way, command, folder, end):
 def believed(underfoot, way, name, command, folder, args):
     good = True
     with ThreadPoolExecutor(args.at_once) as pool:
-        for what, end in ENDS_OF[way].items():
-            def one(_, end=end):
-                return believed_for(underfoot, way, command, folder, end)
-            times = list(pool.map(one, range(args.rounds)))
+        def begin(end):
+            return pool.submit(believed_for, underfoot, way, command, folder, end)
+        rounds = [(what, [begin(end) for _ in range(args.rounds)]) for what, end in ENDS_OF[way].items()]
+        for what, begun in rounds:
+            times = [one.result() for one in begun]
             print("%s: %s, believed for %.0f ms (median of %d), %.0f ms at most"
                   % (name, what, 1000 * statistics.median(times), args.rounds, 1000 * max(times)), flush=True)
             # A machine that has something else to do delays a round; a rule that is broken delays all of them.
