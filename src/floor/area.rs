@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::{Actuator, Board, Floor, Geometry, Rect, TileBlock, TileId};
+use super::{Actuator, Board, Floor, Geometry, Rect, SensorId, TileBlock, TileId};
 
 /// The tiles of a floor that one computer serves: it senses them, decides on their controls and moves their actuators.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -70,9 +70,8 @@ impl Floor {
         let boards = self.boards.iter().map(|board| Board {
             address: board.address.clone(),
             channels: {
-                let here = |sensor: &Option<_>| {
-                    sensor.filter(|sensor: &super::SensorId| geometry.index(sensor.tile).is_some())
-                };
+                let here =
+                    |sensor: &Option<SensorId>| sensor.filter(|sensor| geometry.index(sensor.tile).is_some());
                 board.channels.iter().map(here).collect()
             },
         });
@@ -109,13 +108,14 @@ fn nearest_tile(geometry: &Geometry, point: Vec2) -> TileId {
     let Rect { min, max } = geometry.bounds();
     // The far edges belong to no tile's cell, and NaN to none at all.
     let inside = point.clamp(min, max - 0.5 * geometry.pitch_m());
-    geometry.tile_under(geometry.tile_under(point).map_or(inside, |_| point)).unwrap_or(geometry.first())
+    let nearest = [point, inside].into_iter().find_map(|point| geometry.tile_under(point));
+    nearest.unwrap_or(geometry.first())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::floor::{Corner, SensorId};
+    use crate::floor::Corner;
 
     /// Four areas of 6 x 6 tiles.
     fn hall() -> Floor {

@@ -83,11 +83,8 @@ impl Layout {
     #[must_use]
     pub fn part(mut self, area: &Area, geometry: &Geometry) -> Self {
         self.widgets.retain(|widget| area.holds(geometry, widget.area.centre()));
-        let tile_in = |ground: &Ground| {
-            let own = area.tiles.tiles().map(|tile| geometry.plate(tile));
-            own.into_iter().any(|plate| plate.overlaps(ground.spec.area))
-        };
-        self.grounds.retain(tile_in);
+        let own = geometry.part(&area.tiles).map(|own| own.bounds());
+        self.grounds.retain(|ground| own.is_some_and(|own| own.overlaps(ground.spec.area)));
         self
     }
 
