@@ -28,7 +28,7 @@ pub(crate) mod file;
 pub(crate) mod hand;
 pub(crate) mod node;
 pub(crate) mod number;
-#[cfg(any(feature = "edit", test))]
+#[cfg(feature = "edit")]
 pub(crate) mod outline;
 pub(crate) mod pairs;
 pub(crate) mod problem;

@@ -63,7 +63,7 @@ fn play(script: &mut Script) -> Vec<Vec<Foot>> {
 
 /// The block that the documentation shows.
 fn documented() -> String {
-    let lines = include_str!("../scenario.rs").lines();
+    let lines = include_str!("mod.rs").lines();
     let block = lines.skip_while(|line| *line != "/// ```ron").skip(1).take_while(|line| *line != "/// ```");
     block.map(|line| format!("{}\n", line.trim_start_matches("///"))).collect()
 }

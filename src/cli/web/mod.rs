@@ -46,7 +46,7 @@ const MOST_HEAD: usize = 8192;
 /// How often it is looked whether somebody comes.
 const LOOK_EVERY: Duration = Duration::from_millis(20);
 
-const PAGE: &str = include_str!("web/page.html");
+const PAGE: &str = include_str!("page.html");
 
 /// The door before the floor is there: bound, but closed.
 pub(crate) struct Door {
