@@ -3,8 +3,10 @@
 //! Nothing here looks at a clock: each load does a known stretch of floor time, and whoever
 //! measures divides it by the time that took. `underfoot capacity` and the benches measure the same loads.
 
+mod receiving;
 mod rendering;
 mod sensing;
 
+pub use receiving::{AssemblyLoad, PacketLoad};
 pub use rendering::{BankLoad, RenderLoad, RenderWork, modal_error_db};
 pub use sensing::SensingLoad;

@@ -1,10 +1,14 @@
 //! `underfoot capacity`: how large a floor this machine carries.
 
+use std::num::NonZeroUsize;
+use std::thread;
 use std::time::{Duration, Instant};
 
 use clap::Args as ClapArgs;
 use serde_json::json;
-use underfoot::capacity::{BankLoad, RenderLoad, RenderWork, SensingLoad, modal_error_db};
+use underfoot::capacity::{
+    AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, modal_error_db,
+};
 use underfoot::floor::Geometry;
 
 use super::failure::Failure;
@@ -13,21 +17,24 @@ use super::progress::Progress;
 
 /// What `underfoot capacity` is asked to do.
 ///
-/// Does standard work as fast as it can, on one core, and says how much faster than real time that was: the
-/// rendering of 36 tiles at 96 kHz, and the sensing of three sizes of floor with people walking on them. Takes about
-/// ten seconds. Other programs at work make the answer smaller.
+/// Does standard work as fast as it can, on one core, and says how much faster than real time that was: the rendering
+/// of 36 tiles at 96 kHz, the reading and assembling of packets, and the sensing of three sizes of floor with people
+/// walking on them. Takes about fifteen seconds. Other programs at work make the answer smaller.
 #[derive(ClapArgs, Clone, Debug)]
 pub(crate) struct Args {
     /// How long each load is measured.
     #[arg(long, value_name = "S", default_value = "1", value_parser = patience)]
     seconds: Duration,
+    /// On how many cores at once each load is done, every core a floor of its own; `all` for as many as there are.
+    #[arg(long, value_name = "N|all", default_value = "1", value_parser = cores)]
+    threads: NonZeroUsize,
     /// Print the result as JSON on standard output.
     #[arg(long)]
     json: bool,
 }
 
-/// Share of a core that either half of the work may take, so that there is room for everything else.
-const HALF_A_CORE: f64 = 0.5;
+/// Share of the cores that each kind of work may take, so that there is room for everything else.
+const HALF: f64 = 0.5;
 
 /// Channels and tiles of the loads that the floor is judged by.
 const RENDERED_TILES: f64 = 36.0;
@@ -36,8 +43,11 @@ const SENSED_SIDE: u16 = 96;
 /// Walkers per tile: two on 6 x 6.
 const WALKERS: u16 = SENSED_SIDE * SENSED_SIDE / 18;
 
-/// Loads that are measured: six of rendering, four of sensing.
-const LOADS: u64 = 10;
+/// Loads that are measured: six of rendering, two of receiving, four of sensing.
+const LOADS: u64 = 12;
+
+/// Most threads that may be asked for.
+const MOST_THREADS: usize = 1024;
 
 /// One line of the answer.
 struct Measured {
@@ -45,6 +55,13 @@ struct Measured {
     name: String,
     /// Seconds of floor per second of work.
     times_real_time: f64,
+}
+
+/// One kind of work, and the tiles that it is good for with half of the cores.
+struct Limit {
+    id: &'static str,
+    name: &'static str,
+    tiles: f64,
 }
 
 /// Measures, and prints what was found.
@@ -55,48 +72,80 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
         errln!("This is a debug build: a release build is many times faster.");
     }
-    let length = args.seconds;
-    let progress = Progress::of("load", LOADS);
-    let rendering = rendering(length, &progress);
-    let sensing = sensing(length, &progress);
-    drop(progress);
+    let meter = Meter { length: args.seconds, threads: args.threads, progress: Progress::of("load", LOADS) };
+    let rendering = rendering(&meter);
+    let receiving = receiving(&meter);
+    let sensing = sensing(&meter);
+    drop(meter);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));
-    let factor = |all: &[Measured]| all.last().map_or(0.0, |measured| measured.times_real_time);
-    let felt_tiles = (RENDERED_TILES * HALF_A_CORE * factor(&rendering)).floor();
-    let sensed_tiles = (f64::from(SENSED_SIDE).powi(2) * HALF_A_CORE * factor(&sensing)).floor();
-    let side = felt_tiles.min(sensed_tiles).sqrt().floor().min(f64::from(Geometry::MAX_SIDE));
+    let limits = limits(&rendering, &receiving, &sensing);
+    let first = limits.iter().min_by(|a, b| a.tiles.total_cmp(&b.tiles));
+    let (first_id, first_name, tiles) = first.map_or(("", "", 0.0), |it| (it.id, it.name, it.tiles));
+    let side = tiles.sqrt().floor().min(f64::from(Geometry::MAX_SIDE));
     if args.json {
         let table = |all: &[Measured]| -> serde_json::Map<_, _> {
             all.iter().map(|one| (one.id.to_owned(), json!(one.times_real_time))).collect()
         };
         let errors: serde_json::Map<_, _> =
             errors.iter().map(|(rate, error)| (rate.to_string(), json!(error))).collect();
+        let tiles: serde_json::Map<_, _> =
+            limits.iter().map(|limit| (limit.id.to_owned(), json!(limit.tiles))).collect();
         outln!(
             "{}",
             json!({
+                "threads": args.threads,
                 "render_x_real_time": table(&rendering),
+                "receive_x_real_time": table(&receiving),
                 "sense_x_real_time": table(&sensing),
                 "modal_error_db": errors,
-                "felt_tiles": felt_tiles,
-                "sensed_tiles": sensed_tiles,
+                "tiles": tiles,
+                "first_limit": first_id,
                 "side_tiles": side,
             })
         );
         return Ok(());
     }
-    outln!("Rendering 36 tiles at 96 kHz in blocks of 64 frames, on one core:");
+    let cores = match args.threads.get() {
+        1 => "one core".to_owned(),
+        many => format!("{many} cores together"),
+    };
+    outln!("Rendering 36 tiles at 96 kHz in blocks of 64 frames, on {cores}:");
     rendering.iter().for_each(print);
-    outln!("Sensing at 1 kHz, on one core:");
+    outln!("Receiving at 1 kHz, on {cores}:");
+    receiving.iter().for_each(print);
+    outln!("Sensing at 1 kHz, on {cores}:");
     sensing.iter().for_each(print);
     outln!("Error of modal banks against double precision:");
     for (rate, error) in errors {
         outln!("  {:<52} {error:>7.1} dB", format!("{} kHz", rate / 1000));
     }
-    outln!(
-        "With half a core for either, this machine feels {felt_tiles} tiles in use at once and senses at least \
-         {sensed_tiles} with two people on each 6 x 6: a floor of {side} x {side} tiles."
-    );
+    outln!("Tiles for which half of that is enough:");
+    for Limit { name, tiles, .. } in &limits {
+        outln!("  {name:<52} {tiles:>7.0}");
+    }
+    outln!("What limits this machine first is {first_name}: a floor of {side} x {side} tiles.");
     Ok(())
+}
+
+/// How many tiles each kind of work is good for, by its heaviest load that an ordinary floor makes.
+fn limits(rendering: &[Measured], receiving: &[Measured], sensing: &[Measured]) -> [Limit; 4] {
+    let factor = |all: &[Measured], id: &str| {
+        all.iter().find(|measured| measured.id == id).map_or(0.0, |measured| measured.times_real_time)
+    };
+    let floor = f64::from(SENSED_SIDE).powi(2);
+    let limit =
+        |id, name, tiles: f64, factor: f64| Limit { id, name, tiles: (tiles * HALF * factor).floor() };
+    [
+        limit("packets", "reading packets", floor, factor(receiving, "96x96_packets")),
+        limit("assembling", "assembling frames", floor, factor(receiving, "96x96_frames")),
+        limit("sensing", "sensing, two people on each 6 x 6", floor, factor(sensing, "96x96_512_walkers")),
+        limit(
+            "sound",
+            "sound, on tiles in use at once",
+            RENDERED_TILES,
+            factor(rendering, "modes_8_friction_limiter"),
+        ),
+    ]
 }
 
 fn print(measured: &Measured) {
@@ -104,13 +153,14 @@ fn print(measured: &Measured) {
     outln!("  {:<52} {:>7.digits$} x real time", measured.name, measured.times_real_time);
 }
 
-fn rendering(length: Duration, progress: &Progress) -> Vec<Measured> {
+fn rendering(meter: &Meter) -> Vec<Measured> {
     let mut all = Vec::new();
     for (id, modes) in [("banks_8", 8), ("banks_64", 64)] {
-        let mut load = BankLoad::new(modes);
         let name = format!("modal banks alone, {modes} modes struck 20 times a second");
-        all.push(Measured { id, name, times_real_time: measure(length, || load.second()) });
-        progress.advance();
+        all.push(meter.measure(id, name, || {
+            let mut load = BankLoad::new(modes);
+            move || load.second()
+        }));
     }
     for (id, name, work) in [
         ("modes_8", "8 modes struck 20 times a second", RenderWork::of_modes(8)),
@@ -122,36 +172,78 @@ fn rendering(length: Duration, progress: &Progress) -> Vec<Measured> {
             RenderWork::with_friction_and_limiter(),
         ),
     ] {
-        let mut load = RenderLoad::new(work);
-        all.push(Measured { id, name: name.into(), times_real_time: measure(length, || load.second()) });
-        progress.advance();
+        all.push(meter.measure(id, name.into(), || {
+            let mut load = RenderLoad::new(work);
+            move || load.second()
+        }));
     }
     all
 }
 
-fn sensing(length: Duration, progress: &Progress) -> Vec<Measured> {
+fn receiving(meter: &Meter) -> Vec<Measured> {
+    let side = SENSED_SIDE;
+    let packets = meter.measure("96x96_packets", format!("packets of {side} x {side} tiles"), || {
+        let mut load = PacketLoad::new(side);
+        move || {
+            load.second();
+        }
+    });
+    let frames = meter.measure("96x96_frames", format!("assembling {side} x {side} tiles"), || {
+        let mut load = AssemblyLoad::new(side);
+        move || {
+            load.second();
+        }
+    });
+    vec![packets, frames]
+}
+
+fn sensing(meter: &Meter) -> Vec<Measured> {
     let sizes = [
         ("6x6_2_walkers", 6, 2),
         ("24x24_2_walkers", 24, 2),
         ("96x96_2_walkers", SENSED_SIDE, 2),
         ("96x96_512_walkers", SENSED_SIDE, WALKERS),
     ];
-    sizes
-        .into_iter()
-        .map(|(id, side, walkers)| {
+    let measured = sizes.into_iter().map(|(id, side, walkers)| {
+        meter.measure(id, format!("{side} x {side} tiles, {walkers} walkers"), || {
             let mut load = SensingLoad::new(side, walkers);
-            let name = format!("{side} x {side} tiles, {walkers} walkers");
-            let times_real_time = measure(length, || {
+            move || {
                 load.second();
-            });
-            progress.advance();
-            Measured { id, name, times_real_time }
+            }
         })
-        .collect()
+    });
+    measured.collect()
+}
+
+/// How loads are measured.
+struct Meter {
+    length: Duration,
+    threads: NonZeroUsize,
+    progress: Progress,
+}
+
+impl Meter {
+    /// How many seconds of floor go into a second of work, all threads together, each with a load of its own.
+    fn measure<Load: FnMut()>(
+        &self,
+        id: &'static str,
+        name: String,
+        load: impl Fn() -> Load + Sync,
+    ) -> Measured {
+        let times_real_time = thread::scope(|scope| {
+            let work = || factor(self.length, load());
+            let others: Vec<_> = (1..self.threads.get()).map(|_| scope.spawn(work)).collect();
+            let own = work();
+            // A thread that panicked has done nothing.
+            own + others.into_iter().map(|other| other.join().unwrap_or(0.0)).sum::<f64>()
+        });
+        self.progress.advance();
+        Measured { id, name, times_real_time }
+    }
 }
 
 /// How many seconds of floor go into a second of work: the median of as many as are done in `length`, three at least.
-fn measure(length: Duration, mut second: impl FnMut()) -> f64 {
+fn factor(length: Duration, mut second: impl FnMut()) -> f64 {
     // Tables, caches and the processor's clock warm up first.
     second();
     let mut factors = Vec::new();
@@ -163,4 +255,38 @@ fn measure(length: Duration, mut second: impl FnMut()) -> f64 {
     }
     factors.sort_unstable_by(f64::total_cmp);
     factors[factors.len() / 2]
+}
+
+/// Reads a number of threads, or `all`.
+fn cores(text: &str) -> Result<NonZeroUsize, String> {
+    if text == "all" {
+        return Ok(thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
+    }
+    let number = text.parse().ok().filter(|number: &NonZeroUsize| number.get() <= MOST_THREADS);
+    number.ok_or_else(|| format!("expected a number of threads from 1 to {MOST_THREADS}, or `all`"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_limits_first_is_what_carries_the_fewest_tiles() {
+        let measured = |id, times_real_time: f64| Measured { id, name: String::new(), times_real_time };
+        let found = limits(
+            &[measured("modes_8_friction_limiter", 100.0)],
+            &[measured("96x96_packets", 2.0), measured("96x96_frames", 5.0)],
+            &[measured("96x96_512_walkers", 0.5)],
+        );
+        assert_eq!(found.map(|limit| limit.tiles), [9216.0, 23_040.0, 2304.0, 1800.0]);
+    }
+
+    #[test]
+    fn threads_are_a_number_or_all() {
+        assert_eq!(cores("3").unwrap().get(), 3);
+        assert!(cores("all").unwrap().get() >= 1);
+        for wrong in ["0", "-1", "many", "1025", ""] {
+            assert!(cores(wrong).is_err(), "{wrong}");
+        }
+    }
 }

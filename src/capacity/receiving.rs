@@ -1,0 +1,123 @@
+//! How fast packets are read and put together: floors on which nobody stands, with sensors that are never still.
+
+use rand::{RngExt, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+
+use crate::floor::{Corner, Floor, Geometry, SensorId};
+use crate::sense::Assembler;
+use crate::units::Instant;
+use crate::wire::{Batch, Decoder, Readings, SensorEncoder, SensorFormat, SensorPacket};
+
+/// Milliseconds that are read over and over, so many that no sensor repeats itself from one to the next.
+const MILLIS: usize = 8;
+
+/// What an empty floor's sensors read on average, in counts, and by how much they stray.
+const RESTING: u16 = 20_000;
+const STRAYS: u16 = 30;
+
+/// What the boards of a square floor send, and what reads it.
+#[derive(Clone, Debug)]
+pub struct PacketLoad {
+    decoder: Decoder,
+    batch: Batch,
+    datagrams: Vec<Vec<u8>>,
+}
+
+impl PacketLoad {
+    /// A floor of `side` x `side` tiles; a side that no floor can have is taken for the nearest one that can.
+    #[must_use]
+    pub fn new(side: u16) -> Self {
+        let floor = square(side);
+        let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
+        // Boards of the floor's own numbers of channels can always be encoded.
+        let encoded = |packet: &SensorPacket| encoder.encode(packet).map(<[u8]>::to_vec).ok();
+        let datagrams = millisecond(&floor, 0).iter().filter_map(encoded).collect();
+        Self { decoder: Decoder::new(&floor), batch: Batch::default(), datagrams }
+    }
+
+    /// Reads the datagrams of one second; the answer is the number of packets in the last of them.
+    pub fn second(&mut self) -> usize {
+        let mut packets = 0;
+        for ms in 0..1000 {
+            for datagram in &self.datagrams {
+                let read = self.decoder.decode(datagram, Instant::from_millis(ms), &mut self.batch);
+                packets = if read.is_ok() { self.batch.packets.len() } else { 0 };
+                std::hint::black_box(&self.batch);
+            }
+        }
+        packets
+    }
+}
+
+/// The assembling of a square floor's packets into frames.
+#[derive(Clone, Debug)]
+pub struct AssemblyLoad {
+    assembler: Assembler,
+    millis: Vec<Vec<SensorPacket>>,
+    sequence: u32,
+}
+
+impl AssemblyLoad {
+    /// A floor of `side` x `side` tiles; a side that no floor can have is taken for the nearest one that can.
+    #[must_use]
+    pub fn new(side: u16) -> Self {
+        let mut floor = square(side);
+        let tare = |sensor| floor.law(sensor).force(RESTING);
+        let tiles = floor.geometry.tiles();
+        floor.tare = tiles.map(|tile| Corner::ALL.map(|corner| tare(SensorId { tile, corner }))).collect();
+        let millis = (0..MILLIS).map(|seed| millisecond(&floor, seed as u64)).collect();
+        Self { assembler: Assembler::new(&floor), millis, sequence: 0 }
+    }
+
+    /// Assembles the frames of one second; the answer is their number.
+    pub fn second(&mut self) -> usize {
+        let mut frames = 0;
+        for _ in 0..1000 {
+            self.sequence = self.sequence.wrapping_add(1);
+            let received = Instant::from_millis(self.sequence.into());
+            let now = self.sequence as usize % MILLIS;
+            for packet in self.millis.get_mut(now).into_iter().flatten() {
+                (packet.sequence, packet.received) = (self.sequence, received);
+                self.assembler.take(packet);
+            }
+            while std::hint::black_box(self.assembler.ready()).is_some() {
+                frames += 1;
+            }
+        }
+        frames
+    }
+}
+
+fn square(side: u16) -> Floor {
+    let side = side.clamp(1, Geometry::MAX_SIDE);
+    Floor::of(Geometry::of_paper_tiles(side, side).unwrap_or_default())
+}
+
+/// What the boards send in one millisecond.
+fn millisecond(floor: &Floor, seed: u64) -> Vec<SensorPacket> {
+    let mut random = Pcg64Mcg::seed_from_u64(seed);
+    let packet = |(board, channels): (u16, usize)| SensorPacket {
+        board,
+        sequence: 0,
+        received: Instant::START,
+        readings: Readings::Counts(
+            (0..channels).map(|_| Some(RESTING + random.random_range(0..=2 * STRAYS) - STRAYS)).collect(),
+        ),
+    };
+    (0..).zip(floor.boards.iter().map(|board| board.channels.len())).map(packet).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_packet_is_read_and_every_millisecond_becomes_a_frame() {
+        assert_eq!(PacketLoad::new(6).second(), 1);
+        let mut load = AssemblyLoad::new(6);
+        assert_eq!(load.second() + load.second(), 2000);
+        let counters = load.assembler.counters();
+        assert_eq!((counters.lost, counters.late, counters.bad_readings, counters.frozen), (0, 0, 0, 0));
+        assert!(!load.assembler.is_foreign());
+    }
+}
