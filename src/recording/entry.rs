@@ -162,6 +162,7 @@ fn arguments(message: &ControlMessage) -> Vec<OscType> {
         | ControlMessage::Unlock { .. }
         | ControlMessage::Get { .. }
         | ControlMessage::GetAll
+        | ControlMessage::CancelAll
         | ControlMessage::GetPage
         | ControlMessage::GetMute => Vec::new(),
     }

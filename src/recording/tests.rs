@@ -44,6 +44,7 @@ fn every_request_is_read_as_it_was_asked() {
         ControlMessage::SetRange { id: id.clone(), least: -1.0, greatest: 7.5 },
         ControlMessage::Get { id: id.clone() },
         ControlMessage::GetAll,
+        ControlMessage::CancelAll,
         ControlMessage::ShowPage { page: id },
         ControlMessage::GetPage,
         ControlMessage::Mute { on: true },

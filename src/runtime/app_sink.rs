@@ -3,15 +3,18 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::Sender;
 use std::time::Instant as HostInstant;
 
 use triple_buffer::Input;
 
 use super::event::Event;
 use super::queue::QueueInput;
+use crate::serve::Command;
 use crate::sink::{CrackRateLimiter, EventSink, OwnedReport, Report, Worker};
 use crate::units::Instant;
 use crate::widget::WidgetId;
+use crate::wire::ControlMessage;
 
 /// What is held, as far as the sensing thread has said.
 #[derive(Clone, Debug, Default)]
@@ -30,14 +33,22 @@ pub(super) struct Waker {
 }
 
 impl Waker {
-    pub(super) fn start(mut wake: Box<dyn FnMut() + Send>) -> std::io::Result<Self> {
+    /// A callback that panics leaves an app that may not notice when a foot lets go: `commands` then cancel what is held.
+    pub(super) fn start(
+        mut wake: Box<dyn FnMut() + Send>,
+        commands: Sender<Command>,
+    ) -> std::io::Result<Self> {
         let due = Arc::new(AtomicBool::new(false));
         let begun = Arc::clone(&due);
         let worker = Worker::spawn("wake", move |calls| {
             for () in calls {
                 begun.store(false, Ordering::Release);
                 if catch_unwind(AssertUnwindSafe(&mut wake)).is_err() {
-                    tracing::warn!("the app's wake callback panicked; sensing goes on");
+                    tracing::warn!(
+                        "the app's wake callback panicked: what is held is cancelled, sensing goes on"
+                    );
+                    // A floor that has ended holds nothing.
+                    let _ = commands.send(Command::Control(ControlMessage::CancelAll));
                 }
             }
         })?;

@@ -207,8 +207,8 @@ impl SessionBuilder {
     /// Calls `wake` when there are new events, for apps that sleep until something happens, such as
     /// `move || context.request_repaint()`.
     ///
-    /// It is called on a thread of its own; several events may make one call. If it panics, that is logged, and
-    /// sensing goes on. The end waits for a call that is under way, for two seconds at most. It must not own a
+    /// It is called on a thread of its own; several events may make one call. If it panics, that is logged, what feet
+    /// hold is cancelled, since the app may no longer notice when they let go, and sensing goes on. The end waits for a call that is under way, for two seconds at most. It must not own a
     /// [`Session`], which then would never be dropped.
     #[must_use]
     pub fn wake(mut self, wake: impl FnMut() + Send + 'static) -> Self {
@@ -264,13 +264,14 @@ impl SessionBuilder {
             }
             None => (source, floor, layout),
         };
-        let waker = self.wake.map(Waker::start).transpose().map_err(StartError::Thread)?.map(Arc::new);
         let queue = Arc::new(Queue::new(self.every_change));
         let (held_input, held) = triple_buffer(&HeldNow::default());
         let held = Arc::new(HeldWatch::new(held));
         let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
         let shown = Arc::new(Shown::new(latest, layout.clone()));
         let (commands, received) = channel();
+        let waker = self.wake.map(|wake| Waker::start(wake, commands.clone())).transpose();
+        let waker = waker.map_err(StartError::Thread)?.map(Arc::new);
         // The app hears first, also where another sink fails.
         let sinks = Fanout::new().with(AppSink {
             events: QueueInput::new(Arc::clone(&queue), self.every_change),

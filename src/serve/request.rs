@@ -26,6 +26,7 @@ pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(),
         // Not for the engine: the server's own business.
         ControlMessage::GetPage
         | ControlMessage::GetAll
+        | ControlMessage::CancelAll
         | ControlMessage::Mute { .. }
         | ControlMessage::MuteTile { .. }
         | ControlMessage::GetMute => Ok(()),

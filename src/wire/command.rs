@@ -21,7 +21,7 @@ pub struct Command {
 }
 
 /// Everything that apps may ask.
-pub const COMMANDS: [Command; 15] = [
+pub const COMMANDS: [Command; 16] = [
     Command {
         path: "get",
         argument: ArgumentKind::Nothing,
@@ -124,6 +124,12 @@ pub const COMMANDS: [Command; 15] = [
         argument: ArgumentKind::Nothing,
         says: "Answer with the page that is shown.",
         make: |_, _| Some(ControlMessage::GetPage),
+    },
+    Command {
+        path: "cancel",
+        argument: ArgumentKind::Nothing,
+        says: "Cancel what feet hold; nothing is held until a foot lifts and presses anew.",
+        make: |_, _| Some(ControlMessage::CancelAll),
     },
     Command {
         path: "mute/set",

@@ -76,6 +76,8 @@ pub enum ControlMessage {
     },
     /// Tell the sender which page is shown.
     GetPage,
+    /// Cancel what feet hold: nothing is held or commits until a foot lifts and presses anew.
+    CancelAll,
     /// Let nothing be felt or heard, or everything again.
     Mute {
         /// Whether to.
@@ -108,6 +110,7 @@ impl ControlMessage {
             Self::ShowPage { .. }
             | Self::GetPage
             | Self::GetAll
+            | Self::CancelAll
             | Self::Mute { .. }
             | Self::MuteTile { .. }
             | Self::GetMute => None,
@@ -130,6 +133,7 @@ impl ControlMessage {
             Self::ShowPage { .. } => return "page/set".into(),
             Self::GetPage => return "page/get".into(),
             Self::GetAll => return "get".into(),
+            Self::CancelAll => return "cancel".into(),
             Self::Mute { .. } => return "mute/set".into(),
             Self::MuteTile { .. } => return "mute/tile".into(),
             Self::GetMute => return "mute/get".into(),

@@ -35,7 +35,7 @@ impl Default for Answers {
 impl Server {
     /// Does what the program's own app asks, and gives it the answer.
     pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), SetError>>) {
-        let done = request::apply(&mut self.engine, &message);
+        let done = self.apply(&message);
         if done.is_ok() {
             self.tell(&message.into());
             // Who reads what was written finds it.
@@ -59,6 +59,13 @@ impl Server {
         }
     }
 
+    fn apply(&mut self, message: &ControlMessage) -> Result<(), SetError> {
+        if *message == ControlMessage::CancelAll {
+            self.cancel_all();
+        }
+        request::apply(&mut self.engine, message)
+    }
+
     /// Does what an app asks; tells it what it wants to know or why it can't be done, and everybody what is new.
     fn handle_request(&mut self, request: &Request) {
         let done = match &request.message {
@@ -70,7 +77,7 @@ impl Server {
                 let muted = self.haptics.mute_tile(*tile, *on, self.engine.geometry());
                 self.tell_mute(muted).map_err(|error| error.to_string())
             }
-            message => request::apply(&mut self.engine, message).map_err(|error| error.to_string()),
+            message => self.apply(message).map_err(|error| error.to_string()),
         };
         match done {
             Ok(()) => self.tell(request),
@@ -108,6 +115,7 @@ impl Server {
             }
             // Told when it happens.
             ControlMessage::ShowPage { .. }
+            | ControlMessage::CancelAll
             | ControlMessage::Mute { .. }
             | ControlMessage::MuteTile { .. } => {}
         }
