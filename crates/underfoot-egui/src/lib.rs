@@ -4,7 +4,8 @@
 //! |---|---|
 //! | has its own buttons, sliders and maps pressed by feet | [`FootInput`], fed in `eframe::App::raw_input_hook` |
 //! | has several sliders dragged by several feet at once | [`FootSlider`] |
-//! | shows floor, feet and controls | [`FloorView`] |
+//! | shows floor, feet and controls | [`FloorView`]; on a second screen that is thrown onto the floor, [`Projector`] |
+//! | is tried without a floor | `SmallFloor` (feature `sim`), on which the mouse plays a foot |
 //!
 //! What must not happen by accident does not belong here: egui has no guards, knows one pointer and can't take back
 //! what a press began. Such actions are controls of the floor's layout (`Confirm`, `HoldToRun`), and a contact on one
@@ -33,10 +34,16 @@
 //! ```
 
 mod input;
+mod projector;
 mod slider;
+#[cfg(feature = "sim")]
+mod small_floor;
 mod touch;
 mod view;
 
 pub use input::FootInput;
+pub use projector::Projector;
 pub use slider::FootSlider;
+#[cfg(feature = "sim")]
+pub use small_floor::SmallFloor;
 pub use view::FloorView;

@@ -4,16 +4,14 @@ use std::time::Duration;
 
 use eframe::egui::{
     self, Align2, Color32, Context, CornerRadius, FontId, Frame, Key, Margin, RawInput, Rect, Response,
-    RichText, Sense, Shadow, Ui, Vec2, ViewportBuilder, ViewportCommand, ViewportId, pos2, vec2,
+    RichText, Sense, Shadow, Ui, Vec2, ViewportCommand, pos2, vec2,
 };
 use underfoot::floor::{self, Geometry};
-use underfoot::glam;
 use underfoot::runtime::Snapshot;
-use underfoot::scene::{Show, Theme};
-use underfoot::sim::{Foot, FootHandle};
-use underfoot::units::Newtons;
+use underfoot::scene::Theme;
+use underfoot::sim::FootHandle;
 use underfoot::wire::LinkState;
-use underfoot_egui::{FloorView, FootInput};
+use underfoot_egui::{FootInput, Projector, SmallFloor};
 
 use crate::chart;
 use crate::guide::Guide;
@@ -31,19 +29,12 @@ const INSET: f32 = 330.0;
 /// How often a map is drawn on which nothing moves.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// What a mouse that plays the foot presses with.
-const PRESS: Newtons = Newtons(120.0);
-
 pub struct App {
     guide: Guide,
     geometry: Geometry,
     feet: FootInput,
-    hand: Option<FootHandle>,
-    /// Whether the mouse holds that foot down.
-    is_played: bool,
-    inset: FloorView,
-    projected: FloorView,
-    project: bool,
+    small: SmallFloor,
+    projector: Projector,
     drag: Vec2,
     levels: f64,
 }
@@ -60,23 +51,9 @@ impl App {
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Light);
-        let inset =
-            FloorView::new(Theme::LIGHT, Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW });
-        let projected = FloorView::new(Theme::DARK, Show::PROJECTOR);
-        let feet = FootInput::new(free);
-        let is_played = false;
-        Self {
-            guide,
-            geometry,
-            feet,
-            hand,
-            is_played,
-            inset,
-            projected,
-            project,
-            drag: Vec2::ZERO,
-            levels: 0.0,
-        }
+        let (small, projector) = (SmallFloor::new(Theme::LIGHT, hand), Projector::new(project));
+        let (drag, levels) = (Vec2::ZERO, 0.0);
+        Self { guide, geometry, feet: FootInput::new(free), small, projector, drag, levels }
     }
 
     /// The card in a corner that says where one is.
@@ -91,15 +68,11 @@ impl App {
             ui.label(
                 RichText::new(format!("{north}   {east}   zoom {:.1}", camera.zoom)).size(15.0).color(QUIET),
             );
-            let (colour, words) = match (snapshot.floor.link, snapshot.floor.contacts.is_empty()) {
-                _ if self.guide.has_ended => (Theme::LIGHT.fault, "The floor is gone"),
-                (LinkState::Lost, _) => (Theme::LIGHT.fault, "The floor is silent"),
-                (LinkState::Waiting, _) => (Theme::LIGHT.warning, "Waiting for the floor"),
-                (_, true) if self.hand.is_some() => {
-                    (Theme::LIGHT.quiet, "Press the small floor with the mouse")
-                }
-                (_, true) => (Theme::LIGHT.quiet, "Step onto the floor"),
-                (_, false) => return,
+            let Some(words) = self.small.advice(&self.guide.floor, snapshot) else { return };
+            let colour = match snapshot.floor.link {
+                LinkState::Lost => Theme::LIGHT.fault,
+                LinkState::Waiting => Theme::LIGHT.warning,
+                _ => Theme::LIGHT.quiet,
             };
             let colour = Color32::from_rgb(colour.red, colour.green, colour.blue);
             ui.label(RichText::new(words).size(15.0).color(colour));
@@ -113,43 +86,14 @@ impl App {
         let at = Rect::from_min_size(rect.max - outer - vec2(24.0, 24.0), outer);
         card(ui, at, |ui| {
             ui.set_max_size(size);
-            let (response, map) = self.inset.ui(ui, &self.geometry, &snapshot.layout, &snapshot.floor);
-            let Some(hand) = &mut self.hand else { return };
-            let pressed = ui.interact(response.rect, response.id.with("mouse"), Sense::drag());
-            let place = pressed.interact_pointer_pos().filter(|_| pressed.is_pointer_button_down_on());
-            let foot = place.map(|at| foot_at(map.floor(at)));
-            hand.lead(ui.input(|i| i.unstable_dt), vec![foot.into_iter().collect()]);
-            self.is_played = pressed.is_pointer_button_down_on();
-            if self.is_played {
-                ui.ctx().request_repaint();
-            }
+            self.small.ui(ui, &self.geometry, snapshot);
         });
-    }
-
-    /// What a projector throws onto the floor, in a window of its own.
-    fn projection(&mut self, context: &Context, snapshot: &Snapshot) {
-        let builder = ViewportBuilder::default().with_title("Floor").with_inner_size([800.0, 800.0]);
-        let id = ViewportId::from_hash_of("projection");
-        let is_closed = context.show_viewport_immediate(id, builder, |ui, _| {
-            ui.painter().rect_filled(ui.max_rect(), 0.0, Color32::BLACK);
-            self.projected.ui(ui, &self.geometry, &snapshot.layout, &snapshot.floor);
-            ui.input(|input| input.viewport().close_requested())
-        });
-        self.project &= !is_closed;
     }
 }
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, context: &Context, raw: &mut RawInput) {
-        if raw.viewport_id != ViewportId::ROOT {
-            return;
-        }
-        // egui has one pointer: while the mouse plays the foot, that foot can't be a pointer as well.
-        if self.is_played {
-            self.feet.cancel(context, raw);
-        } else {
-            self.feet.follow(context, &self.guide.floor, raw);
-        }
+        self.small.lead(&mut self.feet, &self.guide.floor, context, raw);
     }
 
     /// Here and not in `ui`, which a window that is fully covered does not call: time goes on.
@@ -160,7 +104,7 @@ impl eframe::App for App {
             context.request_repaint();
         }
         context.request_repaint_after(IDLE);
-        if self.guide.has_ended && self.hand.is_none() {
+        if self.guide.has_ended && !self.small.is_simulated() {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
@@ -173,7 +117,7 @@ impl eframe::App for App {
             self.levels += f64::from(ui.input(|input| input.smooth_scroll_delta().y)) / 200.0;
         }
         if ui.input(|input| input.key_pressed(Key::P)) {
-            self.project = !self.project;
+            self.projector.toggle();
         }
         chart::paint(ui.painter(), rect, &self.guide.world, &self.guide.state);
         chart::scale_bar(
@@ -187,9 +131,7 @@ impl eframe::App for App {
         ui.painter().text(below, Align2::LEFT_BOTTOM, "Shapes: Natural Earth", font, QUIET);
         self.title(ui, rect, &snapshot);
         self.floor(ui, rect, &snapshot);
-        if self.project {
-            self.projection(&ui.ctx().clone(), &snapshot);
-        }
+        self.projector.show(&ui.ctx().clone(), &self.geometry, &snapshot);
     }
 }
 
@@ -199,12 +141,6 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect) -> Response {
     map.widget_info(|| egui::WidgetInfo::labeled(egui::accesskit::Role::Image, true, "Map"));
     feet.set_target(rect);
     map
-}
-
-/// A foot that looks north and presses at `place`.
-fn foot_at(place: glam::Vec2) -> Foot {
-    let foot = Foot { position: place, heading: 0.0, length_m: 0.27, force: PRESS, roll: 0.7 };
-    Foot { position: place - (foot.centre_of_pressure() - place), ..foot }
 }
 
 /// A light card over the map.

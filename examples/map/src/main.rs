@@ -46,6 +46,9 @@ struct Args {
     /// Print a line of JSON whenever the map comes to rest.
     #[arg(long)]
     print_state: bool,
+    /// Record the floor into a file, in place of what was there: `underfoot replay` plays it again.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Open no window.
     #[arg(long)]
     no_window: bool,
@@ -83,7 +86,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             (Session::simulated(Box::new(driver)), Some(hand))
         }
     };
-    let builder = builder.floor(hardware).layout(layout);
+    let mut builder = builder.floor(hardware).layout(layout);
+    if let Some(path) = &args.record {
+        builder = builder.record(path);
+    }
     let (world, state) = (World::shipped()?, State::new(args.home_after));
     if args.no_window {
         unseen(Guide::new(builder.start()?, world, state, args.print_state), FootInput::new(free));

@@ -5,17 +5,13 @@ use std::time::Duration;
 
 use eframe::egui::{
     self, Align, Align2, Color32, Context, CornerRadius, FontId, Key, Layout, Painter, RawInput, Rect,
-    RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, ViewportBuilder, ViewportCommand, ViewportId,
-    pos2, vec2,
+    RichText, Sense, Stroke, StrokeKind, Ui, UiBuilder, Vec2, ViewportCommand, pos2, vec2,
 };
 use underfoot::floor::{self, Geometry};
-use underfoot::glam;
 use underfoot::runtime::Snapshot;
-use underfoot::scene::{Show, Theme};
-use underfoot::sim::{Foot, FootHandle};
-use underfoot::units::Newtons;
-use underfoot::wire::LinkState;
-use underfoot_egui::{FloorView, FootInput};
+use underfoot::scene::Theme;
+use underfoot::sim::FootHandle;
+use underfoot_egui::{FootInput, Projector, SmallFloor};
 
 use crate::beam::Cause;
 use crate::chart::{Film, Screen};
@@ -39,9 +35,6 @@ const EDGE: f32 = 22.0;
 /// How often a window is drawn in which nothing moves.
 const IDLE: Duration = Duration::from_millis(50);
 
-/// What a mouse that plays the foot presses with: enough for all controls of the floor.
-const PRESS: Newtons = Newtons(140.0);
-
 /// Most files that are left out and named in the window; all of them are on standard error.
 const NAMED: usize = 3;
 
@@ -59,12 +52,8 @@ pub struct App {
     film: Film,
     geometry: Geometry,
     feet: FootInput,
-    hand: Option<FootHandle>,
-    /// Whether the mouse holds that foot down.
-    is_played: bool,
-    inset: FloorView,
-    projected: FloorView,
-    project: bool,
+    small: SmallFloor,
+    projector: Projector,
     drag: [f64; 2],
 }
 
@@ -80,12 +69,9 @@ impl App {
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Dark);
-        let inset =
-            FloorView::new(Theme::DARK, Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW });
-        let projected = FloorView::new(Theme::DARK, Show::PROJECTOR);
+        let (small, projector) = (SmallFloor::new(Theme::DARK, hand), Projector::new(false));
         let (feet, film) = (FootInput::new(free), Film::default());
-        let (is_played, project, drag) = (false, false, [0.0; 2]);
-        Self { guide, shelf, film, geometry, feet, hand, is_played, inset, projected, project, drag }
+        Self { guide, shelf, film, geometry, feet, small, projector, drag: [0.0; 2] }
     }
 
     /// Picture, and what must be seen over it at once.
@@ -231,60 +217,23 @@ impl App {
     /// The small floor, and the mouse as a foot on it.
     fn floor(&mut self, ui: &mut Ui, snapshot: &Snapshot) {
         let side = ui.available_width().min(ui.available_height() - 26.0).max(120.0);
-        let words = match (snapshot.floor.link, snapshot.floor.contacts.is_empty()) {
-            _ if self.guide.has_ended => "The floor is gone",
-            (LinkState::Lost, _) => "The floor is silent",
-            (LinkState::Waiting, _) => "Waiting for the floor",
-            (_, true) if self.hand.is_some() => "Press the small floor with the mouse",
-            (_, true) => "Step onto the floor",
-            (_, false) => "Key P: the floor for a projector",
-        };
+        let words = self.small.advice(&self.guide.floor, snapshot);
+        let words = words.unwrap_or("Key P: the floor for a projector");
         ui.label(RichText::new(words).size(13.0).color(QUIET));
-        ui.allocate_ui(Vec2::splat(side), |ui| {
-            let (response, map) = self.inset.ui(ui, &self.geometry, &snapshot.layout, &snapshot.floor);
-            let Some(hand) = &mut self.hand else { return };
-            let pressed = ui.interact(response.rect, response.id.with("mouse"), Sense::drag());
-            let place = pressed.interact_pointer_pos().filter(|_| pressed.is_pointer_button_down_on());
-            let foot = place.map(|at| foot_at(map.floor(at)));
-            hand.lead(ui.input(|i| i.unstable_dt), vec![foot.into_iter().collect()]);
-            self.is_played = pressed.is_pointer_button_down_on();
-            if self.is_played {
-                ui.ctx().request_repaint();
-            }
-        });
-    }
-
-    /// What a projector throws onto the floor, in a window of its own.
-    fn projection(&mut self, context: &Context, snapshot: &Snapshot) {
-        let builder = ViewportBuilder::default().with_title("Floor").with_inner_size([800.0, 800.0]);
-        let id = ViewportId::from_hash_of("projection");
-        let is_closed = context.show_viewport_immediate(id, builder, |ui, _| {
-            ui.painter().rect_filled(ui.max_rect(), 0.0, Color32::BLACK);
-            self.projected.ui(ui, &self.geometry, &snapshot.layout, &snapshot.floor);
-            ui.input(|input| input.viewport().close_requested())
-        });
-        self.project &= !is_closed;
+        ui.allocate_ui(Vec2::splat(side), |ui| self.small.ui(ui, &self.geometry, snapshot));
     }
 }
 
 impl eframe::App for App {
     fn raw_input_hook(&mut self, context: &Context, raw: &mut RawInput) {
-        if raw.viewport_id != ViewportId::ROOT {
-            return;
-        }
-        // egui has one pointer: while the mouse plays the foot, that foot can't be a pointer as well.
-        if self.is_played {
-            self.feet.cancel(context, raw);
-        } else {
-            self.feet.follow(context, &self.guide.floor, raw);
-        }
+        self.small.lead(&mut self.feet, &self.guide.floor, context, raw);
     }
 
     /// Here and not in `ui`, which a window that is fully covered does not call: the beam's lamp goes out in time.
     fn logic(&mut self, context: &Context, _: &mut eframe::Frame) {
         self.guide.turn(std::mem::take(&mut self.drag));
         context.request_repaint_after(IDLE);
-        if self.guide.has_ended && self.hand.is_none() {
+        if self.guide.has_ended && !self.small.is_simulated() {
             context.send_viewport_cmd(ViewportCommand::Close);
         }
     }
@@ -302,15 +251,13 @@ impl eframe::App for App {
         self.drag = dragged(ui, &mut self.feet, picture, &self.guide, self.drag);
         self.picture(ui, picture);
         if ui.input(|input| input.key_pressed(Key::P)) {
-            self.project = !self.project;
+            self.projector.toggle();
         }
         let panel = Rect::from_min_max(pos2(picture.right(), line.bottom()), rect.max).shrink(EDGE);
         let mut beside = ui.new_child(UiBuilder::new().max_rect(panel));
         beside.set_clip_rect(panel.expand(EDGE));
         self.panel(&mut beside, &snapshot);
-        if self.project {
-            self.projection(&ui.ctx().clone(), &snapshot);
-        }
+        self.projector.show(&ui.ctx().clone(), &self.geometry, &snapshot);
     }
 }
 
@@ -322,12 +269,6 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect, guide: &Guide, before:
     let scale = Screen::new(rect, &guide.state).scale;
     let by = picture.drag_delta();
     [before[0] + f64::from(by.x) / scale, before[1] + f64::from(by.y) / scale]
-}
-
-/// A foot that looks north and presses at `place`.
-fn foot_at(place: glam::Vec2) -> Foot {
-    let foot = Foot { position: place, heading: 0.0, length_m: 0.27, force: PRESS, roll: 0.7 };
-    Foot { position: place - (foot.centre_of_pressure() - place), ..foot }
 }
 
 /// A band across the picture with a large line and a smaller one.

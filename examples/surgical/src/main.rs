@@ -58,6 +58,9 @@ struct Args {
     /// Print a line of JSON whenever the viewer comes to rest.
     #[arg(long)]
     print_state: bool,
+    /// Record the floor into a file, in place of what was there: `underfoot replay` plays it again.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Open no window.
     #[arg(long)]
     no_window: bool,
@@ -85,7 +88,10 @@ fn main() -> Result<(), Box<dyn Error>> {
             (Session::simulated(Box::new(driver)).floor(hardware), Some(hand))
         }
     };
-    let builder = args.feel.attach(builder.layout(layout));
+    let mut builder = args.feel.attach(builder.layout(layout));
+    if let Some(path) = &args.record {
+        builder = builder.record(path);
+    }
     let state = State::new(shelf.series.iter().map(Sheet::of).collect(), longest_s);
     if args.no_window {
         unseen(Guide::new(builder.start()?, state, args.print_state), FootInput::new(free));

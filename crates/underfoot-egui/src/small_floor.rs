@@ -1,0 +1,88 @@
+//! The floor as a widget on which the mouse plays a foot.
+
+use egui::{Context, RawInput, Sense, Ui, ViewportId};
+use underfoot::floor::Geometry;
+use underfoot::glam::Vec2;
+use underfoot::runtime::{Session, Snapshot};
+use underfoot::scene::{Show, Theme};
+use underfoot::sim::{Foot, FootHandle};
+use underfoot::units::Newtons;
+use underfoot::wire::LinkState;
+
+use crate::{FloorView, FootInput};
+
+/// What the mouse presses with: enough for the heaviest of the built-in kinds.
+const PRESS: Newtons = Newtons(140.0);
+
+/// Length of the mouse's foot in metres.
+const FOOT_M: f32 = 0.27;
+
+/// A small picture of the floor in a corner of an app; where the floor is a simulated one, the mouse presses it.
+#[derive(Debug)]
+pub struct SmallFloor {
+    view: FloorView,
+    hand: Option<FootHandle>,
+    is_played: bool,
+}
+
+impl SmallFloor {
+    /// A small floor in these colours. `hand` moves the foot of a simulated floor
+    /// ([`underfoot::sim::feet_by_hand`]); without one the floor is only shown.
+    #[must_use]
+    pub fn new(theme: Theme, hand: Option<FootHandle>) -> Self {
+        let show = Show { sensors: false, loads: false, ruler: false, ..Show::WINDOW };
+        Self { view: FloorView::new(theme, show), hand, is_played: false }
+    }
+
+    /// Whether the mouse can press it.
+    #[must_use]
+    pub fn is_simulated(&self) -> bool {
+        self.hand.is_some()
+    }
+
+    /// What somebody who sees no foot on it should know; `None` while someone stands on a floor that works.
+    #[must_use]
+    pub fn advice(&self, session: &Session, snapshot: &Snapshot) -> Option<&'static str> {
+        Some(match (snapshot.floor.link, snapshot.floor.contacts.is_empty()) {
+            _ if session.has_ended() => "The floor is gone",
+            (LinkState::Lost, _) => "The floor is silent",
+            (LinkState::Waiting, _) => "Waiting for the floor",
+            (_, true) if self.is_simulated() => "Press the small floor with the mouse",
+            (_, true) => "Step onto the floor",
+            (_, false) => return None,
+        })
+    }
+
+    /// Fills the room that is left in `ui` with the floor, upright and as large as it goes, and leads the mouse's foot.
+    pub fn ui(&mut self, ui: &mut Ui, geometry: &Geometry, snapshot: &Snapshot) {
+        let (response, map) = self.view.ui(ui, geometry, &snapshot.layout, &snapshot.floor);
+        let Some(hand) = &mut self.hand else { return };
+        let pressed = ui.interact(response.rect, response.id.with("mouse"), Sense::drag());
+        self.is_played = pressed.is_pointer_button_down_on();
+        let place = pressed.interact_pointer_pos().filter(|_| self.is_played);
+        let foot = place.map(|at| foot_at(map.floor(at)));
+        hand.lead(ui.input(|input| input.unstable_dt), vec![foot.into_iter().collect()]);
+        if self.is_played {
+            ui.ctx().request_repaint();
+        }
+    }
+
+    /// What an app calls in `eframe::App::raw_input_hook` in place of [`FootInput::follow`]: while the mouse plays the
+    /// foot, that foot can't be a pointer as well, since egui has but one. Other windows of the app have no feet.
+    pub fn lead(&self, feet: &mut FootInput, session: &Session, context: &Context, raw: &mut RawInput) {
+        if raw.viewport_id != ViewportId::ROOT {
+            return;
+        }
+        if self.is_played {
+            feet.cancel(context, raw);
+        } else {
+            feet.follow(context, session, raw);
+        }
+    }
+}
+
+/// A foot that looks north and presses at `place`, on its ball.
+fn foot_at(place: Vec2) -> Foot {
+    let foot = Foot { position: place, heading: 0.0, length_m: FOOT_M, force: PRESS, roll: 0.7 };
+    Foot { position: place - (foot.centre_of_pressure() - place), ..foot }
+}
