@@ -2,6 +2,7 @@
 
 mod fields;
 mod fine_line;
+mod patches;
 mod rounded;
 mod transform;
 mod warped;
@@ -15,6 +16,7 @@ use glam::Vec2;
 
 use self::fields::Fields;
 use self::fine_line::FineLine;
+use self::patches::{Look, Patches};
 use self::rounded::{Rounded, on_pixels};
 use crate::floor;
 use crate::layout::Colour;
@@ -28,15 +30,18 @@ const LARGEST_DISC: f32 = 8.0;
 pub struct Palette {
     line: FineLine,
     fields: Fields,
+    patches: Patches,
 }
 
 /// Draws `scene` where `map` says.
 pub fn paint(painter: &egui::Painter, palette: &mut Palette, scene: &Scene, map: ScreenFromFloor) {
     palette.fields.begin();
-    let mut brush = Brush { painter, palette, map, points: Vec::new() };
+    let mut brush = Brush { painter, palette, map, points: Vec::new(), texts: Vec::new() };
     for mark in scene.marks() {
+        brush.write_under(scene, mark);
         brush.mark(scene, mark);
     }
+    brush.write();
     brush.palette.fields.end();
 }
 
@@ -63,9 +68,50 @@ struct Brush<'a> {
     palette: &'a mut Palette,
     map: ScreenFromFloor,
     points: Vec<Pos2>,
+    /// What is still to be written, and where: letters are on a texture of their own, and going from one to another and
+    /// back for each control takes longer than to draw it.
+    texts: Vec<(Rect, TextShape)>,
 }
 
 impl Brush<'_> {
+    /// Writes what is still to be written if `mark` might lie over some of it.
+    fn write_under(&mut self, scene: &Scene, mark: &Mark) {
+        if self.texts.is_empty() || matches!(mark, Mark::Text { .. }) {
+            return;
+        }
+        let area = self.covered(scene, mark);
+        if self.texts.iter().any(|(text, _)| text.intersects(area)) {
+            self.write();
+        }
+    }
+
+    fn write(&mut self) {
+        self.painter.extend(self.texts.drain(..).map(|(_, text)| text.into()));
+    }
+
+    /// What `mark` may cover, at least.
+    fn covered(&self, scene: &Scene, mark: &Mark) -> Rect {
+        let line = |paint: &Paint| paint.stroke.map_or(0.0, |stroke| self.stroke(&stroke).width);
+        let around = |points: &[Vec2]| {
+            points.iter().fold(Rect::NOTHING, |area, point| area | Rect::from_pos(self.map.point(*point)))
+        };
+        let (area, beyond) = match mark {
+            Mark::Box { area, paint, .. } => (self.map.rect(*area), line(paint)),
+            Mark::Ellipse { centre, radii, paint } => {
+                (self.map.rect(floor::Rect::from_centre_size(*centre, 2.0 * *radii)), line(paint))
+            }
+            // A sharp corner's tip is some widths long.
+            Mark::Path { points, paint, .. } => (around(scene.points(*points)), 4.0 * line(paint)),
+            Mark::Field { area, .. } => (self.map.rect(*area), 0.0),
+            Mark::Band { points, reach, .. } => {
+                (around(scene.points(*points)), reach.length() * self.map.scale())
+            }
+            Mark::Halo { area, reach_m, .. } => (self.map.rect(*area), reach_m * self.map.scale()),
+            Mark::Text { .. } => (Rect::NOTHING, 0.0),
+        };
+        area.expand(beyond + 2.0)
+    }
+
     fn mark(&mut self, scene: &Scene, mark: &Mark) {
         match mark {
             Mark::Box { area, radius_m, paint } => {
@@ -112,10 +158,15 @@ impl Brush<'_> {
             }
             Mark::Text { letters, lettering } => self.text(scene.letters(*letters), lettering),
             Mark::Halo { area, radius_m, reach_m, ink } => {
-                let scale = self.map.scale();
-                let shape = Rounded::new(self.map.rect(*area), radius_m * scale, self.pixels_per_point());
-                let mut mesh = Mesh::default();
-                shape.halo(&mut mesh, reach_m * scale, ink_color(*ink));
+                let (scale, pixels) = (self.map.scale(), self.pixels_per_point());
+                let (rect, radius) = (on_pixels(self.map.rect(*area), 0.0, pixels), radius_m * scale);
+                let (reach, ink) = (reach_m * scale, ink_color(*ink));
+                let look = Look::halo(radius, reach, ink, pixels);
+                let mesh = self.palette.patches.mesh(self.painter.ctx(), rect, look).unwrap_or_else(|| {
+                    let mut mesh = Mesh::default();
+                    Rounded::new(rect, radius, pixels).halo(&mut mesh, reach, ink);
+                    mesh
+                });
                 self.painter.add(Shape::mesh(mesh));
             }
         }
@@ -126,10 +177,18 @@ impl Brush<'_> {
     }
 
     /// A box with round corners; with endless ones it is a circle.
-    fn rounded(&self, rect: Rect, radius: f32, paint: &Paint) {
+    fn rounded(&mut self, rect: Rect, radius: f32, paint: &Paint) {
         let (fill, stroke) = (fill(paint), self.plain_stroke(paint));
         let is_round = radius == f32::INFINITY;
         let rect = if is_round { rect } else { on_pixels(rect, stroke.width, self.pixels_per_point()) };
+        if !is_round {
+            let radius = radius.min(0.5 * rect.size().min_elem()).max(0.0);
+            let look = Look::filled(radius, fill, stroke, self.pixels_per_point());
+            if let Some(mesh) = self.palette.patches.mesh(self.painter.ctx(), rect, look) {
+                self.painter.add(Shape::mesh(mesh));
+                return;
+            }
+        }
         let shape = Rounded::new(rect, radius, self.pixels_per_point());
         let mut mesh = Mesh::default();
         if fill != Color32::TRANSPARENT {
@@ -209,7 +268,7 @@ impl Brush<'_> {
         self.painter.extend(dashes);
     }
 
-    fn text(&self, letters: &str, lettering: &Lettering) {
+    fn text(&mut self, letters: &str, lettering: &Lettering) {
         // Quarter steps keep the glyph atlas small while the window is resized.
         let size = (lettering.size_m * self.map.scale() * 4.0).floor() / 4.0;
         if size < 3.0 {
@@ -230,11 +289,12 @@ impl Brush<'_> {
         let at = self.map.point(lettering.at) + corner;
         let mut shape = TextShape::new(at, galley, color);
         shape.angle = -lettering.turn_rad;
+        let area = shape.visual_bounding_rect();
         if lettering.strong {
             // The font has one weight; printed twice, its soft edges get heavier.
-            self.painter.add(shape.clone());
+            self.texts.push((area, shape.clone()));
         }
-        self.painter.add(shape);
+        self.texts.push((area, shape));
     }
 }
 
