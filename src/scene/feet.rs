@@ -52,14 +52,16 @@ fn radius_m(force: f32) -> f32 {
     (force.clamp(0.0, 5000.0) * CIRCLE_M2_PER_N).sqrt().max(0.012)
 }
 
-/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons.
-pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) {
+/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons; gives back where
+/// these are written.
+pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) -> Vec<Rect> {
     let mut tags = Vec::new();
     for contact in &view.snapshot.contacts {
         if contact.centroid.is_finite() {
             self::contact(scene, view, contact, &mut tags);
         }
     }
+    tags
 }
 
 fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec<Rect>) {

@@ -116,14 +116,14 @@ fn direction(Covariance { xx, xy, yy }: Covariance) -> f32 {
     if angle.is_finite() { angle } else { 0.0 }
 }
 
-/// Why presses led to nothing, on the controls that did not answer.
-pub(super) fn ignored(scene: &mut Scene, view: &View<'_>) {
+/// Why presses led to nothing, at the controls that did not answer; clear of what is written at `taken` places.
+pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) {
     if !view.show.ignored {
         return;
     }
     let (theme, now) = (view.theme, view.snapshot.at);
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
-    let floor = view.geometry.bounds();
+    let size_m = 0.022 * by;
     let mut told = Vec::new();
     for press in view.snapshot.ignored.iter().rev().filter(|press| now.since(press.at) < TOLD) {
         // A foot that slides over a row of controls is told where it ended.
@@ -132,17 +132,32 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>) {
         }
         told.push(press.contact);
         let Some(widget) = view.layout.widgets.iter().find(|widget| widget.id == press.id) else { continue };
-        let size_m = 0.022 * by;
         let text = format!("{:.0} N: {}", press.force.0, press.why);
-        let half = 0.5 * (super::widths::width(&text) * size_m + size_m);
-        let south = Vec2::new(widget.area.centre().x, widget.area.min.y - 0.8 * size_m);
-        // Within the floor, also for a control at its edge.
-        let low = (floor.min + Vec2::new(half, size_m)).min(floor.centre());
-        let middle = south.clamp(low, (floor.max - Vec2::new(half, size_m)).max(low));
+        let half = Vec2::new(0.5 * (super::widths::width(&text) * size_m + size_m), 0.8 * size_m);
+        let middle = beside(widget.area, half, view.geometry.bounds(), &taken);
+        taken.push(Rect::new(middle - half, middle + half));
         let plate = Paint::fill(Ink::solid(theme.plate))
             .with_stroke(Stroke::new(0.0025 * by, Ink::solid(theme.warning)));
         scene.add_badge(middle, size_m, Ink::solid(theme.warning), plate, format_args!("{text}"));
     }
+}
+
+/// Where words that reach `half` to each side stand at a control: along its south edge, or else further south or in the
+/// north, where nothing is written yet; within the floor, also for a control at its edge.
+fn beside(control: Rect, half: Vec2, floor: Rect, taken: &[Rect]) -> Vec2 {
+    let low = (floor.min + half).min(floor.centre());
+    let high = (floor.max - half).max(low);
+    let lines = (0..4_u8).flat_map(|line| {
+        let away = half.y * (1.0 + 2.2 * f32::from(line));
+        [control.min.y - away, control.max.y + away]
+    });
+    let places = lines.map(|y| Vec2::new(control.centre().x, y).clamp(low, high));
+    let is_free = |place: &Vec2| {
+        let words = Rect::new(*place - half, *place + half);
+        !taken.iter().any(|other| other.overlaps(words))
+    };
+    let first = Vec2::new(control.centre().x, control.min.y - half.y).clamp(low, high);
+    places.into_iter().find(is_free).unwrap_or(first)
 }
 
 #[cfg(test)]
@@ -219,5 +234,22 @@ mod tests {
         }
         let scene = marks(&snapshot, Show { ignored: true, ..BARE }, &[]);
         assert!(!scene.marks().iter().any(|mark| matches!(mark, Mark::Field { .. })));
+    }
+
+    #[test]
+    fn reasons_stand_clear_of_what_is_written_already() {
+        let floor = Geometry::default().bounds();
+        let half = Vec2::new(0.1, 0.02);
+        for control in [floor.centre(), floor.min, floor.max] {
+            let control = Rect::from_centre_size(control, Vec2::splat(0.15));
+            let mut taken: Vec<Rect> = Vec::new();
+            for _ in 0..4 {
+                let middle = beside(control, half, floor, &taken);
+                let words = Rect::new(middle - half, middle + half);
+                assert!(!taken.iter().any(|other| other.overlaps(words)), "{words:?} on {taken:?}");
+                assert!(floor.grown(1e-4).contains(words.min) && floor.grown(1e-4).contains(words.max));
+                taken.push(words);
+            }
+        }
     }
 }

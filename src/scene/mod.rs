@@ -103,10 +103,8 @@ pub fn draw(scene: &mut Scene, view: &View<'_>) {
     feet::shoes(scene, view);
     layers::trails(scene, view);
     layers::uncertainty(scene, view);
-    if view.show.contacts {
-        feet::contacts(scene, view);
-    }
-    layers::ignored(scene, view);
+    let tags = if view.show.contacts { feet::contacts(scene, view) } else { Vec::new() };
+    layers::ignored(scene, view, tags);
     let by = magnification(view.geometry);
     let wide = Geometry::default().bounds().size().x;
     if view.show.header {
