@@ -22,6 +22,7 @@ use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
 use super::trails::Trails;
+use super::turns::Turns;
 use super::watch::Watch;
 use super::zoom::Zoom;
 use crate::egui_painter::Palette;
@@ -77,6 +78,7 @@ pub(super) struct App {
     due: Instant,
     /// Height of the side panel's other parts at the last frame, in points.
     pub(super) other_parts: f32,
+    turns: Turns,
 }
 
 impl App {
@@ -119,6 +121,7 @@ impl App {
             frame_count: 0,
             due: Instant::now(),
             other_parts: 0.0,
+            turns: Turns::default(),
         }
     }
 
@@ -222,6 +225,14 @@ impl App {
 impl eframe::App for App {
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
+    }
+
+    fn raw_input_hook(&mut self, ctx: &egui::Context, input: &mut egui::RawInput) {
+        if input.viewport_id == egui::ViewportId::ROOT
+            && self.turns.take(&mut input.events, self.is_designing())
+        {
+            ctx.request_repaint();
+        }
     }
 
     fn clear_color(&self, _visuals: &egui::Visuals) -> [f32; 4] {

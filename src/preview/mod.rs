@@ -25,6 +25,7 @@ mod style;
 mod tests;
 mod trace;
 mod trails;
+mod turns;
 mod watch;
 mod zoom;
 

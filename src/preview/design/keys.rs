@@ -3,7 +3,7 @@
 use eframe::egui::{self, Key, Modifiers, Ui};
 use glam::Vec2;
 
-use super::{Ask, Designer, Pane, canvas};
+use super::{Ask, Designer, Pane, gestures};
 use crate::edit::{List, Template};
 
 /// How far an arrow key moves, in metres; with Shift, and with Alt.
@@ -103,7 +103,7 @@ impl Designer {
         }
         if pressed(Key::Escape) {
             self.placing = None;
-            self.gesture = canvas::Gesture::None;
+            self.gesture = gestures::Gesture::None;
             self.selected.clear();
         }
         let step = ui.input(|i| match (i.modifiers.shift, i.modifiers.alt) {

@@ -4,12 +4,19 @@
 
 mod bar;
 mod canvas;
+mod changes;
+mod fields;
 mod files;
+mod gestures;
 mod inspector;
 mod keys;
+mod labels;
+mod list;
+mod marks;
 mod modes;
 mod palette;
 mod shelf;
+mod shielded;
 #[cfg(test)]
 mod tests;
 mod text;
@@ -18,13 +25,11 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use glam::Vec2;
-
 use super::feed::PreviewCommand;
 use super::zoom::Zoom;
-use crate::edit::{Address, Document, Edit, Item, LayoutFile, List, Refusal};
+use crate::edit::{Address, Document, Edit, Item, LayoutFile, Refusal};
 use crate::ergonomics::Finding;
-use crate::floor::{Floor, Rect};
+use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::scene::Scene;
 use crate::schema::{Diagnostics, Kinds};
@@ -60,7 +65,7 @@ pub(super) struct Designer {
     selected: Vec<Address>,
     /// The number of the page that is shown.
     page: usize,
-    gesture: canvas::Gesture,
+    gesture: gestures::Gesture,
     /// What is put down with the next click.
     placing: Option<palette::Thing>,
     view: Zoom,
@@ -90,8 +95,9 @@ pub(super) struct Designer {
     /// Which part of the window F6 led to, and the one that is to get the keyboard in this frame.
     pane: Option<Pane>,
     focus: Option<Pane>,
-    /// Frames until the file is saved: what is being typed counts first.
+    /// Frames until the file is saved, and until the floor is tried: what is being typed counts first.
     saves_in: u8,
+    leaves_in: u8,
     /// What the floor is asked to do.
     wish: Option<PreviewCommand>,
 }
@@ -156,7 +162,7 @@ impl Designer {
             findings: Vec::new(),
             selected: Vec::new(),
             page: 0,
-            gesture: canvas::Gesture::None,
+            gesture: gestures::Gesture::None,
             placing: None,
             view: Zoom::default(),
             scene: Scene::new(),
@@ -178,6 +184,7 @@ impl Designer {
             pane: None,
             focus: None,
             saves_in: 0,
+            leaves_in: 0,
             wish: None,
         })
     }
@@ -245,204 +252,8 @@ impl Designer {
         self.selected = vec![record];
     }
 
-    /// Gives what is selected new areas.
-    fn move_to(&mut self, areas: &[Rect]) {
-        if self.holds_locked() {
-            return;
-        }
-        let items = self.selected_items();
-        let moved: Vec<(&Item, Rect)> = items.into_iter().zip(areas.iter().copied()).collect();
-        match self.document.placing(&moved) {
-            Ok(edits) => drop(self.edit(&edits)),
-            Err(refusal) => self.complain(refusal.short()),
-        }
-    }
-
-    fn nudge(&mut self, by: Vec2) {
-        if self.holds_locked() {
-            return;
-        }
-        let items = self.selected_items();
-        let moved: Vec<(&Item, Rect)> =
-            items.iter().map(|item| (*item, Rect::new(item.area.min + by, item.area.max + by))).collect();
-        let edits = self.document.placing(&moved);
-        match edits {
-            // Steps of a key that is held are one.
-            Ok(edits) => drop(self.edit_in(&edits, Some(self.stroke))),
-            Err(refusal) => self.complain(refusal.short()),
-        }
-    }
-
-    fn delete(&mut self) {
-        if self.holds_locked() {
-            return;
-        }
-        let edits = self.document.deleting(&self.selected);
-        if self.edit(&edits) {
-            self.selected.clear();
-        }
-    }
-
-    fn turn(&mut self) {
-        if self.holds_locked() {
-            return;
-        }
-        let edits = self.document.turning(&self.selected_items());
-        match edits {
-            Ok(edits) => drop(self.edit(&edits)),
-            Err(refusal) => self.complain(refusal.short()),
-        }
-    }
-
-    /// Copies beside what is selected: on the first side where there is room.
-    fn duplicate(&mut self) {
-        let Some(bounds) = self.document.bounds_of(&self.items, &self.selected) else { return };
-        let text = |designer: &Self, by: Vec2| designer.document.duplicating(&designer.selected, by);
-        self.put_beside(bounds.size(), text);
-    }
-
-    fn paste(&mut self, pasted: &str) {
-        let parent = self.layout().pages.get(self.page).map(|_| Address::of(List::Pages, self.page));
-        let parent = parent.unwrap_or(Address::LAYOUT);
-        let list = if pasted.contains("kind") { List::Widgets } else { List::Stances };
-        self.put_beside(Vec2::splat(0.16), |designer, by| {
-            designer.document.pasting(pasted, &parent, list, by)
-        });
-    }
-
-    /// Tries places one `size` and 6 cm away, and further, until one will do.
-    fn put_beside(
-        &mut self,
-        size: Vec2,
-        edits: impl Fn(&Self, Vec2) -> Result<(Vec<Edit>, Vec<Address>), Refusal>,
-    ) {
-        /// Half a shoe, so that a foot on one does not reach the other (rule U102).
-        const GAP_M: f32 = 0.06;
-        let step = size + Vec2::splat(GAP_M);
-        let ways = [Vec2::ZERO, Vec2::X, Vec2::NEG_Y, Vec2::NEG_X, Vec2::Y, Vec2::ONE, Vec2::NEG_ONE];
-        let mut last = None;
-        for far in 1..=6_u8 {
-            for way in ways {
-                match edits(self, way * step * f32::from(far)) {
-                    Ok((edits, places)) => match self.document.edit(&edits) {
-                        Ok(()) => {
-                            self.message = None;
-                            self.selected = places;
-                            return;
-                        }
-                        Err(refusal) => last = Some(refusal),
-                    },
-                    Err(refusal) => return self.complain(refusal.short()),
-                }
-            }
-        }
-        self.complain(last.map_or_else(String::new, |refusal| refusal.short()));
-    }
-
-    fn undo(&mut self) {
-        if let Err(problems) = self.document.undo() {
-            self.complain(problems.to_string());
-        }
-    }
-
-    fn redo(&mut self) {
-        if let Err(problems) = self.document.redo() {
-            self.complain(problems.to_string());
-        }
-    }
-
-    /// What a record is remembered by while others come and go: its id, or its place in the text.
-    fn key_of(&self, record: &Address) -> String {
-        self.document.id_of(record).map_or_else(|| record.to_string(), str::to_owned)
-    }
-
-    /// Whether it, or the group it is in, is one of `keys`.
-    fn is_in(&self, keys: &BTreeSet<String>, record: &Address) -> bool {
-        if keys.is_empty() {
-            return false;
-        }
-        let mut next = Some(record.clone());
-        while let Some(record) = next {
-            if record.split().is_some() && keys.contains(&self.key_of(&record)) {
-                return true;
-            }
-            next = record.split().map(|(parent, ..)| parent);
-        }
-        false
-    }
-
-    fn is_locked(&self, record: &Address) -> bool {
-        self.is_in(&self.locked, record)
-    }
-
-    fn is_hidden(&self, record: &Address) -> bool {
-        self.is_in(&self.hidden, record)
-    }
-
-    fn turn_lock(&mut self, records: &[Address]) {
-        let keys: Vec<String> = records.iter().map(|record| self.key_of(record)).collect();
-        turn(&mut self.locked, keys);
-    }
-
-    fn turn_hidden(&mut self, records: &[Address]) {
-        let keys: Vec<String> = records.iter().map(|record| self.key_of(record)).collect();
-        turn(&mut self.hidden, keys);
-    }
-
-    /// Whether something that is selected is locked, which is said then.
-    fn holds_locked(&mut self) -> bool {
-        let locked = self.selected.iter().find(|record| self.is_locked(record)).cloned();
-        if let Some(record) = &locked {
-            self.complain(format!("{} is locked; Ctrl+L unlocks it", self.key_of(record)));
-        }
-        locked.is_some()
-    }
-
-    fn group(&mut self) {
-        match self.document.grouping(&self.selected_items()) {
-            Ok((edits, at)) => {
-                if self.edit(&edits) {
-                    self.selected = vec![at];
-                }
-            }
-            Err(refusal) => self.complain(refusal.short()),
-        }
-    }
-
-    fn ungroup(&mut self) {
-        let Some(group) = self.selected_items().first().copied().cloned() else { return };
-        match self.document.ungrouping(&self.items, &group) {
-            Ok((edits, places)) => {
-                if self.edit(&edits) {
-                    self.selected = places;
-                }
-            }
-            Err(refusal) => self.complain(refusal.short()),
-        }
-    }
-
-    /// Puts what is selected behind (`first`) or in front of all else in its list: what comes later is drawn on top.
-    fn reorder(&mut self, first: bool) {
-        let [record] = &self.selected[..] else { return };
-        let Some((parent, list, _)) = record.split() else { return };
-        let count = self.document.count(&parent, list);
-        let to = if first { 0 } else { count.saturating_sub(1) };
-        if self.edit(&[Edit::Reorder { record: record.clone(), to }]) {
-            self.selected = vec![parent.entry(list, to)];
-        }
-    }
-
     /// Whether this part of the window is to get the keyboard now.
     fn leads_to(&mut self, pane: Pane) -> bool {
         self.focus.take_if(|wanted| *wanted == pane).is_some()
-    }
-}
-
-/// Puts `keys` in, or takes them out if all of them are in.
-fn turn(set: &mut BTreeSet<String>, keys: Vec<String>) {
-    if keys.iter().all(|key| set.contains(key)) {
-        set.retain(|key| !keys.contains(key));
-    } else {
-        set.extend(keys);
     }
 }

@@ -11,26 +11,42 @@ use crate::preview::messages::FileNote;
 use crate::schema;
 
 impl App {
-    /// Changes between Design and Try; what was designed is on the floor then.
-    pub(in crate::preview) fn turn_mode(&mut self) {
+    /// Changes between Design and Try; what was designed is on the floor then, with what was just being typed.
+    pub(in crate::preview) fn turn_mode(&mut self, ctx: &egui::Context) {
         let Some(designer) = &mut self.designer else { return };
-        designer.is_open = !designer.is_open;
         if designer.is_open {
-            // Nobody stands on a drawing board.
-            if let Some((feet, sink)) = &mut self.feet {
-                feet.lift_working();
-                feet.lift_standing();
-                sink.lead(0.0, &[]);
+            if let Some(id) = ctx.memory(|memory| memory.focused()) {
+                ctx.memory_mut(|memory| memory.surrender_focus(id));
             }
-        } else {
-            self.try_layout(LayoutCause::Designed);
+            designer.leaves_in = 2;
+            return ctx.request_repaint();
         }
+        designer.is_open = true;
+        // Nobody stands on a drawing board.
+        if let Some((feet, sink)) = &mut self.feet {
+            feet.lift_working();
+            feet.lift_standing();
+            sink.lead(0.0, &[]);
+        }
+    }
+
+    /// Closes the drawing board once what was typed is in the layout, and in the file if it was to be saved.
+    fn leave(&mut self, ctx: &egui::Context) {
+        let Some(designer) = self.designer.as_mut().filter(|designer| designer.leaves_in > 0) else { return };
+        if designer.saves_in == 0 {
+            designer.leaves_in -= 1;
+        }
+        if designer.leaves_in > 0 {
+            return ctx.request_repaint();
+        }
+        designer.is_open = false;
+        self.try_layout(LayoutCause::Designed);
     }
 
     /// F2 changes the mode; files are taken in, in any mode, that are dropped on the window or saved outside.
     pub(in crate::preview) fn handle_mode_key(&mut self, ui: &Ui) {
         if ui.input(|i| i.key_pressed(Key::F2)) {
-            self.turn_mode();
+            self.turn_mode(ui.ctx());
         }
         let dropped = ui.input(|i| i.raw.dropped_files.first().map(|file| file.path().to_path_buf()));
         let Some(designer) = &mut self.designer else { return };
@@ -80,7 +96,7 @@ impl App {
         let button = egui::Button::selectable(designer.is_open, "Design").frame_when_inactive(true);
         if ui.add(button).on_hover_text("Design the layout, or try it with feet; F2 does the same").clicked()
         {
-            self.turn_mode();
+            self.turn_mode(ui.ctx());
         }
     }
 
@@ -130,5 +146,6 @@ impl App {
         if let Some(wish) = wish {
             self.command(wish);
         }
+        self.leave(ui.ctx());
     }
 }

@@ -1,9 +1,8 @@
-//! What there is to put down: kinds of controls with their pictures, regions, places to stand, grounds; and below it
-//! what there is already.
+//! What there is to put down: kinds of controls with their pictures, regions, places to stand, grounds.
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{Key, Margin, Panel, ScrollArea, Sense, Ui, WidgetInfo, vec2};
+use eframe::egui::{FocusDirection, Key, Margin, Panel, Response, ScrollArea, Sense, Ui, WidgetInfo, vec2};
 use glam::Vec2;
 
 use super::{Designer, Pane};
@@ -12,7 +11,7 @@ use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
 use crate::engine::Snapshot;
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
-use crate::preview::style::{panel_frame, quiet, section};
+use crate::preview::style::{panel_frame, section};
 use crate::scene::{self, Scene, Show, Theme, View};
 use crate::widget::WidgetId;
 
@@ -66,7 +65,7 @@ impl Designer {
     pub(super) fn palette_panel(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette) {
         let frame = panel_frame(theme, Margin { left: 12, right: 4, top: 0, bottom: 6 });
         let panel = Panel::left("palette").frame(frame).resizable(true);
-        panel.default_size(190.0).size_range(150.0..=300.0).show(ui, |ui| {
+        panel.default_size(204.0).size_range(150.0..=300.0).show(ui, |ui| {
             let half = 0.5 * ui.available_height();
             let below = Panel::bottom("on the floor").frame(egui::Frame::new()).resizable(true);
             below.default_size(0.36 * ui.available_height()).size_range(90.0..=half.max(91.0)).show(
@@ -83,16 +82,18 @@ impl Designer {
                 ui.set_width(ui.available_width() - 8.0);
                 section(ui, theme, "Put down", |_| {});
                 let kinds: Vec<String> = self.document.kinds().iter().map(|kind| kind.name.clone()).collect();
-                let mut is_led = self.leads_to(Pane::Things);
-                for kind in kinds {
-                    self.thing(ui, theme, palette, Thing::Control(kind), std::mem::take(&mut is_led));
+                let controls = kinds.into_iter().map(Thing::Control);
+                let places = [Thing::Region, Thing::Stance];
+                let grounds = ["Ice", "Snow", "Gravel", "Sand", "Wood"].map(Thing::Ground);
+                let is_led = self.leads_to(Pane::Things);
+                let things = controls.chain(places).chain(grounds);
+                let shown: Vec<Response> =
+                    things.map(|thing| self.thing(ui, theme, palette, thing)).collect();
+                if is_led && let Some(first) = shown.first() {
+                    first.request_focus();
+                    first.scroll_to_me(None);
                 }
-                for thing in [Thing::Region, Thing::Stance] {
-                    self.thing(ui, theme, palette, thing, false);
-                }
-                for name in ["Ice", "Snow", "Gravel", "Sand", "Wood"] {
-                    self.thing(ui, theme, palette, Thing::Ground(name), false);
-                }
+                go_on(ui, &shown);
                 if ui.button("Add a page").clicked() {
                     self.add_page();
                 }
@@ -100,12 +101,9 @@ impl Designer {
         });
     }
 
-    fn thing(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette, thing: Thing, is_led: bool) {
+    fn thing(&mut self, ui: &mut Ui, theme: &Theme, palette: &mut Palette, thing: Thing) -> Response {
         let size = vec2(ui.available_width(), PICTURE + 6.0);
         let (rect, response) = ui.allocate_exact_size(size, Sense::click_and_drag());
-        if is_led {
-            response.request_focus();
-        }
         if response.gained_focus() {
             response.scroll_to_me(None);
         }
@@ -147,7 +145,7 @@ impl Designer {
         }
         response.on_hover_text(
             "Click, then click on the floor; or drag it there; Enter puts it where there is room",
-        );
+        )
     }
 
     /// The kind as it is on the floor.
@@ -262,128 +260,19 @@ impl Designer {
             self.selected = vec![Address::of(List::Pages, self.page)];
         }
     }
+}
 
-    /// What there is on the shown page, to be selected by name.
-    fn list(&mut self, ui: &mut Ui, theme: &Theme) {
-        if self.layout().pages.len() > 1 {
-            let names: Vec<String> = self.layout().pages.iter().map(|page| page.id.to_string()).collect();
-            for (number, name) in names.iter().enumerate() {
-                if ui.selectable_label(self.page == number, format!("Page {name}")).clicked() {
-                    self.page = number;
-                    self.selected = vec![Address::of(List::Pages, number)];
-                }
-            }
-        }
-        let mut chosen = None;
-        let (mut locks, mut hides) = (None, None);
-        let mut is_led = self.leads_to(Pane::Floor);
-        for item in self.items.iter().filter(|item| item.is_on(self.page)) {
-            let what = match item.record.list() {
-                Some(List::Regions) => "Region",
-                Some(List::Stances) => "Stance",
-                Some(List::Grounds) => "Ground",
-                _ if item.is_group => "Group",
-                _ => "Control",
-            };
-            let is_selected = self.selected.contains(&item.record);
-            let name = if item.name.is_empty() { item.record.to_string() } else { item.name.clone() };
-            let is_inner = item.record.split().is_some_and(|(of, ..)| of.list() == Some(List::Widgets));
-            let (is_locked, is_hidden) = (self.is_locked(&item.record), self.is_hidden(&item.record));
-            ui.horizontal(|ui| {
-                ui.with_layout(egui::Layout::right_to_left(egui::Align::Center), |ui| {
-                    ui.spacing_mut().item_spacing.x = 2.0;
-                    for (sign, is_on, wish) in
-                        [(Sign::Hide, is_hidden, &mut hides), (Sign::Lock, is_locked, &mut locks)]
-                    {
-                        let button = sign.button(ui, theme, is_on);
-                        let does = if sign == Sign::Hide { "Hide" } else { "Lock" };
-                        button.widget_info(|| {
-                            WidgetInfo::selected(Role::Button, true, is_on, format!("{does}: {name}"))
-                        });
-                        if button.on_hover_text(does).clicked() {
-                            *wish = Some(item.record.clone());
-                        }
-                    }
-                    ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
-                        ui.add_space(if is_inner { 12.0 } else { 0.0 });
-                        let row = egui::Button::selectable(is_selected, format!("{what} {name}")).truncate();
-                        let row = ui.add(row);
-                        if std::mem::take(&mut is_led) {
-                            row.request_focus();
-                        }
-                        if row.gained_focus() {
-                            row.scroll_to_me(None);
-                        }
-                        if row.clicked() {
-                            chosen = Some(item.record.clone());
-                        }
-                    });
-                });
-            });
-        }
-        if let Some(record) = locks {
-            self.turn_lock(&[record]);
-        }
-        if let Some(record) = hides {
-            self.turn_hidden(&[record]);
-        }
-        if let Some(record) = chosen {
-            if ui.input(|i| i.modifiers.shift) { self.toggle(record) } else { self.select_only(record) }
-        }
-        if self.items.is_empty() {
-            ui.label(quiet(theme, "Nothing yet"));
-        }
+/// Arrows lead through a list, also to what is scrolled away, and not on to what lies below it on the screen.
+pub(super) fn go_on(ui: &Ui, shown: &[Response]) {
+    let Some(at) = shown.iter().position(Response::has_focus) else { return };
+    let (up, down) = ui.input(|i| (i.key_pressed(Key::ArrowUp), i.key_pressed(Key::ArrowDown)));
+    if up == down {
+        return;
     }
-}
-
-/// What stands behind a row of the list.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Sign {
-    Hide,
-    Lock,
-}
-
-impl Sign {
-    /// Drawn, for the window's font has neither; faint while it is off.
-    fn button(self, ui: &mut Ui, theme: &Theme, is_on: bool) -> egui::Response {
-        let (rect, response) = ui.allocate_exact_size(vec2(18.0, 18.0), Sense::click());
-        let is_touched = response.hovered() || response.has_focus();
-        let ink = if is_on || is_touched { theme.ink } else { theme.quiet.mix(theme.plate, 0.5) };
-        let line = egui::Stroke::new(1.3, color(ink));
-        let (painter, at) = (ui.painter(), rect.center());
-        if response.has_focus() {
-            painter.rect_stroke(
-                rect,
-                4,
-                egui::Stroke::new(2.0, color(theme.accent)),
-                egui::StrokeKind::Inside,
-            );
-        }
-        match self {
-            Self::Hide => {
-                painter.add(egui::epaint::EllipseShape::stroke(at, vec2(6.0, 3.6), line));
-                painter.circle_filled(at, 1.8, color(ink));
-                if is_on {
-                    painter.line_segment([at + vec2(-5.5, 5.5), at + vec2(5.5, -5.5)], line);
-                }
-            }
-            Self::Lock => {
-                let body = egui::Rect::from_min_max(at + vec2(-4.0, -0.5), at + vec2(4.0, 5.5));
-                painter.rect(
-                    body,
-                    1,
-                    color(ink).gamma_multiply(f32::from(u8::from(is_on))),
-                    line,
-                    egui::StrokeKind::Middle,
-                );
-                // An open one has its shackle aside.
-                let aside = if is_on { 0.0 } else { 3.0 };
-                let points =
-                    [(-2.5, -0.5), (-2.5, -4.0), (2.5, -4.0), (2.5, if is_on { -0.5 } else { -2.5 })];
-                let points = points.map(|(x, y)| at + vec2(x + aside, y));
-                painter.add(egui::Shape::line(points.to_vec(), line));
-            }
-        }
-        response
+    ui.memory_mut(|memory| memory.move_focus(FocusDirection::None));
+    let next = if up { at.checked_sub(1) } else { at.checked_add(1) };
+    if let Some(next) = next.and_then(|next| shown.get(next)) {
+        next.request_focus();
+        next.scroll_to_me(None);
     }
 }

@@ -1,5 +1,8 @@
 //! Design mode without a display: found by name, worked by mouse and keyboard, judged by the text that comes of it.
 
+mod files;
+mod keyboard;
+
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
@@ -12,6 +15,7 @@ use tempfile::TempDir;
 use super::*;
 use crate::edit::Template;
 use crate::engine::Snapshot;
+use crate::floor::Rect;
 use crate::preview::app::App;
 use crate::preview::{LayoutNews, PreviewInput, PreviewOptions, Warnings};
 use crate::schema::{builtin_layout, parse_layout};
@@ -74,6 +78,10 @@ impl Desk {
 
     fn designer(&self) -> &Designer {
         self.window.state().designer.as_ref().unwrap()
+    }
+
+    fn designer_mut(&mut self) -> &mut Designer {
+        self.window.state_mut().designer.as_mut().unwrap()
     }
 
     fn text(&self) -> String {
@@ -166,30 +174,6 @@ fn what_cannot_be_is_refused_where_it_is_dropped() {
 }
 
 #[test]
-fn a_layout_is_built_from_an_empty_floor_by_keyboard() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("mine.ron");
-    let empty = crate::edit::Template::Empty.text(&Floor::default().geometry);
-    std::fs::write(&path, &empty).unwrap();
-    let mut desk = Desk::on(&empty, Some(path.clone()));
-    for kind in ["button", "switch", "slider"] {
-        desk.window.get_by_label(&format!("Put down: {kind}")).focus();
-        desk.window.run_steps(1);
-        desk.key(Key::Enter);
-    }
-    let ids: Vec<_> = desk.designer().layout().widgets.iter().map(|widget| widget.id.to_string()).collect();
-    assert_eq!(ids, ["button", "switch", "slider"]);
-    let before = desk.area("slider");
-    desk.command(Modifiers::COMMAND, Key::ArrowUp);
-    assert!((desk.area("slider").min.y - before.min.y - 0.01).abs() < 1e-4);
-    desk.command(Modifiers::COMMAND, Key::D);
-    assert_eq!(desk.designer().layout().widgets.len(), 4);
-    desk.command(Modifiers::COMMAND, Key::S);
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
-    assert!(desk.text().starts_with(&empty[..200]), "comments stay");
-}
-
-#[test]
 fn the_lasso_selects_and_delete_takes_out() {
     let mut desk = Desk::map();
     let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
@@ -240,78 +224,6 @@ fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
 }
 
 #[test]
-fn a_draft_is_offered_and_a_change_outside_is_merged() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("mine.ron");
-    let text = builtin_layout("map").unwrap();
-    std::fs::write(&path, text).unwrap();
-    std::fs::write(folder.path().join(".mine.ron.draft"), text.replace("\"Home\"", "\"Start\"")).unwrap();
-    let mut desk = Desk::on(text, Some(path.clone()));
-    desk.click("Recover the draft");
-    assert!(desk.text().contains("\"Start\""));
-    std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
-    desk.news.send(LayoutNews::Changed).unwrap();
-    desk.window.run_steps(2);
-    assert!(desk.text().contains("\"Start\"") && desk.text().contains("\"Scale\""));
-    desk.command(Modifiers::COMMAND, Key::S);
-    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
-}
-
-/// Types into the field that has the keyboard, in place of what it says, and goes on to the next.
-fn fill(desk: &mut Desk, text: &str) {
-    desk.window.key_press_modifiers(Modifiers::COMMAND, Key::A);
-    desk.window.run_steps(1);
-    desk.window.event(Event::Text(text.into()));
-    desk.window.run_steps(1);
-    desk.key(Key::Tab);
-}
-
-/// The layout `map.ron` from an empty file, by keys alone: what a newcomer does, one control after the other.
-#[test]
-fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("mine.ron");
-    std::fs::write(&path, "").unwrap();
-    let empty = Template::Empty.text(&Floor::default().geometry);
-    let mut desk = Desk::with(&empty, Some(path.clone()), tempfile::tempdir().unwrap());
-    let field = |desk: &mut Desk, name: &str, text: &str| {
-        desk.field(name).focus();
-        desk.window.run_steps(2);
-        fill(desk, text);
-    };
-    field(&mut desk, "title", "Map navigation");
-    desk.click("Region main");
-    field(&mut desk, "id", "map");
-    // Less deep first: five tiles from the second row on would leave the floor.
-    field(&mut desk, "size depth", "4");
-    field(&mut desk, "at north", "2");
-    let controls = [
-        ("button", "pan_north", "North", "1.9", "2.9", "0.6", "0.5"),
-        ("button", "pan_south", "South", "1.9", "2.2", "0.6", "0.5"),
-        ("button", "pan_west", "West", "1.1", "2.55", "0.55", "0.5"),
-        ("button", "pan_east", "East", "2.75", "2.55", "0.55", "0.5"),
-        ("round button", "home", "Home", "0.2", "2.2", "0.6", "0.6"),
-        ("switch", "satellite", "Satellite", "3.6", "2.2", "0.7", "0.6"),
-        ("slider", "zoom", "Zoom", "4.5", "2.2", "1.35", "0.6"),
-    ];
-    for (kind, id, label, east, north, width, depth) in controls {
-        desk.window.get_by_label(&format!("Put down: {kind}")).focus();
-        desk.window.run_steps(1);
-        desk.key(Key::Enter);
-        let values = [("id", id), ("label", label), ("size width", width), ("size depth", depth)];
-        for (name, text) in values.into_iter().chain([("at east", east), ("at north", north)]) {
-            field(&mut desk, name, text);
-        }
-    }
-    field(&mut desk, "initial", "0.3");
-    desk.command(Modifiers::COMMAND, Key::S);
-    let saved = std::fs::read_to_string(&path).unwrap();
-    let geometry = Floor::default().geometry;
-    let resolved = |text: &str| parse_layout(text, "it", &Kinds::builtin(), &geometry).unwrap().layout;
-    assert_eq!(resolved(&saved), resolved(builtin_layout("map").unwrap()), "{saved}");
-}
-
-#[test]
 fn a_group_is_taken_as_one_and_what_is_locked_or_hidden_is_let_be() {
     let mut desk = Desk::map();
     let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
@@ -333,61 +245,60 @@ fn a_group_is_taken_as_one_and_what_is_locked_or_hidden_is_let_be() {
 }
 
 #[test]
-fn what_was_never_saved_is_offered_at_the_next_start() {
-    let state = tempfile::tempdir().unwrap();
-    let folder = state.path().to_path_buf();
-    let mut desk = Desk::with(builtin_layout("map").unwrap(), None, state);
-    let home = desk.place("home");
-    desk.drag(home, home + vec2(0.0, -90.0));
-    desk.window.run_steps(130);
-    let text = desk.text();
-    // The window is gone, not its folder.
-    let Desk { window, state, .. } = desk;
-    drop(window);
-    let mut desk = Desk::with(builtin_layout("map").unwrap(), None, state);
-    assert!(folder.join("untitled-1/.untitled.ron.draft").exists());
-    desk.click("Recover the draft");
-    assert_eq!(desk.text(), text);
-}
-
-#[test]
-fn a_file_that_is_saved_outside_is_taken_in_while_feet_try_the_layout() {
-    let folder = tempfile::tempdir().unwrap();
-    let path = folder.path().join("mine.ron");
-    let text = builtin_layout("map").unwrap();
-    std::fs::write(&path, text).unwrap();
-    let mut desk = Desk::on(text, Some(path.clone()));
-    let home = desk.place("home");
-    desk.drag(home, home + vec2(0.0, -90.0));
-    let moved = desk.area("home");
-    desk.key(Key::F2);
-    std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
-    desk.news.send(LayoutNews::Changed).unwrap();
-    desk.window.run_steps(2);
-    let Some(PreviewCommand::Try { layout, cause, .. }) = desk.commands.try_iter().last() else { panic!() };
-    assert_eq!(cause, crate::preview::LayoutCause::Saved);
-    let area = |id| layout.widgets[layout.widget_index(id).unwrap()].area;
-    assert!(area("home") == moved && layout.widgets.iter().any(|widget| widget.label == "Scale"));
-    // What can't be read is told, and changes nothing.
-    std::fs::write(&path, "Layout(").unwrap();
-    desk.news.send(LayoutNews::Changed).unwrap();
-    desk.window.run_steps(2);
-    assert!(desk.window.query_all_by_label_contains("mine.ron has problems").next().is_some());
-    assert_eq!(desk.area("home"), moved);
-}
-
-#[test]
-fn f6_leads_from_part_to_part_and_a_feel_can_be_heard() {
+fn what_is_selected_is_arranged_from_the_menu_and_each_step_is_undone() {
     let mut desk = Desk::map();
-    desk.key(Key::F6);
-    desk.key(Key::F6);
-    desk.key(Key::Enter);
-    assert_eq!(desk.designer().selected.len(), 1, "the first thing on the floor");
-    let home = desk.place("home");
+    let first = desk.text();
+    let (north, south) = (desk.place("pan_north"), desk.place("pan_south"));
+    desk.drag(north + vec2(-130.0, -60.0), south + vec2(130.0, 40.0));
+    desk.click("Turn");
+    assert!(desk.area("pan_north").size().y > desk.area("pan_north").size().x, "a quarter turn");
+    desk.click("Undo");
+    desk.key(Key::Escape);
+    let (home, north) = (desk.place("home"), desk.place("pan_north"));
     desk.drag(home, home);
-    desk.click("Feel");
-    desk.click("Hear press");
-    assert!(desk.commands.try_iter().any(|told| matches!(told, PreviewCommand::Feel { .. })));
-    desk.key(Key::F6);
-    assert!(desk.field("id").is_focused());
+    desk.window.event(Event::ModifiersChanged(Modifiers::SHIFT));
+    desk.drag(north, north);
+    desk.window.event(Event::ModifiersChanged(Modifiers::NONE));
+    assert_eq!(desk.designer().selected.len(), 2);
+    desk.click("Arrange");
+    desk.click("Align north edges");
+    assert!((desk.area("home").max.y - desk.area("pan_north").max.y).abs() < 1e-4);
+    desk.click("Undo");
+    assert_eq!(desk.text(), first);
+    desk.click("Redo");
+    assert_ne!(desk.text(), first);
+}
+
+#[test]
+fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
+    let empty = Template::Empty.text(&Floor::default().geometry);
+    let mut desk = Desk::on(&empty, None);
+    for name in ["place to stand", "ice", "region"] {
+        desk.window.get_by_label(&format!("Put down: {name}")).focus();
+        desk.window.run_steps(1);
+        desk.key(Key::Enter);
+    }
+    let layout = desk.designer().layout();
+    let counts = (layout.stances.len(), layout.grounds.len());
+    assert_eq!(counts, (2, 1), "{}", desk.text());
+    // What is put down with the next click follows the pointer until then.
+    desk.click("Put down: button");
+    let board = desk.window.get_by_label("Drawing board").rect().center();
+    desk.drag(board, board);
+    assert_eq!(desk.designer().layout().widgets.len(), 1);
+    desk.click("Add a page");
+    assert_eq!(desk.designer().layout().pages.len(), 1);
+}
+
+#[test]
+fn shoes_and_reach_are_seen_to_scale_on_request() {
+    let mut desk = Desk::map();
+    assert!(!desk.designer().seen_to_scale.shoes && !desk.designer().seen_to_scale.reach);
+    for name in ["Shoes in true size", "How far feet reach"] {
+        desk.click("Show");
+        desk.click(name);
+        desk.key(Key::Escape);
+    }
+    assert!(desk.designer().seen_to_scale.shoes && desk.designer().seen_to_scale.reach);
+    assert_eq!(desk.designer().shoes(None).len(), 2, "a pair on the place to stand");
 }

@@ -1,0 +1,109 @@
+//! Files, drafts, and what other programs save meanwhile.
+
+use super::*;
+
+#[test]
+fn a_draft_is_offered_and_a_change_outside_is_merged() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.ron");
+    let text = builtin_layout("map").unwrap();
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(folder.path().join(".mine.ron.draft"), text.replace("\"Home\"", "\"Start\"")).unwrap();
+    let mut desk = Desk::on(text, Some(path.clone()));
+    desk.click("Recover the draft");
+    assert!(desk.text().contains("\"Start\""));
+    std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
+    desk.news.send(LayoutNews::Changed).unwrap();
+    desk.window.run_steps(2);
+    assert!(desk.text().contains("\"Start\"") && desk.text().contains("\"Scale\""));
+    desk.command(Modifiers::COMMAND, Key::S);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
+}
+
+#[test]
+fn what_was_never_saved_is_offered_at_the_next_start() {
+    let state = tempfile::tempdir().unwrap();
+    let folder = state.path().to_path_buf();
+    let mut desk = Desk::with(builtin_layout("map").unwrap(), None, state);
+    let home = desk.place("home");
+    desk.drag(home, home + vec2(0.0, -90.0));
+    desk.window.run_steps(130);
+    let text = desk.text();
+    // The window is gone, not its folder.
+    let Desk { window, state, .. } = desk;
+    drop(window);
+    let mut desk = Desk::with(builtin_layout("map").unwrap(), None, state);
+    assert!(folder.join("untitled-1/.untitled.ron.draft").exists());
+    desk.click("Recover the draft");
+    assert_eq!(desk.text(), text);
+}
+
+#[test]
+fn a_file_that_is_saved_outside_is_taken_in_while_feet_try_the_layout() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("mine.ron");
+    let text = builtin_layout("map").unwrap();
+    std::fs::write(&path, text).unwrap();
+    let mut desk = Desk::on(text, Some(path.clone()));
+    let home = desk.place("home");
+    desk.drag(home, home + vec2(0.0, -90.0));
+    let moved = desk.area("home");
+    desk.key(Key::F2);
+    std::fs::write(&path, text.replace("\"Zoom\"", "\"Scale\"")).unwrap();
+    desk.news.send(LayoutNews::Changed).unwrap();
+    desk.window.run_steps(2);
+    let Some(PreviewCommand::Try { layout, cause, .. }) = desk.commands.try_iter().last() else { panic!() };
+    assert_eq!(cause, crate::preview::LayoutCause::Saved);
+    let area = |id| layout.widgets[layout.widget_index(id).unwrap()].area;
+    assert!(area("home") == moved && layout.widgets.iter().any(|widget| widget.label == "Scale"));
+    // What can't be read is told, and changes nothing.
+    std::fs::write(&path, "Layout(").unwrap();
+    desk.news.send(LayoutNews::Changed).unwrap();
+    desk.window.run_steps(2);
+    assert!(desk.window.query_all_by_label_contains("mine.ron has problems").next().is_some());
+    assert_eq!(desk.area("home"), moved);
+}
+
+#[test]
+fn a_template_is_begun_with_and_saved_under_a_path_that_is_typed() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("new.ron");
+    let mut desk = Desk::map();
+    for entry in ["File", "New", Template::Empty.name()] {
+        desk.click(entry);
+    }
+    assert!(desk.designer().layout().widgets.is_empty());
+    desk.command(Modifiers::COMMAND, Key::S);
+    desk.window.get_by_label("Path").focus();
+    desk.window.run_steps(2);
+    desk.command(Modifiers::COMMAND, Key::A);
+    desk.window.event(Event::Text(path.display().to_string()));
+    desk.window.run_steps(2);
+    desk.click("Save as it");
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
+    assert!(desk.window.query_all_by_label_contains("Saved in").next().is_some());
+    assert!(desk.window.query_by_label("Path").is_none());
+}
+
+#[test]
+fn of_two_changes_to_the_same_lines_a_person_chooses() {
+    let text = builtin_layout("map").unwrap();
+    for (answer, kept) in [("Keep mine", "\"Mine\""), ("Take theirs", "\"Theirs\"")] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("mine.ron");
+        std::fs::write(&path, text).unwrap();
+        let mut desk = Desk::on(text, Some(path.clone()));
+        let home = desk.place("home");
+        desk.drag(home, home);
+        desk.field("label").focus();
+        desk.window.run_steps(2);
+        keyboard::fill(&mut desk, "Mine");
+        std::fs::write(&path, text.replace("\"Home\"", "\"Theirs\"")).unwrap();
+        desk.news.send(LayoutNews::Changed).unwrap();
+        desk.window.run_steps(3);
+        assert!(desk.window.query_all_by_label_contains("as well, and saved it").next().is_some());
+        desk.click(answer);
+        assert!(desk.text().contains(kept), "{answer}: {}", desk.text());
+        assert!(desk.window.query_by_label("Keep mine").is_none());
+    }
+}
