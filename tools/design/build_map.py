@@ -7,12 +7,15 @@ on a display of its own. The saved file must resolve to the same layout as the s
 `underfoot check --resolved` are compared, whatever order the controls came in.
 """
 import argparse
+import difflib
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
+import time
 
-from window import Window
+from window import SIZE, Window
 
 ROOT = os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__))))
 SHIPPED = os.path.join(ROOT, "layouts", "map.ron")
@@ -27,31 +30,100 @@ CONTROLS = [
     ("switch", "satellite", "Satellite", (3.6, 2.2), (0.7, 0.6)),
     ("slider", "zoom", "Zoom", (4.5, 2.2), (1.35, 0.6)),
 ]
-KINDS = ["arc slider", "button", "confirm button", "dead man", "dial", "fader", "gesture button", "heavy button",
-         "hold", "instant button", "lean", "pad", "pedal", "rate slider", "round button", "selector", "slider",
-         "stepper", "switch"]
+# In the order of the list of what can be put down.
+KINDS = sorted(name[:-len(".ron")].replace("_", " ") for name in os.listdir(os.path.join(ROOT, "widgets"))
+               if name.endswith(".ron"))
 
 # From the id of a slider to its initial value.
 TABS_TO_INITIAL = 26
 
+# Colours of the light theme: between plates, and behind what is typed.
+SEAM, FIELD = 0xDCD6CB, 0xFAF8F4
 
-class Places:
-    """Where things are in a window of 1400 x 900 points with one notice, which `--wav` brings about anywhere."""
+# The floor's side, and the width of the frame around it, in metres.
+FLOOR_M, FRAME_M, TILE_M = 1.824, 0.014, 0.304
 
-    kinds = (95, 167)  # the first of what can be put down
-    next_kind, last_kind = 45, 215  # the distance, and the last kind when the list is scrolled to its end
-    title, field = (1255, 188), (1255, 209)  # the layout's field, and the first one of a record
-    design, trying = ((294, 824), 112.2), ((188, 829), 120)  # the floor's south-west corner, and a tile
 
-    @classmethod
-    def kind(cls, index):
-        """How far down it is: in the first part from the top, in the rest from the end of the list."""
-        return cls.kinds[1] + cls.next_kind * index if index < 8 else cls.last_kind - cls.next_kind * (18 - index)
+class Floor:
+    """Where the floor is on the screen: it is the square whose sides have the seams' colour."""
 
-    @staticmethod
-    def on(floor, east, north):
-        (x, y), tile = floor
-        return round(x + tile * east), round(y - tile * north)
+    def __init__(self, screen):
+        rows = [y for y in range(screen.height) if screen.count_across(y, SEAM) > 400]
+        columns = [x for x in range(screen.width) if screen.count_down(x, SEAM) > 400]
+        if not rows or not columns:
+            sys.exit("there is no floor on the screen")
+        metre = (rows[-1] + 1 - rows[0]) / (FLOOR_M + FRAME_M)
+        self.tile = TILE_M * metre
+        self.west = columns[0] + 0.5 * FRAME_M * metre
+        self.south = rows[-1] + 1 - 0.5 * FRAME_M * metre
+
+    def at(self, east, north):
+        """A place in tiles, on the screen."""
+        return round(self.west + self.tile * east), round(self.south - self.tile * north)
+
+
+class Things:
+    """The list of what can be put down, which is scrolled by the wheel."""
+
+    NAMES, RIGHT = 78, 166  # where a row's name begins, and a place beside most names
+    TOP = 100  # below the bars
+
+    def __init__(self, window):
+        self.window = window
+        self.window.move(self.RIGHT, 300)
+        self.window.x("click", "--repeat", 40, "--delay", 10, 4)
+        # What each row looks like, by its number.
+        self.known = {}
+        self.rows, self.first = [], 0
+        self.look()
+
+    def look(self):
+        """Where the rows are that are seen as a whole, and which they are, once the list stands still."""
+        before = None
+        while True:
+            screen = self.window.look()
+            plain = screen.plain(self.RIGHT, range(36, 40))
+            found = [(top + end) // 2 for top, end in plain if top > self.TOP]
+            if len(found) > 2 and found == before:
+                break
+            before = found
+            time.sleep(0.1)
+        # The row under the pointer, and one whose name reaches over here, are not plain.
+        apart = statistics.mode(after - this for this, after in zip(found, found[1:]))
+        self.rows = [found[0] + apart * row for row in range(round((found[-1] - found[0]) / apart) + 1)]
+        names = [screen.part(self.NAMES, row - 8, self.RIGHT, row + 8) for row in self.rows]
+        firsts = [self.known[name] - row for row, name in enumerate(names) if name in self.known]
+        self.first = statistics.mode(firsts) if firsts else 0
+        for row, name in enumerate(names):
+            self.known.setdefault(name, self.first + row)
+
+    def click(self, kind):
+        """Takes one of this kind in hand."""
+        index = KINDS.index(kind)
+        for _ in range(40):
+            if self.first <= index < self.first + len(self.rows):
+                return self.window.click(self.RIGHT, self.rows[index - self.first], settle=0.3)
+            self.window.move(self.RIGHT, 300)
+            self.window.x("click", 5 if index >= self.first else 4)
+            self.window.steps += 1
+            self.look()
+        sys.exit(f"there is no {kind} in the list, of which {self.first} and on are seen at {self.rows}")
+
+
+def first_field(window):
+    """The first field at the right that is typed into, once what is there stands still."""
+    x, before = SIZE[0] - 78, None
+    while True:
+        screen = window.look()
+        shown = screen.part(SIZE[0] - 300, 100, SIZE[0], SIZE[1] - 50)
+        if shown == before:
+            break
+        before = shown
+        time.sleep(0.2)
+    found = screen.down(x, FIELD, range(14, 32), start=100)
+    if not found:
+        sys.exit("there is no field at the right")
+    return x, sum(found[0]) // 2
 
 
 def fields(window, control):
@@ -129,37 +201,40 @@ def by_keys(window):
 
 
 def by_mouse(window):
-    at = Places.on
-    window.key("F2")
+    window.key("F2", settle=0.5)
     window.shot("1-empty")
-    window.click(*Places.title)
+    window.click(*first_field(window))
     window.type("Map navigation")
     window.key("Tab")
     # The region: free floor, then the first of its fields.
-    window.click(*at(Places.design, 3, 4.5))
-    window.click(*Places.field)
+    floor, things = Floor(window.look()), Things(window)
+    window.click(*floor.at(3, 4.5), settle=0.3)
+    window.click(*first_field(window))
     region(window)
     window.shot("2-region")
     for number, control in enumerate(CONTROLS):
-        index = KINDS.index(control[0])
-        window.move(*Places.kinds)
-        window.x("click", "--repeat", 30, "--delay", 10, 4 if index < 8 else 5)
-        window.steps += 1
-        window.click(Places.kinds[0], Places.kind(index), settle=0.6)
-        window.click(*at(Places.design, control[3][0] + control[4][0] / 2, control[3][1] + control[4][1] / 2))
-        window.click(*Places.field)
+        _, _, _, (east, north), (width, depth) = control
+        things.click(control[0])
+        middle = (east + width / 2, north + depth / 2)
+        if number == 0:
+            # Taken hold of once more: put down a tile further north, and dragged south.
+            window.click(*floor.at(middle[0], middle[1] + 1), settle=0.3)
+            window.drag(floor.at(middle[0], middle[1] + 1), floor.at(*middle))
+        else:
+            window.click(*floor.at(*middle), settle=0.3)
+        window.click(*first_field(window))
         fields(window, control)
         if number in (0, 4):
             window.shot(f"{3 if number == 0 else 4}-{control[1]}")
-    window.click(*Places.field)
+    window.click(*first_field(window))
     window.key(*["Tab"] * TABS_TO_INITIAL)
     window.type("0.3")
     window.key("Tab")
     window.key("ctrl+s", settle=0.6)
     window.key("F2", settle=0.6)
-    window.click(*at(Places.trying, 0.5, 2.5), settle=0.6)
-    window.drag(at(Places.trying, 5.0, 2.4), at(Places.trying, 5.6, 2.4), hold=0.3)
-    window.shot("5-tried")
+    floor = Floor(window.look())
+    window.click(*floor.at(0.5, 2.5), settle=0.6)
+    window.drag(floor.at(5.0, 2.4), floor.at(5.6, 2.4), hold=0.5, shot="5-tried")
 
 
 def region(window):
@@ -177,7 +252,8 @@ def same(program, path):
     resolved = [subprocess.run([program, "check", "--resolved", file], check=True, capture_output=True, text=True)
                 .stdout for file in (path, SHIPPED)]
     if resolved[0] != resolved[1]:
-        sys.exit(f"{path} is another layout than {SHIPPED}:\n" + "\n".join(resolved))
+        lines = [text.splitlines() for text in resolved]
+        sys.exit("\n".join(difflib.unified_diff(*lines, path, SHIPPED, lineterm="", n=1)))
 
 
 if __name__ == "__main__":

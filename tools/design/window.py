@@ -57,7 +57,7 @@ class Window:
         self.x("mouseup", 1)
         time.sleep(max(self.pace, settle))
 
-    def drag(self, start, end, seconds=0.5, hold=0.0):
+    def drag(self, start, end, seconds=0.5, hold=0.0, shot=None):
         self.steps += 1
         self.move(*start)
         self.x("mousedown", 1)
@@ -67,6 +67,8 @@ class Window:
             self.x("mousemove", *(round(a + (b - a) * share) for a, b in zip(start, end)))
             time.sleep(seconds / 20)
         time.sleep(hold)
+        if shot:
+            self.shot(shot)
         self.x("mouseup", 1)
         time.sleep(0.25)
 
@@ -90,6 +92,12 @@ class Window:
             subprocess.run(["import", "-window", "root", os.path.join(self.shots, name + ".png")], env=self.env,
                            check=True)
 
+    def look(self):
+        """What is on the screen."""
+        ppm = subprocess.run(["import", "-window", "root", "-depth", "8", "ppm:-"], env=self.env, check=True,
+                             capture_output=True).stdout
+        return Screen(ppm)
+
     def events(self):
         with open(os.path.join(self.folder, "events")) as events:
             return events.read()
@@ -99,3 +107,48 @@ class Window:
         self.program.wait(10)
         self.server.terminate()
         self.server.wait(10)
+
+
+class Screen:
+    """The pixels of a screen, as numbers 0xRRGGBB."""
+
+    def __init__(self, ppm):
+        magic, width, height, most = ppm.split(maxsplit=4)[:4]
+        if (magic, most) != (b"P6", b"255"):
+            sys.exit("the picture of the screen is in a form that this script does not read")
+        self.width, self.height = int(width), int(height)
+        self.pixels = ppm[len(ppm) - 3 * self.width * self.height:]
+
+    def column(self, x):
+        channels = [self.pixels[3 * x + channel::3 * self.width] for channel in range(3)]
+        return [red << 16 | green << 8 | blue for red, green, blue in zip(*channels)]
+
+    def down(self, x, colour, lengths, start=0):
+        """The first and the last row of each run of this colour in column `x` that is so many pixels long."""
+        return [(top, end) for of, top, end in runs(self.column(x)) if of == colour and top >= start
+                and end + 1 - top in lengths]
+
+    def plain(self, x, lengths):
+        """The same of any one colour."""
+        return [(top, end) for _, top, end in runs(self.column(x)) if end + 1 - top in lengths]
+
+    def part(self, left, top, right, bottom):
+        """The pixels of a part of it."""
+        rows = (3 * self.width * y for y in range(top, bottom))
+        return b"".join(self.pixels[row + 3 * left:row + 3 * right] for row in rows)
+
+    def count_down(self, x, colour):
+        return self.column(x).count(colour)
+
+    def count_across(self, y, colour):
+        row = self.pixels[3 * y * self.width:3 * (y + 1) * self.width]
+        return row.count(colour.to_bytes(3, "big"))
+
+
+def runs(row):
+    """Each run of one colour: the colour, its first and its last place."""
+    begun = 0
+    for place in range(1, len(row) + 1):
+        if place == len(row) or row[place] != row[begun]:
+            yield row[begun], begun, place - 1
+            begun = place
