@@ -281,11 +281,6 @@ fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
     let layout = desk.designer().layout();
     let counts = (layout.stances.len(), layout.grounds.len());
     assert_eq!(counts, (2, 1), "{}", desk.text());
-    // What is put down with the next click follows the pointer until then.
-    desk.click("Put down: button");
-    let board = desk.window.get_by_label("Drawing board").rect().center();
-    desk.drag(board, board);
-    assert_eq!(desk.designer().layout().widgets.len(), 1);
     desk.click("Add a page");
     assert_eq!(desk.designer().layout().pages.len(), 1);
 }
