@@ -17,6 +17,9 @@ use super::layout_args::LayoutArgs;
 /// some milliseconds.
 const QUIET: Duration = Duration::from_millis(80);
 
+/// How often it is asked whether that time is over. Each time wakes a processor that may sleep.
+const TICK: Duration = Duration::from_millis(40);
+
 /// Watches files for as long as it lives.
 pub(crate) struct Watch {
     _debouncer: Debouncer<RecommendedWatcher, RecommendedCache>,
@@ -70,7 +73,7 @@ impl Watch {
         let failed = |error: notify_debouncer_full::notify::Error| {
             Failure::Other(format!("the layout's folder can't be watched for changes: {error}"))
         };
-        let mut debouncer = new_debouncer(QUIET, None, on_change).map_err(failed)?;
+        let mut debouncer = new_debouncer(QUIET, Some(TICK), on_change).map_err(failed)?;
         for folder in watched {
             debouncer.watch(&folder, RecursiveMode::NonRecursive).map_err(failed)?;
         }

@@ -15,6 +15,9 @@ use crate::wire::LinkState;
 /// Time between looks: one for each frame of a window.
 const EVERY: Duration = Duration::from_nanos(16_666_667);
 
+/// Time without news after which the looks are half as many: each wakes a processor that may sleep.
+const QUIET: Duration = Duration::from_secs(2);
+
 /// How often the window draws although nothing has changed: figures such as rates go on.
 const AT_LEAST: Duration = Duration::from_secs(15);
 
@@ -43,7 +46,7 @@ pub(super) fn start(mut input: PreviewInput, ctx: &egui::Context) -> PreviewInpu
     let mut pace = Pace::new(snapshots.read().clone(), Instant::now());
     let look = move || {
         loop {
-            thread::sleep(EVERY);
+            thread::sleep(pace.pause(Instant::now()));
             let now = Instant::now();
             let is_fresh = snapshots.update();
             let snapshot = snapshots.output_buffer();
@@ -80,6 +83,11 @@ struct Pace {
 impl Pace {
     fn new(drawn: Snapshot, now: Instant) -> Self {
         Self { drawn, drawn_at: now, fresh_at: now }
+    }
+
+    /// Time until the next look.
+    fn pause(&self, now: Instant) -> Duration {
+        if now.duration_since(self.drawn_at) > QUIET { 2 * EVERY } else { EVERY }
     }
 
     fn is_due(&mut self, snapshot: &Snapshot, is_fresh: bool, news: bool, now: Instant) -> bool {
@@ -191,6 +199,7 @@ mod tests {
             drawn += u32::from(pace.is_due(&noisy, true, false, now));
         }
         assert_eq!(drawn, 0, "in five seconds");
+        assert_eq!((pace.pause(begun), pace.pause(begun + EVERY * 300)), (EVERY, 2 * EVERY));
         let foot = Snapshot { link: LinkState::Live, ..pressing(&map()) };
         assert!(pace.is_due(&foot, true, false, begun + EVERY * 301));
         assert!(!pace.is_due(&foot, true, false, begun + EVERY * 302), "it rests");

@@ -7,6 +7,7 @@ use glam::Vec2;
 
 use super::mark::{Ink, Paint, Stroke};
 use super::{Scene, View};
+use crate::engine::Ignored;
 use crate::floor::{Corner, Rect};
 use crate::sense::{Covariance, Quality};
 use crate::wire::LinkState;
@@ -25,6 +26,12 @@ pub(super) fn health(scene: &mut Scene, view: &View<'_>) {
     let theme = view.theme;
     for (index, state) in view.snapshot.tiles.iter().enumerate().take(view.geometry.tile_count()) {
         let plate = view.geometry.plate(view.geometry.tile_at_index(index)).grown(-0.004);
+        // Nothing to look into: a frame says so, and costs no area where there is no graphics card.
+        if state.quality == [Quality::Live; 4] {
+            let frame = Paint::stroke(Stroke::new(0.005, Ink::faint(theme.good, 0.4)));
+            scene.add_box(plate.grown(-0.004), 0.006, frame);
+            continue;
+        }
         let half = 0.5 * plate.size();
         for (corner, quality) in Corner::ALL.into_iter().zip(state.quality) {
             // The worse, the heavier, so that the map reads without its colours.
@@ -123,7 +130,7 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
     }
     let (theme, now) = (view.theme, view.snapshot.at);
     let by = super::magnification(view.geometry).clamp(0.3, 4.0);
-    let size_m = 0.022 * by;
+    let size_m = 0.028 * by;
     let mut told = Vec::new();
     for press in view.snapshot.ignored.iter().rev().filter(|press| now.since(press.at) < TOLD) {
         // A foot that slides over a row of controls is told where it ended.
@@ -132,7 +139,12 @@ pub(super) fn ignored(scene: &mut Scene, view: &View<'_>, mut taken: Vec<Rect>) 
         }
         told.push(press.contact);
         let Some(widget) = view.layout.widgets.iter().find(|widget| widget.id == press.id) else { continue };
-        let text = format!("{:.0} N: {}", press.force.0, press.why);
+        let mut text = format!("{:.0} N: {}", press.force.0, press.why);
+        // Where it depends on a person's weight, nobody can say beforehand.
+        let wanted = widget.behaviour.thresholds();
+        if press.why == Ignored::TooLight && wanted.share.is_none() {
+            text.push_str(&format!(", takes {:.0} N", wanted.press.0));
+        }
         let half = Vec2::new(0.5 * (super::widths::width(&text) * size_m + size_m), 0.8 * size_m);
         let middle = beside(widget.area, half, view.geometry.bounds(), &taken);
         taken.push(Rect::new(middle - half, middle + half));
@@ -165,7 +177,7 @@ mod tests {
     use super::super::sample::{at_rest, map, pressing};
     use super::super::{Mark, Show, Theme, Trail};
     use super::*;
-    use crate::engine::{Ignored, IgnoredPress, Snapshot};
+    use crate::engine::{IgnoredPress, Snapshot};
     use crate::floor::Geometry;
     use crate::sense::ContactId;
     use crate::units::{Instant, Newtons};
@@ -220,7 +232,7 @@ mod tests {
         snapshot.at = Instant::from_millis(60_000);
         let told = |snapshot: &Snapshot| {
             let scene = marks(snapshot, Show { ignored: true, ..BARE }, &[]);
-            scene.texts().filter(|(text, _)| text.ends_with("too light")).count()
+            scene.texts().filter(|(text, _)| text.ends_with("too light, takes 60 N")).count()
         };
         for (age_ms, expected) in [(0, 1), (4000, 1), (6000, 0)] {
             snapshot.ignored = vec![IgnoredPress {

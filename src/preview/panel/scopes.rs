@@ -18,6 +18,9 @@ const HEIGHT: f32 = 36.0;
 /// Sample that reaches the scope's edge, in full scales: built-in clicks reach a third.
 const RANGE: f32 = 0.5;
 
+/// Peak below which a wave is drawn as one straight line, in full scales: a tenth of a pixel.
+const STILL: f32 = 3e-3;
+
 impl App {
     /// Waveforms of the actuators under the feet.
     pub(super) fn scopes_part(&mut self, ui: &mut Ui) {
@@ -63,7 +66,10 @@ fn scope(ui: &mut Ui, theme: &Theme, floor: &Floor, tile: Option<TileId>, wave: 
         FontId::proportional(11.5),
         color(theme.quiet),
     );
-    if wave.len() < 2 {
+    // What is still is the line that is there already.
+    if wave.len() < 2 || peak(wave) < STILL {
+        let ink = Stroke::new(1.2, color(if wave.is_empty() { theme.line } else { theme.haptic }));
+        painter.hline(screen.x_range().shrink(4.0), middle, ink);
         return;
     }
     let inner = screen.shrink2(vec2(4.0, 3.0));

@@ -51,6 +51,8 @@ struct Room {
     notices: Sender<String>,
     commands: Receiver<PreviewCommand>,
     feet: Arc<Mutex<Vec<PreviewFoot>>>,
+    /// Where the projection's corners are remembered.
+    folder: tempfile::TempDir,
 }
 
 struct Feet(Arc<Mutex<Vec<PreviewFoot>>>);
@@ -112,15 +114,16 @@ impl Room {
             }),
             commands: sender,
         };
-        // Nobody's own corners.
-        let corners = Some(std::env::temp_dir().join("underfoot no such folder/projection.txt"));
+        // Nobody's own corners, and no other test's.
+        let folder = tempfile::tempdir().unwrap();
+        let corners = Some(folder.path().join("projection.txt"));
         let projection = ProjectionOptions { corners, ..ProjectionOptions::default() };
         let app = App::new(input, &PreviewOptions { projection, ..PreviewOptions::default() });
         let window = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(1.0 / 60.0)
             .build_ui_state(|ui, app: &mut App| app.show(ui), app);
-        Self { window, snapshots, events, layouts, notices, commands, feet }
+        Self { window, snapshots, events, layouts, notices, commands, feet, folder }
     }
 
     fn run(&mut self, frames: usize) {
@@ -265,7 +268,14 @@ fn the_projection_is_laid_onto_the_floor_by_its_corners() {
     room.run(2);
     let moved = room.place("Corner 3") - third;
     assert!((moved - vec2(-1.0, -10.0)).length() < 0.1, "{moved}");
+    let apart = |room: &Room| room.place("Projected East").x - room.place("Projected West").x;
+    assert!(apart(&room) > 1.0);
+    room.window.key_press(Key::M);
+    room.run(2);
+    assert!(apart(&room) < -1.0, "mirrored");
     room.window.key_press(Key::C);
     room.run(2);
     assert!(!room.says("Corner 1") && room.says("Projected Home"));
+    let kept = std::fs::read_to_string(room.folder.path().join("projection.txt")).unwrap();
+    assert!(kept.contains("mirrored true"), "{kept}");
 }

@@ -273,6 +273,11 @@ fn what_is_selected_is_arranged_from_the_menu_and_each_step_is_undone() {
 fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
     let empty = Template::Empty.text(&Floor::default().geometry);
     let mut desk = Desk::on(&empty, None);
+    // What is put down with the next click follows the pointer until then.
+    desk.click("Put down: button");
+    let board = desk.window.get_by_label("Drawing board").rect().center();
+    desk.drag(board, board);
+    assert_eq!(desk.designer().layout().widgets.len(), 1, "{}", desk.text());
     for name in ["place to stand", "ice", "region"] {
         desk.window.get_by_label(&format!("Put down: {name}")).focus();
         desk.window.run_steps(1);
@@ -281,6 +286,8 @@ fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
     let layout = desk.designer().layout();
     let counts = (layout.stances.len(), layout.grounds.len());
     assert_eq!(counts, (2, 1), "{}", desk.text());
+    let refused = desk.window.query_all_by_label_contains("overlaps region").next();
+    assert!(refused.is_some(), "two regions at one place");
     desk.click("Add a page");
     assert_eq!(desk.designer().layout().pages.len(), 1);
 }
