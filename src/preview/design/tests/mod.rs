@@ -288,8 +288,11 @@ fn regions_grounds_places_to_stand_and_pages_are_put_down_too() {
     assert_eq!(counts, (2, 1), "{}", desk.text());
     let refused = desk.window.query_all_by_label_contains("overlaps region").next();
     assert!(refused.is_some(), "two regions at one place");
+    let mut desk = Desk::on(&empty, None);
+    desk.window.get_by_label("Add a page").scroll_to_me();
+    desk.window.run_steps(20);
     desk.click("Add a page");
-    assert_eq!(desk.designer().layout().pages.len(), 1);
+    assert_eq!(desk.designer().layout().pages.len(), 1, "{}", desk.text());
 }
 
 #[test]
