@@ -138,7 +138,7 @@ mod tests {
         assert_eq!(turns(text("quick"), true).len(), 1);
         let (here, there) = (pos2(1.0, 2.0), pos2(30.0, 2.0));
         let click = [button(here, true), button(there, false)].concat();
-        assert_eq!(turns(click.clone(), false), [click.clone()]);
+        assert_eq!(turns(click.clone(), false), vec![click.clone()]);
         assert_eq!(turns(click.clone(), true).len(), 2, "where it began is seen");
         let typed = [click, text("4")].concat();
         assert_eq!(turns(typed, false).len(), 2, "the field that is clicked on is typed into");
