@@ -15,6 +15,7 @@ use underfoot_egui::{FootInput, Projector, SmallFloor};
 
 use crate::chart;
 use crate::guide::Guide;
+use crate::tiles::Tiles;
 
 const INK: Color32 = Color32::from_rgb(0x2a, 0x28, 0x25);
 const QUIET: Color32 = Color32::from_rgb(0x5d, 0x58, 0x50);
@@ -35,6 +36,7 @@ pub struct App {
     feet: FootInput,
     small: SmallFloor,
     projector: Projector,
+    tiles: Option<Tiles>,
     drag: Vec2,
     levels: f64,
 }
@@ -47,13 +49,14 @@ impl App {
         geometry: Geometry,
         free: floor::Rect,
         hand: Option<FootHandle>,
+        tiles: Option<Tiles>,
         project: bool,
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Light);
         let (small, projector) = (SmallFloor::new(Theme::LIGHT, hand), Projector::new(project));
         let (drag, levels) = (Vec2::ZERO, 0.0);
-        Self { guide, geometry, feet: FootInput::new(free), small, projector, drag, levels }
+        Self { guide, geometry, feet: FootInput::new(free), small, projector, tiles, drag, levels }
     }
 
     /// The card in a corner that says where one is.
@@ -119,7 +122,11 @@ impl eframe::App for App {
         if ui.input(|input| input.key_pressed(Key::P)) {
             self.projector.toggle();
         }
-        chart::paint(ui.painter(), rect, &self.guide.world, &self.guide.state);
+        chart::shapes(ui.painter(), rect, &self.guide.world, &self.guide.state);
+        if let Some(tiles) = &mut self.tiles {
+            tiles.paint(ui.ctx(), ui.painter(), rect, &self.guide.state.camera);
+        }
+        chart::layers(ui.painter(), rect, &self.guide.world, &self.guide.state);
         chart::scale_bar(
             ui.painter(),
             rect,

@@ -24,13 +24,10 @@ const LAND: [Color32; HUES] = [
 /// Distance between two points of a line that are both worth drawing, in points.
 const FINE: f32 = 1.5;
 
-/// Draws the world into `rect`.
-pub fn paint(painter: &Painter, rect: Rect, world: &World, state: &State) {
+/// Draws sea and land into `rect`.
+pub fn shapes(painter: &Painter, rect: Rect, world: &World, state: &State) {
     let screen = Screen::new(rect, &state.camera);
     painter.rect_filled(rect, 0.0, SEA);
-    if state.grid {
-        grid(painter, rect, &screen, state.camera.zoom);
-    }
     let mut land = Mesh::default();
     for country in &world.countries {
         let color = LAND.get(country.hue % HUES).copied().unwrap_or(SEA);
@@ -46,6 +43,14 @@ pub fn paint(painter: &Painter, rect: Rect, world: &World, state: &State) {
                 painter.add(Shape::line(points, if line.is_border { BORDER } else { COAST }));
             }
         }
+    }
+}
+
+/// Draws what lies over land and sea, as far as it is switched on, and the mark in the middle.
+pub fn layers(painter: &Painter, rect: Rect, world: &World, state: &State) {
+    let screen = Screen::new(rect, &state.camera);
+    if state.grid {
+        grid(painter, rect, &screen, state.camera.zoom);
     }
     if state.names {
         names(painter, rect, &screen, world);

@@ -5,6 +5,7 @@ mod chart;
 mod guide;
 mod mercator;
 mod state;
+mod tiles;
 mod world;
 
 use std::error::Error;
@@ -21,6 +22,7 @@ use underfoot_egui::FootInput;
 
 use crate::guide::Guide;
 use crate::state::State;
+use crate::tiles::Tiles;
 use crate::world::World;
 
 /// The floor of this app.
@@ -52,6 +54,9 @@ struct Args {
     /// Open no window.
     #[arg(long)]
     no_window: bool,
+    /// Show the pictures of this folder, `level/x/y.png` in Web Mercator, over the map's own shapes.
+    #[arg(long, value_name = "FOLDER")]
+    tiles: Option<PathBuf>,
     /// Also open a window for a projector above the floor; the key P does the same.
     #[arg(long)]
     project: bool,
@@ -90,6 +95,7 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(path) = &args.record {
         builder = builder.record(path);
     }
+    let tiles = args.tiles.as_deref().map(Tiles::open).transpose()?;
     let (world, state) = (World::shipped()?, State::new(args.home_after));
     if args.no_window {
         unseen(Guide::new(builder.start()?, world, state, args.print_state), FootInput::new(free));
@@ -108,7 +114,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let waker = context.egui_ctx.clone();
         let floor = builder.wake(move || waker.request_repaint()).start()?;
         let guide = Guide::new(floor, world, state, args.print_state);
-        let app = app::App::new(&context.egui_ctx, guide, geometry, free, hand, args.project);
+        let app = app::App::new(&context.egui_ctx, guide, geometry, free, hand, tiles, args.project);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     Ok(eframe::run_native("Atlas", native, start)?)
