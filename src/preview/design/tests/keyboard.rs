@@ -86,7 +86,7 @@ fn the_shipped_map_is_built_from_an_empty_file_by_keyboard() {
 }
 
 #[test]
-fn f6_leads_from_part_to_part_and_a_feel_can_be_heard() {
+fn the_key_f6_leads_from_part_to_part_and_a_feel_can_be_heard() {
     let mut desk = Desk::map();
     desk.key(Key::F6);
     desk.key(Key::F6);
