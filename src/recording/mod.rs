@@ -12,6 +12,8 @@ mod replay;
 mod tap;
 #[cfg(test)]
 mod tests;
+mod timeline;
+mod transport;
 mod writer;
 
 use std::io;
@@ -25,6 +27,8 @@ pub use reader::Recording;
 pub use recorder::{Recorder, WhenBehind};
 pub use replay::{Progress, ReplaySource, Speed};
 pub use tap::RecordedSource;
+pub use timeline::{Mark, MarkKind, Timeline};
+pub use transport::Transport;
 
 /// The topics of a recording.
 const PACKETS: &str = "/underfoot/packets";

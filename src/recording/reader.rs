@@ -33,6 +33,13 @@ pub struct Recording {
 }
 
 impl Recording {
+    /// Whether the file at `path` begins as a recording does; false if it can't be read.
+    #[must_use]
+    pub fn is_at(path: &Path) -> bool {
+        let mut begins = [0; mcap::MAGIC.len()];
+        File::open(path).is_ok_and(|mut file| file.read_exact(&mut begins).is_ok() && begins == mcap::MAGIC)
+    }
+
     /// Opens the recording at `path` and reads the floor and the layout that it was made with.
     ///
     /// # Errors
@@ -85,6 +92,10 @@ impl Recording {
     #[must_use]
     pub const fn method(&self) -> Method {
         self.method
+    }
+
+    pub(super) fn into_messages(self) -> Messages {
+        self.messages
     }
 
     /// What was recorded, as a source.

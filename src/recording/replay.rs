@@ -8,6 +8,7 @@ use std::time::{Duration, Instant as HostInstant};
 use super::entry::Entry;
 use super::reader::{Messages, Part};
 use super::recorder::read_layout;
+use super::transport::Transport;
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::source::{SensorSource, SourceError};
@@ -16,6 +17,9 @@ use crate::wire::{Request, SensorPacket};
 
 /// The longest wait for what comes next: where a recording has a gap, nobody waits for hours.
 const LONGEST_WAIT: Duration = Duration::from_secs(1);
+
+/// The longest wait at one stretch: whoever leads the replay is heard in between.
+const A_WHILE: Duration = Duration::from_millis(10);
 
 /// How fast a recording is played.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -75,17 +79,17 @@ pub struct ReplaySource {
     geometry: Geometry,
     ahead: Option<(Instant, Entry)>,
     now: Instant,
-    speed: Speed,
-    /// The recording's time and the host's at the first packet.
-    begun: Option<(Instant, HostInstant)>,
+    transport: Arc<Transport>,
+    /// What was asked of the transport, and the recording's time and the host's since then.
+    begun: Option<(u64, Instant, HostInstant)>,
     progress: Arc<Progress>,
 }
 
 impl ReplaySource {
     pub(super) fn new(messages: Messages, geometry: Geometry, speed: Speed) -> Self {
-        let progress = Arc::default();
+        let (transport, progress) = (Arc::new(Transport::new(speed)), Arc::default());
         let (now, begun) = (Instant::START, None);
-        let mut source = Self { messages, geometry, ahead: None, now, speed, begun, progress };
+        let mut source = Self { messages, geometry, ahead: None, now, transport, begun, progress };
         source.advance();
         source.now = source.ahead.as_ref().map_or(Instant::START, |(taken, _)| *taken);
         source
@@ -95,6 +99,12 @@ impl ReplaySource {
     #[must_use]
     pub fn progress(&self) -> Arc<Progress> {
         Arc::clone(&self.progress)
+    }
+
+    /// What leads it, to be worked from elsewhere.
+    #[must_use]
+    pub fn transport(&self) -> Arc<Transport> {
+        Arc::clone(&self.transport)
     }
 
     /// The clock of the recording, which stands still between packets.
@@ -129,36 +139,68 @@ impl ReplaySource {
         next
     }
 
-    /// Waits until it is time for `taken`.
-    fn wait(&mut self, taken: Instant) {
-        let Speed::Times(speed) = self.speed else { return };
-        let (first, host) = *self.begun.get_or_insert_with(|| (taken, HostInstant::now()));
-        let Ok(due) = Duration::try_from_secs_f64(taken.since(first).as_secs_f64() / speed) else { return };
-        let wait = due.saturating_sub(host.elapsed());
-        thread::sleep(wait.min(LONGEST_WAIT));
-        if wait > LONGEST_WAIT {
-            self.begun = Some((taken, HostInstant::now()));
+    /// Waits until it is time for what is ahead, or for a while; whether it is time.
+    fn wait(&mut self) -> bool {
+        let Some((taken, entry)) = &self.ahead else { return !self.rests_at_the_end() };
+        let taken = *taken;
+        if matches!(entry, Entry::End) && self.rests_at_the_end() {
+            return false;
         }
+        if self.transport.hurries(taken) {
+            self.begun = None;
+            return true;
+        }
+        if self.transport.is_paused() {
+            self.begun = None;
+            thread::sleep(A_WHILE);
+            return false;
+        }
+        let Speed::Times(speed) = self.transport.speed() else { return true };
+        let changes = self.transport.changes();
+        let begun = self.begun.filter(|(of, ..)| *of == changes);
+        // What was ahead at a change is waited for as long as was left of it.
+        let (_, first, host) = *self.begun.insert(begun.unwrap_or((changes, self.now, HostInstant::now())));
+        let Ok(due) = Duration::try_from_secs_f64(taken.since(first).as_secs_f64() / speed) else {
+            return true;
+        };
+        let wait = due.saturating_sub(host.elapsed());
+        if wait > LONGEST_WAIT {
+            // A gap: it goes on a second later.
+            let left_out = (wait - LONGEST_WAIT).mul_f64(speed);
+            self.begun = Some((changes, first + left_out, host));
+        }
+        thread::sleep(wait.min(A_WHILE));
+        wait <= A_WHILE
+    }
+
+    /// Stands still for a while where the recording ends, if it is to stay there.
+    fn rests_at_the_end(&self) -> bool {
+        let stays = self.transport.stays();
+        if stays {
+            self.progress.is_over.store(true, Ordering::Relaxed);
+            thread::sleep(A_WHILE);
+        }
+        stays
     }
 }
 
 impl SensorSource for ReplaySource {
-    /// The next packet, or `None` where none came at the time; waits as long as its speed says, whatever `patience` is.
+    /// The next packet, or `None` where none came at the time, or where it is not time for what comes next; waits as its
+    /// speed says, whatever `patience` is.
     ///
     /// # Errors
     /// [`SourceError::Ended`] at the end of the recording or where it breaks off, and ever after.
     fn next(&mut self, _patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         loop {
+            if !self.wait() {
+                return Ok(None);
+            }
             match self.advance() {
-                Some((taken, Entry::Packet(packet))) => {
-                    self.wait(taken);
+                Some((_, Entry::Packet(packet))) => {
                     self.progress.packets.fetch_add(1, Ordering::Relaxed);
                     return Ok(Some(packet));
                 }
-                Some((taken, Entry::Silence)) => {
-                    self.wait(taken);
-                    return Ok(None);
-                }
+                Some((_, Entry::Silence)) => return Ok(None),
                 Some((_, Entry::End)) | None => return Err(SourceError::Ended),
                 // Nobody took them.
                 Some((_, Entry::Request(_) | Entry::Layout(_) | Entry::Gap(_))) => {}

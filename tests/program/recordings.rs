@@ -2,9 +2,12 @@
 
 use std::path::Path;
 use std::process::Output;
+use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use underfoot::recording::{Recording, Speed};
+use underfoot::runtime::{Kind, Session};
 
 use super::end_to_end::{said, underfoot};
 
@@ -140,4 +143,42 @@ fn a_file_that_is_no_recording_is_refused() {
     let output = replay(&file);
     assert_eq!(output.status.code(), Some(1));
     assert!(said(&output).contains("no recording of a floor begins there"), "{}", said(&output));
+}
+
+/// Whoever looks at a recording stops it, goes on and leaps ahead; what happens in it is the same.
+#[test]
+fn a_replay_that_is_led_to_and_fro_gives_the_same_events() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), None);
+    let file = folder.path().join("visit.mcap");
+    let events = |led: bool| {
+        let recording = Recording::open(&file).unwrap();
+        let (floor, layout) = (recording.floor().clone(), recording.layout().clone());
+        let source = recording.source(if led { Speed::Times(8.0) } else { Speed::Max });
+        let (transport, progress, clock) = (source.transport(), source.progress(), source.clock());
+        let session = Session::source(Box::new(source), clock).floor(floor).layout(layout);
+        let session = session.every_change().start().unwrap();
+        let leader = std::thread::spawn(move || {
+            let mut rng = Pcg64Mcg::seed_from_u64(2);
+            while led && !progress.is_over() {
+                let pause = Duration::from_millis(rng.random_range(0..40));
+                transport.set_paused(rng.random());
+                std::thread::sleep(pause);
+                // A second ahead at most, so that it is also played at its speed.
+                let ahead = Duration::from_millis(rng.random_range(0..1000));
+                transport.hurry_to(progress.now() + ahead);
+            }
+            transport.set_paused(false);
+        });
+        let all: Vec<String> = std::iter::from_fn(|| session.next_event_timeout(Duration::from_secs(60)))
+            .filter(|event| matches!(event.kind, Kind::Control(_)))
+            .map(|event| format!("{event:?}"))
+            .collect();
+        leader.join().unwrap();
+        assert_eq!(session.dropped(), 0);
+        all
+    };
+    let (plain, led) = (events(false), events(true));
+    assert!(plain.len() > 20, "{}", plain.len());
+    assert_eq!(led, plain);
 }
