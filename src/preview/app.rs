@@ -21,6 +21,7 @@ use super::rate::Rate;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
+use super::time_line::TimeLine;
 use super::trails::Trails;
 use super::turns::Turns;
 use super::watch::Watch;
@@ -46,6 +47,8 @@ pub(super) struct App {
     pub(super) shoes: Vec<Shoe>,
     pub(super) grip: Grip,
     pub(super) zoom: Zoom,
+    /// `None` unless a recording is shown.
+    pub(super) time_line: Option<TimeLine>,
     pub(super) keyboard: Keyboard,
     pub(super) selection: Selection,
     pub(super) watch: Watch,
@@ -108,6 +111,7 @@ impl App {
             commands: input.commands,
             grip: Grip::default(),
             zoom: Zoom::default(),
+            time_line: input.playback.map(TimeLine::new),
             keyboard: Keyboard::default(),
             watch: Watch::default(),
             scene: Scene::new(),
@@ -138,6 +142,7 @@ impl App {
         self.handle_mode_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
+        self.time_line(ui);
         self.notices(ui);
         if self.is_designing() {
             self.design(ui);

@@ -86,7 +86,7 @@ impl App {
             Some(file) if file.diagnostics.is_some() => {
                 pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
             }
-            Some(file) if self.now_s - file.at_s < TELL_S && file.cause != Some(LayoutCause::Designed) => {
+            Some(file) if self.now_s - file.at_s < TELL_S && !file.came_by_itself() => {
                 let is_opened = file.cause == Some(LayoutCause::Opened);
                 let what = if is_opened { "opened" } else { "saved changes loaded" };
                 pill(ui, self.theme.good, &self.theme, &format!("{}: {what}", file.name));
@@ -250,6 +250,14 @@ impl App {
                     ("Tab, Enter", "press by keyboard"),
                     ("F11", "project"),
                     ("M", "mute"),
+                ]
+            } else if self.time_line.is_some() {
+                &[
+                    ("Space", "pause"),
+                    ("Comma, Period", "a step back, on"),
+                    ("Shift-drag", "repeat a part"),
+                    ("Click", "look at a tile"),
+                    ("Ctrl-wheel", "zoom"),
                 ]
             } else {
                 &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]

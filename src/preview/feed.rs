@@ -7,6 +7,7 @@ use std::sync::mpsc::{Receiver, Sender};
 use glam::Vec2;
 
 use super::design::DesignInput;
+use super::playback::Playback;
 use crate::engine::Snapshot;
 use crate::feel::{Effect, Gesture};
 use crate::floor::{Floor, TileId};
@@ -35,7 +36,7 @@ pub struct PreviewInput {
     /// The latest state, written by the sensing thread.
     pub snapshots: triple_buffer::Output<Snapshot>,
     /// Every event, in order.
-    pub events: Receiver<WidgetEvent>,
+    pub events: Receiver<EventNews>,
     /// What became of changes to the layout file.
     pub layouts: Receiver<LayoutNews>,
     /// Sentences for the person at the window, such as why there is no sound.
@@ -44,6 +45,8 @@ pub struct PreviewInput {
     pub scopes: Option<Box<dyn ScopeFeed>>,
     /// The feet of a simulated floor; `None` for a real floor or a recording, which nobody can step on with a mouse.
     pub feet: Option<Box<dyn FootSink>>,
+    /// What leads the recording that is shown; `None` for a floor.
+    pub playback: Option<Box<dyn Playback>>,
     /// The feet on a simulated floor, whoever moves them; `None` for a real floor or a recording.
     pub shoes: Option<ShoeFeed>,
     /// Names of layouts that can be opened from the window; empty if there is no choice.
@@ -58,6 +61,15 @@ pub struct PreviewInput {
 
 /// Puts the shoes on or above the floor, as they are now, in place of those of the last call.
 pub type ShoeFeed = Box<dyn FnMut(&mut Vec<Shoe>)>;
+
+/// What happened on the floor.
+#[derive(Clone, Debug, PartialEq)]
+pub enum EventNews {
+    /// A control's event.
+    Event(WidgetEvent),
+    /// A recording begins anew, with the layout that it has at its beginning: what was told so far is past.
+    Restarted(Arc<Layout>),
+}
 
 /// What feet and eyes will have trouble with in a layout.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,6 +96,8 @@ pub enum LayoutCause {
     Saved,
     /// Somebody designs it in the window, who need not be told.
     Designed,
+    /// The recording goes on with it.
+    Recorded,
 }
 
 /// What became of a layout file that changed.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
-use super::feed::{LayoutCause, LayoutNews, Warnings};
+use super::feed::{EventNews, LayoutCause, LayoutNews, Warnings};
 use crate::engine::Snapshot;
 use crate::layout::Layout;
 use crate::units::Instant;
@@ -40,7 +40,7 @@ pub(super) enum Happened {
 
 /// What other threads said, sorted.
 pub(super) struct Messages {
-    events: Receiver<WidgetEvent>,
+    events: Receiver<EventNews>,
     layouts: Receiver<LayoutNews>,
     notices: Receiver<String>,
     /// What happened, newest first.
@@ -76,10 +76,17 @@ pub(super) struct FileNote {
     pub(super) cause: Option<LayoutCause>,
 }
 
+impl FileNote {
+    /// Whether nobody asked for it who would want to be told.
+    pub(super) fn came_by_itself(&self) -> bool {
+        matches!(self.cause, Some(LayoutCause::Designed | LayoutCause::Recorded))
+    }
+}
+
 impl Messages {
     pub(super) fn new(
         layout: Arc<Layout>,
-        events: Receiver<WidgetEvent>,
+        events: Receiver<EventNews>,
         layouts: Receiver<LayoutNews>,
         notices: Receiver<String>,
     ) -> Self {
@@ -112,6 +119,16 @@ impl Messages {
     /// Takes in everything that waits; `revision` is the latest snapshot's.
     pub(super) fn receive(&mut self, now_s: f64, revision: u64) {
         for event in self.events.try_iter() {
+            let event = match event {
+                EventNews::Event(event) => event,
+                EventNews::Restarted(layout) => {
+                    self.recent.clear();
+                    self.counted.clear();
+                    self.coming.clear();
+                    (self.layout, self.event_count) = (layout, 0);
+                    continue;
+                }
+            };
             self.event_count += 1;
             match self.recent.front_mut() {
                 // A slider on its way is one line that follows it, or it would push out everything else.
@@ -274,7 +291,7 @@ mod tests {
         let (say, notices) = channel();
         let mut messages = Messages::new(named("it"), events, channel().1, notices);
         for at in 0..2000 {
-            event.send(crate::preview::tests::event(at, "home")).unwrap();
+            event.send(EventNews::Event(crate::preview::tests::event(at, "home"))).unwrap();
             say.send("no sound card".into()).unwrap();
         }
         messages.receive(1.0, 0);
@@ -293,7 +310,7 @@ mod tests {
             ..crate::preview::tests::event(at, id)
         };
         let told = [moved(1, "zoom"), moved(2, "zoom"), moved(3, "volume"), moved(4, "zoom")];
-        told.into_iter().for_each(|told| event.send(told).unwrap());
+        told.into_iter().for_each(|told| event.send(EventNews::Event(told)).unwrap());
         messages.receive(1.0, 0);
         let listed: Vec<_> = messages
             .recent

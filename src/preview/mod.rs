@@ -16,6 +16,7 @@ mod keyboard;
 mod lookout;
 mod messages;
 mod panel;
+mod playback;
 mod projection;
 mod rate;
 mod scopes;
@@ -23,6 +24,7 @@ mod selection;
 mod style;
 #[cfg(test)]
 mod tests;
+mod time_line;
 mod trace;
 mod trails;
 mod turns;
@@ -31,9 +33,10 @@ mod zoom;
 
 pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
-    FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed, ShoeFeed,
-    Warnings,
+    EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed,
+    ShoeFeed, Warnings,
 };
+pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
 
 use eframe::egui;

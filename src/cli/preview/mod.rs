@@ -1,8 +1,10 @@
 //! `underfoot preview`: the window, with its floor served on a thread of its own.
 
+mod player;
+
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
 use std::thread;
@@ -14,9 +16,10 @@ use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    self, DesignInput, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewError, PreviewFoot,
-    PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
+    self, DesignInput, EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewError,
+    PreviewFoot, PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
 };
+use underfoot::recording::Recording;
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema::{self, Diagnostics};
 use underfoot::sense::Method;
@@ -25,9 +28,9 @@ use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand, 
 use underfoot::sink::{EventSink, LatencyStages, Report};
 use underfoot::source::{Faults, Pace, SensorSource, SimulatedSource};
 use underfoot::units::HostClock;
-use underfoot::widget::WidgetEvent;
 use underfoot::wire::ControlMessage;
 
+use self::player::{Player, Window};
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
@@ -59,6 +62,9 @@ pub(crate) struct Args {
     /// Show the built-in session played on the simulated floor.
     #[arg(long, conflicts_with = "scenario")]
     session: bool,
+    /// Record the floor into this file, in place of what was there; `underfoot preview FILE` shows it again.
+    #[arg(long, value_name = "FILE")]
+    record: Option<PathBuf>,
     /// Open the window for a projector at once, over the whole screen: the controls alone, laid onto the floor.
     #[arg(long)]
     project: bool,
@@ -96,6 +102,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if !has_display() {
         return Err(Failure::NoWindow("there is no display".into()));
     }
+    if let Some(path) = args.recording() {
+        return replayed(args, path);
+    }
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let stage = args.stage(&floor, &layout)?;
@@ -110,15 +119,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
     let actuators =
         args.actuate.opener(LatencyStages::default(), Arc::default(), watch_renderer, notice_sender.clone());
-    let session = Session::source(stage.source, stage.clock)
+    let mut session = Session::source(stage.source, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
         .prefix(args.outputs.prefix.osc_prefix.clone())
         .sink(args.outputs.open(&floor.geometry)?)
         .sink(ToWindow { events: event_sender, missed: 0 })
-        .actuators(actuators)
-        .start()?;
+        .actuators(actuators);
+    if let Some(path) = &args.record {
+        session = session.record(path);
+    }
+    let session = session.start()?;
 
     let desk = Desk { session: session.clone(), news };
     let watch = desk.watch(&args.layout)?;
@@ -139,6 +151,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         notices,
         scopes,
         feet: stage.feet,
+        playback: None,
         shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
@@ -146,9 +159,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         commands: wishes,
     };
     // Also when the window fails, the floor ends in order first.
-    let projection =
-        ProjectionOptions { open: args.project, monitor: args.monitor, corners: args.corners.clone() };
-    let options = PreviewOptions { projection, ..PreviewOptions::default() };
+    let options = args.window();
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
     session.stop();
     let end = end(&session);
@@ -164,6 +175,36 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
+/// Shows a recording; nobody else is told of what happens in it.
+fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
+    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
+    let (news, layouts) = mpsc::channel();
+    let (_, notices) = mpsc::channel();
+    let (commands, _) = mpsc::channel();
+    let window = Window { events: event_sender, layouts: news };
+    let (player, floor, layout, snapshots) = Player::start(path, window)?;
+    let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
+    let input = PreviewInput {
+        floor: Arc::new(floor),
+        layout,
+        warnings: Warnings::default(),
+        source: name,
+        snapshots,
+        events,
+        layouts,
+        notices,
+        scopes: None,
+        feet: None,
+        playback: Some(Box::new(player)),
+        shoes: None,
+        choices: Vec::new(),
+        effects: Vec::new(),
+        design: None,
+        commands,
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
 /// Where packets come from, and what is known of them.
 struct Stage {
     floor: Floor,
@@ -175,6 +216,18 @@ struct Stage {
 }
 
 impl Args {
+    /// The recording that is named in place of a layout.
+    fn recording(&self) -> Option<&Path> {
+        self.layout.path().filter(|path| Recording::is_at(path))
+    }
+
+    /// How the window looks at first.
+    fn window(&self) -> PreviewOptions {
+        let projection =
+            ProjectionOptions { open: self.project, monitor: self.monitor, corners: self.corners.clone() };
+        PreviewOptions { projection, ..PreviewOptions::default() }
+    }
+
     fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {
         if let Some(address) = self.listen {
             let prefix = self.outputs.prefix.osc_prefix.clone();
@@ -368,14 +421,14 @@ impl Obeyed {
 
 /// Passes events on to the window.
 struct ToWindow {
-    events: SyncSender<WidgetEvent>,
+    events: SyncSender<EventNews>,
     missed: u64,
 }
 
 impl EventSink for ToWindow {
     fn report(&mut self, report: Report<'_>) {
         if let Report::Event(event) = report
-            && let Err(TrySendError::Full(_)) = self.events.try_send(event.clone())
+            && let Err(TrySendError::Full(_)) = self.events.try_send(EventNews::Event(event.clone()))
         {
             self.missed += 1;
         }

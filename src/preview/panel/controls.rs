@@ -12,6 +12,10 @@ use crate::widget::{Behaviour, Value};
 impl App {
     /// What an app can do to each control: give it a value, switch it off.
     pub(super) fn controls_part(&mut self, ui: &mut Ui) {
+        // What was recorded is not changed afterwards.
+        if self.time_line.is_some() {
+            return;
+        }
         ui.add_space(6.0);
         let mut commands = Vec::new();
         let header = CollapsingHeader::new("Controls, as an app sets them").id_salt("controls");

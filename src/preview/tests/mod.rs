@@ -3,6 +3,7 @@
 mod bars;
 mod feet;
 mod panel;
+mod time_line;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -14,9 +15,11 @@ use glam::Vec2;
 
 use super::ProjectionOptions;
 use super::app::App;
+use super::playback::Playback;
+use super::time_line::TimeLine;
 use super::{
-    FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions, ScopeFeed,
-    Warnings,
+    EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions,
+    ScopeFeed, Warnings,
 };
 use crate::engine::Snapshot;
 use crate::feel::{DeviceState, DeviceStatus};
@@ -46,7 +49,7 @@ pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
 struct Room {
     window: Harness<'static, App>,
     snapshots: triple_buffer::Input<Snapshot>,
-    events: Sender<WidgetEvent>,
+    events: Sender<EventNews>,
     layouts: Sender<LayoutNews>,
     notices: Sender<String>,
     commands: Receiver<PreviewCommand>,
@@ -81,6 +84,14 @@ impl Room {
         Self::of(true, 1280.0, 800.0)
     }
 
+    /// A recording, led by `playback`.
+    fn recorded(playback: Box<dyn Playback>) -> Self {
+        let mut room = Self::of(false, 1280.0, 800.0);
+        room.window.state_mut().time_line = Some(TimeLine::new(playback));
+        room.run(2);
+        room
+    }
+
     fn of(simulated: bool, width: f32, height: f32) -> Self {
         let layout = Arc::new(map());
         let (snapshots, output) = triple_buffer::triple_buffer(&at_rest(&layout));
@@ -101,6 +112,7 @@ impl Room {
             notices: notes,
             scopes: Some(Box::new(Silence)),
             feet: simulated.then_some(sink),
+            playback: None,
             shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),
@@ -124,6 +136,10 @@ impl Room {
             .with_step_dt(1.0 / 60.0)
             .build_ui_state(|ui, app: &mut App| app.show(ui), app);
         Self { window, snapshots, events, layouts, notices, commands, feet, folder }
+    }
+
+    fn happen(&self, event: WidgetEvent) {
+        self.events.send(EventNews::Event(event)).unwrap();
     }
 
     fn run(&mut self, frames: usize) {

@@ -36,9 +36,9 @@ fn the_panel_says_in_one_line_how_the_sensors_are_and_names_those_in_trouble() {
 #[test]
 fn events_are_listed_newest_first() {
     let mut room = Room::simulated();
-    room.events.send(event(100, "home")).unwrap();
+    room.happen(event(100, "home"));
     let changed = EventKind::Changed(Value::Number(7.25));
-    room.events.send(WidgetEvent { kind: changed, ..event(200, "time") }).unwrap();
+    room.happen(WidgetEvent { kind: changed, ..event(200, "time") });
     room.run(2);
     let (older, newer) = (room.place("home pressed"), room.place("time changed 7.250"));
     assert!(newer.y < older.y);
@@ -49,7 +49,7 @@ fn events_are_listed_newest_first() {
 fn the_list_of_events_is_searched_and_copied() {
     let mut room = Room::simulated();
     for (at, id) in [(100, "home"), (200, "time")] {
-        room.events.send(event(at, id)).unwrap();
+        room.happen(event(at, id));
     }
     room.run(2);
     room.window.get_by_label("Search events").focus();

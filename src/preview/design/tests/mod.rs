@@ -50,6 +50,7 @@ impl Desk {
             notices: channel().1,
             scopes: None,
             feet: None,
+            playback: None,
             shoes: None,
             choices: vec!["map".into()],
             effects: Vec::new(),
