@@ -321,10 +321,11 @@ mod tests {
                     saved = number;
                 }
             };
-            // Once it works; then at a moment of its work.
-            let first = said.next().unwrap().unwrap();
-            note(&first);
-            std::thread::sleep(Duration::from_micros(rng.random_range(0..8000)));
+            // Once it works, however slowly; then at a moment of its work.
+            for line in said.by_ref().take(rng.random_range(1..=4)) {
+                note(&line.unwrap());
+            }
+            std::thread::sleep(Duration::from_micros(rng.random_range(0..4000)));
             child.kill().unwrap();
             child.wait().unwrap();
             said.for_each(|line| note(&line.unwrap()));

@@ -3,15 +3,21 @@
 
 use std::path::Path;
 use std::process::Command;
+use std::time::Duration;
 
 use serde_json::Value;
+use underfoot::recording::Speed;
+use underfoot::runtime::{Kind, Session};
+use underfoot::widget::EventKind;
 
 /// What the map was like whenever it came to rest during the shipped tour, which is played in real time.
-fn rests() -> Vec<Value> {
+fn rests(record: &Path) -> Vec<Value> {
     let tour = Path::new(env!("CARGO_MANIFEST_DIR")).join("tour.ron");
     let output = Command::new(env!("CARGO_BIN_EXE_underfoot-map"))
         .args(["--no-window", "--print-state", "--scenario"])
         .arg(tour)
+        .arg("--record")
+        .arg(record)
         .output()
         .unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -19,9 +25,18 @@ fn rests() -> Vec<Value> {
     text.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
 }
 
+/// What is clicked when the floor of the recording `path` is sensed again.
+fn clicks(path: &Path) -> Vec<String> {
+    let session = Session::replay(path, Speed::Max).unwrap().start().unwrap();
+    let events = std::iter::from_fn(|| session.next_event_timeout(Duration::from_secs(60)));
+    let clicked = events.filter(|event| event.kind == Kind::Control(EventKind::Clicked));
+    clicked.map(|event| event.id().to_owned()).collect()
+}
+
 #[test]
 fn a_tour_pans_zooms_switches_a_layer_and_goes_home() {
-    let rests = rests();
+    let record = Path::new(env!("CARGO_TARGET_TMPDIR")).join("tour.mcap");
+    let rests = rests(&record);
     let number = |rest: &Value, name: &str| rest[name].as_f64().unwrap();
     let near = |rest: &Value, name: &str, expected: f64, by: f64| {
         assert!((number(rest, name) - expected).abs() <= by, "{name} is not {expected}: {rest}");
@@ -41,4 +56,9 @@ fn a_tour_pans_zooms_switches_a_layer_and_goes_home() {
     for (name, by) in [("lon", 0.0), ("lat", 0.0), ("zoom", 0.0)] {
         near(home, name, number(start, name), by);
     }
+    assert_eq!(
+        clicks(&record).last().map(String::as_str),
+        Some("home"),
+        "the recording has the tour to its end"
+    );
 }
