@@ -12,7 +12,7 @@ SIZE = (1400, 900)
 class Window:
     """`underfoot preview` with `arguments`, its state and its files in a folder of their own; ends with `close`."""
 
-    def __init__(self, program, arguments, folder=None, shots=None, pace=0.15):
+    def __init__(self, program, arguments, folder=None, shots=None, pace=0.15, size=SIZE, env=None):
         for needed in ("Xvfb", "xdotool", "import"):
             if shutil.which(needed) is None:
                 sys.exit(f"{needed} is missing: apt-get install xvfb xdotool imagemagick")
@@ -22,20 +22,20 @@ class Window:
         # What comes sooner than the next frame may count as one: on a busy machine, slower.
         self.pace = pace
         read, write = os.pipe()
-        screen = ["-screen", "0", f"{SIZE[0]}x{SIZE[1]}x24"]
+        screen = ["-screen", "0", f"{size[0]}x{size[1]}x24"]
         self.server = subprocess.Popen(["Xvfb", "-displayfd", str(write), *screen], pass_fds=[write],
                                        stderr=subprocess.DEVNULL)
         os.close(write)
         number = os.read(read, 16).decode().strip()
         self.env = dict(os.environ, DISPLAY=f":{number}", LIBGL_ALWAYS_SOFTWARE="1",
                         XDG_STATE_HOME=os.path.join(self.folder, "state"),
-                        XDG_DATA_HOME=os.path.join(self.folder, "data"))
+                        XDG_DATA_HOME=os.path.join(self.folder, "data"), **(env or {}))
         self.env.pop("WAYLAND_DISPLAY", None)
         self.program = subprocess.Popen([program, "preview", *arguments, "--no-osc", "--json"], env=self.env,
                                         cwd=self.folder, stdout=open(os.path.join(self.folder, "events"), "w"),
                                         stderr=open(os.path.join(self.folder, "messages"), "w"))
         self.id = self.x("search", "--sync", "--onlyvisible", "--name", "underfoot").split()[-1]
-        self.x("windowsize", "--sync", self.id, *SIZE)
+        self.x("windowsize", "--sync", self.id, *size)
         self.x("windowmove", self.id, 0, 0)
         self.x("windowfocus", self.id)
         time.sleep(2)
