@@ -26,9 +26,16 @@ impl FaultArgs {
         if faults == Faults::default() {
             return Box::new(source);
         }
+        say_what_is_rehearsed(&faults);
+        Box::new(FaultInjector::new(source, faults, self.fault_seed))
+    }
+}
+
+/// Says that faults are rehearsed, if there are any.
+pub(crate) fn say_what_is_rehearsed(faults: &Faults) {
+    if *faults != Faults::default() {
         errln!(
             "This is a rehearsal: packets are lost or changed on purpose (--fault, or faults of the scenario)."
         );
-        Box::new(FaultInjector::new(source, faults, self.fault_seed))
     }
 }

@@ -18,6 +18,7 @@ use super::messages::Messages;
 use super::panel::Tuner;
 use super::projection::Projection;
 use super::rate::Rate;
+use super::rehearsal::Rehearsal;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::style;
@@ -58,6 +59,8 @@ pub(super) struct App {
     /// What is drawn over the floor.
     pub(super) show: Show,
     pub(super) trails: Trails,
+    /// `None` unless the floor is a simulated one.
+    pub(super) rehearsal: Option<Rehearsal>,
     pub(super) choices: Vec<String>,
     /// `None` where there are no effects to tune.
     pub(super) tuner: Option<Tuner>,
@@ -103,6 +106,7 @@ impl App {
             feet: input.feet.map(|sink| (MouseFeet::new(), sink)),
             shoe_feed: input.shoes,
             shoes: Vec::new(),
+            rehearsal: input.faults.map(|switch| Rehearsal::new(switch, &input.floor)),
             floor: input.floor,
             source: input.source,
             snapshots: input.snapshots,

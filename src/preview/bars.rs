@@ -9,6 +9,7 @@ use eframe::egui::{
 
 use super::app::App;
 use super::feed::{LayoutCause, PreviewCommand};
+use super::rehearsal::Rehearsal;
 use super::style::{panel_colour, panel_frame, pill, quiet};
 use crate::egui_painter::color;
 use crate::scene::{Show, Theme};
@@ -98,8 +99,15 @@ impl App {
         }
     }
 
+    /// What is not as it would be: faults that are rehearsed, what is muted.
     fn mutes(&self, ui: &mut Ui) {
         let theme = &self.theme;
+        let rehearsed = self.rehearsal.as_ref().map_or(0, Rehearsal::count);
+        if rehearsed > 0 {
+            let text = if rehearsed == 1 { "1 fault on".into() } else { format!("{rehearsed} faults on") };
+            pill(ui, theme.warning, theme, &text)
+                .on_hover_text("Faults are rehearsed; the side panel mends them");
+        }
         match &self.snapshots.output_buffer().muted {
             muted if muted.all => {
                 pill(ui, theme.warning, theme, "muted").on_hover_text("Nothing is felt or heard");

@@ -14,6 +14,7 @@ use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
+use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
 /// A shoe that the window moves; its `length_m` is the sole's, a centimetre more than the bare foot's.
@@ -47,6 +48,8 @@ pub struct PreviewInput {
     pub feet: Option<Box<dyn FootSink>>,
     /// What leads the recording that is shown; `None` for a floor.
     pub playback: Option<Box<dyn Playback>>,
+    /// What breaks a simulated floor; `None` for a real one or a recording.
+    pub faults: Option<FaultSwitch>,
     /// The feet on a simulated floor, whoever moves them; `None` for a real floor or a recording.
     pub shoes: Option<ShoeFeed>,
     /// Names of layouts that can be opened from the window; empty if there is no choice.

@@ -19,6 +19,7 @@ mod panel;
 mod playback;
 mod projection;
 mod rate;
+mod rehearsal;
 mod scopes;
 mod selection;
 mod style;

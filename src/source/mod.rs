@@ -10,6 +10,8 @@ mod udp;
 
 #[cfg(any(feature = "internals", test))]
 pub use fault::{BadFault, Bursts, FaultInjector, Faults, Outage, Stall};
+#[cfg(feature = "sim")]
+pub use fault::{FaultSwitch, RehearsalSource};
 #[cfg(all(test, feature = "preview"))]
 pub(crate) use floor_clock::tests::ByHand;
 #[cfg(feature = "sim")]

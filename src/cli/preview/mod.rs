@@ -26,7 +26,7 @@ use underfoot::sense::Method;
 use underfoot::serve::Command;
 use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand, watched};
 use underfoot::sink::{EventSink, LatencyStages, Report};
-use underfoot::source::{Faults, Pace, SensorSource, SimulatedSource};
+use underfoot::source::{FaultSwitch, Faults, Pace, RehearsalSource, SensorSource, SimulatedSource};
 use underfoot::units::HostClock;
 use underfoot::wire::ControlMessage;
 
@@ -34,7 +34,7 @@ use self::player::{Player, Window};
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
-use super::fault_args::FaultArgs;
+use super::fault_args::say_what_is_rehearsed;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::outputs::OutputArgs;
@@ -94,6 +94,9 @@ pub(crate) fn has_display() -> bool {
 /// Events that may wait for the window; it takes them 60 times a second.
 const EVENTS_WAITING: usize = 4096;
 
+/// Which packets the faults of a scenario hit.
+const FAULT_SEED: u64 = 1;
+
 /// How long the floor stays empty before what is played begins anew.
 const PAUSE: Duration = Duration::from_secs(3);
 
@@ -152,6 +155,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         scopes,
         feet: stage.feet,
         playback: None,
+        faults: stage.faults,
         shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
@@ -196,6 +200,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
         scopes: None,
         feet: None,
         playback: Some(Box::new(player)),
+        faults: None,
         shoes: None,
         choices: Vec::new(),
         effects: Vec::new(),
@@ -213,6 +218,7 @@ struct Stage {
     name: String,
     feet: Option<Box<dyn FootSink>>,
     shoes: Option<ShoeFeed>,
+    faults: Option<FaultSwitch>,
 }
 
 impl Args {
@@ -239,6 +245,7 @@ impl Args {
                 name: format!("floor on port {}", address.port()),
                 feet: None,
                 shoes: None,
+                faults: None,
             });
         }
         let mut faults = Faults::default();
@@ -261,10 +268,14 @@ impl Args {
         let (sim, floor) = self.sim.calibrated(floor)?;
         let driver = Box::new(driver);
         let source = SimulatedSource::new(sim, driver, Pace::RealTime);
+        let clock = source.clock();
+        say_what_is_rehearsed(&faults);
+        let (source, switch) = RehearsalSource::new(source, faults, FAULT_SEED);
         Ok(Stage {
             floor,
-            clock: source.clock(),
-            source: FaultArgs::default().wrap(source, faults),
+            clock,
+            source: Box::new(source),
+            faults: Some(switch),
             name: name.into(),
             feet,
             shoes: Some(shoes),

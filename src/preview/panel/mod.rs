@@ -3,6 +3,7 @@
 mod contacts;
 mod controls;
 mod events;
+mod faults;
 mod grounds;
 mod link;
 mod scopes;
@@ -45,6 +46,7 @@ impl App {
                 self.events_part(ui, events);
                 self.scopes_part(ui);
                 self.controls_part(ui);
+                self.faults_part(ui);
                 self.grounds_part(ui);
                 self.health_part(ui);
                 self.device_part(ui);

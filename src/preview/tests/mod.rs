@@ -1,6 +1,7 @@
 //! The window without a display: what a person sees by name, and what the mouse does to the floor.
 
 mod bars;
+mod faults;
 mod feet;
 mod panel;
 mod time_line;
@@ -113,6 +114,7 @@ impl Room {
             scopes: Some(Box::new(Silence)),
             feet: simulated.then_some(sink),
             playback: None,
+            faults: None,
             shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),

@@ -1,5 +1,7 @@
 //! Faults on the way of packets: losses, repetitions, delays, damage, outages.
 
+#[cfg(feature = "sim")]
+mod live;
 mod nemesis;
 mod spec;
 #[cfg(test)]
@@ -17,6 +19,8 @@ use super::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCounters, Readings, Request, SensorPacket};
 
+#[cfg(feature = "sim")]
+pub use self::live::{FaultSwitch, RehearsalSource};
 pub use self::spec::BadFault;
 
 /// What goes wrong on the way from the boards; the default is nothing.
@@ -106,6 +110,12 @@ impl<S: SensorSource> FaultInjector<S> {
             admitted: 0,
             now: Instant::START,
         }
+    }
+
+    /// Lets these faults happen from now on, in place of the others; what is on its way arrives as it would have.
+    #[cfg(feature = "sim")]
+    fn set_faults(&mut self, faults: Faults) {
+        self.faults = faults;
     }
 
     /// The source behind the faults.

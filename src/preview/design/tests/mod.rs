@@ -51,6 +51,7 @@ impl Desk {
             scopes: None,
             feet: None,
             playback: None,
+            faults: None,
             shoes: None,
             choices: vec!["map".into()],
             effects: Vec::new(),

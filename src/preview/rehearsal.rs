@@ -1,0 +1,104 @@
+//! Faults that somebody at the window switches on, to see what becomes of them.
+
+use std::collections::BTreeSet;
+use std::time::Duration;
+
+use crate::floor::{Floor, SensorId};
+use crate::sim::SensorFault;
+use crate::source::{FaultSwitch, Faults, Outage};
+use crate::units::Instant;
+
+/// What is wrong with the simulated floor on purpose.
+pub(super) struct Rehearsal {
+    switch: FaultSwitch,
+    /// How many boards the floor has.
+    pub(super) boards: u16,
+    /// What goes wrong with the packets.
+    pub(super) packets: PacketFaults,
+    /// The sensors that are broken.
+    sensors: Vec<(SensorId, SensorFault)>,
+}
+
+/// What goes wrong with packets, as it is chosen in the window.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct PacketFaults {
+    /// Of 100 packets, how many are lost.
+    pub(super) lost_percent: f64,
+    /// Of 100 packets, how many have a damaged number.
+    pub(super) damaged_percent: f64,
+    /// By how much half of the packets are late at most, in milliseconds.
+    pub(super) late_ms: f64,
+    /// Whether nothing arrives at all.
+    pub(super) silent: bool,
+    /// Boards that are unplugged.
+    pub(super) unplugged: BTreeSet<u16>,
+}
+
+/// Share of packets that are late, where some are.
+const LATE: f64 = 0.5;
+
+impl Rehearsal {
+    pub(super) fn new(switch: FaultSwitch, floor: &Floor) -> Self {
+        // More boards than numbers there can't be: the floor file numbers them by u16.
+        let boards = u16::try_from(floor.boards.len()).unwrap_or(u16::MAX);
+        Self { switch, boards, packets: PacketFaults::default(), sensors: Vec::new() }
+    }
+
+    /// How many things are wrong.
+    pub(super) fn count(&self) -> usize {
+        let PacketFaults { lost_percent, damaged_percent, late_ms, silent, unplugged } = &self.packets;
+        let shares = [*lost_percent, *damaged_percent, *late_ms];
+        shares.iter().filter(|share| **share > 0.0).count()
+            + usize::from(*silent)
+            + unplugged.len()
+            + self.sensors.len()
+    }
+
+    /// What is wrong with `sensor`.
+    pub(super) fn of_sensor(&self, sensor: SensorId) -> Option<SensorFault> {
+        self.sensors.iter().find(|(broken, _)| *broken == sensor).map(|(_, fault)| *fault)
+    }
+
+    /// Breaks a sensor, or mends it.
+    pub(super) fn set_sensor(&mut self, sensor: SensorId, fault: Option<SensorFault>) {
+        self.sensors.retain(|(broken, _)| *broken != sensor);
+        self.sensors.extend(fault.map(|fault| (sensor, fault)));
+        tell(self.switch.set_sensor(sensor, fault));
+    }
+
+    /// Lets happen what was chosen for the packets.
+    pub(super) fn apply(&self) {
+        tell(self.switch.set_packets(Faults::from(&self.packets)));
+    }
+
+    /// Mends everything.
+    pub(super) fn mend(&mut self) {
+        self.packets = PacketFaults::default();
+        self.apply();
+        for (sensor, _) in std::mem::take(&mut self.sensors) {
+            tell(self.switch.set_sensor(sensor, None));
+        }
+    }
+}
+
+fn tell(heard: bool) {
+    if !heard {
+        tracing::debug!("the floor has ended and takes no faults");
+    }
+}
+
+impl From<&PacketFaults> for Faults {
+    fn from(chosen: &PacketFaults) -> Self {
+        let always = |board| Outage { board, from: Instant::START, until: Instant::from_micros(u64::MAX) };
+        let outages = chosen.silent.then(|| always(None)).into_iter();
+        let late = chosen.late_ms > 0.0;
+        Self {
+            loss: chosen.lost_percent / 100.0,
+            damage: chosen.damaged_percent / 100.0,
+            delay: if late { LATE } else { 0.0 },
+            delay_up_to: Duration::try_from_secs_f64(chosen.late_ms / 1000.0).unwrap_or_default(),
+            outages: outages.chain(chosen.unplugged.iter().map(|board| always(Some(*board)))).collect(),
+            ..Self::default()
+        }
+    }
+}
