@@ -1,10 +1,11 @@
-//! The mouse as a foot, and the foot that stands: no egui here, only floor metres and seconds.
+//! The mouse as a foot, the foot that stands, and those of fingers: no egui here, only floor metres and seconds.
 
 use std::f32::consts::{PI, TAU};
 
 use glam::Vec2;
 
 use super::feed::{FootSink, PreviewFoot};
+use super::touches::{Fingers, Touch};
 use crate::units::Newtons;
 
 /// What a foot that works presses with, until the wheel says otherwise: enough for every built-in control.
@@ -30,6 +31,8 @@ const STANDING_ROLL: f32 = 0.40;
 pub(super) struct Hand {
     /// What the mouse did since the last frame, in order.
     pub(super) moves: Vec<Move>,
+    /// What fingers and pens did since the last frame, in order.
+    pub(super) touches: Vec<Touch>,
     /// Where the pointer is over the floor, in floor metres; `None` if it is elsewhere.
     pub(super) pointer: Option<Vec2>,
     /// Whether the button is still down.
@@ -57,11 +60,12 @@ pub(super) enum Move {
     Release(Vec2),
 }
 
-/// The mouse's foot and the standing one.
+/// The mouse's foot, the standing one, and those of fingers.
 #[derive(Debug)]
 pub(super) struct MouseFeet {
     working: MouseFoot,
     standing: Option<MouseFoot>,
+    fingers: Fingers,
     /// Where the working foot's force acts: under the pointer.
     at: Option<Vec2>,
     /// Whether the button holds it down.
@@ -101,6 +105,7 @@ impl MouseFeet {
         Self {
             working: MouseFoot::new(Vec2::ZERO, WORKING, WORKING_ROLL, false),
             standing: None,
+            fingers: Fingers::default(),
             at: None,
             held: false,
             all: Vec::with_capacity(2),
@@ -123,8 +128,13 @@ impl MouseFeet {
             standing.shoe.position += hand.drag;
             standing.shoe.force = standing.wanted;
         }
-        let mut path = Vec::with_capacity(hand.moves.len() + 1);
-        for step in &hand.moves {
+        let is_touched = self.fingers.are_down() || !hand.touches.is_empty();
+        let usual = PreviewFoot { force: self.working.wanted, ..self.working.shoe };
+        let touched = self.fingers.step(&hand.touches, usual, sink);
+        // The system tells the first finger as a mouse as well.
+        let (moves, pointer) = if is_touched { (&[][..], None) } else { (&hand.moves[..], hand.pointer) };
+        let mut path = Vec::with_capacity(moves.len() + 1);
+        for step in moves {
             match *step {
                 Move::To(at) => path.push(self.working_at(at, sink)),
                 Move::Press(at) => {
@@ -139,9 +149,9 @@ impl MouseFeet {
             }
         }
         // A pointer that is gone, or a button whose release nobody told, lifts the foot where it was.
-        self.held &= hand.down && hand.pointer.is_some();
-        self.at = hand.pointer;
-        match hand.pointer {
+        self.held &= hand.down && pointer.is_some();
+        self.at = pointer;
+        match pointer {
             Some(at) => path.push(self.working_at(at, sink)),
             None => path.clear(),
         }
@@ -149,8 +159,10 @@ impl MouseFeet {
         // Over the standing foot's handle the hand holds that foot.
         self.all.extend((self.at.is_some() && (self.held || !hand.on_handle)).then_some(self.working.shoe));
         self.all.extend(self.standing.as_ref().map(|foot| foot.shoe));
-        let standing = self.standing.iter().map(|foot| foot.shoe).collect();
-        sink.lead(hand.elapsed_s, &[path, standing]);
+        self.all.extend(touched.iter().filter_map(|path| path.last()).filter(|foot| foot.force.0 > 0.0));
+        let mut paths = vec![path, self.standing.iter().map(|foot| foot.shoe).collect()];
+        paths.extend(touched);
+        sink.lead(hand.elapsed_s, &paths);
     }
 
     /// The working foot with its pressure under `at`, pressing if the button holds it down.
@@ -189,9 +201,10 @@ impl MouseFeet {
         self.standing = None;
     }
 
-    /// Lifts the working foot, as when the window loses the keyboard in mid-press.
+    /// Lifts the feet that work, as when the window loses the keyboard in mid-press.
     pub(super) fn lift_working(&mut self) {
         self.held = false;
+        self.fingers.lift();
     }
 
     /// Whether the button holds the working foot down.

@@ -10,6 +10,7 @@ use glam::Vec2;
 
 use super::app::App;
 use super::feet::{Hand, MouseFeet, Move};
+use super::touches::Touch;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
 use crate::egui_painter::{self, ScreenFromFloor, color};
@@ -102,7 +103,9 @@ impl App {
         };
         let (by, panned) = ui.input(|i| {
             let is_panned = i.pointer.button_down(PointerButton::Middle);
-            (i.zoom_delta(), if is_panned { i.pointer.delta() } else { egui::Vec2::ZERO })
+            // Fingers on the floor are feet, also two of them.
+            let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
+            (zoomed, if is_panned { i.pointer.delta() } else { egui::Vec2::ZERO })
         });
         let screen = canvas.rect.shrink(6.0);
         let extent = scene::extent(&self.floor.geometry, show);
@@ -167,9 +170,11 @@ impl App {
         if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
             feet.lift_working();
             hand.moves.clear();
+            hand.touches.clear();
         }
         if let Some(key) = self.keyboard.hand(ui, &self.messages.layout, hand.elapsed_s) {
-            hand = key;
+            let touches = std::mem::take(&mut hand.touches);
+            hand = Hand { touches, ..key };
         }
         feet.step(&hand, sink.as_mut());
         on_handle || self.grip.held
@@ -321,6 +326,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         _ => None,
     });
     let moves = moves.collect();
+    let touches = events.iter().filter_map(|event| Touch::of(event, |at| map.floor(at), is_floor)).collect();
     ui.input(|i| {
         let down = i.pointer.primary_down();
         // A press that began on the floor goes on beyond its edge, as a foot would.
@@ -331,6 +337,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         let turning_s = i.stable_dt.clamp(0.0, 0.1);
         Hand {
             moves,
+            touches,
             pointer: pointer.map(|at| map.floor(at)),
             down,
             wheel: if inside {

@@ -26,6 +26,7 @@ mod style;
 #[cfg(test)]
 mod tests;
 mod time_line;
+mod touches;
 mod trace;
 mod trails;
 mod turns;

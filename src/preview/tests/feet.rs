@@ -203,3 +203,38 @@ fn a_button_shows_the_whole_floor_again() {
     assert_eq!(room.window.get_by_label("Home").rect(), before);
     assert!(!room.says("· fit"));
 }
+
+#[test]
+fn two_fingers_are_two_feet_and_the_mouse_that_the_system_makes_of_the_first_is_none() {
+    let mut room = Room::simulated();
+    let (home, zoom) = (room.place("Home"), room.place("Zoom in"));
+    let touch = |id, phase, pos| Event::Touch {
+        device_id: egui::TouchDeviceId(1),
+        id: egui::TouchId(id),
+        phase,
+        pos,
+        force: None,
+    };
+    room.window.event(touch(1, egui::TouchPhase::Start, home));
+    // As the system tells the first finger of a screen.
+    room.window.event(Event::PointerMoved(home));
+    let (button, modifiers) = (PointerButton::Primary, Modifiers::NONE);
+    room.window.event(Event::PointerButton { pos: home, button, pressed: true, modifiers });
+    room.window.event(touch(2, egui::TouchPhase::Start, zoom));
+    room.run(2);
+    let pressing = |room: &Room| {
+        let feet = room.feet.lock().unwrap();
+        feet.iter().filter(|foot| foot.force.0 > 0.0).map(acts_at).collect::<Vec<Vec2>>()
+    };
+    let feet = pressing(&room);
+    assert_eq!(feet.len(), 2, "{feet:?}");
+    for name in ["Home", "Zoom in"] {
+        assert!(feet.iter().any(|foot| foot.distance(middle_of(name)) < 0.02), "{name}: {feet:?}");
+    }
+    room.window.event(touch(1, egui::TouchPhase::End, home));
+    room.run(2);
+    assert_eq!(pressing(&room).len(), 1, "the other finger is still down");
+    room.window.event(touch(2, egui::TouchPhase::Cancel, zoom));
+    room.run(2);
+    assert!(pressing(&room).is_empty());
+}
