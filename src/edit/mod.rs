@@ -28,6 +28,7 @@ mod splice;
 mod template;
 #[cfg(test)]
 mod tests;
+mod threshold;
 
 pub use address::{Address, List};
 pub use arrange::{Align, align, distribute};

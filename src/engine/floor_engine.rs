@@ -347,6 +347,9 @@ impl Engine {
         snapshot.ignored.clear();
         snapshot.ignored.reserve(SHOWN);
         snapshot.ignored.extend(self.interaction.ignored().latest().cloned());
+        snapshot.answered.clear();
+        snapshot.answered.reserve(SHOWN);
+        snapshot.answered.extend(self.interaction.ignored().answered().cloned());
         self.grounds.show(&mut snapshot.grounds);
         snapshot.tiles.clear();
         let frame = &self.last_frame;

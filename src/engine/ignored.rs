@@ -1,7 +1,8 @@
-//! Presses that no control answered, and why: each visit of a contact to a control is watched from touch to leave.
+//! How hard controls are pressed, and why presses go unanswered: each visit of a contact to a control is watched from
+//! touch to leave.
 //!
 //! ```text
-//! 1  the control was pressed                  -> nothing to say
+//! 1  the control was pressed                  -> an answered press, once it is let go
 //! 2  something kept it from being pressed     -> that, with the force at which it did
 //! 3  never heavy enough, but more than a graze -> too light
 //! 4  heavy enough, but not for long enough    -> too short
@@ -18,7 +19,7 @@ use crate::widget::WidgetId;
 /// Least force of a press that is worth a word: the least that a control may be set to.
 const GRAZE: Newtons = Newtons(10.0);
 
-/// How many ignored presses are kept to be shown.
+/// How many ignored presses are kept to be shown, and how many answered ones.
 pub(super) const SHOWN: usize = 16;
 
 /// Visits for which there is room from the start; more cost an allocation once.
@@ -101,12 +102,28 @@ impl fmt::Display for IgnoredPress {
     }
 }
 
+/// A press that a control answered, and that was not cancelled.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AnsweredPress {
+    /// When the control let go.
+    pub at: Instant,
+    /// Which control.
+    pub id: WidgetId,
+    /// Which contact.
+    pub contact: ContactId,
+    /// The greatest force it had there since it came, or since the control let go of it last.
+    pub force: Newtons,
+}
+
 /// One contact on one control.
 #[derive(Clone, Debug)]
 struct Visit {
     contact: ContactId,
     widget: usize,
+    /// The greatest force since the control let go last.
     peak: Newtons,
+    /// Whether the control has answered since then.
+    is_press: bool,
     /// What kept the control from being pressed, the first cause of it.
     why: Option<Ignored>,
     is_answered: bool,
@@ -120,12 +137,14 @@ pub(super) struct IgnoredPresses {
     /// Those of this frame.
     new: Vec<IgnoredPress>,
     latest: VecDeque<IgnoredPress>,
+    answered: VecDeque<AnsweredPress>,
 }
 
 impl Default for IgnoredPresses {
     fn default() -> Self {
         let (visits, new) = (Vec::with_capacity(ROOM), Vec::with_capacity(ROOM));
-        Self { visits, new, latest: VecDeque::with_capacity(SHOWN) }
+        let (latest, answered) = (VecDeque::with_capacity(SHOWN), VecDeque::with_capacity(SHOWN));
+        Self { visits, new, latest, answered }
     }
 }
 
@@ -146,10 +165,22 @@ impl IgnoredPresses {
         }
     }
 
-    /// Notes that the control has answered, if only with a refusal.
-    pub(super) fn note_answer(&mut self, contact: ContactId, widget: usize) {
+    /// Notes that the control answers a contact, if only with a refusal.
+    pub(super) fn note_answer(&mut self, contact: ContactId, widget: usize, force: Newtons) {
         let visit = self.visit(contact, widget);
-        (visit.is_there, visit.is_answered) = (true, true);
+        (visit.is_there, visit.is_answered, visit.is_press) = (true, true, true);
+        visit.peak = visit.peak.max(force);
+    }
+
+    /// Notes that the control called `id` has let go of a contact, which may still be there and press again; a press
+    /// that was cancelled is not one that a person meant.
+    pub(super) fn note_end(&mut self, at: Instant, id: &WidgetId, held: (ContactId, usize), cancelled: bool) {
+        let (contact, widget) = held;
+        let visit = self.visit(contact, widget);
+        let force = std::mem::replace(&mut visit.peak, Newtons::ZERO);
+        if std::mem::take(&mut visit.is_press) && !cancelled {
+            keep(&mut self.answered, AnsweredPress { at, id: id.clone(), contact, force });
+        }
     }
 
     fn visit(&mut self, contact: ContactId, widget: usize) -> &mut Visit {
@@ -157,29 +188,31 @@ impl IgnoredPresses {
         let at = self.visits.iter().position(is_it).unwrap_or(self.visits.len());
         if at == self.visits.len() {
             let (peak, why) = (Newtons::ZERO, None);
-            self.visits.push(Visit { contact, widget, peak, why, is_answered: false, is_there: true });
+            let (is_press, is_answered, is_there) = (false, false, true);
+            self.visits.push(Visit { contact, widget, peak, is_press, why, is_answered, is_there });
         }
         &mut self.visits[at]
     }
 
     /// Ends a frame of time `at`: what visits that are over led to. `press` is a control's id and threshold.
     pub(super) fn end(&mut self, at: Instant, press: impl Fn(usize) -> Option<(WidgetId, Newtons)>) {
-        let Self { visits, latest, new } = self;
+        let Self { visits, latest, new, answered } = self;
         visits.retain(|visit| {
             if visit.is_there {
                 return true;
             }
-            if visit.is_answered || visit.peak < GRAZE {
+            if !visit.is_press && (visit.is_answered || visit.peak < GRAZE) {
                 return false;
             }
             let Some((id, threshold)) = press(visit.widget) else { return false };
+            if visit.is_press {
+                keep(answered, AnsweredPress { at, id, contact: visit.contact, force: visit.peak });
+                return false;
+            }
             let otherwise = if visit.peak < threshold { Ignored::TooLight } else { Ignored::TooShort };
             let why = visit.why.unwrap_or(otherwise);
             let press = IgnoredPress { at, id, contact: visit.contact, force: visit.peak, why };
-            if latest.len() == SHOWN {
-                latest.pop_front();
-            }
-            latest.push_back(press.clone());
+            keep(latest, press.clone());
             new.push(press);
             false
         });
@@ -188,6 +221,11 @@ impl IgnoredPresses {
     /// Forgets the visits under way: their controls are another layout's.
     pub(super) fn forget(&mut self) {
         self.visits.clear();
+    }
+
+    /// The latest presses that were answered, oldest first.
+    pub(super) fn answered(&self) -> impl Iterator<Item = &AnsweredPress> {
+        self.answered.iter()
     }
 
     /// The latest ones, oldest first.
@@ -204,4 +242,12 @@ impl IgnoredPresses {
     pub(super) fn is_noted(&self, contact: ContactId) -> bool {
         self.visits.iter().any(|visit| visit.is_there && visit.contact == contact)
     }
+}
+
+/// Puts one behind the others, in place of the oldest of [`SHOWN`].
+fn keep<T>(all: &mut VecDeque<T>, one: T) {
+    if all.len() == SHOWN {
+        all.pop_front();
+    }
+    all.push_back(one);
 }

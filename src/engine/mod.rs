@@ -26,7 +26,7 @@ mod weight;
 
 pub use control_state::{ControlState, ValueRange};
 pub use floor_engine::{Engine, Step};
-pub use ignored::{Ignored, IgnoredPress};
+pub use ignored::{AnsweredPress, Ignored, IgnoredPress};
 pub use page::PageShown;
 pub use snapshot::{FootRole, FootState, Snapshot, TileState, WidgetState};
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use glam::Vec2;
 
-use super::ignored::IgnoredPress;
+use super::ignored::{AnsweredPress, IgnoredPress};
 use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
@@ -39,6 +39,8 @@ pub struct Snapshot {
     pub widgets: Vec<WidgetState>,
     /// The latest presses that no control answered, oldest first; 16 at most.
     pub ignored: Vec<IgnoredPress>,
+    /// The latest presses that controls answered, oldest first; 16 at most.
+    pub answered: Vec<AnsweredPress>,
     /// One entry per ground, in the layout's order.
     pub grounds: Vec<GroundState>,
     /// The controls that a foot holds pressed, in no order.

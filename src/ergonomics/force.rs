@@ -11,7 +11,7 @@ const LIGHT_PERSON: Newtons = Newtons(45.0 * 9.81);
 /// Part of the weight that a foot presses with while the other one stands.
 const SHIFTED: f32 = 0.5;
 /// What a foot at rest may bear.
-const RESTING: Newtons = Newtons(35.0);
+pub(super) const RESTING: Newtons = Newtons(35.0);
 /// What each foot of a standing person of 70 kg bears.
 const STANDING: Newtons = Newtons(350.0);
 /// How far feet stray from a stance zone.

@@ -17,11 +17,13 @@
 
 mod force;
 mod place_error;
+mod press;
 mod rules;
 mod sight;
 mod space;
 
 pub use place_error::{Zone, predicted_error_m};
+pub use press::{PressProposal, PressSpread, propose_press};
 pub use rules::{RULES, Rule, rule};
 #[cfg(feature = "preview")]
 pub(crate) use space::{REACH_M, STEP_AWAY_M, footing};

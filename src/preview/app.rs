@@ -16,6 +16,7 @@ use super::floor_view::Grip;
 use super::keyboard::Keyboard;
 use super::messages::Messages;
 use super::panel::Tuner;
+use super::presses::Presses;
 use super::projection::Projection;
 use super::rate::Rate;
 use super::rehearsal::Rehearsal;
@@ -52,6 +53,7 @@ pub(super) struct App {
     pub(super) time_line: Option<TimeLine>,
     pub(super) keyboard: Keyboard,
     pub(super) selection: Selection,
+    pub(super) presses: Presses,
     pub(super) watch: Watch,
     pub(super) scene: Scene,
     pub(super) palette: Palette,
@@ -100,6 +102,7 @@ impl App {
             wanted_events: String::new(),
             enlarged: 1.0,
             selection: Selection::new(&input.floor.geometry),
+            presses: Presses::default(),
             scopes: Scopes::new(input.scopes, &input.floor),
             messages,
             designer: input.design.and_then(|design| Designer::new(design, &input.floor)),
@@ -144,6 +147,7 @@ impl App {
         self.enlarge(ui.ctx());
         self.handle_mute_key(ui);
         self.handle_mode_key(ui);
+        self.handle_undo_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
         self.time_line(ui);
@@ -182,12 +186,14 @@ impl App {
         self.messages.receive(now_s, snapshot.layout_revision);
         self.messages.relabel(&snapshot.labels);
         self.messages.note_grounds(snapshot);
+        self.messages.note_ignored(self.presses.update(snapshot));
         if let Some(feed) = &mut self.shoe_feed {
             feed(&mut self.shoes);
         }
         self.watch.observe(now_s, snapshot, fresh);
         self.trails.update(now_s, snapshot);
         self.selection.follow(snapshot);
+        self.selection.follow_press(self.presses.latest());
         self.scopes.update(&self.floor, snapshot, self.selection.tile(), elapsed_s);
         self.frame_count += 1;
         self.window_frames.observe(now_s, self.frame_count);

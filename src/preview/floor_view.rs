@@ -125,7 +125,7 @@ impl App {
         }
     }
 
-    /// Chooses the tile that the side panel shows.
+    /// Chooses the tile and the control that the side panel shows.
     fn look_at_tiles(&mut self, ui: &Ui, canvas: &Response, map: ScreenFromFloor) {
         let (pressed, shift, pointer) =
             ui.input(|i| (i.pointer.primary_pressed(), i.modifiers.shift, i.pointer.interact_pos()));
@@ -134,6 +134,11 @@ impl App {
             && let Some(tile) = self.floor.geometry.tile_under(map.floor(pointer))
         {
             self.selection.pin(tile);
+            let (at, page) = (map.floor(pointer), self.snapshots.output_buffer().page);
+            let layout = &self.messages.layout;
+            if let Some(widget) = layout.widget_at(page, at).and_then(|index| layout.widgets.get(index)) {
+                self.selection.pin_control(widget.id.clone());
+            }
         }
         if ui.ctx().memory(|memory| memory.focused().is_none()) {
             for (key, east, north) in [

@@ -146,7 +146,8 @@ fn differ(one: &Snapshot, other: &Snapshot) -> bool {
         || one.held != other.held
         || one.health.counts != other.health.counts
         || one.health.troubles.len() != other.health.troubles.len()
-        || one.ignored.len() != other.ignored.len()
+        || one.ignored.last() != other.ignored.last()
+        || one.answered.last() != other.answered.last()
         || one.feet != other.feet
         || differ_any(&one.contacts, &other.contacts, contacts)
         || differ_any(&one.widgets, &other.widgets, widgets)

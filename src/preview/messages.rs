@@ -6,7 +6,7 @@ use std::sync::mpsc::Receiver;
 use std::time::Duration;
 
 use super::feed::{EventNews, LayoutCause, LayoutNews, Warnings};
-use crate::engine::Snapshot;
+use crate::engine::{IgnoredPress, Snapshot};
 use crate::layout::Layout;
 use crate::units::Instant;
 use crate::widget::{EventKind, Value, WidgetEvent};
@@ -25,6 +25,8 @@ const SAME_WALK: Duration = Duration::from_secs(2);
 pub(super) enum Happened {
     /// A control's event.
     Event(WidgetEvent),
+    /// A control did not answer a press.
+    Ignored(IgnoredPress),
     /// Ice cracked, or other ground gave way.
     GaveWay {
         /// Which of the layout's grounds.
@@ -194,6 +196,14 @@ impl Messages {
         }
     }
 
+    /// Lists presses that no control answered.
+    pub(super) fn note_ignored(&mut self, presses: Vec<IgnoredPress>) {
+        for press in presses {
+            self.recent.truncate(KEPT - 1);
+            self.recent.push_front(Happened::Ignored(press));
+        }
+    }
+
     /// Says something to the person at the window, unless that is being said.
     pub(super) fn note(&mut self, note: String) {
         if !self.notes.contains(&note) {
@@ -245,7 +255,7 @@ mod tests {
             .iter()
             .map(|line| match line {
                 Happened::GaveWay { count, material, .. } => (*count, *material),
-                Happened::Event(event) => panic!("{event:?}"),
+                other => panic!("{other:?}"),
             })
             .collect();
         assert_eq!(counts, [(1, "Ice"), (6, "Ice")]);

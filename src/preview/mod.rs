@@ -17,6 +17,7 @@ mod lookout;
 mod messages;
 mod panel;
 mod playback;
+mod presses;
 mod projection;
 mod rate;
 mod rehearsal;

@@ -1,12 +1,16 @@
-//! Which tile the side panel shows.
+//! Which tile and which control the side panel shows.
 
 use crate::engine::Snapshot;
 use crate::floor::{Geometry, TileId};
+use crate::layout::{Layout, Widget};
+use crate::widget::WidgetId;
 
-/// Which tile the side panel shows: the one under the foot that works, or one that was pinned.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What the side panel shows: the tile under the foot that works and the control that was pressed last, or those that
+/// were pinned.
+#[derive(Clone, Debug, PartialEq)]
 pub(super) struct Selection {
     tile: TileId,
+    control: Option<WidgetId>,
     pinned: bool,
 }
 
@@ -15,7 +19,7 @@ impl Selection {
     pub(super) fn new(geometry: &Geometry) -> Self {
         let TileId { column, row } = geometry.first();
         let tile = TileId::new(column + geometry.columns() / 2, row + geometry.rows() / 2);
-        Self { tile, pinned: false }
+        Self { tile, control: None, pinned: false }
     }
 
     /// Goes along with the cursor's heaviest tile, or the heaviest contact's, unless pinned.
@@ -34,19 +38,42 @@ impl Selection {
         }
     }
 
+    /// Goes along with the control that was pressed last, unless pinned to another one.
+    pub(super) fn follow_press(&mut self, control: Option<&WidgetId>) {
+        if control.is_some() && (!self.pinned || self.control.is_none()) && self.control.as_ref() != control {
+            self.control = control.cloned();
+        }
+    }
+
     pub(super) fn pin(&mut self, tile: TileId) {
-        *self = Self { tile, pinned: true };
+        (self.tile, self.pinned) = (tile, true);
+    }
+
+    /// Shows this control until somebody wants another one.
+    pub(super) fn pin_control(&mut self, control: WidgetId) {
+        (self.control, self.pinned) = (Some(control), true);
+    }
+
+    #[cfg(test)]
+    pub(super) fn control(&self) -> Option<&WidgetId> {
+        self.control.as_ref()
+    }
+
+    /// The control in `layout`, or the first one while none was pressed that is there.
+    pub(super) fn control_of<'l>(&self, layout: &'l Layout) -> Option<&'l Widget> {
+        let chosen = self.control.as_ref().and_then(|id| layout.widget_index(id.as_str()));
+        layout.widgets.get(chosen.unwrap_or(0))
     }
 
     pub(super) fn unpin(&mut self) {
         self.pinned = false;
     }
 
-    pub(super) fn tile(self) -> TileId {
+    pub(super) fn tile(&self) -> TileId {
         self.tile
     }
 
-    pub(super) fn pinned(self) -> Option<TileId> {
+    pub(super) fn pinned(&self) -> Option<TileId> {
         self.pinned.then_some(self.tile)
     }
 }
@@ -76,5 +103,20 @@ mod tests {
         selection.unpin();
         selection.follow(&elsewhere);
         assert_eq!(selection.tile(), TileId::new(3, 3));
+    }
+
+    #[test]
+    fn the_control_is_the_one_pressed_last_until_one_is_pinned() {
+        let mut selection = Selection::new(&Geometry::default());
+        let [home, zoom] = ["home", "zoom"].map(WidgetId::new);
+        selection.follow_press(Some(&home));
+        selection.follow_press(Some(&zoom));
+        assert_eq!(selection.control(), Some(&zoom));
+        selection.pin_control(home.clone());
+        selection.follow_press(Some(&zoom));
+        assert_eq!(selection.control(), Some(&home));
+        selection.unpin();
+        selection.follow_press(Some(&zoom));
+        assert_eq!(selection.control(), Some(&zoom));
     }
 }

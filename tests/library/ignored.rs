@@ -33,6 +33,39 @@ fn a_press_that_is_answered_is_not_ignored() {
 }
 
 #[test]
+fn how_hard_a_control_was_pressed_is_told_press_by_press() {
+    let mut walker = ready("map");
+    // 150 N, let go to 25 N (below the 40 N at which it lets go) without leaving, then 100 N.
+    walker.step_onto("home", Newtons(150.0));
+    walker.wait(100);
+    assert_eq!(walker.answered(), [], "it is still held");
+    for force in [25.0, 100.0, 25.0] {
+        walker.press(Newtons(force));
+        walker.wait(200);
+    }
+    assert_eq!(why(&mut walker), [], "the rest on the way out is no press");
+    let told = walker.answered();
+    assert!(told.iter().all(|(id, _)| id == "home"), "{told:?}");
+    let forces: Vec<f32> = told.iter().map(|(_, force)| force.0).collect();
+    // Parts that nobody has calibrated differ by a quarter; one to the other the presses are told right.
+    assert!(
+        matches!(forces[..], [first, second] if (first / 150.0 - 1.0).abs() < 0.25 && (first / second - 1.5).abs() < 0.1),
+        "{forces:?}"
+    );
+}
+
+#[test]
+fn a_cancelled_press_tells_no_force() {
+    let mut walker = ready("map");
+    walker.step_onto("home", Newtons(150.0));
+    walker.wait(100);
+    // A tile away from it: slid off, which cancels.
+    walker.slide_to(Vec2::new(0.15, 1.2), 0.5);
+    assert_eq!(why(&mut walker), []);
+    assert_eq!(walker.answered(), []);
+}
+
+#[test]
 fn too_light_and_a_graze() {
     let mut walker = ready("map");
     walker.step_onto("home", Newtons(40.0));

@@ -205,6 +205,13 @@ impl Walker {
         snapshot.ignored.into_iter().map(|press| (press.id.to_string(), press.why)).collect()
     }
 
+    /// The presses that were answered so far: control and greatest force.
+    pub fn answered(&self) -> Vec<(String, Newtons)> {
+        let mut snapshot = Snapshot::default();
+        self.engine.snapshot(&mut snapshot);
+        snapshot.answered.into_iter().map(|press| (press.id.to_string(), press.force)).collect()
+    }
+
     /// What happened since the last call: control and kind.
     pub fn take_events(&mut self) -> Vec<(String, EventKind)> {
         self.events.drain(..).map(|event| (event.id.to_string(), event.kind)).collect()

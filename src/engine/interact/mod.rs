@@ -16,7 +16,7 @@ use crate::floor::Geometry;
 use crate::layout::{CursorRule, HitIndex, Layout, Widget};
 use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Behaviour, Control, Emitted, Guard, Input, WidgetEvent};
+use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, WidgetEvent};
 
 /// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means to stay).
 const SLIDE_OFF_MARGIN_M: f32 = 0.03;
@@ -357,7 +357,7 @@ impl Interaction {
             self.ignored.note(contact.id, widget, contact.force, why);
         }
         if control.is_engaged() || !emitted.is_empty() {
-            self.ignored.note_answer(contact.id, widget);
+            self.ignored.note_answer(contact.id, widget, contact.force);
         }
         let held = Held { widget, contact: contact.id, force: contact.force, position: contact.centroid };
         if control.is_engaged() {
@@ -384,7 +384,8 @@ impl Interaction {
             finger.held = None;
             return;
         };
-        self.ignored.note_answer(held.contact, held.widget);
+        let force = at.contact(held.contact).map_or(held.force, |contact| contact.force);
+        self.ignored.note_answer(held.contact, held.widget, force);
         let foot = self.feet.of(held.contact);
         let input = match at.contact(held.contact) {
             Some(contact) => {
@@ -414,6 +415,10 @@ impl Interaction {
         };
         let emitted = control.step(at.now(), input);
         finger.held = control.is_engaged().then_some(held);
+        if finger.held.is_none() {
+            let cancelled = emitted.contains(&EventKind::Cancelled);
+            self.ignored.note_end(at.now(), &spec.id, (held.contact, held.widget), cancelled);
+        }
         report(at.layout, at.now(), held.widget, Some(held), &emitted, events);
         self.wake(held.widget);
     }

@@ -20,6 +20,7 @@ mod shielded;
 #[cfg(test)]
 mod tests;
 mod text;
+mod threshold;
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -35,6 +36,7 @@ use crate::scene::Scene;
 use crate::schema::{Diagnostics, Kinds};
 
 pub use shelf::usual_state;
+pub(super) use threshold::Threshold;
 
 /// What Design mode begins with.
 pub struct DesignInput {
@@ -191,6 +193,11 @@ impl Designer {
 
     pub(super) fn layout(&self) -> &Layout {
         self.document.layout()
+    }
+
+    #[cfg(test)]
+    pub(super) fn text_of_layout(&self) -> &str {
+        self.document.text()
     }
 
     /// Whether everything is in the file.

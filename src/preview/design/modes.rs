@@ -111,7 +111,7 @@ impl App {
     }
 
     /// Gives the floor the layout that is on the screen.
-    fn try_layout(&self, cause: LayoutCause) {
+    pub(super) fn try_layout(&self, cause: LayoutCause) {
         let Some(designer) = &self.designer else { return };
         let layout = Arc::new(designer.layout().clone());
         let name = designer.file.name();

@@ -9,6 +9,7 @@ use super::super::app::App;
 use super::super::messages::Happened;
 use super::super::style::{Row, quiet, section};
 use crate::egui_painter::color;
+use crate::engine::IgnoredPress;
 use crate::scene::Theme;
 use crate::sink::event_line;
 use crate::units::Instant;
@@ -40,6 +41,7 @@ impl App {
             for happened in lines.filter_map(|line| recent.get(line)) {
                 match happened {
                     Happened::Event(event) => show(ui, theme, event),
+                    Happened::Ignored(press) => show_ignored(ui, theme, press),
                     Happened::GaveWay { material, count, at, .. } => {
                         gave_way(ui, theme, material, *count, *at);
                     }
@@ -67,24 +69,51 @@ impl App {
     }
 }
 
-/// Whether a line has to do with `wanted`, which is in lower case: its control, its event or its material.
+/// Whether a line has to do with `wanted`, which is in lower case: its control, its event, the reason why a press was
+/// ignored, its material.
 fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
+        Happened::Ignored(press) => format!("{} ignored: {}", press.id, press.why),
         Happened::GaveWay { material, .. } => format!("{material} gave way"),
     };
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
 }
 
-/// The events that are listed, as the program writes them with `--json`, oldest first.
+/// The events that are listed, as the program writes them with `--json`, oldest first; presses that were ignored, which
+/// it does not write, in the same form with the reason.
 fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
     let wanted = wanted.to_lowercase();
     let listed = recent.iter().rev().filter(|happened| is_wanted(happened, &wanted));
     let lines = listed.filter_map(|happened| match happened {
         Happened::Event(event) => Some(event_line(event) + "\n"),
+        Happened::Ignored(press) => {
+            let line = serde_json::json!({
+                "t_s": press.at.secs(),
+                "event": "ignored",
+                "id": press.id.as_str(),
+                "why": press.why.to_string(),
+                "contact": press.contact.0,
+                "force_n": press.force.0,
+            });
+            Some(line.to_string() + "\n")
+        }
         Happened::GaveWay { .. } => None,
     });
     lines.collect()
+}
+
+/// A press that no control answered, and why: the whole sentence where it is pointed at.
+fn show_ignored(ui: &mut Ui, theme: &Theme, press: &IgnoredPress) {
+    let (rect, response) = ui.allocate_exact_size(vec2(ui.available_width() - 8.0, LINE), Sense::hover());
+    let spoken = format!("{} ignored {:.0} N: {}", press.id, press.force.0, press.why);
+    response.widget_info(|| WidgetInfo::labeled(Role::Label, true, &spoken));
+    let line = Row { ui, rect, size: 12.5 };
+    line.right(0.19, &format!("{:.3}", press.at.secs()), color(theme.quiet));
+    line.left(0.23, 0.56, press.id.as_str(), color(theme.ink));
+    line.left(0.58, 0.86, &press.why.to_string(), color(theme.warning));
+    line.right(1.0, &format!("{:.0} N", press.force.0), color(theme.ink));
+    response.on_hover_text(spoken);
 }
 
 /// Ground that gave way, so many times.
@@ -140,28 +169,44 @@ fn value(kind: EventKind) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::engine::Ignored;
+    use crate::sense::ContactId;
+    use crate::units::Newtons;
+    use crate::widget::WidgetId;
 
     fn listed() -> VecDeque<Happened> {
         let event = |at, id| Happened::Event(crate::preview::tests::event(at, id));
         let at = Instant::from_millis(150);
         let ground = Happened::GaveWay { ground: 0, material: "Ice", count: 3, at };
-        [event(200, "zoom"), ground, event(100, "home")].into()
+        let (id, contact, why) = (WidgetId::new("zoom"), ContactId(4), Ignored::TooLight);
+        let ignored = Happened::Ignored(IgnoredPress { at, id, contact, force: Newtons(24.0), why });
+        [event(200, "zoom"), ground, ignored, event(100, "home")].into()
     }
 
     #[test]
     fn events_are_found_by_any_part_of_their_words() {
         let found = |wanted: &str| listed().iter().filter(|happened| is_wanted(happened, wanted)).count();
-        assert_eq!(["", "zo", "pressed", "zoom pressed", "gave", "zoom gave"].map(found), [3, 1, 2, 1, 1, 0]);
+        assert_eq!(["", "zo", "pressed", "zoom pressed", "gave", "zoom gave"].map(found), [4, 2, 2, 1, 1, 0]);
+        assert_eq!(["ignored", "light", "home light"].map(found), [1, 1, 0]);
     }
 
     #[test]
     fn the_list_is_copied_as_json_lines_in_the_order_of_time() {
-        let text = exported(&listed(), "PRESSED");
-        let ids: Vec<String> = text
-            .lines()
-            .map(|line| serde_json::from_str::<serde_json::Value>(line).unwrap())
+        let lines = |wanted: &str| -> Vec<serde_json::Value> {
+            exported(&listed(), wanted).lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+        };
+        let ids: Vec<String> = lines("PRESSED")
+            .iter()
             .map(|line| format!("{} {}", line["t_s"], line["id"].as_str().unwrap()))
             .collect();
         assert_eq!(ids, ["0.1 home", "0.2 zoom"]);
+        let ignored = &lines("ignored")[0];
+        assert_eq!((ignored["why"].as_str(), ignored["force_n"].as_f64()), (Some("too light"), Some(24.0)));
+        // The names of other lines.
+        let names = |line: &serde_json::Value| line.as_object().unwrap().keys().cloned().collect::<Vec<_>>();
+        let usual = names(&lines("home")[0]);
+        for name in ["t_s", "event", "id", "contact", "force_n"] {
+            assert!(usual.contains(&name.to_owned()), "{name} of {usual:?}");
+        }
     }
 }

@@ -6,6 +6,7 @@ mod events;
 mod faults;
 mod grounds;
 mod link;
+mod presses;
 mod scopes;
 mod tile;
 mod tuner;
@@ -40,6 +41,7 @@ impl App {
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
                 self.tile_part(ui);
+                self.presses_part(ui);
                 self.contacts_part(ui);
                 // The list takes what the other parts leave, as they were at the last frame.
                 let events = (height - self.other_parts).max(EVENTS);

@@ -2,6 +2,12 @@
 
 use super::*;
 
+/// Brings a line of the panel into its view.
+fn scroll_to(room: &mut Room, label: &str) {
+    room.window.get_by_label(label).scroll_to_me();
+    room.run(20);
+}
+
 #[test]
 fn the_panel_follows_the_foot_and_lists_its_sensors() {
     let mut room = Room::simulated();
@@ -28,6 +34,7 @@ fn the_panel_says_in_one_line_how_the_sensors_are_and_names_those_in_trouble() {
     let sensor = SensorId { tile: TileId::new(2, 1), corner: Corner::SouthWest };
     snapshot.health.troubles.push((sensor, crate::sense::Trouble::Stuck));
     room.write(snapshot);
+    scroll_to(&mut room, "Sensors: 1 faulty, 143 live");
     room.window.get_by_label("Sensors: 1 faulty, 143 live").click();
     room.run(20);
     assert!(room.says("tile (2, 1) sw: stuck"));
@@ -89,8 +96,10 @@ fn the_panel_counts_what_gave_way_underfoot() {
 #[test]
 fn an_apps_part_can_be_played_from_the_panel() {
     let mut room = Room::simulated();
+    scroll_to(&mut room, "Controls, as an app sets them");
     room.window.get_by_label("Controls, as an app sets them").click();
     room.run(20);
+    scroll_to(&mut room, "home works");
     room.window.get_by_label("home works").click();
     room.run(3);
     let id = WidgetId::new("home");
@@ -158,6 +167,7 @@ fn the_link_is_told_in_a_line_and_counted_when_it_is_opened() {
     let mut snapshot = pressing(&map());
     (snapshot.counters.lost, snapshot.counters.malformed) = (12, 3);
     room.write(snapshot);
+    scroll_to(&mut room, "Link: 12 lost, 3 refused");
     room.window.get_by_label("Link: 12 lost, 3 refused").click();
     room.run(20);
     assert!(room.says("lost packets: 12") && room.says("refused: malformed: 3"));

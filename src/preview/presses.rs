@@ -1,0 +1,189 @@
+//! How hard people have pressed each control, answered or not.
+
+use std::collections::VecDeque;
+
+use crate::engine::{AnsweredPress, Ignored, IgnoredPress, Snapshot};
+use crate::sense::ContactId;
+use crate::units::{Instant, Newtons};
+use crate::widget::WidgetId;
+
+/// Presses that are kept, of all controls: some minutes of busy feet.
+const KEPT: usize = 400;
+
+/// Contacts whose person is remembered: their presses are told when they are gone.
+const CONTACTS: usize = 64;
+
+/// One press of one control.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Press {
+    /// When it ended.
+    pub(super) at: Instant,
+    pub(super) id: WidgetId,
+    /// The greatest force.
+    pub(super) force: Newtons,
+    /// Why it was not answered; `None` if it was.
+    pub(super) why: Option<Ignored>,
+    /// Whose foot it was, as the floor tells people apart; `None` if it was not told.
+    pub(super) person: Option<u32>,
+    /// Whether it counts as one that was meant.
+    pub(super) counts: bool,
+}
+
+impl Press {
+    /// Whether a person pressed as they meant to, as far as its end tells: other reasons than force and time say that
+    /// the foot was not there to press, or that it could not be known how hard it did.
+    fn is_meant(why: Option<Ignored>) -> bool {
+        matches!(why, None | Some(Ignored::TooLight | Ignored::TooShort))
+    }
+}
+
+/// The presses since the window opened.
+#[derive(Default)]
+pub(super) struct Presses {
+    /// Oldest first.
+    all: VecDeque<Press>,
+    /// What the last snapshot had listed.
+    ignored: Vec<IgnoredPress>,
+    answered: Vec<AnsweredPress>,
+    people: VecDeque<(ContactId, u32)>,
+    /// What became of the last threshold that was set here.
+    pub(super) told: Option<(WidgetId, String)>,
+}
+
+impl Presses {
+    /// Takes in what a snapshot lists that was not listed before; gives back the new presses that were ignored.
+    pub(super) fn update(&mut self, snapshot: &Snapshot) -> Vec<IgnoredPress> {
+        for foot in &snapshot.feet {
+            if !self.people.iter().any(|(contact, _)| *contact == foot.contact) {
+                self.people.truncate(CONTACTS - 1);
+                self.people.push_front((foot.contact, foot.person));
+            }
+        }
+        if self.answered != snapshot.answered {
+            for press in &snapshot.answered {
+                if !self.answered.contains(press) {
+                    self.note(press.at, &press.id, press.contact, press.force, None);
+                }
+            }
+            self.answered.clone_from(&snapshot.answered);
+        }
+        let mut new = Vec::new();
+        if self.ignored != snapshot.ignored {
+            new.extend(snapshot.ignored.iter().filter(|press| !self.ignored.contains(press)).cloned());
+            for press in &new {
+                self.note(press.at, &press.id, press.contact, press.force, Some(press.why));
+            }
+            self.ignored.clone_from(&snapshot.ignored);
+        }
+        new
+    }
+
+    fn note(&mut self, at: Instant, id: &WidgetId, contact: ContactId, force: Newtons, why: Option<Ignored>) {
+        let person = self.people.iter().find(|(other, _)| *other == contact).map(|(_, person)| *person);
+        if self.all.len() == KEPT {
+            self.all.pop_front();
+        }
+        let counts = Press::is_meant(why) && force.is_finite();
+        self.all.push_back(Press { at, id: id.clone(), force, why, person, counts });
+        if self.told.as_ref().is_some_and(|(told, _)| told == id) {
+            self.told = None;
+        }
+    }
+
+    /// The control that was pressed last.
+    pub(super) fn latest(&self) -> Option<&WidgetId> {
+        self.all.back().map(|press| &press.id)
+    }
+
+    /// Those of one control, the latest first.
+    pub(super) fn of(&self, id: &WidgetId) -> impl Iterator<Item = &Press> {
+        self.all.iter().rev().filter(move |press| press.id == *id)
+    }
+
+    /// Forces of those of one control that count, and of how many people they are.
+    pub(super) fn counted(&self, id: &WidgetId) -> (Vec<Newtons>, usize) {
+        let forces = self.of(id).filter(|press| press.counts).map(|press| press.force).collect();
+        let mut people: Vec<u32> =
+            self.of(id).filter(|press| press.counts).filter_map(|press| press.person).collect();
+        people.sort_unstable();
+        people.dedup();
+        (forces, people.len())
+    }
+
+    /// Lets one press of a control count or not; `number` counts from the latest.
+    pub(super) fn let_count(&mut self, id: &WidgetId, number: usize, counts: bool) {
+        let mut of = self.all.iter_mut().rev().filter(|press| press.id == *id);
+        if let Some(press) = of.nth(number) {
+            press.counts = counts;
+        }
+    }
+
+    /// Forgets the presses of one control: another person begins.
+    pub(super) fn forget(&mut self, id: &WidgetId) {
+        self.all.retain(|press| press.id != *id);
+        self.told = None;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::engine::{FootRole, FootState};
+
+    fn id(name: &str) -> WidgetId {
+        WidgetId::new(name)
+    }
+
+    fn foot(contact: u32, person: u32) -> FootState {
+        FootState { contact: ContactId(contact), role: FootRole::Free, person, weight: None }
+    }
+
+    fn answered(at_ms: u64, contact: u32, force: f32) -> AnsweredPress {
+        let at = Instant::from_millis(at_ms);
+        AnsweredPress { at, id: id("home"), contact: ContactId(contact), force: Newtons(force) }
+    }
+
+    fn ignored(at_ms: u64, contact: u32, force: f32, why: Ignored) -> IgnoredPress {
+        let at = Instant::from_millis(at_ms);
+        IgnoredPress { at, id: id("home"), contact: ContactId(contact), force: Newtons(force), why }
+    }
+
+    #[test]
+    fn each_press_is_noted_once_with_its_person_and_those_that_were_not_meant_do_not_count() {
+        let mut presses = Presses::default();
+        let mut snapshot = Snapshot { feet: vec![foot(1, 5), foot(2, 6)], ..Snapshot::default() };
+        presses.update(&snapshot);
+        // Told once the feet are gone.
+        snapshot.feet.clear();
+        snapshot.answered = vec![answered(100, 1, 120.0), answered(200, 2, 90.0)];
+        snapshot.ignored =
+            vec![ignored(150, 1, 40.0, Ignored::TooLight), ignored(250, 2, 600.0, Ignored::Step)];
+        assert_eq!(presses.update(&snapshot).len(), 2);
+        assert_eq!(presses.update(&snapshot), []);
+        let (mut forces, people) = presses.counted(&id("home"));
+        forces.sort_by(|a, b| a.0.total_cmp(&b.0));
+        assert_eq!((forces, people), (vec![Newtons(40.0), Newtons(90.0), Newtons(120.0)], 2));
+        // The same press again at another time is another one, and lists that are cut at their old end are no news.
+        snapshot.answered = vec![answered(200, 2, 90.0), answered(300, 2, 90.0)];
+        presses.update(&snapshot);
+        assert_eq!(presses.of(&id("home")).count(), 5);
+        assert_eq!(presses.of(&id("zoom")).count(), 0);
+    }
+
+    #[test]
+    fn a_press_is_left_out_and_taken_in_by_its_place_from_the_latest() {
+        let mut presses = Presses::default();
+        let snapshot = Snapshot {
+            answered: vec![answered(100, 1, 120.0), answered(200, 2, 15.0)],
+            ..Snapshot::default()
+        };
+        presses.update(&snapshot);
+        presses.let_count(&id("home"), 0, false);
+        assert_eq!(presses.counted(&id("home")), (vec![Newtons(120.0)], 0));
+        presses.let_count(&id("home"), 9, false);
+        presses.forget(&id("home"));
+        assert_eq!(presses.latest(), None);
+        assert_eq!(presses.update(&snapshot), [], "what is forgotten does not come again");
+        assert_eq!(presses.latest(), None);
+    }
+}
