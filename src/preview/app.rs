@@ -16,6 +16,7 @@ use super::floor_view::Grip;
 use super::keyboard::Keyboard;
 use super::messages::Messages;
 use super::panel::Tuner;
+use super::plots::Plots;
 use super::presses::Presses;
 use super::projection::Projection;
 use super::rate::Rate;
@@ -36,6 +37,9 @@ use crate::scene::{self, Scene, Shoe, Show, Theme};
 /// Time between frames: 60 a second.
 const PICTURE: Duration = Duration::from_nanos(16_666_667);
 
+/// Time between frames while nothing moves but the lines of plots.
+const PLOT: Duration = Duration::from_millis(50);
+
 /// The window's contents and what they remember from one frame to the next.
 pub(super) struct App {
     pub(super) floor: Arc<Floor>,
@@ -54,6 +58,7 @@ pub(super) struct App {
     pub(super) keyboard: Keyboard,
     pub(super) selection: Selection,
     pub(super) presses: Presses,
+    pub(super) plots: Plots,
     pub(super) watch: Watch,
     pub(super) scene: Scene,
     pub(super) palette: Palette,
@@ -103,6 +108,7 @@ impl App {
             enlarged: 1.0,
             selection: Selection::new(&input.floor.geometry),
             presses: Presses::default(),
+            plots: Plots::default(),
             scopes: Scopes::new(input.scopes, &input.floor),
             messages,
             designer: input.design.and_then(|design| Designer::new(design, &input.floor)),
@@ -148,6 +154,7 @@ impl App {
         self.handle_mute_key(ui);
         self.handle_mode_key(ui);
         self.handle_undo_key(ui);
+        self.handle_plots_key(ui);
         self.top_bar(ui);
         self.help_bar(ui);
         self.time_line(ui);
@@ -160,6 +167,7 @@ impl App {
         self.tuner_panel(ui);
         self.problems(ui);
         self.warnings(ui);
+        self.plots_panel(ui);
         let frame = egui::Frame::new();
         egui::CentralPanel::default().frame(frame).show(ui, |ui| self.floor_view(ui));
         self.projection_window(ui);
@@ -192,6 +200,7 @@ impl App {
         }
         self.watch.observe(now_s, snapshot, fresh);
         self.trails.update(now_s, snapshot);
+        self.plots.note(now_s, snapshot, &self.messages.layout);
         self.selection.follow(snapshot);
         self.selection.follow_press(self.presses.latest());
         self.scopes.update(&self.floor, snapshot, self.selection.tile(), elapsed_s);
@@ -207,6 +216,10 @@ impl App {
         self.due = (self.due + PICTURE).max(now);
         if self.shows_for_a_while() {
             ui.ctx().request_repaint_after(Duration::from_millis(500));
+        }
+        let selected = self.selection.control_of(&self.messages.layout).map(|widget| &widget.id);
+        if self.plots.are_moving(self.now_s, &self.floor.geometry, selected) {
+            ui.ctx().request_repaint_after(PLOT);
         }
         let is_held = ui.input(|i| i.pointer.any_down() || !i.keys_down.is_empty());
         let fades = self.show.trails && !self.trails.all().is_empty();

@@ -163,6 +163,12 @@ impl App {
         if panel.on_hover_text("Figures, events and actuators at the side").clicked() {
             self.panel_wanted = Some(!shown);
         }
+        let (tries, plots) = (!self.is_designing(), &mut self.plots.is_open);
+        let button = egui::Button::selectable(*plots && tries, "Plots").frame_when_inactive(true);
+        let button = ui.add_enabled(tries, button);
+        if button.on_hover_text("Forces and values over time; P does the same").clicked() {
+            *plots = !*plots;
+        }
         self.layers_menu(ui);
         if self.scopes.is_fed() {
             let muted = self.snapshots.output_buffer().muted.all;
@@ -257,6 +263,7 @@ impl App {
                     ("Shift-click", "look at a tile"),
                     ("Tab, Enter", "press by keyboard"),
                     ("F11", "project"),
+                    ("P", "plots"),
                     ("M", "mute"),
                 ]
             } else if self.time_line.is_some() {

@@ -17,6 +17,7 @@ mod lookout;
 mod messages;
 mod panel;
 mod playback;
+mod plots;
 mod presses;
 mod projection;
 mod rate;

@@ -104,6 +104,15 @@ pub(super) fn section(ui: &mut Ui, theme: &Theme, title: &str, aside: impl FnOnc
     heading.response.rect
 }
 
+/// A button that plots what stands beside it, called `name`; whether it was clicked.
+pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
+    let button = ui.small_button("Plot");
+    button.widget_info(|| {
+        egui::WidgetInfo::labeled(egui::accesskit::Role::Button, true, format!("Plot {name}"))
+    });
+    button.on_hover_text("Plot it over time").clicked()
+}
+
 /// Text that need not be read at once.
 pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
     RichText::new(text).color(color(theme.quiet))

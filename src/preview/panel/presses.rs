@@ -9,7 +9,7 @@ use eframe::egui::{
 use super::super::app::App;
 use super::super::design::Threshold;
 use super::super::presses::Press;
-use super::super::style::{panel_colour, quiet, row, section};
+use super::super::style::{panel_colour, plot_button, quiet, row, section};
 use crate::egui_painter::color;
 use crate::ergonomics::{PressSpread, propose_press};
 use crate::scene::Theme;
@@ -49,9 +49,13 @@ impl App {
         let Some(widget) = self.selection.control_of(layout) else { return };
         let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
         let title = if widget.label.is_empty() { id.to_string() } else { widget.label.clone() };
+        let mut is_plotted = false;
         section(ui, &theme, &format!("Control {title}"), |ui| {
-            ui.label(quiet(&theme, id.as_str()).size(12.0));
+            is_plotted = plot_button(ui, id.as_str());
         });
+        if is_plotted {
+            self.plot_control(&id);
+        }
         let (forces, people) = self.presses.counted(&id);
         let spread = PressSpread::of(&forces);
         let all: Vec<&Press> = self.presses.of(&id).collect();

@@ -6,7 +6,8 @@ use eframe::egui::{Align2, CornerRadius, FontId, Rect, Sense, Ui, WidgetInfo, po
 
 use super::super::app::App;
 use super::super::feed::PreviewCommand;
-use super::super::style::{panel_colour, quiet, section};
+use super::super::plots::Series;
+use super::super::style::{panel_colour, plot_button, quiet, section};
 use crate::egui_painter::color;
 use crate::engine::TileState;
 use crate::floor::{Corner, TileId};
@@ -25,7 +26,7 @@ impl App {
         let pinned = self.selection.pinned().is_some();
         let muted = self.snapshots.output_buffer().muted.tiles.contains(&tile);
         let is_moved = self.scopes.is_fed() && self.is_moved(tile);
-        let (mut unpin, mut mute) = (false, false);
+        let (mut unpin, mut mute, mut plot) = (false, false, false);
         section(ui, &theme, &format!("Tile {}, {}", tile.column, tile.row), |ui| {
             if pinned {
                 unpin = ui.small_button("Follow the foot").clicked();
@@ -37,7 +38,11 @@ impl App {
                 let hint = "Let this tile's actuator not be felt";
                 mute = ui.add(button).on_hover_text(hint).clicked();
             }
+            plot = plot_button(ui, &format!("tile {}, {}", tile.column, tile.row));
         });
+        if plot {
+            self.plots.add([Series::Tile(tile)]);
+        }
         if mute {
             self.command(PreviewCommand::MuteTile { tile, on: !muted });
         }

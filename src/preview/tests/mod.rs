@@ -5,6 +5,7 @@ mod faults;
 mod feet;
 mod panel;
 mod time_line;
+mod plots;
 mod presses;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
