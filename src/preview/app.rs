@@ -23,6 +23,7 @@ use super::rate::Rate;
 use super::rehearsal::Rehearsal;
 use super::scopes::Scopes;
 use super::selection::Selection;
+use super::status::Latency;
 use super::style;
 use super::time_line::TimeLine;
 use super::trails::Trails;
@@ -86,6 +87,8 @@ pub(super) struct App {
     pub(super) now_s: f64,
     pub(super) window_frames: Rate,
     pub(super) frames: Rate,
+    pub(super) packets: Rate,
+    pub(super) latency: Latency,
     frame_count: u64,
     /// When the next frame is due.
     due: Instant,
@@ -135,6 +138,8 @@ impl App {
             now_s: 0.0,
             window_frames: Rate::default(),
             frames: Rate::default(),
+            packets: Rate::default(),
+            latency: Latency::new(input.latency),
             frame_count: 0,
             due: Instant::now(),
             other_parts: 0.0,
@@ -156,6 +161,7 @@ impl App {
         self.handle_undo_key(ui);
         self.handle_plots_key(ui);
         self.top_bar(ui);
+        self.status_bar(ui);
         self.help_bar(ui);
         self.time_line(ui);
         self.notices(ui);
@@ -207,6 +213,7 @@ impl App {
         self.frame_count += 1;
         self.window_frames.observe(now_s, self.frame_count);
         self.frames.observe(now_s, snapshot.counters.frames);
+        self.packets.observe(now_s, snapshot.counters.packets);
     }
 
     /// Draws 60 times a second while something moves that nobody else tells of, also where the display does not pace

@@ -4,7 +4,7 @@ use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::containers::menu::{MenuButton, MenuConfig};
 use eframe::egui::{
-    Align, Key, Layout, Margin, Panel, PopupCloseBehavior, RichText, ScrollArea, Ui, WidgetInfo, vec2,
+    Align, Key, Layout, Margin, Panel, PopupCloseBehavior, RichText, ScrollArea, Ui, WidgetInfo,
 };
 
 use super::app::App;
@@ -18,11 +18,14 @@ use crate::wire::LinkState;
 /// Width of the window below which the top bar takes two lines, in points.
 const TWO_LINES: f32 = 1010.0;
 
+/// Height of the window below which its place is worth more than help, in points.
+const HELP: f32 = 560.0;
+
 /// How long the window tells that a saved file was loaded, in seconds.
 pub(super) const TELL_S: f64 = 6.0;
 
 impl App {
-    /// Title, file and rates.
+    /// Title, file and what can be clicked on.
     pub(super) fn top_bar(&mut self, ui: &mut Ui) {
         let frame = panel_frame(&self.theme, Margin::symmetric(14, 7));
         Panel::top("top bar").frame(frame).resizable(false).show(ui, |ui| {
@@ -40,7 +43,7 @@ impl App {
                 ui.set_min_height(26.0);
                 // From the right first: the title gives way.
                 ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    self.rates(ui);
+                    self.link_state(ui);
                     self.buttons(ui);
                     // Left of what is clicked on, which stays where it is.
                     self.mutes(ui);
@@ -123,32 +126,6 @@ impl App {
     fn link_state(&self, ui: &mut Ui) {
         let (text, colour) = link(self.snapshots.output_buffer().link, &self.theme);
         pill(ui, colour, &self.theme, text);
-    }
-
-    fn rates(&self, ui: &mut Ui) {
-        self.link_state(ui);
-        let theme = &self.theme;
-        let rate = |rate: Option<f32>| rate.map_or_else(|| "–".to_owned(), |rate| format!("{rate:.0}"));
-        let texts = [
-            (
-                74.0,
-                match self.window_frames.per_second() {
-                    // A window that has nothing new to show draws nothing.
-                    Some(rate) if rate < 2.0 => "at rest".to_owned(),
-                    drawn => format!("{} fps", rate(drawn)),
-                },
-                "Frames a second in this window, which draws when something changes",
-            ),
-            (96.0, format!("{} frames/s", rate(self.frames.per_second())), "Sensor frames a second"),
-        ];
-        for (width, text, meaning) in texts {
-            // A place of fixed width, so that nothing moves when a figure gets longer.
-            let size = vec2(width, 18.0);
-            ui.allocate_ui_with_layout(size, Layout::right_to_left(Align::Center), |ui| {
-                ui.set_min_size(size);
-                ui.label(quiet(theme, text)).on_hover_text(meaning);
-            });
-        }
     }
 
     fn buttons(&mut self, ui: &mut Ui) {
@@ -235,8 +212,11 @@ impl App {
         }
     }
 
-    /// How to work the floor.
+    /// How to work the floor, where there is room to say it.
     pub(super) fn help_bar(&self, ui: &mut Ui) {
+        if ui.ctx().content_rect().height() < HELP {
+            return;
+        }
         let theme = &self.theme;
         let frame = panel_frame(theme, Margin::symmetric(14, 5));
         Panel::bottom("help bar").frame(frame).resizable(false).show(ui, |ui| {
@@ -286,9 +266,6 @@ impl App {
                     ui.label(RichText::new(*does).size(12.0).color(color(theme.quiet)));
                     ui.add_space(9.0);
                 }
-                ui.with_layout(Layout::right_to_left(Align::Center), |ui| {
-                    ui.add(egui::Label::new(quiet(theme, &self.source).size(12.0)).truncate());
-                });
             });
         });
     }

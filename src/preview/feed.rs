@@ -14,6 +14,7 @@ use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
+use crate::sink::LatencyStages;
 use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
@@ -44,6 +45,8 @@ pub struct PreviewInput {
     pub notices: Receiver<String>,
     /// What the actuators do; `None` where nothing is rendered.
     pub scopes: Option<Box<dyn ScopeFeed>>,
+    /// How long it takes from a packet to what is felt; `None` where nobody measures it.
+    pub latency: Option<LatencyStages>,
     /// The feet of a simulated floor; `None` for a real floor or a recording, which nobody can step on with a mouse.
     pub feet: Option<Box<dyn FootSink>>,
     /// What leads the recording that is shown; `None` for a floor.

@@ -24,6 +24,7 @@ mod rate;
 mod rehearsal;
 mod scopes;
 mod selection;
+mod status;
 mod style;
 #[cfg(test)]
 mod tests;

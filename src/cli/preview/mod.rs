@@ -120,8 +120,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     // Of several sound cards that are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
+    let latency = LatencyStages::default();
     let actuators =
-        args.actuate.opener(LatencyStages::default(), Arc::default(), watch_renderer, notice_sender.clone());
+        args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice_sender.clone());
     let mut session = Session::source(stage.source, stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
@@ -129,7 +130,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .prefix(args.outputs.prefix.osc_prefix.clone())
         .sink(args.outputs.open(&floor.geometry)?)
         .sink(ToWindow { events: event_sender, missed: 0 })
-        .actuators(actuators);
+        .actuators(actuators)
+        .latency(latency.clone());
     if let Some(path) = &args.record {
         session = session.record(path);
     }
@@ -153,6 +155,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         layouts,
         notices,
         scopes,
+        latency: Some(latency),
         feet: stage.feet,
         playback: None,
         faults: stage.faults,
@@ -198,6 +201,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
         layouts,
         notices,
         scopes: None,
+        latency: None,
         feet: None,
         playback: Some(Box::new(player)),
         faults: None,

@@ -127,7 +127,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
 }
 
 /// Digits in groups of three, so that millions can be read.
-pub(super) fn grouped(count: u64) -> String {
+pub(in crate::preview) fn grouped(count: u64) -> String {
     let digits = count.to_string();
     let mut text = String::with_capacity(digits.len() + digits.len() / 3);
     for (at, digit) in digits.chars().enumerate() {

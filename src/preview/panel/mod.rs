@@ -11,6 +11,7 @@ mod scopes;
 mod tile;
 mod tuner;
 
+pub(in crate::preview) use link::grouped;
 pub(in crate::preview) use tuner::Tuner;
 
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};

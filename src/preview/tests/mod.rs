@@ -7,6 +7,7 @@ mod panel;
 mod time_line;
 mod plots;
 mod presses;
+mod status;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -114,6 +115,7 @@ impl Room {
             layouts: news,
             notices: notes,
             scopes: Some(Box::new(Silence)),
+            latency: None,
             feet: simulated.then_some(sink),
             playback: None,
             faults: None,

@@ -49,6 +49,7 @@ impl Desk {
             layouts,
             notices: channel().1,
             scopes: None,
+            latency: None,
             feet: None,
             playback: None,
             faults: None,
