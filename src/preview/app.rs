@@ -8,6 +8,7 @@ use std::time::{Duration, Instant};
 use eframe::egui::Ui;
 
 use super::PreviewOptions;
+use super::appearance::Appearance;
 use super::bars::TELL_S;
 use super::design::Designer;
 use super::feed::{FootSink, PreviewCommand, PreviewInput, ShoeFeed};
@@ -24,7 +25,6 @@ use super::rehearsal::Rehearsal;
 use super::scopes::Scopes;
 use super::selection::Selection;
 use super::status::Latency;
-use super::style;
 use super::time_line::TimeLine;
 use super::trails::Trails;
 use super::turns::Turns;
@@ -78,8 +78,7 @@ pub(super) struct App {
     pub(super) lists_warnings: bool,
     /// What lines of the list of events have to contain; empty for all.
     pub(super) wanted_events: String,
-    /// By how much the window's own size has enlarged everything.
-    enlarged: f32,
+    pub(super) appearance: Appearance,
     /// `None` where nothing can be designed.
     pub(super) designer: Option<Designer>,
     commands: Sender<PreviewCommand>,
@@ -102,13 +101,15 @@ impl App {
         let (projection, wrong) = Projection::new(&options.projection);
         let mut messages = Messages::new(input.layout, input.events, input.layouts, input.notices);
         messages.warnings = input.warnings;
-        wrong.into_iter().for_each(|wrong| messages.note(wrong));
+        let (appearance, unread) = Appearance::new(options.theme, options.settings.clone());
+        wrong.into_iter().chain(unread).for_each(|wrong| messages.note(wrong));
         Self {
             projection,
             panel_wanted: None,
             lists_warnings: false,
             wanted_events: String::new(),
-            enlarged: 1.0,
+            theme: appearance.theme(),
+            appearance,
             selection: Selection::new(&input.floor.geometry),
             presses: Presses::default(),
             plots: Plots::default(),
@@ -132,7 +133,6 @@ impl App {
             watch: Watch::default(),
             scene: Scene::new(),
             palette: Palette::default(),
-            theme: options.theme,
             show: Show::WINDOW,
             trails: Trails::default(),
             now_s: 0.0,
@@ -155,7 +155,8 @@ impl App {
     /// One frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
-        self.enlarge(ui.ctx());
+        self.handle_text_keys(ui);
+        self.appearance.enlarge(ui.ctx());
         self.handle_mute_key(ui);
         self.handle_mode_key(ui);
         self.handle_undo_key(ui);
@@ -178,18 +179,6 @@ impl App {
         egui::CentralPanel::default().frame(frame).show(ui, |ui| self.floor_view(ui));
         self.projection_window(ui);
         self.request_next_frame(ui);
-    }
-
-    /// Large windows get larger letters and panels: what is seen of them is farther away.
-    fn enlarge(&mut self, ctx: &egui::Context) {
-        let points = ctx.content_rect().size() * ctx.zoom_factor();
-        let wanted = (0.85 * (points.x / 1280.0).min(points.y / 800.0)).clamp(1.0, 2.0);
-        // By tenths, or text would be laid out anew with each pixel.
-        let wanted = (10.0 * wanted).round() / 10.0;
-        if wanted != self.enlarged {
-            ctx.set_zoom_factor(ctx.zoom_factor() / self.enlarged * wanted);
-            self.enlarged = wanted;
-        }
     }
 
     fn receive(&mut self, ui: &Ui) {
@@ -249,11 +238,6 @@ impl App {
         if self.commands.send(command).is_err() {
             tracing::debug!("nobody takes the window's commands any more");
         }
-    }
-
-    pub(super) fn turn_theme(&mut self, ctx: &egui::Context) {
-        self.theme = if self.theme.is_dark() { Theme::LIGHT } else { Theme::DARK };
-        style::apply(ctx, &self.theme);
     }
 }
 

@@ -129,10 +129,7 @@ impl App {
     }
 
     fn buttons(&mut self, ui: &mut Ui) {
-        let dark = self.theme.is_dark();
-        if ui.button(if dark { "Light" } else { "Dark" }).on_hover_text("Light or dark window").clicked() {
-            self.turn_theme(ui.ctx());
-        }
+        self.appearance_menu(ui);
         self.mode_button(ui);
         let width = ui.ctx().content_rect().width();
         let shown = self.shows_panel(width);

@@ -5,6 +5,7 @@
 //! egui.
 
 mod app;
+mod appearance;
 mod bars;
 mod design;
 #[cfg(test)]
@@ -44,6 +45,8 @@ pub use feed::{
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;
 
+use std::path::PathBuf;
+
 use eframe::egui;
 use thiserror::Error;
 
@@ -56,8 +59,10 @@ pub struct PreviewOptions {
     pub title: String,
     /// Width and height of the inside, in points.
     pub size: (f32, f32),
-    /// The colours.
+    /// The colours, unless somebody has chosen others.
     pub theme: Theme,
+    /// File that remembers which colours and which size of the text people choose; `None` to forget it.
+    pub settings: Option<PathBuf>,
     /// The window for a projector.
     pub projection: ProjectionOptions,
 }
@@ -68,6 +73,7 @@ impl Default for PreviewOptions {
             title: "underfoot".into(),
             size: (1280.0, 800.0),
             theme: Theme::LIGHT,
+            settings: None,
             projection: ProjectionOptions::default(),
         }
     }
@@ -105,6 +111,8 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.theme);
+        // The size of the text is the window's own: it is remembered.
+        context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     eframe::run_native(&title, native, start)

@@ -47,10 +47,13 @@ pub(super) struct Face<'a> {
 impl<'a> Face<'a> {
     /// The face of `widget`; `lit` is how far it has turned from its colour at rest to its lit one, 0 to 1.
     pub(super) fn new(widget: &'a Widget, state: WidgetState, theme: &'a Theme, lit: f32) -> Self {
-        let at_rest = widget.look.face.mix(widget.look.lit, lit);
+        let look = &widget.look;
+        let (rest, lit_up, ink) =
+            theme.faces.map_or((look.face, look.lit, look.ink), |all| (all.rest, all.lit, all.ink));
+        let at_rest = rest.mix(lit_up, lit);
         let out_of_use = state.disabled || state.uncalibrated || state.needs_lift;
         let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
-        let ink = readable(widget.look.ink, colour);
+        let ink = readable(ink, colour);
         // Words of what does not work just now step back, but stay legible.
         let faded = ink.mix(colour, 0.4);
         let is_off = state.disabled || state.uncalibrated;
@@ -74,9 +77,14 @@ impl<'a> Face<'a> {
         self.state.disabled || self.state.uncalibrated || self.state.needs_lift
     }
 
+    /// What its face turns to.
+    fn lit_up(&self) -> Colour {
+        self.theme.faces.map_or(self.widget.look.lit, |all| all.lit)
+    }
+
     /// The colour of what is lit on it.
     pub(super) fn lit(&self) -> Colour {
-        let lit = self.widget.look.lit;
+        let lit = self.lit_up();
         if self.is_out_of_use() { lit.mix(self.theme.plate, 0.6) } else { lit }
     }
 
@@ -96,7 +104,11 @@ impl<'a> Face<'a> {
             _ if self.state.armed => Stroke::new(0.008, Ink::solid(self.theme.accent)),
             _ if self.state.locked => Stroke::new(0.005, Ink::solid(self.theme.quiet)),
             _ if self.state.pressed => Stroke::new(0.004, Ink::solid(self.colour.mix(self.theme.ink, 0.45))),
-            _ => Stroke::new(0.002, Ink::faint(edge, 0.8)),
+            _ => match self.theme.faces {
+                // Nothing else tells a face from the plate that it stands on.
+                Some(all) => Stroke::new(0.005, Ink::solid(all.ink)),
+                None => Stroke::new(0.002, Ink::faint(edge, 0.8)),
+            },
         };
         self.outlined(scene, 0.0, Paint::fill(Ink::solid(self.colour)).with_stroke(stroke));
         if !flat {
@@ -151,7 +163,7 @@ impl<'a> Face<'a> {
 
     /// A halo in the lit colour around a pressed face.
     fn glow(&self, scene: &mut Scene) {
-        self.halo(scene, self.area, 0.030, Ink::faint(self.widget.look.lit, 0.55));
+        self.halo(scene, self.area, 0.030, Ink::faint(self.lit_up(), 0.55));
     }
 
     fn halo(&self, scene: &mut Scene, area: Rect, reach_m: f32, ink: Ink) {

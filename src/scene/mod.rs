@@ -40,7 +40,7 @@ pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::outline_of;
 #[cfg(feature = "lab")]
 pub(crate) use outline::sole;
-pub use theme::Theme;
+pub use theme::{Faces, Theme};
 pub use view::{Layer, Shoe, Show, Trail, View};
 
 use glam::Vec2;

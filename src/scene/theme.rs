@@ -1,4 +1,4 @@
-//! The colours of everything but the controls' own faces.
+//! The colours of everything but the controls' own faces, and of these as well for those who need contrast.
 
 use crate::layout::Colour;
 
@@ -41,9 +41,32 @@ pub struct Theme {
     pub good: Colour,
     /// Shadows.
     pub shadow: Colour,
+    /// The colours of all controls; `None` for those that the layout gives each.
+    pub faces: Option<Faces>,
+}
+
+/// The colours of all controls, where contrast counts more than what the layout says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Faces {
+    /// A face at rest.
+    pub rest: Colour,
+    /// What it turns to while it is pressed or on.
+    pub lit: Colour,
+    /// Its edge, and what is written on it where that can be read.
+    pub ink: Colour,
 }
 
 impl Theme {
+    /// The themes that people choose from, by name.
+    pub const NAMED: [(&'static str, Self); 3] =
+        [("Light", Self::LIGHT), ("Dark", Self::DARK), ("High contrast", Self::CONTRAST)];
+
+    /// Its name among [`Theme::NAMED`]; `None` for another one.
+    #[must_use]
+    pub fn name(&self) -> Option<&'static str> {
+        Self::NAMED.iter().find(|(_, theme)| theme == self).map(|(name, _)| *name)
+    }
+
     /// Warm light grey, for daylight and for paper.
     pub const LIGHT: Self = Self {
         canvas: Colour::rgb(0xf1, 0xee, 0xe8),
@@ -64,6 +87,7 @@ impl Theme {
         stale: Colour::rgb(0x7d, 0x83, 0x8a),
         good: Colour::rgb(0x24, 0x76, 0x3f),
         shadow: Colour::rgb(0x4a, 0x40, 0x30),
+        faces: None,
     };
 
     /// Dark grey, for a darkened room.
@@ -86,6 +110,35 @@ impl Theme {
         stale: Colour::rgb(0x9a, 0xa0, 0xa8),
         good: Colour::rgb(0x6c, 0xc2, 0x85),
         shadow: Colour::rgb(0x00, 0x00, 0x00),
+        faces: None,
+    };
+
+    /// Black with white edges and few, bright colours, at least 7 to 1: for weak eyes, bright rooms and weak projectors.
+    /// What is on differs from what is off by lightness too.
+    pub const CONTRAST: Self = Self {
+        canvas: Colour::rgb(0x00, 0x00, 0x00),
+        seam: Colour::rgb(0x5c, 0x5c, 0x5c),
+        plate: Colour::rgb(0x00, 0x00, 0x00),
+        load: Colour::rgb(0x6b, 0x4a, 0x00),
+        ink: Colour::rgb(0xff, 0xff, 0xff),
+        quiet: Colour::rgb(0xe4, 0xe4, 0xe4),
+        line: Colour::rgb(0xa0, 0xa0, 0xa0),
+        accent: Colour::rgb(0x6c, 0xd4, 0xff),
+        stance: Colour::rgb(0xff, 0xff, 0xff),
+        contact: Colour::rgb(0x20, 0xe8, 0xff),
+        cursor: Colour::rgb(0xff, 0xe6, 0x00),
+        shoe: Colour::rgb(0xd4, 0xd4, 0xd4),
+        haptic: Colour::rgb(0xe2, 0xa8, 0xff),
+        warning: Colour::rgb(0xff, 0xb4, 0x30),
+        fault: Colour::rgb(0xff, 0x84, 0x84),
+        stale: Colour::rgb(0xb8, 0xb8, 0xb8),
+        good: Colour::rgb(0x74, 0xff, 0x98),
+        shadow: Colour::rgb(0x00, 0x00, 0x00),
+        faces: Some(Faces {
+            rest: Colour::rgb(0x00, 0x00, 0x00),
+            lit: Colour::rgb(0xff, 0xe6, 0x00),
+            ink: Colour::rgb(0xff, 0xff, 0xff),
+        }),
     };
 
     /// Whether text is lighter than what it stands on.
@@ -154,6 +207,18 @@ mod tests {
             }
         }
         assert!(Theme::DARK.is_dark() && !Theme::LIGHT.is_dark());
+    }
+
+    #[test]
+    fn every_word_of_high_contrast_stands_off_by_seven() {
+        let theme = Theme::CONTRAST;
+        let Theme { ink, quiet, accent, contact, cursor, haptic, warning, fault, stale, good, .. } = theme;
+        for colour in [ink, quiet, accent, contact, cursor, haptic, warning, fault, stale, good] {
+            assert!(contrast(colour, theme.plate) >= 7.0, "{colour}: {}", contrast(colour, theme.plate));
+        }
+        let faces = theme.faces.unwrap();
+        assert!(contrast(faces.ink, faces.rest) >= 7.0 && contrast(faces.lit, faces.rest) >= 7.0);
+        assert!(theme.is_dark() && theme.name() == Some("High contrast"));
     }
 
     #[test]

@@ -235,7 +235,8 @@ impl Args {
     fn window(&self) -> PreviewOptions {
         let projection =
             ProjectionOptions { open: self.project, monitor: self.monitor, corners: self.corners.clone() };
-        PreviewOptions { projection, ..PreviewOptions::default() }
+        let settings = Some(preview::usual_state().join("window"));
+        PreviewOptions { projection, settings, ..PreviewOptions::default() }
     }
 
     fn stage(&self, floor: &Floor, layout: &Layout) -> Result<Stage, Failure> {

@@ -20,7 +20,6 @@ use glam::{DVec2, Vec2};
 use self::placement::{Placement, usual_file};
 use super::app::App;
 use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
-use crate::layout::Colour;
 use crate::scene::{self, Scene, Show, Theme, View};
 
 /// Radius of a corner's handle, in points.
@@ -28,15 +27,6 @@ const HANDLE: f32 = 22.0;
 
 /// How far an arrow key moves a corner, in points; with Shift, and without.
 const NUDGE: (f32, f32) = (10.0, 1.0);
-
-/// What is thrown onto the floor. Black is where no light falls: on the plates, which are there already.
-const PROJECTED: Theme = Theme {
-    canvas: Colour::rgb(0, 0, 0),
-    seam: Colour::rgb(0, 0, 0),
-    plate: Colour::rgb(0, 0, 0),
-    quiet: Colour::rgb(0xd8, 0xd4, 0xcc),
-    ..Theme::DARK
-};
 
 /// How the floor is projected at first.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -150,7 +140,7 @@ impl Projection {
     }
 
     /// Handles at the corners; the answer is whether one was let go elsewhere.
-    fn adjust(&mut self, ui: &mut Ui, picture: Rect, size: Vec2) -> bool {
+    fn adjust(&mut self, ui: &mut Ui, theme: &Theme, picture: Rect, size: Vec2) -> bool {
         let (Some(placement), Some(selected)) = (&mut self.placement, &mut self.adjusting) else {
             return false;
         };
@@ -174,7 +164,7 @@ impl Projection {
             let_go |= handle.drag_stopped();
         }
         let painter = ui.painter();
-        let line = color(PROJECTED.cursor);
+        let line = color(theme.cursor);
         let corners = placement.corners.map(on_picture);
         for (index, &corner) in corners.iter().enumerate() {
             painter.line_segment([corner, corners[(index + 1) % 4]], Stroke::new(2.0, line));
@@ -245,9 +235,10 @@ impl App {
         let shape = floor.size().x / floor.size().y;
         self.projection.placement.get_or_insert_with(|| Placement::fit(shape, size.x / size.y));
         let changed = self.projection.obey_keys(ui, size, shape);
-        ui.painter().rect_filled(picture, 0.0, color(PROJECTED.canvas));
-        self.draw_projected(ui, picture, size);
-        let moved = self.projection.adjust(ui, picture, size);
+        let theme = self.appearance.projected();
+        ui.painter().rect_filled(picture, 0.0, color(theme.canvas));
+        self.draw_projected(ui, &theme, picture, size);
+        let moved = self.projection.adjust(ui, &theme, picture, size);
         if self.projection.adjusting.is_none() {
             ui.ctx().set_cursor_icon(CursorIcon::None);
         }
@@ -256,19 +247,14 @@ impl App {
         }
     }
 
-    fn draw_projected(&mut self, ui: &Ui, picture: Rect, size: Vec2) {
+    fn draw_projected(&mut self, ui: &Ui, theme: &Theme, picture: Rect, size: Vec2) {
         let floor = self.floor.geometry.bounds();
         let homography =
             self.projection.placement.and_then(|placement| placement.floor_to_picture(floor, size));
         let Some(homography) = homography else { return };
         let view = View {
             show: Show::PROJECTOR,
-            ..View::new(
-                &self.floor.geometry,
-                &self.messages.layout,
-                self.snapshots.output_buffer(),
-                &PROJECTED,
-            )
+            ..View::new(&self.floor.geometry, &self.messages.layout, self.snapshots.output_buffer(), theme)
         };
         scene::draw(&mut self.projection.scene, &view);
         let map = ScreenFromFloor::fit(floor, picture);

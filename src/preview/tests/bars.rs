@@ -3,6 +3,7 @@
 use eframe::egui::accesskit::Role;
 
 use super::*;
+use crate::scene::Theme;
 
 #[test]
 fn a_lost_floor_is_said_across_the_view() {
@@ -138,12 +139,18 @@ fn a_layout_is_opened_by_name() {
 #[test]
 fn colours_and_the_side_panel_are_changed_by_buttons() {
     let mut room = Room::simulated();
-    room.window.get_by_label("Dark").click();
+    room.window.get_by_label("Look").click();
     room.run(3);
-    assert!(room.window.state().theme.is_dark());
-    room.window.get_by_label("Light").click();
+    for (name, theme) in Theme::NAMED {
+        room.window.get_by_label(&format!("Window: {name}")).click();
+        room.run(3);
+        assert_eq!(room.window.state().theme, theme, "{name}");
+    }
+    room.window.get_by_label("Projected: High contrast").click();
     room.run(3);
-    assert!(!room.window.state().theme.is_dark());
+    assert_eq!(room.window.state().appearance.projected().faces, Theme::CONTRAST.faces);
+    room.window.key_press(Key::Escape);
+    room.run(3);
     let before = room.window.get_by_label("Floor").rect().width();
     assert!(room.says("Contacts"));
     room.window.get_by_label("Panel").click();
@@ -162,4 +169,33 @@ fn the_help_at_the_lower_edge_tells_what_can_be_done_where() {
     let mut real = Room::of(false, 1280.0, 800.0);
     real.run(2);
     assert!(real.says("look at a tile") && !real.says("stance foot here"), "feet are real there");
+}
+
+#[test]
+fn the_size_of_the_text_is_chosen_by_keys_and_menu_and_remembered_with_the_colours() {
+    let mut room = Room::simulated();
+    let factor = |room: &Room| room.window.ctx.zoom_factor();
+    let before = factor(&room);
+    for _ in 0..3 {
+        room.window.key_press_modifiers(Modifiers::COMMAND, Key::Plus);
+        room.run(2);
+    }
+    assert!((factor(&room) / before - 1.3).abs() < 0.01, "{}", factor(&room));
+    room.window.key_press_modifiers(Modifiers::COMMAND, Key::Minus);
+    room.run(2);
+    room.window.get_by_label("Look").click();
+    room.run(3);
+    assert!(room.says("Text 120 %"));
+    room.window.get_by_label("Window: Dark").click();
+    room.run(3);
+    let kept = std::fs::read_to_string(room.folder.path().join("window")).unwrap();
+    assert!(kept.contains("text 12") && kept.contains("window dark"), "{kept}");
+    room.window.key_press_modifiers(Modifiers::COMMAND, Key::Num0);
+    room.run(2);
+    assert_eq!(factor(&room), before);
+    for _ in 0..40 {
+        room.window.key_press_modifiers(Modifiers::COMMAND, Key::Minus);
+    }
+    room.run(3);
+    assert!((factor(&room) / before - 0.7).abs() < 0.01, "no smaller than can be read: {}", factor(&room));
 }

@@ -136,7 +136,9 @@ impl Room {
         let folder = tempfile::tempdir().unwrap();
         let corners = Some(folder.path().join("projection.txt"));
         let projection = ProjectionOptions { corners, ..ProjectionOptions::default() };
-        let app = App::new(input, &PreviewOptions { projection, ..PreviewOptions::default() });
+        let settings = Some(folder.path().join("window"));
+        let options = PreviewOptions { projection, settings, ..PreviewOptions::default() };
+        let app = App::new(input, &options);
         let window = Harness::builder()
             .with_size(vec2(width, height))
             .with_step_dt(1.0 / 60.0)
