@@ -233,8 +233,12 @@ impl Args {
 
     /// How the window looks at first.
     fn window(&self) -> PreviewOptions {
-        let projection =
-            ProjectionOptions { open: self.project, monitor: self.monitor, corners: self.corners.clone() };
+        let projection = ProjectionOptions {
+            open: self.project,
+            keeps_awake: true,
+            monitor: self.monitor,
+            corners: self.corners.clone(),
+        };
         let settings = Some(preview::usual_state().join("window"));
         PreviewOptions { projection, settings, ..PreviewOptions::default() }
     }

@@ -4,6 +4,7 @@
 //! It only shows. Feet work the controls on the floor itself; the corners move by mouse and keys of this computer, and
 //! only while they are being adjusted.
 
+mod awake;
 mod homography;
 mod placement;
 
@@ -17,6 +18,7 @@ use eframe::egui::{
 };
 use glam::{DVec2, Vec2};
 
+use self::awake::Awake;
 use self::placement::{Placement, usual_file};
 use super::app::App;
 use crate::egui_painter::{self, Palette, ScreenFromFloor, color};
@@ -33,6 +35,8 @@ const NUDGE: (f32, f32) = (10.0, 1.0);
 pub struct ProjectionOptions {
     /// Whether its window is open at once, over the whole screen.
     pub open: bool,
+    /// Whether the screen is kept from going dark while the window is open.
+    pub keeps_awake: bool,
     /// The screen that it fills, as the system counts them from 0; `None` for the one it opens on.
     pub monitor: Option<usize>,
     /// The file that remembers the corners, in place of the usual one.
@@ -51,6 +55,9 @@ pub(super) struct Projection {
     adjusting: Option<usize>,
     scene: Scene,
     palette: Palette,
+    keeps_awake: bool,
+    /// While the window is open and the screen is to stay awake.
+    awake: Option<Awake>,
 }
 
 impl Projection {
@@ -68,6 +75,8 @@ impl Projection {
             adjusting: None,
             scene: Scene::new(),
             palette: Palette::default(),
+            keeps_awake: options.keeps_awake,
+            awake: None,
         };
         (projection, wrong)
     }
@@ -212,6 +221,7 @@ impl App {
             // Where windows can't have windows of their own, the same key would close it again.
             return;
         }
+        self.stay_awake();
         if !self.projection.is_open {
             return;
         }
@@ -283,6 +293,20 @@ impl App {
             let node = ui.interact(around, ui.scope_id().with(("projected", index)), Sense::hover());
             let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
             node.widget_info(|| WidgetInfo::labeled(Role::Label, true, format!("Projected {name}")));
+        }
+    }
+
+    /// Nobody touches keys or mouse while feet work a projected floor: the screen would go dark.
+    fn stay_awake(&mut self) {
+        let wanted = self.projection.is_open && self.projection.keeps_awake;
+        let awake = &mut self.projection.awake;
+        match awake {
+            None if wanted => *awake = Some(Awake::begin()),
+            Some(_) if !wanted => *awake = None,
+            _ => {}
+        }
+        if let Some(why) = awake.as_ref().and_then(Awake::failure) {
+            self.messages.note(format!("The screen may go dark while the floor is projected: {why}"));
         }
     }
 
