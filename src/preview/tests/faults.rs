@@ -20,7 +20,7 @@ fn room() -> (Room, RehearsalSource, FootHandle) {
     let mut room = Room::simulated();
     room.window.state_mut().rehearsal = Some(Rehearsal::new(switch, &floor));
     room.run(2);
-    room.window.get_by_label("Rehearse faults").click();
+    room.window.get_by_label("Rehearse faults").click_accesskit();
     room.run(20);
     (room, source, handle)
 }
