@@ -28,6 +28,7 @@ use super::status::Latency;
 use super::time_line::TimeLine;
 use super::trails::Trails;
 use super::turns::Turns;
+use super::walks::Walks;
 use super::watch::Watch;
 use super::zoom::Zoom;
 use crate::egui_painter::Palette;
@@ -69,6 +70,8 @@ pub(super) struct App {
     pub(super) trails: Trails,
     /// `None` unless the floor is a simulated one.
     pub(super) rehearsal: Option<Rehearsal>,
+    /// `None` unless people can be sent onto the floor.
+    pub(super) walks: Option<Walks>,
     pub(super) choices: Vec<String>,
     /// `None` where there are no effects to tune.
     pub(super) tuner: Option<Tuner>,
@@ -120,6 +123,7 @@ impl App {
             shoe_feed: input.shoes,
             shoes: Vec::new(),
             rehearsal: input.faults.map(|switch| Rehearsal::new(switch, &input.floor)),
+            walks: input.people.map(Walks::new),
             floor: input.floor,
             source: input.source,
             snapshots: input.snapshots,
@@ -161,6 +165,7 @@ impl App {
         self.handle_mode_key(ui);
         self.handle_undo_key(ui);
         self.handle_plots_key(ui);
+        self.handle_walk_key(ui);
         self.top_bar(ui);
         self.status_bar(ui);
         self.help_bar(ui);

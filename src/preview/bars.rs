@@ -229,6 +229,13 @@ impl App {
                     ("Wheel", "zoom"),
                     ("F2", "try it"),
                 ]
+            } else if self.draws_walks() {
+                &[
+                    ("Drag", "a way over the floor: somebody walks it"),
+                    ("End on a control", "they use it"),
+                    ("Ctrl-wheel", "zoom"),
+                    ("W, Escape", "be a foot again"),
+                ]
             } else if self.feet.is_some() {
                 &[
                     ("Hold", "press"),
@@ -239,6 +246,7 @@ impl App {
                     ("Space", "stance foot here"),
                     ("Shift-click", "look at a tile"),
                     ("Tab, Enter", "press by keyboard"),
+                    ("W", "draw a walk"),
                     ("F11", "project"),
                     ("P", "plots"),
                     ("M", "mute"),

@@ -14,6 +14,7 @@ use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
+use crate::sim::ArrivalHandle;
 use crate::sink::LatencyStages;
 use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
@@ -53,6 +54,8 @@ pub struct PreviewInput {
     pub playback: Option<Box<dyn Playback>>,
     /// What breaks a simulated floor; `None` for a real one or a recording.
     pub faults: Option<FaultSwitch>,
+    /// Sends people onto a simulated floor; `None` for a real one or a recording.
+    pub people: Option<ArrivalHandle>,
     /// The feet on a simulated floor, whoever moves them; `None` for a real floor or a recording.
     pub shoes: Option<ShoeFeed>,
     /// Names of layouts that can be opened from the window; empty if there is no choice.

@@ -46,8 +46,10 @@ impl App {
         self.zoom_by_wheel(ui, &canvas, show);
         let map = self.zoom.map(scene::extent(&self.floor.geometry, show), rect.shrink(6.0));
         self.look_at_tiles(ui, &canvas, map);
+        self.draw_walk(ui, &canvas, map);
         let on_handle = self.move_feet(ui, &canvas, map);
         self.draw(ui, rect, map, show);
+        self.show_walks(ui, rect, map);
         self.name_controls(ui, map);
         if self.zoom.is_closer() {
             self.zoom_out_button(ui, rect);
@@ -57,7 +59,9 @@ impl App {
         }
         if self.feet.is_some() && canvas.contains_pointer() {
             ui.ctx().set_cursor_icon(if on_handle { CursorIcon::Grab } else { CursorIcon::Crosshair });
-            self.read_out(ui, rect, on_handle);
+            if !self.draws_walks() {
+                self.read_out(ui, rect, on_handle);
+            }
         }
         let link = self.snapshots.output_buffer().link;
         if let Some(banner) = self.watch.banner(self.now_s, link, &self.source) {
@@ -163,6 +167,7 @@ impl App {
 
     /// Moves the simulated feet; the answer is whether the pointer is on the standing foot's handle.
     fn move_feet(&mut self, ui: &mut Ui, canvas: &Response, map: ScreenFromFloor) -> bool {
+        let draws_walks = self.draws_walks();
         let Some((feet, sink)) = &mut self.feet else { return false };
         let (on_handle, drag) =
             stand_and_drag(ui, canvas, map, feet, &mut self.grip, self.floor.geometry.bounds());
@@ -171,6 +176,10 @@ impl App {
         hand.drag = drag;
         if self.grip.held {
             hand.moves.clear();
+        }
+        if draws_walks {
+            hand.moves.clear();
+            hand.pointer = None;
         }
         if ui.input(|i| i.events.contains(&Event::WindowFocused(false))) {
             feet.lift_working();

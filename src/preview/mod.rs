@@ -34,6 +34,7 @@ mod touches;
 mod trace;
 mod trails;
 mod turns;
+mod walks;
 mod watch;
 mod zoom;
 

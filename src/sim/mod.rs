@@ -33,8 +33,10 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod arrivals;
 mod curve;
 mod definition;
+mod drawn_walk;
 mod floor;
 mod foot;
 mod footprint;
@@ -62,6 +64,8 @@ mod visit;
 mod watched;
 mod way;
 
+pub use arrivals::{ArrivalError, ArrivalHandle, Arrivals, arrivals};
+pub use drawn_walk::{DrawnWalk, WalkError};
 pub use floor::{Sensing, SimConfig, SimFloor};
 pub use foot::{Foot, FootDriver, Load};
 pub use footprint::{Cell, Print, shoe_size};

@@ -27,13 +27,13 @@ const MOST_SHARE: f32 = 0.8;
 const HOLD: Duration = Duration::from_millis(350);
 
 /// How long one stands before one works something: until the weight rests.
-const PAUSE: Duration = Duration::from_millis(500);
+pub(super) const PAUSE: Duration = Duration::from_millis(500);
 
 /// A slide along a slider, in metres per second.
 const SLIDE_M_S: f32 = 0.3;
 
 /// Distances from a control at which a person who works it stands, in metres; the foot reaches 0.85 m.
-const AWAY_M: [f32; 5] = [0.45, 0.55, 0.65, 0.36, 0.75];
+pub(super) const AWAY_M: [f32; 5] = [0.45, 0.55, 0.65, 0.36, 0.75];
 
 /// Directions from a control in which the person stands, as turns clockwise from south: who comes from the south
 /// looks north.
@@ -173,12 +173,9 @@ impl Visitor<'_> {
     }
 
     fn act(&self, performance: &mut Performance, widget: &Widget) -> Result<(), MoveError> {
-        let thresholds = widget.behaviour.thresholds().for_weight(Some(self.person.weight()));
-        let force = (thresholds.press * FIRMLY).max(LEAST).0.min((self.person.weight() * MOST_SHARE).0);
-        let (force, hold) = (Newtons(force), thresholds.dwell + HOLD);
+        let Working { force, hold, times } = working(widget, &self.person);
         let size = widget.area.size();
         let at = |share: Vec2| widget.area.min + share * size;
-        let times = if matches!(thresholds.guard, Guard::Confirm(_)) { 2 } else { 1 };
         for _ in 0..times {
             match &widget.behaviour {
                 Behaviour::Slider(slider) => {
@@ -220,6 +217,22 @@ impl Visitor<'_> {
     }
 }
 
+/// How somebody works a control.
+pub(super) struct Working {
+    pub(super) force: Newtons,
+    pub(super) hold: Duration,
+    /// How often: what asks to be confirmed, twice.
+    pub(super) times: usize,
+}
+
+/// How `person` works `widget` firmly.
+pub(super) fn working(widget: &Widget, person: &Person) -> Working {
+    let thresholds = widget.behaviour.thresholds().for_weight(Some(person.weight()));
+    let force = (thresholds.press * FIRMLY).max(LEAST).0.min((person.weight() * MOST_SHARE).0);
+    let times = if matches!(thresholds.guard, Guard::Confirm(_)) { 2 } else { 1 };
+    Working { force: Newtons(force), hold: thresholds.dwell + HOLD, times }
+}
+
 /// Goes to stand at `place`, looking north: from beside the floor, by steps aside, or the long way.
 fn go(performance: &mut Performance, place: Vec2, bounds: Rect) -> Result<(), MoveError> {
     match performance.place() {
@@ -237,7 +250,7 @@ fn go(performance: &mut Performance, place: Vec2, bounds: Rect) -> Result<(), Mo
 }
 
 /// A place in the upper half of a control along its axis, in shares of its size.
-fn upper(axis: Axis) -> Vec2 {
+pub(super) fn upper(axis: Axis) -> Vec2 {
     match axis {
         Axis::East => Vec2::new(0.8, 0.5),
         Axis::North => Vec2::new(0.5, 0.8),

@@ -24,7 +24,9 @@ use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema::{self, Diagnostics};
 use underfoot::sense::Method;
 use underfoot::serve::Command;
-use underfoot::sim::{Foot, FootDriver, FootHandle, LoopingScript, feet_by_hand, watched};
+use underfoot::sim::{
+    ArrivalHandle, Foot, FootDriver, FootHandle, LoopingScript, arrivals, feet_by_hand, watched,
+};
 use underfoot::sink::{EventSink, LatencyStages, Report};
 use underfoot::source::{FaultSwitch, Faults, Pace, RehearsalSource, SensorSource, SimulatedSource};
 use underfoot::units::HostClock;
@@ -159,6 +161,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         feet: stage.feet,
         playback: None,
         faults: stage.faults,
+        people: stage.people,
         shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
@@ -205,6 +208,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
         feet: None,
         playback: Some(Box::new(player)),
         faults: None,
+        people: None,
         shoes: None,
         choices: Vec::new(),
         effects: Vec::new(),
@@ -223,6 +227,7 @@ struct Stage {
     feet: Option<Box<dyn FootSink>>,
     shoes: Option<ShoeFeed>,
     faults: Option<FaultSwitch>,
+    people: Option<ArrivalHandle>,
 }
 
 impl Args {
@@ -255,6 +260,7 @@ impl Args {
                 feet: None,
                 shoes: None,
                 faults: None,
+                people: None,
             });
         }
         let mut faults = Faults::default();
@@ -267,7 +273,8 @@ impl Args {
                 let (handle, driver) = feet_by_hand();
                 (Box::new(driver), "simulated floor", Some(Box::new(Mouse(handle))))
             };
-        let (driver, mut seen) = watched(driver);
+        let (people, driver) = arrivals(driver);
+        let (driver, mut seen) = watched(Box::new(driver));
         let is_led = feet.is_some();
         let shoes: ShoeFeed = Box::new(move |shoes| {
             shoes.clear();
@@ -285,6 +292,7 @@ impl Args {
             clock,
             source: Box::new(source),
             faults: Some(switch),
+            people: Some(people),
             name: name.into(),
             feet,
             shoes: Some(shoes),

@@ -6,6 +6,7 @@ mod events;
 mod faults;
 mod grounds;
 mod link;
+mod people;
 mod presses;
 mod scopes;
 mod tile;
@@ -43,6 +44,7 @@ impl App {
                 let top = ui.cursor().top();
                 self.tile_part(ui);
                 self.presses_part(ui);
+                self.people_part(ui);
                 self.contacts_part(ui);
                 // The list takes what the other parts leave, as they were at the last frame.
                 let events = (height - self.other_parts).max(EVENTS);

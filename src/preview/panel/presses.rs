@@ -34,6 +34,7 @@ const SHOWN: &str = "Each press a dot: green was answered, orange too light or t
                      Grey box: from quartile to quartile, with the median. Lines: where it lets go, and what it takes.";
 
 /// What a person asks for here.
+#[derive(Clone, Copy)]
 enum Wish {
     Use(Newtons),
     Forget,
@@ -160,7 +161,7 @@ fn lines(spread: Option<&PressSpread>, people: usize) -> [String; 2] {
             .map(|force| format!("{:.0}", force.0));
     [
         format!("{presses}{of}: median {median} N"),
-        format!("lowest {lowest}, quartiles {lower} and {upper}, highest {highest} N"),
+        format!("{lowest} to {highest} N, quartiles {lower} and {upper} N"),
     ]
 }
 

@@ -31,7 +31,8 @@ impl App {
             if pinned {
                 unpin = ui.small_button("Follow the foot").clicked();
             } else {
-                ui.label(quiet(&theme, "follows the foot").size(12.0));
+                let label = ui.label(quiet(&theme, "underfoot").size(12.0));
+                label.on_hover_text("The tile under the foot that presses most; Shift-click pins another");
             }
             if is_moved {
                 let button = egui::Button::selectable(muted, "Mute tile").small().frame_when_inactive(true);

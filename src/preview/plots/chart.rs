@@ -26,6 +26,9 @@ pub(super) struct Trace {
     pub(super) points: Vec<[f64; 2]>,
 }
 
+/// Both thresholds of a control, each with its force.
+pub(super) type Lines = [(Threshold, Newtons); 2];
+
 /// What a plot shows.
 pub(super) struct Chart<'a> {
     pub(super) theme: &'a Theme,
@@ -34,7 +37,7 @@ pub(super) struct Chart<'a> {
     pub(super) height: f32,
     pub(super) traces: Vec<Trace>,
     /// Whose thresholds, and at what forces; whether they can be set.
-    pub(super) thresholds: Option<(&'a WidgetId, [(Threshold, Newtons); 2], bool)>,
+    pub(super) thresholds: Option<(&'a WidgetId, Lines, bool)>,
     /// Where they are while none is dragged: an axis that grew with the drag would run away from the pointer.
     pub(super) at_rest: Option<[Newtons; 2]>,
 }

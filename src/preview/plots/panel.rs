@@ -9,7 +9,7 @@ use eframe::egui::{
     Sense, TextEdit, Ui, WidgetInfo, vec2,
 };
 
-use super::chart::{Chart, Drag, Trace};
+use super::chart::{Chart, Drag, Lines, Trace};
 use super::series::{Series, Unit};
 use super::{MOST, SPANS};
 use crate::egui_painter::color;
@@ -175,7 +175,7 @@ impl App {
     }
 
     /// The thresholds of a control.
-    fn thresholds_at(&self, id: &WidgetId) -> Option<[(Threshold, Newtons); 2]> {
+    fn thresholds_at(&self, id: &WidgetId) -> Option<Lines> {
         let layout = &self.messages.layout;
         let now = layout.widgets.get(layout.widget_index(id.as_str())?)?.behaviour.thresholds();
         Some([(Threshold::Press, now.press), (Threshold::Release, now.release)])

@@ -142,7 +142,7 @@ fn a_real_floor_has_no_mouse_feet_and_a_click_chooses_a_tile() {
     assert!(room.says(&format!("Tile {}, {}", tile.column + 1, tile.row)));
     room.window.get_by_label("Follow the foot").click();
     room.run(2);
-    assert!(room.says("follows the foot"));
+    assert!(room.says("underfoot"));
 }
 
 #[test]

@@ -4,10 +4,11 @@ mod bars;
 mod faults;
 mod feet;
 mod panel;
-mod time_line;
 mod plots;
 mod presses;
 mod status;
+mod time_line;
+mod walks;
 
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::sync::{Arc, Mutex};
@@ -119,6 +120,7 @@ impl Room {
             feet: simulated.then_some(sink),
             playback: None,
             faults: None,
+            people: None,
             shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),

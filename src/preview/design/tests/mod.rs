@@ -53,6 +53,7 @@ impl Desk {
             feet: None,
             playback: None,
             faults: None,
+            people: None,
             shoes: None,
             choices: vec!["map".into()],
             effects: Vec::new(),

@@ -1,0 +1,390 @@
+//! Walks that were drawn on a floor: somebody comes, goes that way, uses what is at its end, and leaves.
+
+use std::fmt::Write as _;
+use std::time::Duration;
+
+use glam::Vec2;
+use thiserror::Error;
+
+use super::person::Person;
+use super::scenario::Scenario;
+use super::script::Script;
+use super::visit::{AWAY_M, PAUSE, upper, working};
+use crate::floor::{Geometry, Rect};
+use crate::layout::{Layout, Widget};
+use crate::widget::{Behaviour, WidgetId};
+
+/// How far a drawn line may be from the way that is walked, in metres: half the width of a foot.
+const LOOSE_M: f32 = 0.05;
+
+/// Points of a way that are nearer to each other count as one, in metres: less than half a step.
+const APART_M: f32 = 0.25;
+
+/// Ground that somebody who stands needs on each side, in metres.
+const STANDING_M: f32 = 0.16;
+
+/// How long somebody stands at the end of a way where there is nothing to use.
+const LOOKS_ROUND: Duration = Duration::from_secs(2);
+
+/// A detour that is worth not stepping on a control, in metres.
+const DETOUR_M: f32 = 2.0;
+
+/// Why nobody walks a way.
+#[derive(Clone, Debug, PartialEq, Eq, Error)]
+pub enum WalkError {
+    /// It has no point.
+    #[error("there is no way to walk")]
+    Nowhere,
+    /// From nowhere near its end is the control within reach.
+    #[error("nobody who comes that way can use \"{0}\": end the walk on it from another side")]
+    OutOfReach(WidgetId),
+    /// The floor is too small to stand on, or the like.
+    #[error("nobody can walk there")]
+    Impossible,
+}
+
+/// What somebody does who walks a drawn way, as steps of a scenario.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DrawnWalk {
+    steps: Vec<String>,
+    uses: Option<WidgetId>,
+}
+
+impl DrawnWalk {
+    /// The walk along `way`, in floor metres, and what feet do in it.
+    ///
+    /// Somebody of usual measures comes over the nearest side and goes along it. If it ends on a control of `layout`
+    /// that is on the page numbered `page`, they stop where they reach it and press it, or drag it if it slides; else
+    /// they stand there for a while. Then they leave. What is beyond the floor is walked along its edge; points that
+    /// are not finite are left out.
+    ///
+    /// # Errors
+    /// [`WalkError`].
+    pub fn new(
+        way: &[Vec2],
+        page: usize,
+        layout: &Layout,
+        geometry: &Geometry,
+    ) -> Result<(Self, Script), WalkError> {
+        let way: Vec<Vec2> = way.iter().copied().filter(|point| point.is_finite()).collect();
+        let end = way.last().copied().ok_or(WalkError::Nowhere)?;
+        let plan = Plan { layout, geometry, page };
+        let used = layout.widget_at(page, end).and_then(|index| layout.widgets.get(index));
+        let Some(widget) = used else {
+            let mut steps = plan.steps_along(&way);
+            steps.push(wait(LOOKS_ROUND));
+            return plan.played(steps, end, None).ok_or(WalkError::Impossible);
+        };
+        let tries = AWAY_M.into_iter().find_map(|away_m| {
+            let stretch = plan.up_to(&way, widget.area.centre(), away_m);
+            let stands = stretch.last().copied()?;
+            let mut steps = plan.steps_along(&stretch);
+            steps.push(wait(PAUSE));
+            steps.extend(plan.use_of(widget));
+            steps.push(wait(PAUSE));
+            plan.played(steps, stands, Some(widget.id.clone()))
+        });
+        tries.ok_or_else(|| WalkError::OutOfReach(widget.id.clone()))
+    }
+
+    /// The control that is used at the end.
+    #[must_use]
+    pub fn uses(&self) -> Option<&WidgetId> {
+        self.uses.as_ref()
+    }
+
+    /// A scenario of these walks, each beginning so long after its start, as text that [`Scenario::parse`] reads: what
+    /// was drawn, to be edited and played again. At most 65 are taken, and none later than ten minutes.
+    #[must_use]
+    pub fn scenario(title: &str, walks: &[(Duration, Self)]) -> String {
+        let mut text = format!("Scenario(\n    title: {title:?},\n");
+        let mut walks = walks.iter().take(65);
+        let first = walks.next().map(|(after, walk)| walk.after(*after, "        ")).unwrap_or_default();
+        text += &format!("    steps: [\n{first}    ],\n");
+        let others: Vec<String> = walks
+            .map(|(after, walk)| {
+                format!("        (steps: [\n{}        ]),\n", walk.after(*after, "            "))
+            })
+            .collect();
+        if !others.is_empty() {
+            text += &format!("    others: [\n{}    ],\n", others.concat());
+        }
+        text + ")\n"
+    }
+
+    /// The steps, one on a line, after a wait.
+    fn after(&self, after: Duration, indent: &str) -> String {
+        let after = after.min(Duration::from_secs(600));
+        let mut text = String::new();
+        for step in std::iter::once(&wait(after)).chain(&self.steps) {
+            // Writing to a string never fails.
+            let _ = writeln!(text, "{indent}{step},");
+        }
+        text
+    }
+}
+
+/// What a walk is planned on.
+struct Plan<'a> {
+    layout: &'a Layout,
+    geometry: &'a Geometry,
+    page: usize,
+}
+
+impl Plan<'_> {
+    /// The whole walk, if somebody can do it.
+    fn played(
+        &self,
+        mut steps: Vec<String>,
+        end: Vec2,
+        uses: Option<WidgetId>,
+    ) -> Option<(DrawnWalk, Script)> {
+        steps.push(format!("Leave(to: {})", self.side_for(end)));
+        let walk = DrawnWalk { steps, uses };
+        let text = DrawnWalk::scenario("A walk", &[(Duration::ZERO, walk.clone())]);
+        let scenario = Scenario::parse("drawn.ron", &text).ok()?;
+        Some((walk, scenario.resolve(self.layout, self.geometry).ok()?))
+    }
+
+    /// Comes and goes along `way`.
+    fn steps_along(&self, way: &[Vec2]) -> Vec<String> {
+        let points = spaced(&simplified(&self.on_floor(way)));
+        let Some((first, rest)) = points.split_first() else { return Vec::new() };
+        let mut steps = vec![format!("Enter(from: {}, at: {})", self.side_for(*first), self.tiles(*first))];
+        if let Some((last, between)) = rest.split_last() {
+            let via: Vec<String> = between.iter().map(|point| self.tiles(*point)).collect();
+            let via = if via.is_empty() { String::new() } else { format!(", via: [{}]", via.join(", ")) };
+            steps.push(format!("WalkTo(at: {}{via})", self.tiles(*last)));
+        }
+        steps
+    }
+
+    /// The points moved to where one can stand.
+    fn on_floor(&self, way: &[Vec2]) -> Vec<Vec2> {
+        let bounds = self.geometry.bounds();
+        let room = bounds.grown(-STANDING_M.min(0.4 * bounds.size().min_element()));
+        way.iter().map(|point| point.clamp(room.min, room.max)).collect()
+    }
+
+    /// The way as far as where `target` is still `away_m` ahead; for one that is drawn all within that, such a place
+    /// south of it, or north.
+    fn up_to(&self, way: &[Vec2], target: Vec2, away_m: f32) -> Vec<Vec2> {
+        let way = self.on_floor(way);
+        let Some(last) = way.iter().rposition(|point| point.distance(target) >= away_m) else {
+            let south = target - Vec2::Y * away_m;
+            let is_there = self.geometry.bounds().contains(south - Vec2::Y * STANDING_M);
+            return vec![if is_there { south } else { target + Vec2::Y * away_m }];
+        };
+        let (mut stretch, from) = (way[..=last].to_vec(), way[last]);
+        if let Some(next) = way.get(last + 1) {
+            // The line crosses the circle once, from outside.
+            let (mut outer, mut inner) = (0.0, 1.0);
+            for _ in 0..20 {
+                let middle = 0.5 * (outer + inner);
+                let is_outside = from.lerp(*next, middle).distance(target) >= away_m;
+                if is_outside { outer = middle } else { inner = middle }
+            }
+            stretch.push(from.lerp(*next, outer));
+        }
+        stretch
+    }
+
+    /// Works `widget`.
+    fn use_of(&self, widget: &Widget) -> Vec<String> {
+        let how = working(widget, &Person::default());
+        let (id, force, hold) = (widget.id.as_str(), how.force.0.round(), how.hold.as_millis());
+        let dragged =
+            |from: &str, to: &str| format!("Drag(widget: {id:?}, from: {from}, to: {to}, force_n: {force})");
+        let point = |share: Vec2| {
+            let at = self.tiles(widget.area.min + share * widget.area.size());
+            format!("Point(at: {at}, force_n: {force}, hold_ms: {hold})")
+        };
+        let step = match &widget.behaviour {
+            Behaviour::Slider(_) => dragged("0.25", "0.75"),
+            Behaviour::Dial(_) => dragged("0.4", "0.6"),
+            Behaviour::Pad(_) => dragged("(0.35, 0.35)", "(0.65, 0.65)"),
+            Behaviour::Stepper(spec) => point(upper(spec.axis)),
+            Behaviour::Selector(spec) => point(upper(spec.axis)),
+            Behaviour::Lean(_)
+            | Behaviour::Button(_)
+            | Behaviour::Hold(_)
+            | Behaviour::Switch(_)
+            | Behaviour::Pedal(_) => {
+                format!("Press(widget: {id:?}, force_n: {force}, hold_ms: {hold})")
+            }
+        };
+        vec![step; how.times]
+    }
+
+    /// The side of the floor over which `place` is reached best: near, and not over controls.
+    fn side_for(&self, place: Vec2) -> &'static str {
+        let bounds = self.geometry.bounds();
+        let Vec2 { x, y } = place;
+        let sides = [
+            ("South", Vec2::new(x, bounds.min.y)),
+            ("North", Vec2::new(x, bounds.max.y)),
+            ("West", Vec2::new(bounds.min.x, y)),
+            ("East", Vec2::new(bounds.max.x, y)),
+        ];
+        let cost = |edge: Vec2| {
+            let ground = Rect::new(edge.min(place), edge.max(place)).grown(STANDING_M);
+            let controls = self.layout.widgets.iter();
+            let in_the_way =
+                controls.filter(|widget| widget.is_on(self.page) && widget.area.overlaps(ground)).count();
+            edge.distance(place) + DETOUR_M * in_the_way as f32
+        };
+        let best = sides.into_iter().min_by(|one, other| cost(one.1).total_cmp(&cost(other.1)));
+        best.map_or("South", |(side, _)| side)
+    }
+
+    /// `place` as it is written: in tiles, to a hundredth.
+    fn tiles(&self, place: Vec2) -> String {
+        let one = self.geometry.metres_from_tiles(Vec2::ONE);
+        let tiles = place / one;
+        format!("({:.2}, {:.2})", tiles.x, tiles.y)
+    }
+}
+
+fn wait(time: Duration) -> String {
+    format!("Wait(ms: {})", time.as_millis())
+}
+
+/// `way` with no more points than its shape needs: the farthest from the straight line is kept, and so on to both
+/// sides of it (Ramer, Douglas and Peucker).
+fn simplified(way: &[Vec2]) -> Vec<Vec2> {
+    let (Some(first), Some(last)) = (way.first(), way.last()) else { return Vec::new() };
+    let off = |point: Vec2| {
+        let (along, from) = (*last - *first, point - *first);
+        let share = (from.dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
+        from.distance(along * share)
+    };
+    let farthest =
+        (1..way.len().saturating_sub(1)).max_by(|one, other| off(way[*one]).total_cmp(&off(way[*other])));
+    match farthest.filter(|index| off(way[*index]) > LOOSE_M) {
+        None => vec![*first, *last],
+        Some(index) => {
+            let mut points = simplified(&way[..=index]);
+            points.pop();
+            points.extend(simplified(&way[index..]));
+            points
+        }
+    }
+}
+
+/// The points without those that are near to the one before; the last one stays.
+fn spaced(way: &[Vec2]) -> Vec<Vec2> {
+    let mut points: Vec<Vec2> = Vec::new();
+    for (index, point) in way.iter().enumerate() {
+        let is_far = points.last().is_none_or(|last| last.distance(*point) >= APART_M);
+        let is_last = index + 1 == way.len();
+        if is_last && !is_far && points.len() > 1 {
+            points.pop();
+        }
+        if is_far || (is_last && points.first().is_some_and(|first| first.distance(*point) > LOOSE_M)) {
+            points.push(*point);
+        }
+    }
+    points
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::schema::{Kinds, builtin_layout, builtin_layouts, parse_layout};
+    use crate::sim::Foot;
+    use crate::units::Instant;
+
+    fn shipped(name: &str) -> Layout {
+        let text = builtin_layout(name).unwrap();
+        parse_layout(text, name, &Kinds::builtin(), &Geometry::default()).unwrap().layout
+    }
+
+    fn middle_of(layout: &Layout, id: &str) -> Vec2 {
+        layout.widgets.iter().find(|widget| widget.id == id).unwrap().area.centre()
+    }
+
+    /// All feet of the script that press, each millisecond.
+    fn pressing(script: &Script) -> Vec<Vec<Foot>> {
+        let at = |ms| {
+            let mut feet = Vec::new();
+            script.feet_at(Instant::from_millis(ms), &mut feet);
+            feet.retain(|foot| foot.force.0 > 1.0);
+            feet
+        };
+        (0..script.duration().as_millis() as u64).map(at).collect()
+    }
+
+    #[test]
+    fn somebody_who_is_drawn_a_bow_walks_the_bow_and_leaves() {
+        let geometry = Geometry::default();
+        // A quarter of a circle round the south-east corner, as a mouse draws it.
+        let bow: Vec<Vec2> = (0..=90)
+            .map(|degrees| {
+                let (sin, cos) = (degrees as f32).to_radians().sin_cos();
+                Vec2::new(1.8 - 1.2 * cos, 1.2 * sin)
+            })
+            .collect();
+        let pond = shipped("pond");
+        let (walk, script) = DrawnWalk::new(&bow, 0, &pond, &geometry).unwrap();
+        assert_eq!(walk.uses(), None);
+        let frames = pressing(&script);
+        let on_floor: Vec<&Foot> =
+            frames.iter().flatten().filter(|foot| geometry.bounds().contains(foot.position)).collect();
+        assert!(on_floor.len() > 2000, "{}", on_floor.len());
+        // Feet are 8 cm beside the middle of the way, which is cut short by 5 cm, and steps round a bend miss it.
+        let near = |foot: &&&Foot| bow.iter().any(|point| point.distance(foot.position) < 0.30);
+        let share = on_floor.iter().filter(near).count() as f32 / on_floor.len() as f32;
+        assert!(share > 0.8, "{share}");
+        assert!(frames.last().unwrap().iter().all(|foot| !geometry.bounds().contains(foot.position)));
+    }
+
+    #[test]
+    fn who_ends_on_a_control_uses_it_from_whichever_side_they_come() {
+        let geometry = Geometry::default();
+        for name in builtin_layouts() {
+            let layout = shipped(name);
+            for widget in layout.widgets.iter().filter(|widget| widget.is_on(0)) {
+                let target = widget.area.centre();
+                let from_south = [Vec2::new(target.x, 0.0), target];
+                let done = DrawnWalk::new(&from_south, 0, &layout, &geometry);
+                let (walk, script) = done.unwrap_or_else(|error| panic!("{name}: {error}"));
+                let used = layout.widget_at(0, target).map(|index| &layout.widgets[index].id);
+                assert_eq!(walk.uses(), used, "{name}");
+                let touched = |foot: &Foot| widget.area.grown(0.01).contains(foot.centre_of_pressure());
+                assert!(pressing(&script).iter().flatten().any(touched), "{name}: {}", widget.id);
+            }
+        }
+        let map = shipped("map");
+        let home = middle_of(&map, "home");
+        for from in [Vec2::new(-0.2, home.y), Vec2::new(1.7, 1.7), home] {
+            let (walk, _) = DrawnWalk::new(&[from, home], 0, &map, &geometry).unwrap();
+            assert_eq!(walk.uses(), Some(&WidgetId::new("home")), "from {from}");
+        }
+    }
+
+    #[test]
+    fn what_was_drawn_is_a_scenario_that_plays_the_same_again() {
+        let (geometry, map) = (Geometry::default(), shipped("map"));
+        let way = |id: &str| [Vec2::new(0.3, 0.1), middle_of(&map, id)];
+        let (home, script) = DrawnWalk::new(&way("home"), 0, &map, &geometry).unwrap();
+        let (zoom, _) = DrawnWalk::new(&way("zoom"), 0, &map, &geometry).unwrap();
+        let alone = DrawnWalk::scenario("One \"visit\"", &[(Duration::ZERO, home.clone())]);
+        let again = Scenario::parse("drawn.ron", &alone).unwrap();
+        assert_eq!(again.title(), "One \"visit\"");
+        assert_eq!(pressing(&again.resolve(&map, &geometry).unwrap()), pressing(&script));
+        let later = Duration::from_millis(2500);
+        let both = DrawnWalk::scenario("Two", &[(Duration::ZERO, home), (later, zoom)]);
+        let both = Scenario::parse("drawn.ron", &both).unwrap().resolve(&map, &geometry).unwrap();
+        assert!(pressing(&both).iter().any(|feet| feet.len() > 2), "both are there at once");
+    }
+
+    #[test]
+    fn a_way_that_is_none_is_refused_and_one_beyond_the_floor_is_walked_at_its_edge() {
+        let (geometry, pond) = (Geometry::default(), shipped("pond"));
+        let nowhere = DrawnWalk::new(&[Vec2::NAN], 0, &pond, &geometry);
+        assert_eq!(nowhere.unwrap_err(), WalkError::Nowhere);
+        let beyond = [Vec2::new(-9.0, 0.9), Vec2::new(99.0, 0.9)];
+        assert!(DrawnWalk::new(&beyond, 0, &pond, &geometry).is_ok());
+        assert!(DrawnWalk::new(&[Vec2::new(0.9, 0.9)], 0, &pond, &geometry).is_ok(), "a click");
+    }
+}
