@@ -107,3 +107,42 @@ fn of_two_changes_to_the_same_lines_a_person_chooses() {
         assert!(desk.window.query_by_label("Keep mine").is_none());
     }
 }
+
+/// A file of the desktop, let go over the window.
+#[derive(Debug)]
+struct Dropped(PathBuf);
+
+impl egui::DroppedFile for Dropped {
+    fn path(&self) -> &std::path::Path {
+        &self.0
+    }
+
+    fn bytes(&self) -> Result<Vec<u8>, String> {
+        std::fs::read(&self.0).map_err(|error| error.to_string())
+    }
+}
+
+#[test]
+fn a_file_that_is_dropped_on_the_window_is_opened_and_one_that_is_no_layout_is_told() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("dropped.ron");
+    let text = builtin_layout("map").unwrap().replace("\"Home\"", "\"Start\"");
+    std::fs::write(&path, &text).unwrap();
+    let mut desk = Desk::map();
+    let drop = |desk: &mut Desk, path: PathBuf| {
+        let file = Arc::new(Dropped(path));
+        desk.window.input_mut().dropped_files.push(file);
+        desk.window.run_steps(2);
+    };
+    drop(&mut desk, path.clone());
+    assert_eq!(desk.text(), text);
+    let tried = desk.commands.try_iter().find_map(|command| match command {
+        PreviewCommand::Try { layout, .. } => Some(layout),
+        _ => None,
+    });
+    let layout = tried.expect("feet try it at once");
+    assert!(layout.widgets.iter().any(|widget| widget.label == "Start"));
+    drop(&mut desk, folder.path().join("gone.ron"));
+    assert_eq!(desk.text(), text, "nothing is lost");
+    assert!(desk.window.query_all_by_label_contains("gone.ron").next().is_some());
+}
