@@ -15,11 +15,12 @@ use super::params::touchdown::{
     HALF_SPREAD_M, HALVES, LEAST_MOMENT, LEAST_WAY_M, MISREAD_N, MOSTLY, NEAREST_M, NOT_ITS_OWN, PLACE_M,
     SIDE_BY_SIDE_M, STEP_M, SWAY_M, TAKEN_OVER, TIGHT_M, TRIED, UNLIKE, UNLIKE_LEAST, USUAL_M, USUAL_SPREAD,
 };
+use arrayvec::ArrayVec;
 use glam::DVec2;
 
 use super::Cells;
 use super::state::{EAST, FORCE, NORTH, Track};
-use super::strips::{Axis, Strip, Strips};
+use super::strips::{Axis, MOST_STRIPS, Strip, Strips};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
@@ -30,10 +31,8 @@ pub(super) struct Touchdown {
     pub from: DVec2,
 }
 
-/// Two feet that are tried: where, and with what force.
-struct Pair<'a> {
-    existing: &'a Track,
-    from: DVec2,
+/// Two feet that are tried: how they share the force, and where the new one is.
+struct Pair {
     existing_force: f64,
     place: DVec2,
     stepping_force: f64,
@@ -80,6 +79,7 @@ pub(super) fn place(
             }
         }
     }
+    let standing = standing(existing, from, &strips, cells.pitch);
     let mut against = [f64::INFINITY; TRIED];
     for (misfit, distance) in against.iter_mut().zip(distances()) {
         let stepping_force = moment / distance;
@@ -88,10 +88,10 @@ pub(super) fn place(
             continue;
         }
         let existing_force = (force - stepping_force).max(0.0);
-        let pair = Pair { existing, from, existing_force, place, stepping_force };
+        let pair = Pair { existing_force, place, stepping_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
         let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(strips.doubt);
-        *misfit = pair.misfit(&strips, cells.pitch) + unusual * unusual + tight * tight;
+        *misfit = pair.misfit(&standing, strips.middle, cells.pitch) + unusual * unusual + tight * tight;
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);
@@ -158,37 +158,63 @@ impl Track {
     }
 }
 
-impl Pair<'_> {
+/// What one line carries, and what of the standing foot's patch falls on it.
+struct Line {
+    strip: Strip,
+    share: f64,
+    moment: f64,
+    cross: f64,
+}
+
+/// What of `existing`, standing at `from`, falls on each line: the same wherever the other foot is tried.
+fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> ArrayVec<Line, MOST_STRIPS> {
+    let lines = strips.strips.iter().map(|&strip| {
+        let axis = strip.axis;
+        let patch = strip.slice(pitch, axis.along(from), axis.along(existing.half()));
+        let residual = existing.residual_at(axis, strip.number, 1.0);
+        let share = (patch.share + residual.share).clamp(0.0, 1.0);
+        Line {
+            strip,
+            share,
+            moment: patch.moment + residual.moment,
+            cross: share * axis.across(from - strips.middle) + residual.cross,
+        }
+    });
+    lines.collect()
+}
+
+impl Pair {
     /// How badly all lines fit, with the half widths of the new foot that fit best.
-    fn misfit(&self, strips: &Strips, pitch: f64) -> f64 {
-        let of_axis = |axis: Axis| {
-            let with = |half: f64| -> f64 {
+    fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
+        let mut all = 0.0;
+        for axis in Axis::BOTH {
+            let mut best = f64::INFINITY;
+            for half in HALVES {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
-                let along = strips.strips.iter().filter(|strip| strip.axis == axis);
-                unusual * unusual
-                    + along.map(|strip| self.misfit_on(strip, half, strips.middle, pitch)).sum::<f64>()
-            };
-            HALVES.into_iter().map(with).fold(f64::INFINITY, f64::min)
-        };
-        Axis::BOTH.into_iter().map(of_axis).sum()
+                let mut misfit = 0.0;
+                for line in lines.iter().filter(|line| line.strip.axis == axis) {
+                    misfit += self.misfit_on(line, half, middle, pitch);
+                }
+                best = best.min(unusual * unusual + misfit);
+            }
+            all += best;
+        }
+        all
     }
 
     /// Twice the negative logarithm of the likelihood of one line's load, but for a constant.
     ///
     /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones gains nothing.
-    fn misfit_on(&self, strip: &Strip, half: f64, middle: DVec2, pitch: f64) -> f64 {
+    #[inline]
+    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> f64 {
+        let (strip, share) = (&line.strip, line.share);
         let axis = strip.axis;
-        let old = strip.slice(pitch, axis.along(self.from), axis.along(self.existing.half()));
-        let residual = self.existing.residual_at(axis, strip.number, 1.0);
         let new = strip.slice(pitch, axis.along(self.place), half);
-        let share = (old.share + residual.share).clamp(0.0, 1.0);
         let innovation = [
             strip.force - self.existing_force * share - self.stepping_force * new.share,
-            strip.moment
-                - self.existing_force * (old.moment + residual.moment)
-                - self.stepping_force * new.moment,
+            strip.moment - self.existing_force * line.moment - self.stepping_force * new.moment,
             strip.cross
-                - self.existing_force * (share * axis.across(self.from - middle) + residual.cross)
+                - self.existing_force * line.cross
                 - self.stepping_force * new.share * axis.across(self.place - middle),
         ];
         let unlike = |force: f64, straddle: f64| (UNLIKE * force).powi(2) * (straddle + UNLIKE_LEAST);
