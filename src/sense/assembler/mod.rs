@@ -203,11 +203,7 @@ impl Assembler {
     /// four later ones wait is dropped and its packets counted as late.
     pub fn ready(&mut self) -> Option<&ForceFrame> {
         loop {
-            let due = self.waiting.first().is_some_and(|first| {
-                let newest = self.waiting.last().map_or(first.slot, |last| last.slot);
-                self.flush || first.passed >= self.awaited || newest - first.slot >= AHEAD
-            });
-            let (slot, buffer, received) = if due {
+            let (slot, buffer, received) = if self.is_due() {
                 let first = self.waiting.remove(0);
                 (first.slot, Some(first.buffer), first.received)
             } else if self.started && self.waiting.is_empty() && self.has_news() {
@@ -225,6 +221,14 @@ impl Assembler {
             }
             self.counters.held_back += 1;
         }
+    }
+
+    /// Whether a slot is complete, or taken for it: [`Assembler::ready`] gives its frame, unless the tare is not known yet.
+    pub(crate) fn is_due(&self) -> bool {
+        self.waiting.first().is_some_and(|first| {
+            let newest = self.waiting.last().map_or(first.slot, |last| last.slot);
+            self.flush || first.passed >= self.awaited || newest - first.slot >= AHEAD
+        })
     }
 
     /// Whether packets arrive, as of the last packet or poll.

@@ -88,6 +88,8 @@ pub struct Server {
     outputs: Outputs,
     answers: Answers,
     link: LinkWatch,
+    /// When the boards were last looked at for it.
+    link_checked: Instant,
     sensors: SensorWatch,
     snapshots: Option<Input<Snapshot>>,
     /// When the last frame came in.
@@ -113,6 +115,7 @@ impl Server {
             outputs: Outputs::default(),
             answers: Answers::default(),
             link: LinkWatch::default(),
+            link_checked: Instant::START,
             sensors: SensorWatch::default(),
             snapshots: None,
             seen: Instant::START,
@@ -251,7 +254,7 @@ impl Server {
             }
             Err(error) => return Err(error),
         }
-        self.note_link();
+        self.note_link(is_silent);
         while self.step() {}
         // What silence changes no later frame would show.
         if self.is_stale || is_silent {
@@ -280,8 +283,15 @@ impl Server {
     }
 
     /// Says so when the floor is lost or back, and lets no actuator move while it is lost.
-    fn note_link(&mut self) {
+    ///
+    /// That takes a look at every board. It is done for each frame and each millisecond and not for each packet, or it
+    /// would grow with the square of the boards.
+    fn note_link(&mut self, is_silent: bool) {
         let now = self.source.now();
+        if !is_silent && !self.assembler.is_due() && now.since(self.link_checked) < FRAME {
+            return;
+        }
+        self.link_checked = now;
         let Some(state) = self.link.update(&self.assembler, now) else { return };
         self.haptics.update_mute(self.link.is_lost());
         self.outputs.report(Report::Link(now, state));
