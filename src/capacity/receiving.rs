@@ -9,10 +9,10 @@ use crate::units::Instant;
 use crate::wire::{Batch, Decoder, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
 /// Milliseconds that are read over and over, so many that no sensor repeats itself from one to the next.
-const MILLIS: usize = 8;
+pub(super) const MILLIS: usize = 8;
 
 /// What an empty floor's sensors read on average, in counts, and by how much they stray.
-const RESTING: u16 = 20_000;
+pub(super) const RESTING: u16 = 20_000;
 const STRAYS: u16 = 30;
 
 /// What the boards of a square floor send, and what reads it.
@@ -61,10 +61,7 @@ impl AssemblyLoad {
     /// A floor of `side` x `side` tiles; a side that no floor can have is taken for the nearest one that can.
     #[must_use]
     pub fn new(side: u16) -> Self {
-        let mut floor = square(side);
-        let tare = |sensor| floor.law(sensor).force(RESTING);
-        let tiles = floor.geometry.tiles();
-        floor.tare = tiles.map(|tile| Corner::ALL.map(|corner| tare(SensorId { tile, corner }))).collect();
+        let floor = tared(square(side));
         let millis = (0..MILLIS).map(|seed| millisecond(&floor, seed as u64)).collect();
         Self { assembler: Assembler::new(&floor), millis, sequence: 0 }
     }
@@ -88,13 +85,21 @@ impl AssemblyLoad {
     }
 }
 
-fn square(side: u16) -> Floor {
+pub(super) fn square(side: u16) -> Floor {
     let side = side.clamp(1, Geometry::MAX_SIDE);
     Floor::of(Geometry::of_paper_tiles(side, side).unwrap_or_default())
 }
 
+/// The same floor, with what its boards read while nobody is there as its tare.
+pub(super) fn tared(mut floor: Floor) -> Floor {
+    let tare = |sensor| floor.law(sensor).force(RESTING);
+    let tiles = floor.geometry.tiles();
+    floor.tare = tiles.map(|tile| Corner::ALL.map(|corner| tare(SensorId { tile, corner }))).collect();
+    floor
+}
+
 /// What the boards send in one millisecond.
-fn millisecond(floor: &Floor, seed: u64) -> Vec<SensorPacket> {
+pub(super) fn millisecond(floor: &Floor, seed: u64) -> Vec<SensorPacket> {
     let mut random = Pcg64Mcg::seed_from_u64(seed);
     let packet = |(board, channels): (u16, usize)| SensorPacket {
         board,

@@ -1,19 +1,8 @@
 //! How fast sensing is: floors of several sizes with people walking on them.
 
-use std::time::Duration;
-
-use glam::Vec2;
-
-use crate::floor::{Floor, Geometry};
+use super::crowd::{Loads, walkers_on};
 use crate::sense::{ForceFrame, Method, Sensing};
-use crate::sim::{Performance, Person, Script, SimConfig, SimFloor};
 use crate::units::Instant;
-
-/// Tiles to a side of the stretch of floor that two people cross.
-const STRETCH: u16 = 6;
-
-/// What changes from one frame to the next: what the loaded tiles read.
-type Loads = Vec<(usize, [f32; 4])>;
 
 /// The sensing of a square floor on which people walk, frame by frame.
 #[derive(Debug)]
@@ -33,27 +22,9 @@ impl SensingLoad {
     /// no more walkers than stretches have room for.
     #[must_use]
     pub fn new(side: u16, walkers: u16) -> Self {
-        let side = side.clamp(STRETCH, Geometry::MAX_SIDE);
-        let geometry = Geometry::of_paper_tiles(side, side).unwrap_or_default();
-        let small = crossing();
-        let stretches = geometry.columns() / STRETCH;
-        let moments = (0..small.len()).map(|ms| {
-            let mut loads = Loads::new();
-            for pair in 0..walkers.div_ceil(2).min(stretches * stretches) {
-                let (east, north) = (STRETCH * (pair % stretches), STRETCH * (pair / stretches));
-                // No two stretches in step.
-                let ms = (ms + 37 * usize::from(pair)) % small.len();
-                loads.extend(small[ms].iter().map(|(index, forces)| {
-                    let (column, row) = (*index as u16 % STRETCH, *index as u16 / STRETCH);
-                    let index = usize::from(north + row) * usize::from(geometry.columns())
-                        + usize::from(east + column);
-                    (index, *forces)
-                }));
-            }
-            loads
-        });
+        let (geometry, moments) = walkers_on(side, walkers);
         Self {
-            moments: moments.collect(),
+            moments,
             sensing: Sensing::new(geometry, Method::Tracker),
             frame: ForceFrame::empty(&geometry),
             next: 0,
@@ -75,46 +46,6 @@ impl SensingLoad {
         }
         contacts
     }
-}
-
-/// What two people load on 6 x 6 tiles while they walk to and fro, millisecond by millisecond.
-fn crossing() -> Vec<Loads> {
-    let floor = Floor::default();
-    let size = floor.geometry.bounds().max;
-    let walker = |mass_kg, seed, from: Vec2, to: Vec2| {
-        let mut walker = Performance::new(Person { mass_kg, ..Person::default() }, seed);
-        // Nobody is asked to move who isn't there, so nothing can fail.
-        let _ = walker.appear(from, 0.0);
-        let _ = walker.walk(&[to, from]);
-        walker
-    };
-    let script = Script::new(
-        vec![
-            walker(62.0, 1, Vec2::new(0.45, 0.3), Vec2::new(0.45, size.y - 0.3)),
-            walker(85.0, 2, Vec2::new(size.x - 0.45, size.y - 0.3), Vec2::new(size.x - 0.45, 0.3)),
-        ],
-        floor.geometry.bounds(),
-    );
-    let mut sim = SimFloor::new(&floor, SimConfig::ideal(), 1);
-    sim.step(&[]);
-    let tiles = floor.geometry.tile_count();
-    let forces = |sim: &SimFloor, index| sim.support_forces(index).unwrap_or_default().map(|force| force.0);
-    let empty: Vec<[f32; 4]> = (0..tiles).map(|index| forces(&sim, index)).collect();
-    let mut feet = Vec::new();
-    let length = script.duration().max(Duration::from_secs(2)).as_millis() as u64;
-    (0..length)
-        .map(|ms| {
-            feet.clear();
-            script.feet_at(Instant::from_millis(ms), &mut feet);
-            sim.step(&feet);
-            let loads = (0..tiles).filter_map(|index| {
-                let (now, empty) = (forces(&sim, index), empty[index]);
-                let load = std::array::from_fn(|corner| now[corner] - empty[corner]);
-                load.iter().any(|force: &f32| force.abs() > 1e-3).then_some((index, load))
-            });
-            loads.collect()
-        })
-        .collect()
 }
 
 #[cfg(test)]

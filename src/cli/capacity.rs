@@ -2,24 +2,25 @@
 
 use std::num::NonZeroUsize;
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use clap::Args as ClapArgs;
 use serde_json::json;
 use underfoot::capacity::{
-    AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, modal_error_db,
+    AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, ServeLoad, modal_error_db,
 };
 use underfoot::floor::Geometry;
 
 use super::failure::Failure;
+use super::meter::{Measured, Meter};
 use super::number::patience;
-use super::progress::Progress;
 
 /// What `underfoot capacity` is asked to do.
 ///
 /// Does standard work as fast as it can, on one core, and says how much faster than real time that was: the rendering
-/// of 36 tiles at 96 kHz, the reading and assembling of packets, and the sensing of three sizes of floor with people
-/// walking on them. Takes about fifteen seconds. Other programs at work make the answer smaller.
+/// of 36 tiles at 96 kHz, the reading and assembling of packets, the sensing of three sizes of floor with people
+/// walking on them, and a floor at work; and what limits this machine first. Takes about twenty seconds. Other
+/// programs at work make the answer smaller.
 #[derive(ClapArgs, Clone, Debug)]
 pub(crate) struct Args {
     /// How long each load is measured.
@@ -43,19 +44,15 @@ const SENSED_SIDE: u16 = 96;
 /// Walkers per tile: two on 6 x 6.
 const WALKERS: u16 = SENSED_SIDE * SENSED_SIDE / 18;
 
-/// Loads that are measured: six of rendering, two of receiving, four of sensing.
-const LOADS: u64 = 12;
+/// The floor that is served: as large as one core may still carry.
+const SERVED_SIDE: u16 = 36;
+const SERVED_WALKERS: u16 = SERVED_SIDE * SERVED_SIDE / 18;
+
+/// Loads that are measured: six of rendering, three of receiving, four of sensing, one of serving.
+const LOADS: u64 = 14;
 
 /// Most threads that may be asked for.
 const MOST_THREADS: usize = 1024;
-
-/// One line of the answer.
-struct Measured {
-    id: &'static str,
-    name: String,
-    /// Seconds of floor per second of work.
-    times_real_time: f64,
-}
 
 /// One kind of work, and the tiles that it is good for with half of the cores.
 struct Limit {
@@ -67,20 +64,22 @@ struct Limit {
 /// Measures, and prints what was found.
 ///
 /// # Errors
-/// None; the type is every command's.
+/// [`Failure`] if no packet reaches this machine from itself.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
         errln!("This is a debug build: a release build is many times faster.");
     }
-    let meter = Meter { length: args.seconds, threads: args.threads, progress: Progress::of("load", LOADS) };
+    let meter = Meter::new(args.seconds, args.threads, LOADS);
     let rendering = rendering(&meter);
-    let receiving = receiving(&meter);
+    let receiving = receiving(&meter)?;
     let sensing = sensing(&meter);
+    let serving = [serving(&meter)];
     drop(meter);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));
     let limits = limits(&rendering, &receiving, &sensing);
-    let first = limits.iter().min_by(|a, b| a.tiles.total_cmp(&b.tiles));
-    let (first_id, first_name, tiles) = first.map_or(("", "", 0.0), |it| (it.id, it.name, it.tiles));
+    let together = together(&limits, &serving);
+    let first = first(&limits, together);
+    let tiles = first.tiles.min(together);
     let side = tiles.sqrt().floor().min(f64::from(Geometry::MAX_SIDE));
     if args.json {
         let table = |all: &[Measured]| -> serde_json::Map<_, _> {
@@ -88,8 +87,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         };
         let errors: serde_json::Map<_, _> =
             errors.iter().map(|(rate, error)| (rate.to_string(), json!(error))).collect();
-        let tiles: serde_json::Map<_, _> =
+        let mut tiles: serde_json::Map<_, _> =
             limits.iter().map(|limit| (limit.id.to_owned(), json!(limit.tiles))).collect();
+        tiles.insert("one_core".to_owned(), json!(together));
         outln!(
             "{}",
             json!({
@@ -97,9 +97,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
                 "render_x_real_time": table(&rendering),
                 "receive_x_real_time": table(&receiving),
                 "sense_x_real_time": table(&sensing),
+                "serve_x_real_time": table(&serving),
                 "modal_error_db": errors,
                 "tiles": tiles,
-                "first_limit": first_id,
+                "first_limit": first.id,
                 "side_tiles": side,
             })
         );
@@ -115,6 +116,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     receiving.iter().for_each(print);
     outln!("Sensing at 1 kHz, on {cores}:");
     sensing.iter().for_each(print);
+    outln!("A floor at work but for its socket and its sound, on {cores}:");
+    serving.iter().for_each(print);
     outln!("Error of modal banks against double precision:");
     for (rate, error) in errors {
         outln!("  {:<52} {error:>7.1} dB", format!("{} kHz", rate / 1000));
@@ -123,7 +126,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     for Limit { name, tiles, .. } in &limits {
         outln!("  {name:<52} {tiles:>7.0}");
     }
-    outln!("What limits this machine first is {first_name}: a floor of {side} x {side} tiles.");
+    outln!("  {:<52} {together:>7.0}", "all but sound, on the one core that they share");
+    outln!("What limits this machine first is {}: a floor of {side} x {side} tiles.", first.name);
     Ok(())
 }
 
@@ -136,7 +140,7 @@ fn limits(rendering: &[Measured], receiving: &[Measured], sensing: &[Measured]) 
     let limit =
         |id, name, tiles: f64, factor: f64| Limit { id, name, tiles: (tiles * HALF * factor).floor() };
     [
-        limit("packets", "reading packets", floor, factor(receiving, "96x96_packets")),
+        limit("packets", "receiving and reading packets", floor, factor(receiving, "96x96_socket")),
         limit("assembling", "assembling frames", floor, factor(receiving, "96x96_frames")),
         limit("sensing", "sensing, two people on each 6 x 6", floor, factor(sensing, "96x96_512_walkers")),
         limit(
@@ -146,6 +150,25 @@ fn limits(rendering: &[Measured], receiving: &[Measured], sensing: &[Measured]) 
             factor(rendering, "modes_8_friction_limiter"),
         ),
     ]
+}
+
+/// Tiles that one core does for that receives, assembles and senses, and does all else that a floor at work takes.
+fn together(limits: &[Limit; 4], serving: &[Measured]) -> f64 {
+    let [packets, ..] = limits;
+    let served = f64::from(SERVED_SIDE).powi(2) * HALF;
+    let served: f64 = serving.iter().map(|measured| served * measured.times_real_time).sum();
+    // Times add up, and each is the reciprocal of tiles.
+    (packets.tiles.recip() + served.recip()).recip().floor()
+}
+
+/// What limits first: sound, or what takes most of the core that the others share.
+fn first(limits: &[Limit; 4], together: f64) -> &Limit {
+    let [packets, assembling, sensing, sound] = limits;
+    if sound.tiles <= together {
+        return sound;
+    }
+    let others = [packets, assembling, sensing].into_iter();
+    others.fold(sensing, |least, one| if one.tiles < least.tiles { one } else { least })
 }
 
 fn print(measured: &Measured) {
@@ -180,21 +203,24 @@ fn rendering(meter: &Meter) -> Vec<Measured> {
     all
 }
 
-fn receiving(meter: &Meter) -> Vec<Measured> {
+fn receiving(meter: &Meter) -> Result<Vec<Measured>, Failure> {
     let side = SENSED_SIDE;
-    let packets = meter.measure("96x96_packets", format!("packets of {side} x {side} tiles"), || {
-        let mut load = PacketLoad::new(side);
-        move || {
-            load.second();
-        }
-    });
+    let name = format!("packets of {side} x {side} tiles, from the socket on");
+    let socket = meter.measure_sockets("96x96_socket", name)?;
+    let packets =
+        meter.measure("96x96_packets", format!("packets of {side} x {side} tiles in memory"), || {
+            let mut load = PacketLoad::new(side);
+            move || {
+                load.second();
+            }
+        });
     let frames = meter.measure("96x96_frames", format!("assembling {side} x {side} tiles"), || {
         let mut load = AssemblyLoad::new(side);
         move || {
             load.second();
         }
     });
-    vec![packets, frames]
+    Ok(vec![socket, packets, frames])
 }
 
 fn sensing(meter: &Meter) -> Vec<Measured> {
@@ -215,46 +241,14 @@ fn sensing(meter: &Meter) -> Vec<Measured> {
     measured.collect()
 }
 
-/// How loads are measured.
-struct Meter {
-    length: Duration,
-    threads: NonZeroUsize,
-    progress: Progress,
-}
-
-impl Meter {
-    /// How many seconds of floor go into a second of work, all threads together, each with a load of its own.
-    fn measure<Load: FnMut()>(
-        &self,
-        id: &'static str,
-        name: String,
-        load: impl Fn() -> Load + Sync,
-    ) -> Measured {
-        let times_real_time = thread::scope(|scope| {
-            let work = || factor(self.length, load());
-            let others: Vec<_> = (1..self.threads.get()).map(|_| scope.spawn(work)).collect();
-            let own = work();
-            // A thread that panicked has done nothing.
-            own + others.into_iter().map(|other| other.join().unwrap_or(0.0)).sum::<f64>()
-        });
-        self.progress.advance();
-        Measured { id, name, times_real_time }
-    }
-}
-
-/// How many seconds of floor go into a second of work: the median of as many as are done in `length`, three at least.
-fn factor(length: Duration, mut second: impl FnMut()) -> f64 {
-    // Tables, caches and the processor's clock warm up first.
-    second();
-    let mut factors = Vec::new();
-    let begun = Instant::now();
-    while factors.len() < 3 || begun.elapsed() < length {
-        let start = Instant::now();
-        second();
-        factors.push(start.elapsed().as_secs_f64().recip());
-    }
-    factors.sort_unstable_by(f64::total_cmp);
-    factors[factors.len() / 2]
+fn serving(meter: &Meter) -> Measured {
+    let (side, walkers) = (SERVED_SIDE, SERVED_WALKERS);
+    meter.measure("36x36_72_walkers", format!("{side} x {side} tiles, {walkers} walkers"), || {
+        let mut load = ServeLoad::new(side, walkers);
+        move || {
+            load.second();
+        }
+    })
 }
 
 /// Reads a number of threads, or `all`.
@@ -275,10 +269,15 @@ mod tests {
         let measured = |id, times_real_time: f64| Measured { id, name: String::new(), times_real_time };
         let found = limits(
             &[measured("modes_8_friction_limiter", 100.0)],
-            &[measured("96x96_packets", 2.0), measured("96x96_frames", 5.0)],
+            &[measured("96x96_socket", 2.0), measured("96x96_frames", 5.0)],
             &[measured("96x96_512_walkers", 0.5)],
         );
-        assert_eq!(found.map(|limit| limit.tiles), [9216.0, 23_040.0, 2304.0, 1800.0]);
+        assert_eq!(found.each_ref().map(|limit| limit.tiles), [9216.0, 23_040.0, 2304.0, 1800.0]);
+        // Half of a core serves 36 x 36 tiles at twice real time; with their packets, 1296 x 9216 / (1296 + 9216).
+        let tiles = together(&found, &[measured("36x36_72_walkers", 2.0)]);
+        assert_eq!(tiles, 1136.0);
+        assert_eq!(first(&found, tiles).id, "sensing");
+        assert_eq!(first(&found, 1801.0).id, "sound");
     }
 
     #[test]

@@ -26,6 +26,8 @@ mod floor_args;
 mod latency;
 mod layout_args;
 mod measure;
+#[cfg(feature = "lab")]
+mod meter;
 mod number;
 mod outputs;
 mod play;

@@ -28,7 +28,7 @@ use crate::floor::{Area, Geometry, Rect};
 use crate::widget::{Behaviour, WidgetId};
 
 /// Controls placed on one floor, on one page or on several that take turns.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Layout {
     /// What people call it.
     pub title: String,

@@ -1,0 +1,168 @@
+//! How fast a whole floor is served, but for its network and its sound: packets in memory, contacts and events out.
+
+use std::collections::VecDeque;
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::Duration;
+
+use super::crowd::{Loads, walkers_on};
+use super::receiving::{MILLIS, RESTING, millisecond, tared};
+use crate::engine::Snapshot;
+use crate::floor::{Calibration, Corner, Floor, SensorId};
+use crate::schema::{self, Kinds};
+use crate::sense::Method;
+use crate::serve::Server;
+use crate::source::{SensorSource, SourceError};
+use crate::units::{Instant, Newtons};
+use crate::wire::{Readings, SensorPacket};
+
+/// A square floor at work, with the built-in layout `first_steps` in its south-west and people who walk on it.
+pub struct ServeLoad {
+    server: Server,
+    queue: Arc<Mutex<Queue>>,
+    /// What the boards of the empty floor send, over and over.
+    empty: Vec<Vec<SensorPacket>>,
+    /// What is loaded at each millisecond, over and over, as counts of a board's channel.
+    moments: Vec<Vec<(usize, usize, u16)>>,
+    millis: u32,
+}
+
+/// Packets that wait, and the time.
+#[derive(Debug, Default)]
+struct Queue {
+    packets: VecDeque<SensorPacket>,
+    now: Instant,
+}
+
+/// What the server reads them from.
+struct Memory(Arc<Mutex<Queue>>);
+
+impl SensorSource for Memory {
+    fn next(&mut self, _: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        Ok(self.0.lock().unwrap_or_else(PoisonError::into_inner).packets.pop_front())
+    }
+
+    fn now(&self) -> Instant {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).now
+    }
+}
+
+impl ServeLoad {
+    /// A floor of `side` x `side` tiles with so many walkers, two on each stretch of 6 x 6 tiles.
+    ///
+    /// A side of less than 6 is taken for 6, one that no floor can have for the largest there is; there are
+    /// no more walkers than stretches have room for.
+    #[must_use]
+    pub fn new(side: u16, walkers: u16) -> Self {
+        let (geometry, loads) = walkers_on(side, walkers);
+        let floor = tared(Floor::of(geometry));
+        let text = schema::builtin_layout("first_steps").unwrap_or_default();
+        let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &geometry);
+        let queue = Arc::<Mutex<Queue>>::default();
+        let source = Box::new(Memory(Arc::clone(&queue)));
+        // It is shipped, and fits on 6 x 6 tiles.
+        let layout = layout.map(|read| read.layout).unwrap_or_default();
+        let (snapshots, _) = triple_buffer::triple_buffer(&Snapshot::default());
+        let places = places(&floor);
+        Self {
+            server: Server::new(&floor, layout, Method::Tracker, source).with_snapshots(snapshots),
+            queue,
+            empty: (0..MILLIS).map(|seed| millisecond(&floor, seed as u64)).collect(),
+            moments: loads.iter().map(|loads| as_counts(loads, &places)).collect(),
+            millis: 0,
+        }
+    }
+
+    /// Serves one second of floor, 1000 frames; the answer is the number of contacts in the last.
+    pub fn second(&mut self) -> usize {
+        for _ in 0..1000 {
+            self.send();
+            // One turn for each packet, and one that finds none.
+            for _ in 0..=self.empty.first().map_or(0, Vec::len) {
+                // Memory does not fail.
+                let _ = self.server.turn();
+            }
+        }
+        let mut snapshot = Snapshot::default();
+        self.server.snapshot(&mut snapshot);
+        snapshot.contacts.len()
+    }
+
+    /// Puts one millisecond's packets into the queue.
+    fn send(&mut self) {
+        self.millis = self.millis.wrapping_add(1);
+        let at = Instant::from_millis(self.millis.into());
+        let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        queue.now = at;
+        queue.packets.clear();
+        let now = self.millis as usize;
+        if let Some(empty) = self.empty.get(now % MILLIS) {
+            queue.packets.extend(empty.iter().cloned());
+        }
+        for packet in &mut queue.packets {
+            (packet.sequence, packet.received) = (self.millis, at);
+        }
+        let loads = self.moments.get(now % self.moments.len().max(1)).into_iter().flatten();
+        for &(board, channel, counts) in loads {
+            if let Some(SensorPacket { readings: Readings::Counts(readings), .. }) =
+                queue.packets.get_mut(board)
+                && let Some(reading) = readings.get_mut(channel)
+            {
+                *reading = Some(counts);
+            }
+        }
+    }
+}
+
+/// Board and channel of each tile's sensors, in tile-index order.
+fn places(floor: &Floor) -> Vec<[(usize, usize); 4]> {
+    let mut places = vec![[(0, 0); 4]; floor.geometry.tile_count()];
+    for (number, board) in floor.boards.iter().enumerate() {
+        for (channel, sensor) in board.channels.iter().enumerate() {
+            let Some(SensorId { tile, corner }) = sensor else { continue };
+            if let Some(place) = floor.geometry.index(*tile).and_then(|index| places.get_mut(index)) {
+                place[corner.index()] = (number, channel);
+            }
+        }
+    }
+    places
+}
+
+/// What sensors of the nominal part read under `loads` and their plates.
+fn as_counts(loads: &Loads, places: &[[(usize, usize); 4]]) -> Vec<(usize, usize, u16)> {
+    let law = Calibration::NOMINAL;
+    let counts = |force: f32| {
+        let volts = law.volts_at(Newtons(force.max(0.0)) + law.force(RESTING));
+        (volts / Calibration::FULL_SCALE_VOLTS * f32::from(u16::MAX)).clamp(0.0, f32::from(u16::MAX)) as u16
+    };
+    let tiles = loads.iter().filter_map(|(tile, forces)| Some((places.get(*tile)?, forces)));
+    tiles
+        .flat_map(|(places, forces)| {
+            Corner::ALL.map(|corner| {
+                let (board, channel) = places[corner.index()];
+                (board, channel, counts(forces[corner.index()]))
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn walkers_are_found_through_their_sensors() {
+        let mut load = ServeLoad::new(12, 8);
+        let contacts = (0..3).map(|_| load.second()).max();
+        // Each has one or two feet down.
+        assert!((8..=16).contains(&contacts.unwrap()), "{contacts:?}");
+        let counters = load.server.counters();
+        assert_eq!((counters.frames, counters.lost, counters.late, counters.wrong_shape), (3000, 0, 0, 0));
+    }
+
+    #[test]
+    fn nobody_is_found_where_nobody_walks() {
+        let mut load = ServeLoad::new(6, 0);
+        assert_eq!(load.second(), 0);
+        assert_eq!(load.server.engine().layout().widgets.len(), 3, "there are controls to look after");
+    }
+}
