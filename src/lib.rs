@@ -105,6 +105,8 @@ pub mod outgoing;
 mod outgoing;
 #[cfg(feature = "picture")]
 pub mod picture;
+#[cfg(feature = "lab")]
+pub mod plan;
 #[cfg(feature = "preview")]
 pub mod preview;
 mod rate_limit;

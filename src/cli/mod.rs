@@ -30,6 +30,8 @@ mod measure;
 mod meter;
 mod number;
 mod outputs;
+#[cfg(feature = "lab")]
+mod plan;
 mod play;
 #[cfg(feature = "preview")]
 mod preview;
@@ -109,6 +111,9 @@ enum Command {
     /// How large a floor this machine carries: rendering and sensing, in times real time.
     #[cfg(feature = "lab")]
     Capacity(capacity::Args),
+    /// How many computers a floor and its people take: areas, links, packets, megabits and cores.
+    #[cfg(feature = "lab")]
+    Plan(plan::Args),
     /// Make the paper's figures and the accuracy tables on a simulated floor.
     #[cfg(feature = "lab")]
     Experiment(experiment::Args),
@@ -167,6 +172,8 @@ fn dispatch(command: Option<Command>) -> Result<(), Failure> {
         Some(Command::Measure(args)) => measure::run(&args),
         #[cfg(feature = "lab")]
         Some(Command::Capacity(args)) => capacity::run(&args),
+        #[cfg(feature = "lab")]
+        Some(Command::Plan(args)) => plan::run(&args),
         #[cfg(feature = "lab")]
         Some(Command::Experiment(args)) => experiment::run(&args),
         Some(Command::Completions { shell }) => {

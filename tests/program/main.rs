@@ -16,6 +16,7 @@ mod holds;
 mod input;
 mod output;
 mod page_commands;
+mod plan;
 mod rack;
 mod recordings;
 mod senders;

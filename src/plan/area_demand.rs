@@ -1,0 +1,206 @@
+//! What one area asks of its computer.
+
+use serde::Serialize;
+
+use super::datagram::{CONTACT_HZ, contacts, on_wire, sensor_packet};
+use super::{Crowd, Machine};
+use crate::floor::{Area, Board, Floor, TileBlock};
+
+/// Packets that a board sends in a second.
+pub(super) const BOARD_HZ: f64 = 1000.0;
+
+/// Feet that a person has on the floor, at most.
+pub(super) const FEET: f64 = 2.0;
+
+/// Channels that move under one person: two feet, each on two tiles.
+pub(super) const CHANNELS_PER_PERSON: f64 = 4.0;
+
+/// Standard deviations by which an area may have more people than it has on average.
+const DEVIATIONS: f64 = 3.0;
+
+/// What one area asks of its computer when it is as full as it gets.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct AreaDemand {
+    /// Its name; empty where the floor is not cut, or cut by the plan.
+    pub id: String,
+    /// Its own tiles from west to east.
+    pub columns: u32,
+    /// Its own tiles from south to north.
+    pub rows: u32,
+    /// Tiles that it senses, its own among them, from west to east.
+    pub sensed_columns: u32,
+    /// Tiles that it senses, its own among them, from south to north.
+    pub sensed_rows: u32,
+    /// Packets of boards that come in, per second.
+    pub packets_per_s: f64,
+    /// What they and their headers take on its wire.
+    pub in_mbit: f64,
+    /// Datagrams with contacts that go out, per second.
+    pub out_packets_per_s: f64,
+    /// What they and their headers take on its wire.
+    pub out_mbit: f64,
+    /// Channels of its sound card.
+    pub channels: u32,
+    /// People on its own tiles.
+    pub people: f64,
+    /// People on the tiles that it senses.
+    pub sensed_people: f64,
+}
+
+/// Tiles, boards and bytes before it is known how many people there are.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Extent {
+    pub(super) columns: u32,
+    pub(super) rows: u32,
+    pub(super) sensed_columns: u32,
+    pub(super) sensed_rows: u32,
+    /// Boards that send to it.
+    pub(super) boards: u32,
+    /// Bytes on the wire that they send each millisecond.
+    pub(super) bytes: f64,
+    pub(super) channels: u32,
+}
+
+impl AreaDemand {
+    /// Of an area of `extent` on a floor of so many `tiles`.
+    pub(super) fn new(id: &str, extent: &Extent, tiles: f64, crowd: &Crowd) -> Self {
+        let Extent { columns, rows, sensed_columns, sensed_rows, boards, bytes, channels } = *extent;
+        let share = |columns, rows| f64::from(columns) * f64::from(rows) / tiles.max(1.0);
+        let people = people_on(share(columns, rows), crowd);
+        let (datagrams, out_bytes) = contacts((FEET * people).ceil() as u32);
+        Self {
+            id: id.to_owned(),
+            columns,
+            rows,
+            sensed_columns,
+            sensed_rows,
+            packets_per_s: f64::from(boards) * BOARD_HZ,
+            in_mbit: mbit(bytes * BOARD_HZ),
+            out_packets_per_s: f64::from(datagrams) * CONTACT_HZ,
+            out_mbit: mbit(out_bytes * CONTACT_HZ),
+            channels,
+            people,
+            sensed_people: people_on(share(sensed_columns, sensed_rows), crowd),
+        }
+    }
+
+    /// Of a floor that one computer serves.
+    pub(super) fn whole(floor: &Floor, crowd: &Crowd) -> Self {
+        let area = Area { id: String::new(), tiles: floor.geometry.block() };
+        Self::of(floor, &area, crowd)
+    }
+
+    /// Of an area of a floor file; nothing of one that has no tile on the floor.
+    pub(super) fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
+        let Some(part) = floor.part(area) else { return Self { id: area.id.clone(), ..Self::default() } };
+        let TileBlock { columns, rows, .. } = area.tiles.common(&floor.geometry.block());
+        let bytes = |board: &Board| {
+            let letters = u32::try_from(board.address.len()).unwrap_or(u32::MAX / 8);
+            let channels = u32::try_from(board.channels.len()).unwrap_or(u32::MAX / 8);
+            f64::from(on_wire(sensor_packet(letters, channels, crowd.format)))
+        };
+        let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        let extent = Extent {
+            columns: columns.into(),
+            rows: rows.into(),
+            sensed_columns: part.geometry.columns().into(),
+            sensed_rows: part.geometry.rows().into(),
+            boards: count(part.boards.len()),
+            bytes: part.boards.iter().map(bytes).sum(),
+            channels: count(part.channel_count()),
+        };
+        Self::new(&area.id, &extent, floor.geometry.tile_count() as f64, crowd)
+    }
+
+    /// Tiles that it senses.
+    #[must_use]
+    pub fn sensed_tiles(&self) -> f64 {
+        f64::from(self.sensed_columns) * f64::from(self.sensed_rows)
+    }
+
+    /// What its sensing thread takes of a core: packets, frames, contacts, controls.
+    #[must_use]
+    pub fn sensing_cores(&self, machine: &Machine) -> f64 {
+        let us = machine.base_us
+            + self.packets_per_s / BOARD_HZ * machine.packet_us
+            + self.sensed_tiles() * (machine.assemble_tile_us + machine.sense_tile_us)
+            + self.sensed_people * machine.person_us;
+        us / 1000.0
+    }
+
+    /// What its sound takes of a core.
+    #[must_use]
+    pub fn sound_cores(&self, machine: &Machine) -> f64 {
+        let channels = f64::from(self.channels);
+        let active = channels.min(CHANNELS_PER_PERSON * self.people);
+        (channels * machine.channel_us + active * machine.active_channel_us) / 1000.0
+    }
+}
+
+/// People on a `share` of the floor: as many as the crowding there says, and no fewer than chance brings together.
+fn people_on(share: f64, crowd: &Crowd) -> f64 {
+    let all = f64::from(crowd.people);
+    let mean = all * share;
+    let by_chance = if crowd.crowding > 1.0 { mean + DEVIATIONS * mean.sqrt() } else { mean };
+    (mean * crowd.crowding).max(by_chance).min(all)
+}
+
+pub(super) fn mbit(bytes_per_s: f64) -> f64 {
+    bytes_per_s * 8.0 / 1e6
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::machine::tests::ROUND;
+    use super::*;
+    use crate::floor::{Geometry, TileId};
+
+    fn near(a: f64, b: f64) -> bool {
+        (a - b).abs() < 1e-9 * b.abs().max(1.0)
+    }
+
+    #[test]
+    fn the_papers_floor_with_two_people_by_hand() {
+        let demand = AreaDemand::whole(&Floor::default(), &Crowd::of(2));
+        assert_eq!((demand.columns, demand.rows, demand.sensed_columns, demand.sensed_rows), (6, 6, 6, 6));
+        assert_eq!((demand.channels, demand.people, demand.sensed_people), (36, 2.0, 2.0));
+        // Six boards of 24 channels: 20 of address, 28 of tags, 4 + 96 of numbers, 66 of headers are 214 bytes.
+        assert!(
+            near(demand.packets_per_s, 6000.0) && near(demand.in_mbit, 6.0 * 214.0 * 8.0 / 1000.0),
+            "{demand:?}"
+        );
+        // Four feet in one datagram: 48 of bundle and count, 4 x 56 of contacts, 66 of headers.
+        assert!(near(demand.out_packets_per_s, 100.0), "{demand:?}");
+        assert!(near(demand.out_mbit, (48.0 + 224.0 + 66.0) * 8.0 * 100.0 / 1e6), "{demand:?}");
+        // 20 + 6 x 1 + 36 x 0.2 + 2 x 10 us.
+        assert!(near(demand.sensing_cores(&ROUND), 0.0532), "{}", demand.sensing_cores(&ROUND));
+        // 36 x 1 and 8 x 2 us.
+        assert!(near(demand.sound_cores(&ROUND), 0.052), "{}", demand.sound_cores(&ROUND));
+    }
+
+    #[test]
+    fn an_area_of_a_hall_receives_what_is_sensed_around_it() {
+        let west =
+            Area { id: "west".into(), tiles: TileBlock { first: TileId::default(), columns: 6, rows: 6 } };
+        let east = TileBlock { first: TileId::new(6, 0), columns: 6, rows: 6 };
+        let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap())
+            .with_areas(vec![west.clone(), Area { id: "east".into(), tiles: east }]);
+        let demand = AreaDemand::of(&floor, &west, &Crowd { crowding: 1.0, ..Crowd::of(8) });
+        // Three tiles are 0.912 m; both boards of a row reach into the nine columns.
+        assert_eq!((demand.sensed_columns, demand.sensed_rows, demand.channels), (9, 6, 36));
+        assert!(near(demand.packets_per_s, 12_000.0));
+        assert!(near(demand.people, 4.0) && near(demand.sensed_people, 6.0), "{demand:?}");
+    }
+
+    #[test]
+    fn more_people_than_on_average_are_expected_where_few_are() {
+        let people = |share, crowding, people| people_on(share, &Crowd { crowding, ..Crowd::of(people) });
+        // Four on average: twice that, or four and three times two.
+        assert_eq!(people(0.04, 2.0, 100), 10.0);
+        // A hundred on average: twice that is more.
+        assert_eq!(people(0.1, 2.0, 1000), 200.0);
+        assert_eq!(people(0.5, 2.0, 4), 4.0, "no more than there are");
+        assert_eq!(people(0.1, 1.0, 100), 10.0, "spread evenly");
+        assert_eq!(people(0.5, 2.0, 0), 0.0);
+    }
+}

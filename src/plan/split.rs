@@ -1,0 +1,244 @@
+//! How a floor is cut into areas of nearly equal size.
+
+use serde::Serialize;
+
+use super::area_demand::Extent;
+use super::datagram::{on_wire, sensor_packet};
+use super::limit::{first, limits};
+use super::{AreaDemand, Crowd, Machine, PlanError, Size};
+use crate::floor::SENSED_BEYOND_M;
+use crate::wire::SensorFormat;
+
+/// Pitch of the paper's tiles, in metres.
+const PITCH_M: f32 = 0.304;
+
+/// Tiles that one board of 32 channels reads, beside each other.
+const BOARD_TILES: u32 = 8;
+
+/// A floor cut into `across` x `up` areas.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Split {
+    /// Areas from west to east.
+    pub across: u32,
+    /// Areas from south to north.
+    pub up: u32,
+}
+
+impl Split {
+    /// Not cut.
+    pub(super) const WHOLE: Self = Self { across: 1, up: 1 };
+
+    /// Number of areas.
+    #[must_use]
+    pub const fn areas_count(&self) -> u32 {
+        self.across * self.up
+    }
+
+    /// What each area asks, row by row from the south-west.
+    pub(super) fn areas(&self, size: Size, crowd: &Crowd) -> Vec<AreaDemand> {
+        let boards = Boards::of(size, crowd.format);
+        let columns: Vec<_> = spans(size.columns, self.across).map(|span| boards.span(span)).collect();
+        let rows: Vec<_> = spans(size.rows, self.up).map(along).collect();
+        rows.iter().flat_map(|row| columns.iter().map(|column| demand(column, row, size, crowd))).collect()
+    }
+}
+
+/// Tiles from `first` on up to `end`, and those that are sensed with them, on one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Span {
+    first: u32,
+    end: u32,
+    sensed: (u32, u32),
+}
+
+/// How many boards a floor of this size has.
+pub(super) fn boards(size: Size) -> u32 {
+    size.columns.div_ceil(BOARD_TILES).saturating_mul(size.rows)
+}
+
+/// What a span takes along its axis.
+#[derive(Clone, Copy, Debug, Default)]
+struct Along {
+    own: u32,
+    sensed: u32,
+    /// Of each row.
+    boards: u32,
+    bytes: f64,
+}
+
+/// `length` tiles in `parts` spans of nearly equal length.
+fn spans(length: u32, parts: u32) -> impl Iterator<Item = Span> {
+    let beyond = (SENSED_BEYOND_M / PITCH_M).ceil() as u32;
+    let cut = move |part: u32| (u64::from(part) * u64::from(length) / u64::from(parts.max(1))) as u32;
+    (0..parts).map(move |part| {
+        let (first, end) = (cut(part), cut(part + 1));
+        Span { first, end, sensed: (first.saturating_sub(beyond), (end + beyond).min(length)) }
+    })
+}
+
+fn along(span: Span) -> Along {
+    Along { own: span.end - span.first, sensed: span.sensed.1 - span.sensed.0, ..Along::default() }
+}
+
+/// Boards of a floor of which each row has its own, eight tiles each.
+struct Boards {
+    columns: u32,
+    /// Bytes on the wire of a full board's packet, and of the last of a row.
+    full: f64,
+    last: f64,
+}
+
+impl Boards {
+    fn of(size: Size, format: SensorFormat) -> Self {
+        let number = boards(size);
+        let letters =
+            "/underfoot/board/".len() as u32 + number.saturating_sub(1).checked_ilog10().unwrap_or(0) + 1;
+        let bytes = |tiles: u32| f64::from(on_wire(sensor_packet(letters, 4 * tiles, format)));
+        let rest = size.columns % BOARD_TILES;
+        Self {
+            columns: size.columns,
+            full: bytes(BOARD_TILES),
+            last: bytes(if rest == 0 { BOARD_TILES } else { rest }),
+        }
+    }
+
+    /// The boards of one row that measure something in a span.
+    fn span(&self, span: Span) -> Along {
+        let (from, to) = (span.sensed.0 / BOARD_TILES, span.sensed.1.div_ceil(BOARD_TILES));
+        let has_last = span.sensed.1 > (self.columns.div_ceil(BOARD_TILES) - 1) * BOARD_TILES;
+        let bytes =
+            f64::from(to - from - u32::from(has_last)) * self.full + if has_last { self.last } else { 0.0 };
+        Along { boards: to - from, bytes, ..along(span) }
+    }
+}
+
+fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand {
+    let extent = Extent {
+        columns: column.own,
+        rows: row.own,
+        sensed_columns: column.sensed,
+        sensed_rows: row.sensed,
+        boards: column.boards * row.sensed,
+        bytes: column.bytes * f64::from(row.sensed),
+        channels: if size.actuators { column.own * row.own } else { 0 },
+    };
+    AreaDemand::new("", &extent, f64::from(size.columns) * f64::from(size.rows), crowd)
+}
+
+/// The most that any of some spans takes, each number by itself.
+fn most(all: impl Iterator<Item = Along>) -> Along {
+    all.fold(Along::default(), |most, one| Along {
+        own: most.own.max(one.own),
+        sensed: most.sensed.max(one.sensed),
+        boards: most.boards.max(one.boards),
+        bytes: most.bytes.max(one.bytes),
+    })
+}
+
+/// The fewest areas that fit; of as many areas, those that are nearest to squares.
+///
+/// # Errors
+/// [`PlanError::TooMuch`] if single tiles do not fit.
+pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Split, PlanError> {
+    let boards = Boards::of(size, crowd.format);
+    let rows: Vec<Along> = (1..=size.rows).map(|up| most(spans(size.rows, up).map(along))).collect();
+    let mut best: Option<(u32, u32, Split)> = None;
+    let mut runs_out = "sensing";
+    for across in 1..=size.columns {
+        if best.is_some_and(|(count, ..)| across > count) {
+            break;
+        }
+        let column = most(spans(size.columns, across).map(|span| boards.span(span)));
+        let fits = |row: &Along| first(&limits(&demand(&column, row, size, crowd), machine, crowd.usable));
+        // More areas are smaller areas: they fit from some number on.
+        let up = rows.partition_point(|row| fits(row).share > 1.0);
+        let Some(row) = rows.get(up) else {
+            if let Some(row) = rows.last() {
+                runs_out = fits(row).resource.name();
+            }
+            continue;
+        };
+        let split = Split { across, up: up as u32 + 1 };
+        let key = (split.across.saturating_mul(split.up), column.own.abs_diff(row.own), split);
+        if best.is_none_or(|(count, oblong, _)| (key.0, key.1) < (count, oblong)) {
+            best = Some(key);
+        }
+    }
+    best.map(|(.., split)| split).ok_or(PlanError::TooMuch { what: runs_out })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::machine::tests::ROUND;
+    use super::*;
+    use crate::floor::{Area, Floor, Geometry, TileBlock, TileId};
+
+    const HALL: Size = Size { columns: 24, rows: 12, actuators: true };
+
+    #[test]
+    fn areas_by_size_ask_as_much_as_areas_by_a_file() {
+        // Sides that no number of areas or boards divides evenly, too.
+        for (columns, rows, across, up) in [(24, 12, 2, 2), (24, 12, 3, 1), (23, 13, 3, 2), (9, 5, 9, 1)] {
+            let size = Size { columns, rows, actuators: true };
+            let crowd = Crowd::of(40);
+            let split = Split { across, up };
+            let cut = |parts, length, part| part * length / parts;
+            let areas: Vec<Area> = (0..up)
+                .flat_map(|row| (0..across).map(move |column| (column, row)))
+                .map(|(column, row)| {
+                    let (west, south) = (cut(across, columns, column), cut(up, rows, row));
+                    let (east, north) = (cut(across, columns, column + 1), cut(up, rows, row + 1));
+                    let tiles = TileBlock {
+                        first: TileId::new(west as u16, south as u16),
+                        columns: (east - west) as u16,
+                        rows: (north - south) as u16,
+                    };
+                    Area { id: String::new(), tiles }
+                })
+                .collect();
+            let geometry = Geometry::of_paper_tiles(columns as u16, rows as u16).unwrap();
+            let floor = Floor::of(geometry).with_areas(areas);
+            let by_file: Vec<_> =
+                floor.areas.iter().map(|area| AreaDemand::of(&floor, area, &crowd)).collect();
+            let by_size = split.areas(size, &crowd);
+            // A floor's boards have addresses of one or two digits, and of so many letters all are taken here: the
+            // text is as long in words of four bytes.
+            assert_eq!(by_size, by_file, "{size:?} {split:?}");
+        }
+    }
+
+    #[test]
+    fn a_floor_that_fits_is_not_cut() {
+        assert_eq!(
+            fewest(Size { columns: 6, rows: 6, actuators: true }, &Crowd::of(2), &ROUND),
+            Ok(Split::WHOLE)
+        );
+    }
+
+    #[test]
+    fn channels_decide_where_there_are_few() {
+        // 288 actuators on cards of 64 channels: five areas at least, of 24 / 5 x 12 tiles; six of 8 x 6 fit.
+        let split = fewest(HALL, &Crowd::of(2), &ROUND).unwrap();
+        assert_eq!(split.areas_count(), 5);
+        assert_eq!(split, Split { across: 5, up: 1 }, "five columns of 12 tiles are 60 channels");
+        let silent = Size { actuators: false, ..HALL };
+        assert_eq!(fewest(silent, &Crowd::of(2), &ROUND), Ok(Split::WHOLE));
+    }
+
+    #[test]
+    fn people_decide_where_there_are_many() {
+        // 500 us, of which 20 + 36 x 1 + 288 x 0.2 go without anybody, are good for 38 people on the whole floor.
+        let silent = Size { actuators: false, ..HALL };
+        let even = |people| Crowd { crowding: 1.0, ..Crowd::of(people) };
+        assert_eq!(fewest(silent, &even(38), &ROUND).unwrap().areas_count(), 1);
+        // One more, and each half of 12 x 12 senses 15 x 12.
+        assert_eq!(fewest(silent, &even(39), &ROUND), Ok(Split { across: 2, up: 1 }));
+    }
+
+    #[test]
+    fn what_fits_nowhere_is_told() {
+        let packed = Crowd::of(1_000_000);
+        let found = fewest(HALL, &packed, &ROUND);
+        assert_eq!(found, Err(PlanError::TooMuch { what: "sensing thread" }));
+    }
+}
