@@ -189,7 +189,11 @@ fn conclude(
     machine: &Machine,
 ) -> Plan {
     let most = |area: &AreaDemand| first(&limits(area, machine, crowd.usable)).share;
-    let fullest = areas(crowd).into_iter().max_by(|a, b| most(a).total_cmp(&most(b))).unwrap_or_default();
+    // Of areas that use as much of what is used most, such as channels, the one that senses most.
+    let fuller = |a: &AreaDemand, b: &AreaDemand| {
+        most(a).total_cmp(&most(b)).then(a.sensing_cores(machine).total_cmp(&b.sensing_cores(machine)))
+    };
+    let fullest = areas(crowd).into_iter().max_by(fuller).unwrap_or_default();
     let limits = limits(&fullest, machine, crowd.usable);
     let total = Total::of(&areas(&Crowd { crowding: 1.0, ..*crowd }), boards, crowd, machine);
     let whole = whole::limits(columns, rows, &total, machine, crowd.usable);
@@ -255,6 +259,15 @@ mod tests {
             plan.total.app_mbit
         );
         assert_eq!(plan.first_limit, Resource::App);
+    }
+
+    #[test]
+    fn of_areas_with_as_many_channels_the_one_that_senses_most_is_the_fullest() {
+        // Nine areas of 8 x 8 with full cards; the one in the middle senses three tiles more on every side.
+        let size = Size { columns: 24, rows: 24, actuators: true };
+        let plan = plan_size(size, &Crowd::of(4), &ROUND).unwrap();
+        assert_eq!(plan.split, Some(Split { across: 3, up: 3 }));
+        assert_eq!((plan.fullest.sensed_columns, plan.fullest.sensed_rows), (14, 14));
     }
 
     #[test]
