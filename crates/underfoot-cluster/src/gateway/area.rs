@@ -1,0 +1,123 @@
+//! One area as the gateway knows it: who serves it, how its clock goes, whether it lives.
+
+use std::time::Duration;
+
+use underfoot::units::Instant;
+
+use super::claim::{Claims, Holder};
+use super::clock::NodeClock;
+use super::presses::Presses;
+use crate::message::{NodeMessage, Standing};
+
+/// How old the newest frame of an area may be. What feet hold there is cancelled then.
+pub const LOST_AFTER: Duration = Duration::from_millis(100);
+
+/// One area.
+#[derive(Clone, Debug, Default)]
+pub(super) struct AreaState {
+    pub(super) claims: Claims,
+    pub(super) holder: Option<u64>,
+    pub(super) standing: Standing,
+    pub(super) clock: NodeClock,
+    pub(super) presses: Presses,
+    /// When its newest frame was, on the gateway's clock.
+    pub(super) newest: Option<Instant>,
+    /// Up to when what it told has been put in order; never goes back.
+    pub(super) told: Instant,
+    /// Whether its boards are silent, as its node says.
+    pub(super) silent: bool,
+    /// When it came to live: events before that are of no interest any more.
+    since: Instant,
+    /// The numbers of the last message and of the next event.
+    sequence: u64,
+    next_event: Option<u64>,
+}
+
+/// What a message is worth.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Worth {
+    /// Nothing: it is an old one, from a node that is not believed, or of a time that is not known yet.
+    Nothing,
+    /// It is too old to act on.
+    Stale,
+    /// It tells what is now; `lost` events are missing before it.
+    Fresh { lost: u64 },
+}
+
+impl AreaState {
+    /// Takes note of who says what when.
+    pub(super) fn note(&mut self, message: &NodeMessage, gateway: u64, now: Instant) -> Worth {
+        self.claims.note(message.node, &message.name, now);
+        if self.claims.holder(now) != Holder::One(message.node) {
+            return Worth::Nothing;
+        }
+        if self.holder.replace(message.node) != Some(message.node) {
+            // Another clock, other numbers.
+            self.clock = NodeClock::default();
+            (self.sequence, self.next_event, self.newest) = (0, None, None);
+        }
+        if message.sequence <= self.sequence {
+            return Worth::Nothing;
+        }
+        self.sequence = message.sequence;
+        self.silent = message.silent;
+        for echo in message.echoes.iter().filter(|echo| echo.gateway == gateway) {
+            if self.clock.note(echo, message.sent, now) {
+                tracing::warn!("the clock of area \"{}\" was set", message.area);
+            }
+        }
+        let expected =
+            self.next_event.replace(message.first_event.saturating_add(message.events.len() as u64));
+        let lost = message.first_event.saturating_sub(expected.unwrap_or(message.first_event));
+        let Some(frame) = message.frame.and_then(|frame| self.clock.here(frame)) else {
+            return Worth::Nothing;
+        };
+        if now.since(frame) > LOST_AFTER {
+            return Worth::Stale;
+        }
+        self.newest = Some(frame);
+        Worth::Fresh { lost }
+    }
+
+    /// The moment here of `micros` on the node's clock.
+    pub(super) fn here(&self, micros: u64) -> Instant {
+        self.clock.here(micros).unwrap_or(Instant::START)
+    }
+
+    /// The moment in the order of all areas: as [`AreaState::here`], but never before one that was given earlier.
+    pub(super) fn in_order(&mut self, at: Instant) -> Instant {
+        self.told = self.told.max(at);
+        self.told
+    }
+
+    /// Whether an event of that time is of interest.
+    pub(super) fn is_of_interest(&self, at: Instant) -> bool {
+        at >= self.since
+    }
+
+    /// Begins to believe what is told from `at` on.
+    pub(super) fn begin(&mut self, at: Instant) {
+        self.standing = Standing::Live;
+        self.since = at;
+    }
+
+    /// Whether it has to be given up at `now`, and as what.
+    pub(super) fn fallen(&mut self, now: Instant) -> Option<Standing> {
+        let is_disputed = self.claims.holder(now) == Holder::Disputed;
+        let is_old = self.newest.is_none_or(|newest| now.since(newest) > LOST_AFTER);
+        let next = match self.standing {
+            Standing::Disputed if is_disputed => return None,
+            _ if is_disputed => Standing::Disputed,
+            Standing::Live if is_old => Standing::Lost,
+            Standing::Disputed => Standing::Lost,
+            _ => return None,
+        };
+        Some(next)
+    }
+
+    /// Gives it up.
+    pub(super) fn fall(&mut self, standing: Standing) {
+        self.standing = standing;
+        self.newest = None;
+    }
+}

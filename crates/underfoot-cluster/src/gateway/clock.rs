@@ -1,0 +1,165 @@
+//! How far a node's clock is from the gateway's.
+//!
+//! ```text
+//! gateway  g0 ........................ g3      node = gateway + offset
+//!            \                        /        offset within half a round trip of ((n1 - g0) + (n2 - g3)) / 2,
+//! node        n1 ................. n2          round trip = (g3 - g0) - (n2 - n1), however it divides
+//! ```
+
+use std::collections::VecDeque;
+use std::time::Duration;
+
+use underfoot::units::Instant;
+
+use crate::message::Echo;
+
+/// How long a round trip counts. Longer finds quicker ones; clocks drift meanwhile, 0.5 ms in this time at most.
+const WINDOW: Duration = Duration::from_secs(5);
+
+/// How much faster one clock may be than another: quartz oscillators differ by 50 ppm each at most.
+const DRIFT: f64 = 1e-4;
+
+/// Round trips that are kept: of one gateway, twenty a second.
+const KEPT: usize = 128;
+
+/// What one round trip says.
+#[derive(Clone, Copy, Debug)]
+struct RoundTrip {
+    /// When it ended, on the gateway's clock.
+    at: Instant,
+    /// The node's time less the gateway's, in microseconds.
+    offset: i64,
+    /// By how much that may be wrong, in microseconds.
+    doubt: i64,
+}
+
+impl RoundTrip {
+    /// By how much it may be wrong at `now`.
+    fn doubt_at(&self, now: Instant) -> i64 {
+        let drift = DRIFT * now.since(self.at).as_micros() as f64;
+        self.doubt.saturating_add(drift as i64)
+    }
+}
+
+/// A node's clock as the gateway knows it.
+#[derive(Clone, Debug, Default)]
+pub struct NodeClock {
+    trips: VecDeque<RoundTrip>,
+    /// When the gateway sent what the last echo was of, so that each counts once.
+    last: Option<u64>,
+    /// The surest of them.
+    best: Option<RoundTrip>,
+}
+
+impl NodeClock {
+    /// Takes an echo that a message brought which the node `sent` and the gateway received at `now`. Whether the clock
+    /// turns out to have been set.
+    pub fn note(&mut self, echo: &Echo, sent: u64, now: Instant) -> bool {
+        if self.last.is_some_and(|last| echo.sent <= last) {
+            return false;
+        }
+        let [g0, n1, n2, g3] = [echo.sent, echo.received, sent, now.micros()].map(signed);
+        if g3 < g0 || n2 < n1 {
+            return false;
+        }
+        self.last = Some(echo.sent);
+        let doubt = (((g3 - g0) - (n2 - n1)) / 2).max(0);
+        let offset = (n1 - g0) / 2 + (n2 - g3) / 2;
+        let trip = RoundTrip { at: now, offset, doubt };
+        let was_set = self.best.is_some_and(|best| {
+            let apart = best.offset.saturating_sub(offset).saturating_abs();
+            apart > best.doubt_at(now).saturating_add(doubt).saturating_add(1)
+        });
+        if was_set {
+            self.trips.clear();
+        }
+        self.trips.retain(|trip| now.since(trip.at) < WINDOW);
+        if self.trips.len() == KEPT {
+            self.trips.pop_front();
+        }
+        self.trips.push_back(trip);
+        self.best = self.trips.iter().copied().min_by_key(|trip| trip.doubt_at(now));
+        was_set
+    }
+
+    /// Whether anything is known of it.
+    #[must_use]
+    pub const fn is_known(&self) -> bool {
+        self.best.is_some()
+    }
+
+    /// The moment on the gateway's clock when the node's showed `micros`; `None` while nothing is known of it.
+    #[must_use]
+    pub fn here(&self, micros: u64) -> Option<Instant> {
+        let here = signed(micros).saturating_sub(self.best?.offset);
+        // What was before the gateway started was at its start.
+        Some(Instant::from_micros(u64::try_from(here).unwrap_or(0)))
+    }
+
+    /// By how much [`NodeClock::here`] may be wrong at `now`.
+    #[must_use]
+    pub fn doubt(&self, now: Instant) -> Option<Duration> {
+        let micros = self.best?.doubt_at(now);
+        Some(Duration::from_micros(u64::try_from(micros).unwrap_or(0)))
+    }
+}
+
+/// Microseconds that two can be subtracted of; no clock has run for 73,000 years.
+fn signed(micros: u64) -> i64 {
+    micros.min(1 << 61).cast_signed()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A node whose clock is `offset` ahead; messages take `there` and `back`, in microseconds.
+    fn trip(clock: &mut NodeClock, at: u64, offset: u64, there: u64, back: u64) -> bool {
+        let (received, sent) = (at + there + offset, at + there + offset + 500);
+        let echo = Echo { gateway: 1, sent: at, received };
+        clock.note(&echo, sent, Instant::from_micros(at + there + 500 + back))
+    }
+
+    #[test]
+    fn the_quickest_of_uneven_round_trips_says_the_offset_within_its_doubt() {
+        let mut clock = NodeClock::default();
+        for (number, (there, back)) in
+            [(9000, 200), (300, 20_000), (150, 250), (4000, 4000)].into_iter().enumerate()
+        {
+            trip(&mut clock, 1_000_000 + 50_000 * number as u64, 77_000_000, there, back);
+        }
+        let now = Instant::from_micros(1_200_000);
+        let doubt = clock.doubt(now).unwrap().as_micros() as i64;
+        let error = clock.here(77_000_000 + 1_100_000).unwrap().micros() as i64 - 1_100_000;
+        // Half of 400 us, and what 0.1 s of drift may add.
+        assert!((200..=220).contains(&doubt), "{doubt}");
+        assert!(error.abs() <= doubt, "{error}");
+    }
+
+    #[test]
+    fn a_clock_that_is_set_is_noticed_and_followed_at_once() {
+        let mut clock = NodeClock::default();
+        assert!(!trip(&mut clock, 1_000_000, 5_000_000, 200, 200));
+        assert!(!trip(&mut clock, 1_050_000, 5_000_000, 20_000, 200), "jitter is no step");
+        assert!(trip(&mut clock, 1_100_000, 6_000_000, 200, 200));
+        assert_eq!(clock.here(7_200_000), Some(Instant::from_micros(1_200_000)));
+    }
+
+    #[test]
+    fn drift_is_followed_and_an_echo_counts_once() {
+        let mut clock = NodeClock::default();
+        for tick in 0..400_u64 {
+            let at = 1_000_000 + tick * 50_000;
+            // 50 ppm fast.
+            trip(&mut clock, at, 3_000_000 + tick * 50_000 / 20_000, 300, 300);
+        }
+        let now = 1_000_000 + 400 * 50_000;
+        let there = 3_000_000 + 400 * 50_000 / 20_000 + now;
+        let error = clock.here(there).unwrap().micros().abs_diff(now);
+        assert!(error < 300, "{error}");
+        let before = clock.clone();
+        let old = Echo { gateway: 1, sent: 1_000_000, received: 0 };
+        assert!(!clock.note(&old, 1, Instant::from_micros(now)));
+        assert_eq!(clock.here(5), before.here(5));
+    }
+}

@@ -1,0 +1,297 @@
+//! Contacts of several areas into contacts of one floor.
+//!
+//! Nodes tell what they see beyond their area too, so that a foot near a border is told by both: the two are one
+//! **joint** contact as soon as both see it, long before it crosses. Its name never changes; its **owner** is the area
+//! whose node is believed of where it is.
+
+use std::collections::{HashMap, VecDeque};
+use std::time::Duration;
+
+use glam::Vec2;
+use underfoot::floor::{Area, Floor, Geometry};
+use underfoot::sense::Contact;
+use underfoot::units::Instant;
+
+use crate::message::NodeContact;
+
+/// How far apart two nodes may see the same foot: both feel the same forces, but not at the same moment, and a foot that
+/// lands moves by some millimetres in each.
+const SAME_M: f32 = 0.05;
+
+/// How far apart they may come to see it before it is taken for two.
+const APART_M: f32 = 0.15;
+
+/// How long a joint contact that no area has any more can still be found again in another area.
+const LATE: Duration = Duration::from_millis(20);
+
+/// How long the old owner is believed of a foot that has left its area while the next one does not see it.
+const LEAVING: Duration = Duration::from_millis(50);
+
+/// How long the name of a contact that has ended is known, for events that come later.
+const REMEMBERED: Duration = Duration::from_secs(2);
+
+/// Frames of an area that are kept, to tell where its contacts were between two of them.
+const FRAMES: usize = 8;
+
+/// What one area told last.
+#[derive(Clone, Debug, Default)]
+struct View {
+    frames: VecDeque<(Instant, Vec<NodeContact>)>,
+    /// The joint contact of each of its contacts, by the node's name.
+    joints: HashMap<u32, u32>,
+    /// Those of contacts that have ended, and when.
+    past: HashMap<u32, (u32, Instant)>,
+    /// Whether its node is believed.
+    live: bool,
+}
+
+impl View {
+    fn latest(&self, id: u32) -> Option<&NodeContact> {
+        self.frames.back()?.1.iter().find(|contact| contact.id == id)
+    }
+
+    /// How the contact `id` was at `at`.
+    fn between(&self, id: u32, at: Instant) -> Option<NodeContact> {
+        let of =
+            |(_, contacts): &(Instant, Vec<NodeContact>)| contacts.iter().find(|one| one.id == id).copied();
+        let later = self.frames.iter().position(|(time, _)| *time >= at);
+        let Some(later) = later else { return self.frames.back().and_then(of) };
+        let (end, before) =
+            (self.frames.get(later)?, later.checked_sub(1).and_then(|at| self.frames.get(at)));
+        match (before.and_then(of).zip(before), of(end)) {
+            (Some((from, (start, _))), Some(to)) => {
+                let (span, past) = (end.0.since(*start).as_secs_f32(), at.since(*start).as_secs_f32());
+                Some(if span > 0.0 { from.towards(&to, past / span) } else { to })
+            }
+            (_, to) => to.or_else(|| self.latest(id).copied()),
+        }
+    }
+}
+
+/// One foot, whoever sees it.
+#[derive(Clone, Debug)]
+struct Joint {
+    id: u32,
+    /// Who sees it: numbers of areas, and the nodes' names for it.
+    members: Vec<(usize, u32)>,
+    /// Whose word counts.
+    owner: Option<usize>,
+    /// Since when it has been out of its owner's area, and no other one sees it there.
+    leaving: Option<Instant>,
+    /// Where it was last, and when.
+    last: (Vec2, Instant),
+}
+
+impl Joint {
+    fn name_in(&self, area: usize) -> Option<u32> {
+        self.members.iter().find(|(other, _)| *other == area).map(|(_, id)| *id)
+    }
+}
+
+/// The contacts of a floor of several areas.
+#[derive(Clone, Debug)]
+pub(super) struct Joiner {
+    geometry: Geometry,
+    areas: Vec<Area>,
+    views: Vec<View>,
+    joints: Vec<Joint>,
+    last_id: u32,
+}
+
+impl Joiner {
+    pub(super) fn new(floor: &Floor) -> Self {
+        let views = vec![View::default(); floor.areas.len()];
+        let (geometry, areas) = (floor.geometry, floor.areas.clone());
+        Self { geometry, areas, views, joints: Vec::new(), last_id: 0 }
+    }
+
+    /// Takes the contacts that the node of `area` saw at `at`, which must not be before those it saw last.
+    pub(super) fn frame(&mut self, area: usize, at: Instant, contacts: Vec<NodeContact>) {
+        let Some(view) = self.views.get_mut(area) else { return };
+        view.live = true;
+        let ended: Vec<u32> =
+            view.joints.keys().copied().filter(|id| !contacts.iter().any(|one| one.id == *id)).collect();
+        if view.frames.len() == FRAMES {
+            view.frames.pop_front();
+        }
+        view.frames.push_back((at, contacts.clone()));
+        ended.into_iter().for_each(|id| self.end(area, id, at));
+        for contact in &contacts {
+            self.check(area, contact, at);
+        }
+        let of_view = |joints: &HashMap<u32, u32>| -> Vec<(u32, Vec2)> {
+            let is_new = |one: &&NodeContact| !joints.contains_key(&one.id);
+            contacts.iter().filter(is_new).map(|one| (one.id, one.place())).collect()
+        };
+        let new = self.views.get(area).map(|view| of_view(&view.joints)).unwrap_or_default();
+        self.find(area, new, at);
+        self.forget(at);
+        self.own(at);
+    }
+
+    /// The joint name of what the node of `area` calls `id` and saw at `place` at `at`.
+    pub(super) fn name(&mut self, area: usize, id: u32, place: Vec2, at: Instant) -> Option<u32> {
+        let view = self.views.get(area)?;
+        let known = view.joints.get(&id).copied().or_else(|| view.past.get(&id).map(|(joint, _)| *joint));
+        if known.is_some() {
+            return known;
+        }
+        self.find(area, vec![(id, place)], at);
+        self.views.get(area)?.joints.get(&id).copied()
+    }
+
+    /// Believes the node of `area` no longer, from `at` on.
+    pub(super) fn lose(&mut self, area: usize, at: Instant) {
+        let Some(view) = self.views.get_mut(area) else { return };
+        *view = View::default();
+        for joint in &mut self.joints {
+            joint.members.retain(|(other, _)| *other != area);
+            // What it has lost is not found again: it is not known where it went.
+            if joint.members.is_empty() {
+                joint.last.1 = Instant::START;
+            }
+        }
+        self.forget(at);
+        self.own(at);
+    }
+
+    /// The contacts on the whole floor at `at`, in the order of their names.
+    pub(super) fn contacts(&self, at: Instant) -> Vec<Contact> {
+        let told = self.joints.iter().filter_map(|joint| {
+            let owner = joint.owner?;
+            let contact = self.views.get(owner)?.between(joint.name_in(owner)?, at)?;
+            Some(contact.contact(joint.id))
+        });
+        told.collect()
+    }
+
+    /// Ends what the node of `area` called `id`.
+    fn end(&mut self, area: usize, id: u32, at: Instant) {
+        let Some(view) = self.views.get_mut(area) else { return };
+        let Some(joint) = view.joints.remove(&id) else { return };
+        view.past.insert(id, (joint, at));
+        if let Some(joint) = self.joints.iter_mut().find(|one| one.id == joint) {
+            joint.members.retain(|member| *member != (area, id));
+        }
+    }
+
+    /// Takes a contact out of its joint if the others see that one elsewhere, and notes where it is.
+    fn check(&mut self, area: usize, contact: &NodeContact, at: Instant) {
+        let Some(view) = self.views.get(area) else { return };
+        let Some(id) = view.joints.get(&contact.id).copied() else { return };
+        let Some(place) = self.joints.iter().position(|joint| joint.id == id) else { return };
+        let Some(joint) = self.joints.get(place) else { return };
+        let mut others = joint.members.iter().filter(|(other, _)| *other != area);
+        let is_elsewhere = others.any(|&(other, id)| {
+            let seen = self.views.get(other).and_then(|view| view.latest(id));
+            seen.is_some_and(|seen| seen.place().distance(contact.place()) > APART_M)
+        });
+        // One that only this area sees and that it does not own may be what another one has told of since.
+        let is_alone = joint.members.len() == 1 && joint.owner.is_none();
+        let is_other = is_alone && self.nearest(area, contact.place(), Some(id), at).is_some();
+        if is_elsewhere || is_other {
+            if let Some(joint) = self.joints.get_mut(place) {
+                joint.members.retain(|member| *member != (area, contact.id));
+                if is_other {
+                    joint.last.1 = Instant::START;
+                }
+            }
+            if let Some(view) = self.views.get_mut(area) {
+                view.joints.remove(&contact.id);
+            }
+        } else if let Some(joint) = self.joints.get_mut(place) {
+            joint.last = (contact.place(), at);
+        }
+    }
+
+    /// The joint contact nearest to `place` that `area` has none in yet, with its distance.
+    fn nearest(&self, area: usize, place: Vec2, but: Option<u32>, at: Instant) -> Option<(f32, u32)> {
+        let candidates = self.joints.iter().filter(|joint| {
+            let is_late = joint.members.is_empty() && at.since(joint.last.1) > LATE;
+            joint.name_in(area).is_none() && Some(joint.id) != but && !is_late
+        });
+        let seen = |(other, id): &(usize, u32)| Some(self.views.get(*other)?.latest(*id)?.place());
+        let distances = candidates.map(|joint| {
+            let places = joint.members.iter().filter_map(seen).map(|other| other.distance(place));
+            (places.reduce(f32::min).unwrap_or_else(|| joint.last.0.distance(place)), joint.id)
+        });
+        let near = distances.filter(|(distance, _)| *distance < SAME_M);
+        near.min_by(|one, other| one.0.total_cmp(&other.0).then(one.1.cmp(&other.1)))
+    }
+
+    /// Finds the joint contacts of `new` ones of `area`, the nearest pairs first; those that have none become one.
+    fn find(&mut self, area: usize, mut new: Vec<(u32, Vec2)>, at: Instant) {
+        while !new.is_empty() {
+            let pairs = new.iter().enumerate().filter_map(|(place, (_, point))| {
+                self.nearest(area, *point, None, at).map(|(distance, joint)| (distance, place, joint))
+            });
+            let pair = pairs.min_by(|one, other| one.0.total_cmp(&other.0));
+            let (place, joint) = pair.map_or((0, None), |(_, place, joint)| (place, Some(joint)));
+            let (id, point) = new.remove(place);
+            let joint = joint.unwrap_or_else(|| self.begin(point, at));
+            if let Some(found) = self.joints.iter_mut().find(|one| one.id == joint) {
+                found.members.push((area, id));
+                found.last = (point, at);
+            }
+            if let Some(view) = self.views.get_mut(area) {
+                view.joints.insert(id, joint);
+            }
+        }
+    }
+
+    fn begin(&mut self, place: Vec2, at: Instant) -> u32 {
+        self.last_id = self.last_id.wrapping_add(1);
+        let (id, members) = (self.last_id, Vec::new());
+        self.joints.push(Joint { id, members, owner: None, leaving: None, last: (place, at) });
+        id
+    }
+
+    /// Says who owns each joint contact.
+    fn own(&mut self, at: Instant) {
+        let Self { geometry, areas, views, joints, .. } = self;
+        for joint in joints {
+            let seen = |area: usize| {
+                let view = views.get(area).filter(|view| view.live)?;
+                view.latest(joint.name_in(area)?).map(NodeContact::place)
+            };
+            let holds =
+                |area: usize, place: Vec2| areas.get(area).is_some_and(|one| one.holds(geometry, place));
+            let is_own = |area: &usize| seen(*area).is_some_and(|place| holds(*area, place));
+            if joint.owner.as_ref().is_some_and(is_own) {
+                joint.leaving = None;
+                continue;
+            }
+            let places: Vec<Vec2> = joint.members.iter().filter_map(|(area, _)| seen(*area)).collect();
+            let members = || joint.members.iter().map(|(area, _)| *area);
+            // Each of two may see it just on the other's side.
+            let held =
+                |area: &usize| seen(*area).is_some() && places.iter().any(|place| holds(*area, *place));
+            let old = joint.owner.filter(|owner| seen(*owner).is_some());
+            let next = members().find(is_own).or(old.filter(held)).or_else(|| members().find(held));
+            (joint.owner, joint.leaving) = match (next, old) {
+                (Some(next), _) => (Some(next), None),
+                (None, Some(old)) => {
+                    let since = joint.leaving.unwrap_or(at);
+                    // An area that is lost tells of nobody.
+                    let is_dark = seen(old).is_some_and(|place| {
+                        areas
+                            .iter()
+                            .zip(views.iter())
+                            .any(|(one, view)| !view.live && one.holds(geometry, place))
+                    });
+                    let stays = !is_dark && at.since(since) < LEAVING;
+                    (stays.then_some(old), Some(since))
+                }
+                (None, None) => (None, joint.leaving),
+            };
+        }
+    }
+
+    /// Forgets what has ended long enough ago.
+    fn forget(&mut self, at: Instant) {
+        self.joints.retain(|joint| !joint.members.is_empty() || at.since(joint.last.1) <= LATE);
+        for view in &mut self.views {
+            view.past.retain(|_, (_, ended)| at.since(*ended) < REMEMBERED);
+        }
+    }
+}

@@ -1,0 +1,349 @@
+//! Many areas' contacts and events as one floor's.
+//!
+//! [`Gateway`] is pure: messages and the time are handed in, and what is to be told comes out. What it tells depends on
+//! what nodes said and not on the order in which their messages came, as long as none is more than [`WINDOW`] late.
+//!
+//! ```text
+//! NodeMessage -claim-> one node an area -clock-> times here -> queue, in time order -> join: contacts' names
+//!                                                                                    -> presses: what apps know
+//! silence of 100 ms, by the frames' own age -> presses cancelled, contacts ended
+//! ```
+
+mod area;
+mod claim;
+mod clock;
+mod held;
+mod join;
+mod presses;
+#[cfg(test)]
+mod tests;
+mod told;
+
+use std::collections::{BTreeMap, HashSet};
+use std::time::Duration;
+
+use glam::Vec2;
+use thiserror::Error;
+use underfoot::floor::Floor;
+use underfoot::units::Instant;
+use underfoot::widget::WidgetEvent;
+use underfoot::wire::LinkState;
+
+use self::area::{AreaState, Worth};
+use self::held::HeldReports;
+use self::join::Joiner;
+use crate::message::{
+    GatewayMessage, NodeContact, NodeEvent, NodeMessage, NodeValue, Standing, VERSION, fingerprint,
+};
+
+pub use area::LOST_AFTER;
+pub use clock::NodeClock;
+pub use told::{AreaNews, Counters, Told};
+
+/// How long what one area tells waits for what others may tell of earlier moments.
+pub const WINDOW: Duration = Duration::from_millis(25);
+
+/// Time between two signs of life.
+const ALIVE_EVERY: Duration = Duration::from_millis(100);
+
+/// Time between two moments of which contacts are told: a frame.
+const CONTACTS_EVERY: Duration = Duration::from_millis(1);
+
+/// Most of anything in one message: what is beyond it is refused, for no area has it.
+const MOST: usize = 4096;
+
+/// Nodes whose messages were refused that are remembered, so that each is complained of once.
+const COMPLAINTS: usize = 64;
+
+/// Why a floor has no gateway.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
+pub enum NoGateway {
+    /// The floor file names no areas.
+    #[error("the floor file has no `areas`: one computer serves such a floor, with `underfoot run`")]
+    NoAreas,
+}
+
+/// Something that an area told, waiting for its turn.
+#[derive(Clone, Debug)]
+enum Item {
+    Event(Instant, NodeEvent),
+    Frame { contacts: Vec<NodeContact>, held: Vec<String>, values: Option<Vec<(String, NodeValue)>> },
+}
+
+/// The areas of a floor, joined.
+#[derive(Clone, Debug)]
+pub struct Gateway {
+    id: u64,
+    floor: u64,
+    names: Vec<String>,
+    areas: Vec<AreaState>,
+    joiner: Joiner,
+    /// By moment, area and number.
+    queue: BTreeMap<(Instant, usize, u64), Item>,
+    number: u64,
+    /// Up to when everything has been told.
+    told_until: Instant,
+    contacts_told: Option<Instant>,
+    is_anybody_there: bool,
+    held: HeldReports,
+    link: LinkState,
+    alive: (u32, Instant),
+    complained: HashSet<u64>,
+    counters: Counters,
+    out: Vec<Told>,
+}
+
+impl Gateway {
+    /// A gateway of the areas of `floor`; `id` is a number that no gateway before it had.
+    ///
+    /// # Errors
+    /// [`NoGateway`] for a floor without areas.
+    pub fn new(floor: &Floor, id: u64) -> Result<Self, NoGateway> {
+        if floor.areas.is_empty() {
+            return Err(NoGateway::NoAreas);
+        }
+        Ok(Self {
+            id,
+            floor: fingerprint(floor),
+            names: floor.areas.iter().map(|area| area.id.clone()).collect(),
+            areas: vec![AreaState::default(); floor.areas.len()],
+            joiner: Joiner::new(floor),
+            queue: BTreeMap::new(),
+            number: 0,
+            told_until: Instant::START,
+            contacts_told: None,
+            is_anybody_there: false,
+            held: HeldReports::default(),
+            link: LinkState::Waiting,
+            alive: (0, Instant::START),
+            complained: HashSet::new(),
+            counters: Counters::default(),
+            out: Vec::new(),
+        })
+    }
+
+    /// What came in and what was not told so far.
+    #[must_use]
+    pub const fn counters(&self) -> Counters {
+        self.counters
+    }
+
+    /// How the area called `id` stands; `None` for an unknown one.
+    #[must_use]
+    pub fn standing(&self, id: &str) -> Option<Standing> {
+        let area = self.names.iter().position(|name| name == id)?;
+        self.areas.get(area).map(|area| area.standing)
+    }
+
+    /// What all nodes are told at `now`: how their areas stand, and a moment by which they show what their clocks say.
+    #[must_use]
+    pub fn message(&self, now: Instant) -> GatewayMessage {
+        let standings = self.areas.iter().map(|area| area.standing);
+        GatewayMessage {
+            version: VERSION,
+            gateway: self.id,
+            sent: now.micros(),
+            areas: self.names.iter().cloned().zip(standings).collect(),
+        }
+    }
+
+    /// Takes in what a node told, received at `now`, which must not be before any other time that was given.
+    pub fn take(&mut self, message: NodeMessage, now: Instant) {
+        self.counters.messages += 1;
+        let Some(number) = self.suited(&message) else {
+            self.counters.refused += 1;
+            return;
+        };
+        let Some(area) = self.areas.get_mut(number) else { return };
+        let before = area.holder;
+        let worth = area.note(&message, self.id, now);
+        if area.holder != before && area.standing == Standing::Live {
+            self.fall(number, Standing::Lost, "its node was started again", now);
+        }
+        match worth {
+            Worth::Nothing => {}
+            Worth::Stale => self.counters.stale += 1,
+            Worth::Fresh { lost } => {
+                self.counters.lost += lost;
+                self.join(number, message, lost > 0, now);
+            }
+        }
+    }
+
+    /// What is to be told at `now`, which must not be before any other time that was given.
+    pub fn advance(&mut self, now: Instant) -> Vec<Told> {
+        for number in 0..self.areas.len() {
+            let Some(area) = self.areas.get_mut(number) else { continue };
+            let Some(standing) = area.fallen(now) else { continue };
+            let why = match standing {
+                Standing::Disputed => {
+                    format!(
+                        "{} both serve it: neither is believed until one of them has stopped",
+                        area.claims.names()
+                    )
+                }
+                _ if area.silent => "nothing usable from its boards".to_owned(),
+                _ => "nothing new from its node for 100 ms".to_owned(),
+            };
+            self.fall(number, standing, &why, now);
+        }
+        let told = self.areas.iter().filter(|area| area.standing == Standing::Live).map(|area| area.told);
+        // Who is late is not waited for.
+        let until = told.min().unwrap_or(now).max(now.before(WINDOW));
+        while let Some(entry) = self.queue.first_entry().filter(|entry| entry.key().0 <= until) {
+            let ((at, area, _), item) = entry.remove_entry();
+            self.tell(area, at, item);
+        }
+        self.told_until = self.told_until.max(until);
+        self.tell_contacts(until, now);
+        self.tell_state(now);
+        std::mem::take(&mut self.out)
+    }
+
+    /// The number of the area that a message is about, if it is one of this floor.
+    fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
+        let area = self.names.iter().position(|name| *name == message.area);
+        let sizes = [message.contacts.len(), message.events.len(), message.held.len(), message.echoes.len()];
+        let why = if message.version != VERSION {
+            format!("speaks version {} of the messages, this gateway {VERSION}", message.version)
+        } else if message.floor != self.floor {
+            "has a floor file with other tiles or areas".to_owned()
+        } else if area.is_none() {
+            "serves an area that the floor file does not name".to_owned()
+        } else if sizes.iter().any(|size| *size > MOST) || !message.contacts.iter().all(NodeContact::is_sound)
+        {
+            "tells what no node tells".to_owned()
+        } else {
+            return area;
+        };
+        if self.complained.len() < COMPLAINTS && self.complained.insert(message.node) {
+            let NodeMessage { name, area, .. } = message;
+            self.out
+                .push(Told::Notice(format!("the node at {name} for area \"{area}\" is not heard: it {why}")));
+        }
+        None
+    }
+
+    /// Puts what a live node told in order.
+    fn join(&mut self, number: usize, message: NodeMessage, is_torn: bool, now: Instant) {
+        let Some(area) = self.areas.get_mut(number) else { return };
+        let Some(frame) = area.newest else { return };
+        if area.standing != Standing::Live {
+            area.begin(frame);
+            area.presses.shut(&message.held);
+            let (at, name) = (now, self.names.get(number).cloned().unwrap_or_default());
+            let doubt = area.clock.doubt(now).unwrap_or_default();
+            let news = AreaNews { at, area: name, standing: Standing::Live, why: String::new(), doubt };
+            self.out.push(Told::Area(news));
+        } else if is_torn {
+            // What was pressed may have been let go and pressed again in what is missing.
+            let cancelled = area.presses.cancel(now);
+            area.presses.shut(&message.held);
+            self.out.extend(cancelled.into_iter().map(Told::Event));
+        }
+        let NodeMessage { events, contacts, held, values, .. } = message;
+        let mut items = Vec::with_capacity(events.len() + 1);
+        for event in events {
+            let at = area.here(event.at);
+            if area.is_of_interest(at) {
+                items.push((area.in_order(at), Item::Event(at, event)));
+            } else {
+                self.counters.withheld += 1;
+            }
+        }
+        items.push((area.in_order(frame), Item::Frame { contacts, held, values }));
+        for (at, item) in items {
+            self.number += 1;
+            self.queue.insert((at, number, self.number), item);
+        }
+    }
+
+    /// Gives an area up: what feet held there is cancelled, its contacts end.
+    fn fall(&mut self, number: usize, standing: Standing, why: &str, now: Instant) {
+        let Some(area) = self.areas.get_mut(number) else { return };
+        area.fall(standing);
+        let cancelled = area.presses.cancel(now);
+        self.queue.retain(|(_, area, _), _| *area != number);
+        self.joiner.lose(number, now);
+        let name = self.names.get(number).cloned().unwrap_or_default();
+        self.out.extend(cancelled.into_iter().map(Told::Event));
+        let (why, doubt) = (why.to_owned(), Duration::ZERO);
+        self.out.push(Told::Area(AreaNews { at: now, area: name, standing, why, doubt }));
+    }
+
+    fn tell(&mut self, number: usize, at: Instant, item: Item) {
+        let Some(area) = self.areas.get_mut(number) else { return };
+        match item {
+            Item::Event(happened, event) => {
+                let place = Vec2::from(event.position);
+                let contact = event.contact.and_then(|id| self.joiner.name(number, id, place, at));
+                let Some(told) = event.event(happened, contact) else {
+                    self.counters.refused += 1;
+                    return;
+                };
+                if !area.presses.takes(&told) {
+                    self.counters.withheld += 1;
+                    return;
+                }
+                self.counters.late += u64::from(at < self.told_until);
+                self.out.push(Told::Event(told));
+            }
+            Item::Frame { contacts, held, values } => {
+                area.presses.hold(&held);
+                let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();
+                self.joiner.frame(number, at, contacts);
+                self.out.extend(changed.into_iter().map(Told::Event));
+            }
+        }
+    }
+
+    fn tell_contacts(&mut self, until: Instant, now: Instant) {
+        let is_live = self.areas.iter().any(|area| area.standing == Standing::Live);
+        if !is_live {
+            if std::mem::take(&mut self.is_anybody_there) {
+                self.out.push(Told::Contacts(now, Vec::new()));
+            }
+            return;
+        }
+        if self.contacts_told.is_some_and(|told| until < told + CONTACTS_EVERY) {
+            return;
+        }
+        self.contacts_told = Some(until);
+        let contacts = self.joiner.contacts(until);
+        self.is_anybody_there = !contacts.is_empty();
+        self.out.push(Told::Contacts(until, contacts));
+    }
+
+    fn tell_state(&mut self, now: Instant) {
+        let live = || self.areas.iter().filter(|area| area.standing == Standing::Live);
+        let link = match live().count() {
+            0 if self.link == LinkState::Waiting => LinkState::Waiting,
+            0 => LinkState::Lost,
+            count if count == self.areas.len() => LinkState::Live,
+            _ => LinkState::Partial,
+        };
+        if link != self.link {
+            self.link = link;
+            self.out.push(Told::Link(now, link));
+        }
+        let held: Vec<&str> = live().flat_map(|area| area.presses.held()).collect();
+        let holding = live().filter(|area| area.presses.held().next().is_some());
+        let oldest = holding.filter_map(|area| area.newest).min().unwrap_or(now);
+        if let Some(report) = self.held.report(&held, now.since(oldest), now) {
+            self.out.push(Told::Held(report.clone()));
+        }
+        let (number, due) = &mut self.alive;
+        if now >= *due {
+            (*number, *due) = (number.wrapping_add(1), now + ALIVE_EVERY);
+            self.out.push(Told::Alive(now, *number));
+        }
+    }
+}
+
+/// The events among what was told.
+pub fn events(told: &[Told]) -> impl Iterator<Item = &WidgetEvent> {
+    told.iter().filter_map(|told| match told {
+        Told::Event(event) => Some(event),
+        _ => None,
+    })
+}

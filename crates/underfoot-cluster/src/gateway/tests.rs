@@ -1,0 +1,448 @@
+//! Feet that cross borders, nodes that fail: what the gateway makes of them.
+
+use proptest::prelude::*;
+use underfoot::floor::{Area, Geometry, TileBlock, TileId};
+use underfoot::widget::EventKind;
+
+use super::*;
+use crate::message::Echo;
+
+/// Two areas side by side, of 6 x 6 tiles each; the border is at 6 x 0.304 m.
+fn hall() -> Floor {
+    let area = |id: &str, column| Area {
+        id: id.into(),
+        tiles: TileBlock { first: TileId::new(column, 0), columns: 6, rows: 6 },
+    };
+    Floor::of(Geometry::of_paper_tiles(12, 6).unwrap()).with_areas(vec![area("west", 0), area("east", 6)])
+}
+
+const BORDER_M: f32 = 6.0 * 0.304;
+
+/// A node whose clock is far from the gateway's.
+#[derive(Clone, Debug)]
+struct Node {
+    area: &'static str,
+    id: u64,
+    ahead: u64,
+    sequence: u64,
+    events: u64,
+    held: Vec<String>,
+}
+
+impl Node {
+    fn new(area: &'static str, id: u64) -> Self {
+        Self { area, id, ahead: 1_000_000_000 * id, sequence: 0, events: 0, held: Vec::new() }
+    }
+
+    /// What it tells of the floor at `at` microseconds of the gateway's clock, 200 us before the gateway has it.
+    fn message(&mut self, at: u64, feet: &[(u32, f32, f32)], events: Vec<NodeEvent>) -> NodeMessage {
+        self.sequence += 1;
+        let first_event = self.events;
+        self.events += events.len() as u64;
+        let contact = |&(id, x, y): &(u32, f32, f32)| NodeContact {
+            id,
+            at: [x, y],
+            force: 400.0,
+            ..NodeContact::default()
+        };
+        let there = at + self.ahead;
+        NodeMessage {
+            version: VERSION,
+            floor: fingerprint(&hall()),
+            area: self.area.into(),
+            node: self.id,
+            name: format!("node {}", self.id),
+            sequence: self.sequence,
+            sent: there,
+            frame: Some(there),
+            contacts: feet.iter().map(contact).collect(),
+            first_event,
+            events,
+            held: self.held.clone(),
+            // It took the probe 200 us to come, too.
+            echoes: vec![Echo { gateway: 9, sent: at - 200, received: there }],
+            ..NodeMessage::default()
+        }
+    }
+
+    fn event(
+        &self,
+        at: u64,
+        kind: EventKind,
+        id: &str,
+        contact: Option<u32>,
+        place: (f32, f32),
+    ) -> NodeEvent {
+        let value = match kind {
+            EventKind::Changed(value) => Some(value.into()),
+            _ => None,
+        };
+        let (kind, position) = (kind.name().to_owned(), place.into());
+        NodeEvent { at: at + self.ahead, id: id.into(), kind, value, contact, force: 400.0, position }
+    }
+}
+
+/// A gateway and all it told.
+struct Stage {
+    gateway: Gateway,
+    told: Vec<Told>,
+}
+
+impl Stage {
+    fn new() -> Self {
+        Self { gateway: Gateway::new(&hall(), 9).unwrap(), told: Vec::new() }
+    }
+
+    /// Hands in a message of the floor at `at` when it arrives, 200 us later.
+    fn take(&mut self, message: NodeMessage, at: u64) {
+        self.gateway.take(message, Instant::from_micros(at + 200));
+    }
+
+    fn advance(&mut self, at: u64) {
+        let told = self.gateway.advance(Instant::from_micros(at));
+        self.told.extend(told);
+    }
+
+    fn kinds(&self) -> Vec<EventKind> {
+        events(&self.told).map(|event| event.kind).collect()
+    }
+
+    /// The names of contacts, each once, in the order in which they were told, and the most that were told at once.
+    fn names(&self) -> (Vec<u32>, usize) {
+        let (mut names, mut most) = (Vec::new(), 0);
+        for told in &self.told {
+            if let Told::Contacts(_, contacts) = told {
+                most = most.max(contacts.len());
+                for contact in
+                    contacts.iter().filter(|contact| !names.contains(&contact.id.0)).collect::<Vec<_>>()
+                {
+                    names.push(contact.id.0);
+                }
+            }
+        }
+        (names, most)
+    }
+
+    fn contacts(&self) -> Vec<(u32, f32)> {
+        let last = self.told.iter().rev().find_map(|told| match told {
+            Told::Contacts(_, contacts) => {
+                Some(contacts.iter().map(|one| (one.id.0, one.centroid.x)).collect())
+            }
+            _ => None,
+        });
+        last.unwrap_or_default()
+    }
+
+    fn last_area(&self) -> Option<&AreaNews> {
+        self.told.iter().rev().find_map(|told| match told {
+            Told::Area(news) => Some(news),
+            _ => None,
+        })
+    }
+}
+
+/// A minute of the gateway's clock has passed when tests begin.
+const START: u64 = 60_000_000;
+
+#[test]
+fn a_foot_that_slides_over_the_border_is_one_contact_with_one_name() {
+    // The nodes see it up to 4 mm apart, each on the other's side for a while, and call it by their own names.
+    for apart in [0.0, 0.004, -0.004] {
+        let mut stage = Stage::new();
+        let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+        for step in 0..400_u64 {
+            let at = START + step * 2000;
+            // 0.5 m/s, from 20 cm before the border to 20 cm behind it.
+            let x = BORDER_M - 0.2 + step as f32 * 0.001;
+            stage.take(west.message(at, &[(7, x, 1.0)], vec![]), at);
+            stage.take(east.message(at, &[(31, x + apart, 1.0)], vec![]), at);
+            stage.advance(at + 300);
+            let contacts = stage.contacts();
+            assert_eq!(contacts.len(), 1, "at {x}: {contacts:?}");
+            assert!((contacts[0].1 - x).abs() < 0.0051, "at {x}: {contacts:?}");
+        }
+        assert_eq!(stage.names(), (vec![1], 1));
+    }
+}
+
+#[test]
+fn a_foot_that_one_area_loses_before_the_next_one_gains_it_keeps_its_name() {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    for step in 0..100_u64 {
+        let at = START + step * 2000;
+        let x = BORDER_M - 0.05 + step as f32 * 0.001;
+        let in_west: &[_] = if step < 49 { &[(7, x, 1.0)] } else { &[] };
+        let in_east: &[_] = if step > 53 { &[(31, x, 1.0)] } else { &[] };
+        stage.take(west.message(at, in_west, vec![]), at);
+        stage.take(east.message(at, in_east, vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.names(), (vec![1], 1));
+}
+
+#[test]
+fn two_feet_on_the_border_are_two_and_one_that_lands_later_elsewhere_is_another() {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    for step in 0..60_u64 {
+        let at = START + step * 2000;
+        let sway = step as f32 * 0.0004 - 0.012;
+        let mut feet = vec![(7, BORDER_M + sway, 1.0), (8, BORDER_M + sway, 1.12)];
+        if step > 30 {
+            feet.push((9, 0.5, 1.0));
+        }
+        let seen_in_east: Vec<_> = feet.iter().take(2).map(|(id, x, y)| (id + 20, *x, *y)).rev().collect();
+        stage.take(west.message(at, &feet, vec![]), at);
+        stage.take(east.message(at, &seen_in_east, vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.names(), (vec![1, 2, 3], 3));
+}
+
+#[test]
+fn events_of_all_areas_come_in_time_order_with_joint_names() {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    // A control over the border that east decides, under a foot whose middle is in west.
+    let foot = (BORDER_M - 0.03, 1.0);
+    for step in 0..20_u64 {
+        let at = START + step * 4000;
+        let in_east = east.event(at - 3000, EventKind::Pressed, "bridge", Some(31), foot);
+        let in_west = west.event(at - 1000, EventKind::Pressed, "light", Some(7), foot);
+        let is_tenth = step == 10;
+        let of = |event: NodeEvent| if is_tenth { vec![event] } else { vec![] };
+        let (told_west, told_east) = (of(in_west), of(in_east));
+        stage.take(west.message(at, &[(7, foot.0, foot.1)], told_west), at);
+        stage.advance(at + 250);
+        stage.take(east.message(at, &[(31, foot.0, foot.1)], told_east), at);
+        stage.advance(at + 300);
+    }
+    let told: Vec<_> =
+        events(&stage.told).map(|event| (event.id.to_string(), event.at.micros(), event.contact)).collect();
+    let at = START + 40_000;
+    let contact = Some(underfoot::sense::ContactId(1));
+    assert_eq!(told, [("bridge".into(), at - 3000, contact), ("light".into(), at - 1000, contact)]);
+    assert_eq!(stage.gateway.counters().late, 0);
+}
+
+/// A floor on which a foot holds `drive` in west since `START`, told every 2 ms by both nodes until `until`.
+fn holding(until: u64) -> (Stage, Node, Node) {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    for step in 0..until / 2000 {
+        let at = START + step * 2000;
+        // Joined first, pressed then.
+        let pressed = west.event(at, EventKind::Pressed, "drive", Some(7), (1.0, 1.0));
+        let events = if step == 5 { vec![pressed] } else { vec![] };
+        west.held = if step >= 5 { vec!["drive".into()] } else { vec![] };
+        stage.take(west.message(at, &[(7, 1.0, 1.0)], events), at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed]);
+    (stage, west, east)
+}
+
+#[test]
+fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
+    let (mut stage, _, mut east) = holding(50_000);
+    let last = START + 48_000;
+    let mut cancelled = None;
+    for step in 1..100_u64 {
+        let at = last + step * 2000;
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+        if stage.kinds().len() > 1 {
+            cancelled.get_or_insert(at + 300 - last);
+        }
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
+    assert!((100_000..103_000).contains(&cancelled.unwrap()), "{cancelled:?}");
+    assert_eq!(stage.contacts(), [(2, 3.0)], "east's foot is still there, west's is not");
+    let news = stage.last_area().unwrap();
+    assert_eq!((news.area.as_str(), news.standing), ("west", Standing::Lost));
+    assert!(stage.told.contains(&Told::Link(news.at, LinkState::Partial)));
+    let held = stage.told.iter().rev().find_map(|told| match told {
+        Told::Held(report) => Some(report),
+        _ => None,
+    });
+    assert!(held.is_some_and(|report| report.held.is_empty() && report.ended.len() == 1), "{held:?}");
+}
+
+#[test]
+fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghosts() {
+    let (mut stage, mut west, mut east) = holding(50_000);
+    let frozen = START + 50_000;
+    // It was sent before the freeze, and arrives after it with all that waited.
+    let late: Vec<NodeMessage> =
+        (0..10_u64).map(|step| west.message(frozen + step * 2000, &[(7, 1.0, 1.0)], vec![])).collect();
+    for step in 0..150_u64 {
+        let at = frozen + step * 2000;
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+    }
+    let thawed = frozen + 300_000;
+    late.into_iter().for_each(|message| stage.take(message, thawed));
+    stage.advance(thawed + 300);
+    assert_eq!(stage.gateway.standing("west"), Some(Standing::Lost));
+    assert_eq!(stage.gateway.counters().stale, 10);
+    for step in 0..50_u64 {
+        let at = thawed + step * 2000;
+        let released = west.event(at, EventKind::Released, "drive", Some(7), (1.0, 1.0));
+        let clicked = west.event(at, EventKind::Clicked, "drive", Some(7), (1.0, 1.0));
+        let events = if step == 20 { vec![released, clicked] } else { vec![] };
+        west.held = if step < 20 { vec!["drive".into()] } else { vec![] };
+        stage.take(west.message(at, &[(7, 1.0, 1.0)], events), at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+        // The foot has another name now: nobody knows whether it is the same.
+        assert_eq!(stage.contacts(), [(2, 3.0), (3, 1.0)], "{step}");
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled], "a cancelled press never commits");
+    let pressed = west.event(thawed + 102_000, EventKind::Pressed, "drive", Some(8), (1.0, 1.0));
+    stage.take(west.message(thawed + 102_000, &[(8, 1.0, 1.0)], vec![pressed]), thawed + 102_000);
+    stage.take(east.message(thawed + 102_000, &[(31, 3.0, 1.0)], vec![]), thawed + 102_000);
+    stage.advance(thawed + 102_300);
+    assert_eq!(stage.kinds().len(), 3, "the next press is told again");
+}
+
+#[test]
+fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
+    let (mut stage, _, mut east) = holding(50_000);
+    let mut west = Node::new("west", 3);
+    for step in 0..20_u64 {
+        let at = START + 50_000 + step * 2000;
+        stage.take(west.message(at, &[], vec![]), at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
+    assert_eq!(stage.contacts(), [(2, 3.0)]);
+    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+}
+
+#[test]
+fn of_two_nodes_that_claim_an_area_neither_acts() {
+    let (mut stage, mut west, mut east) = holding(50_000);
+    let mut other = Node::new("west", 3);
+    for step in 0..60_u64 {
+        let at = START + 50_000 + step * 2000;
+        let event = other.event(at, EventKind::Pressed, "other", None, (1.0, 1.0));
+        stage.take(other.message(at, &[(5, 0.5, 0.5)], vec![event]), at);
+        stage.take(west.message(at, &[(7, 1.0, 1.0)], vec![]), at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+        if step > 2 {
+            assert_eq!(stage.contacts(), [(2, 3.0)], "{step}");
+        }
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
+    let news = stage.last_area().unwrap();
+    assert_eq!(news.standing, Standing::Disputed);
+    assert!(news.why.contains("node 1 and node 3"), "{}", news.why);
+    // One of them gives way: after a second the other is believed again.
+    for step in 0..600_u64 {
+        let at = START + 170_000 + step * 2000;
+        stage.take(west.message(at, &[(7, 1.0, 1.0)], vec![]), at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    assert_eq!(stage.contacts().len(), 2);
+}
+
+#[test]
+fn events_that_never_came_end_what_was_pressed() {
+    let (mut stage, mut west, mut east) = holding(50_000);
+    west.events += 2;
+    let at = START + 50_000;
+    stage.take(west.message(at, &[(7, 1.0, 1.0)], vec![]), at);
+    stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+    stage.advance(at + 300);
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
+    assert_eq!(stage.gateway.counters().lost, 2);
+}
+
+#[test]
+fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
+    let mut stage = Stage::new();
+    let mut west = Node::new("west", 1);
+    for step in 0..5_u64 {
+        let at = START + step * 2000;
+        let message = NodeMessage { floor: 1, ..west.message(at, &[(7, 1.0, 1.0)], vec![]) };
+        stage.take(message, at);
+        stage.advance(at + 300);
+    }
+    let notices = stage.told.iter().filter(|told| matches!(told, Told::Notice(_))).count();
+    assert_eq!((notices, stage.gateway.counters().refused), (1, 5));
+    assert_eq!(stage.gateway.standing("west"), Some(Standing::Waiting));
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Walkers in both areas; each node's messages come in order, but up to 20 ms late, however they interleave.
+    #[test]
+    fn any_interleaving_gives_the_same_events(
+        delays in prop::collection::vec((0..20_000_u64, 0..20_000_u64), 60),
+        presses in prop::collection::vec((0..60_usize, 0..2_usize, 0..2000_u64), 1..20),
+    ) {
+        let messages = || {
+            let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+            let mut all = Vec::new();
+            for step in 0..60_u64 {
+                let at = START + step * 2000;
+                let x = BORDER_M - 0.06 + step as f32 * 0.002;
+                for (number, node) in [&mut west, &mut east].into_iter().enumerate() {
+                    let foot = [7, 31][number];
+                    let mut before: Vec<u64> = presses
+                        .iter()
+                        .filter(|(when, area, _)| *when == step as usize && *area == number)
+                        .map(|(_, _, before)| *before)
+                        .collect();
+                    before.sort_unstable();
+                    let events = before.iter().rev().map(|before| {
+                        node.event(at - before, EventKind::Ticked, ["a", "b"][number], Some(foot), (x, 1.0))
+                    });
+                    let events = events.collect();
+                    all.push((at, number, node.message(at, &[(foot, x, 1.0)], events)));
+                }
+            }
+            all
+        };
+        let run = |delay: &dyn Fn(usize, usize) -> u64| {
+            let mut stage = Stage::new();
+            let mut arrivals = Vec::new();
+            let mut last = [0_u64; 2];
+            for (place, (at, area, message)) in messages().into_iter().enumerate() {
+                let due = (at + delay(place / 2, area)).max(last[area]);
+                last[area] = due;
+                arrivals.push((due, place, message));
+            }
+            arrivals.sort_by_key(|(due, place, _)| (*due, *place));
+            // Both are there before the first event, or the order in which they join would tell.
+            for (area, node) in [("west", 1), ("east", 2)] {
+                let mut node = Node::new(area, node);
+                stage.take(node.message(START - 2000, &[], vec![]), START - 2000);
+            }
+            for (due, _, mut message) in arrivals {
+                // Clocks are known from the start, so that the same moments are told.
+                message.echoes.clear();
+                message.sequence += 1;
+                stage.take(message, due);
+                stage.advance(due + 300);
+            }
+            for step in 0..20 {
+                stage.advance(START + 150_000 + step * 2000);
+            }
+            let told: Vec<WidgetEvent> = events(&stage.told).cloned().collect();
+            (told, stage.gateway.counters().late)
+        };
+        let (straight, _) = run(&|_, _| 0);
+        let (mixed, late) = run(&|step, area| if area == 0 { delays[step].0 } else { delays[step].1 });
+        prop_assert_eq!(late, 0);
+        prop_assert!(straight.is_sorted_by_key(|event| event.at));
+        prop_assert_eq!(straight, mixed);
+    }
+}

@@ -1,0 +1,78 @@
+//! What the gateway tells, and what it counts.
+
+use std::time::Duration;
+
+use underfoot::sense::Contact;
+use underfoot::sink::{HeldReport, Report};
+use underfoot::units::Instant;
+use underfoot::widget::WidgetEvent;
+use underfoot::wire::LinkState;
+
+use crate::message::Standing;
+
+/// One thing that the gateway tells; times are on its clock.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum Told {
+    /// Something happened to a control; contacts have their joint names.
+    Event(WidgetEvent),
+    /// The contacts on the whole floor at one moment; for each millisecond at most.
+    Contacts(Instant, Vec<Contact>),
+    /// Which controls are held: at once when that changes, and 50 times a second while any is.
+    Held(HeldReport),
+    /// Whether all areas live, some or none: as of the boards of a single floor.
+    Link(Instant, LinkState),
+    /// How an area stands has changed.
+    Area(AreaNews),
+    /// A sign of life, numbered from 1; ten times a second.
+    Alive(Instant, u32),
+    /// Something that a person has to look after.
+    Notice(String),
+}
+
+impl Told {
+    /// The same for the outputs of a single floor; `None` for what such a floor does not tell.
+    #[must_use]
+    pub fn report(&self) -> Option<Report<'_>> {
+        match self {
+            Self::Event(event) => Some(Report::Event(event)),
+            Self::Contacts(at, contacts) => Some(Report::Contacts(*at, contacts)),
+            Self::Held(report) => Some(Report::Held(report)),
+            Self::Link(at, state) => Some(Report::Link(*at, *state)),
+            Self::Alive(at, sequence) => Some(Report::Alive(*at, *sequence)),
+            Self::Area(_) | Self::Notice(_) => None,
+        }
+    }
+}
+
+/// How one area stands from now on.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct AreaNews {
+    /// When that was found.
+    pub at: Instant,
+    /// Which area.
+    pub area: String,
+    /// How it stands.
+    pub standing: Standing,
+    /// Why, in words for a person; empty for one that lives.
+    pub why: String,
+    /// By how much the times of its events may be wrong; zero for one that does not live.
+    pub doubt: Duration,
+}
+
+/// What came in and what was not told, since the start.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counters {
+    /// Messages of nodes.
+    pub messages: u64,
+    /// Messages of another version, another floor, an unknown area, or with numbers that mean nothing.
+    pub refused: u64,
+    /// Messages whose newest frame was more than 100 ms old.
+    pub stale: u64,
+    /// Events of the time in which their area was not believed, or of presses that apps were told are cancelled.
+    pub withheld: u64,
+    /// Events that came too late to be told in order, and were told all the same.
+    pub late: u64,
+    /// Events that never came.
+    pub lost: u64,
+}

@@ -1,0 +1,190 @@
+//! What nodes and gateway tell each other: JSON objects, one per message.
+//!
+//! Times are whole microseconds on the clock of whoever tells them. A node's clock starts when its program does; the
+//! gateway finds out how far it is from its own.
+
+mod contact;
+mod event;
+
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use thiserror::Error;
+use underfoot::floor::Floor;
+
+pub use contact::NodeContact;
+pub use event::{NodeEvent, NodeValue};
+
+/// The version of the messages; others are refused.
+pub const VERSION: u32 = 1;
+
+/// Longest message, in bytes: a thousand contacts and as many events.
+pub const MAX_BYTES: usize = 1 << 20;
+
+/// What a node tells, some hundred times a second.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NodeMessage {
+    /// The version of the messages: [`VERSION`].
+    pub version: u32,
+    /// Which floor: [`fingerprint`] of the node's floor file.
+    pub floor: u64,
+    /// Which area the node serves.
+    pub area: String,
+    /// A number that the node has drawn at its start: another one after a restart.
+    pub node: u64,
+    /// What a person may call it, such as the address that it listens on.
+    pub name: String,
+    /// The message's number, from 1.
+    pub sequence: u64,
+    /// When it was sent.
+    pub sent: u64,
+    /// The time of the newest frame of forces; `None` before the first.
+    pub frame: Option<u64>,
+    /// Whether the node's boards are silent.
+    pub silent: bool,
+    /// All contacts of that frame, those beyond the area too.
+    pub contacts: Vec<NodeContact>,
+    /// The number of the first of `events`; each has the one after the last's.
+    pub first_event: u64,
+    /// What happened since the last message, in order.
+    pub events: Vec<NodeEvent>,
+    /// The controls that feet hold at that frame.
+    pub held: Vec<String>,
+    /// What the controls that are not held hold; told now and then.
+    pub values: Option<Vec<(String, NodeValue)>>,
+    /// What the node has heard last of each gateway.
+    pub echoes: Vec<Echo>,
+}
+
+/// That a node has heard a gateway, and when.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Echo {
+    /// Which gateway.
+    pub gateway: u64,
+    /// When the gateway sent what was heard, on its clock.
+    pub sent: u64,
+    /// When the node received it, on the node's clock.
+    pub received: u64,
+}
+
+/// What a gateway tells all nodes, twenty times a second.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct GatewayMessage {
+    /// The version of the messages: [`VERSION`].
+    pub version: u32,
+    /// A number that the gateway has drawn at its start.
+    pub gateway: u64,
+    /// When it was sent.
+    pub sent: u64,
+    /// How each area stands with the gateway.
+    pub areas: Vec<(String, Standing)>,
+}
+
+/// How an area stands with a gateway.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Standing {
+    /// Nothing was heard of it yet.
+    #[default]
+    Waiting,
+    /// What happens in it is told.
+    Live,
+    /// Its newest frame is more than 100 ms old: what feet held there is cancelled.
+    Lost,
+    /// Several nodes claim it: neither is believed.
+    Disputed,
+}
+
+impl Standing {
+    /// The word for it.
+    #[must_use]
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Waiting => "waiting",
+            Self::Live => "live",
+            Self::Lost => "lost",
+            Self::Disputed => "disputed",
+        }
+    }
+}
+
+/// Why a message is not one.
+#[derive(Debug, Error)]
+#[non_exhaustive]
+pub enum BadMessage {
+    /// It is longer than [`MAX_BYTES`].
+    #[error("a message of {0} bytes")]
+    TooLong(usize),
+    /// It is not what this version sends.
+    #[error("not a message: {0}")]
+    Malformed(#[from] serde_json::Error),
+}
+
+/// The bytes of a message; none for one that cannot be written, which no message of this crate is.
+#[must_use]
+pub fn encode(message: &impl Serialize) -> Vec<u8> {
+    serde_json::to_vec(message).unwrap_or_default()
+}
+
+/// The message that `bytes` hold.
+///
+/// # Errors
+/// [`BadMessage`] for anything else.
+pub fn decode<T: DeserializeOwned>(bytes: &[u8]) -> Result<T, BadMessage> {
+    if bytes.len() > MAX_BYTES {
+        return Err(BadMessage::TooLong(bytes.len()));
+    }
+    Ok(serde_json::from_slice(bytes)?)
+}
+
+/// A number of where the floor's tiles and areas are: the same on all computers that have the same floor file.
+///
+/// Calibration is left out of it: each node has its own sensors'.
+#[must_use]
+pub fn fingerprint(floor: &Floor) -> u64 {
+    let geometry = &floor.geometry;
+    let areas: Vec<_> = floor.areas.iter().map(|area| (&area.id, area.tiles)).collect();
+    let text = format!("{:?} {} {areas:?}", geometry.block(), geometry.pitch_m());
+    // FNV-1a.
+    text.bytes()
+        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+}
+
+#[cfg(test)]
+mod tests {
+    use underfoot::floor::{Area, Geometry, TileBlock, TileId};
+
+    use super::*;
+
+    #[test]
+    fn a_message_is_read_as_it_was_written_and_nothing_else_is() {
+        let message = NodeMessage {
+            version: VERSION,
+            area: "west".into(),
+            frame: Some(17),
+            held: vec!["drive".into()],
+            echoes: vec![Echo { gateway: u64::MAX, sent: 1, received: 2 }],
+            ..NodeMessage::default()
+        };
+        assert_eq!(decode::<NodeMessage>(&encode(&message)).unwrap(), message);
+        assert!(decode::<NodeMessage>(&encode(&message)[1..]).is_err());
+        assert!(matches!(decode::<NodeMessage>(&vec![b' '; MAX_BYTES + 1]), Err(BadMessage::TooLong(_))));
+    }
+
+    #[test]
+    fn another_cut_of_the_floor_has_another_fingerprint() {
+        let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap());
+        let cut = |columns: u16| {
+            let area = |id: &str, column, columns| Area {
+                id: id.into(),
+                tiles: TileBlock { first: TileId::new(column, 0), columns, rows: 6 },
+            };
+            fingerprint(
+                &floor
+                    .clone()
+                    .with_areas(vec![area("west", 0, columns), area("east", columns, 12 - columns)]),
+            )
+        };
+        assert_eq!(cut(6), cut(6));
+        assert_ne!(cut(6), cut(5));
+    }
+}
