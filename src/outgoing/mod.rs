@@ -1,15 +1,18 @@
 //! Events, contacts and states to datagrams for other programs, OSC and TUIO: pure, no sockets.
 
+mod area;
 mod held;
 mod osc;
 mod tuio;
 mod tuio1;
 mod tuio2;
 
+pub use area::{AreaNews, AreaState};
 pub use held::HeldReport;
 pub use tuio1::TuioProfiles;
 
 internal! {
+    use area::{write_area};
     use held::{write_alive, write_held};
     use osc::{
         write_contacts, write_control, write_crack, write_device, write_error, write_event, write_health,

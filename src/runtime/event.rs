@@ -145,6 +145,8 @@ impl Event {
                 return Some(Self { position: Vec2::new(news.x_m, news.y_m), ..Self::new(at, None, kind) });
             }
             OwnedReport::Contacts(..) | OwnedReport::Held(_) | OwnedReport::Alive(..) => return None,
+            // A session serves one area at most: a gateway tells of several.
+            OwnedReport::Area(_) => return None,
         };
         Some(Self::new(at, id, kind))
     }

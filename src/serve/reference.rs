@@ -125,6 +125,20 @@ impl Maker<'_> {
             health,
             "How boards and sensors are doing, when that changes; then up to eight sensors in trouble, a string each.",
         );
+        if !floor.areas.is_empty() {
+            let area = vec![
+                argument("area", "s", ""),
+                argument("state", "s", "waiting, live, lost or disputed"),
+                argument("why", "s", "empty while it is live"),
+                argument("doubt", "f", "s, of the times of its events"),
+            ];
+            self.add(
+                Direction::Out,
+                "area",
+                area,
+                "How an area stands, when that changes; told by a gateway.",
+            );
+        }
         let device = vec![
             argument("device", "s", ""),
             argument("state", "s", "playing, lost, faulty or unfit"),

@@ -31,7 +31,7 @@ use thiserror::Error;
 use crate::feel::DeviceStatus;
 use crate::units::Instant;
 
-pub use crate::outgoing::{HeldReport, TuioProfiles};
+pub use crate::outgoing::{AreaNews, AreaState, HeldReport, TuioProfiles};
 pub use channel_map::ChannelMap;
 pub(crate) use crack_rate::CrackRateLimiter;
 #[cfg(feature = "audio")]

@@ -12,8 +12,8 @@ use super::udp::UdpOut;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
 use crate::outgoing::{
-    write_alive, write_contacts, write_control, write_crack, write_device, write_event, write_health,
-    write_held, write_mute, write_page,
+    write_alive, write_area, write_contacts, write_control, write_crack, write_device, write_event,
+    write_health, write_held, write_mute, write_page,
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
@@ -190,6 +190,7 @@ impl Sender {
             OwnedReport::Alive(_, sequence) => write_alive(prefix, sequence, bytes),
             OwnedReport::Muted(_, muted) => write_mute(prefix, &muted, bytes),
             OwnedReport::Control(_, state) => write_control(prefix, &state, bytes),
+            OwnedReport::Area(news) => write_area(prefix, &news, bytes),
         }
         self.out.send(bytes);
     }

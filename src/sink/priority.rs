@@ -9,6 +9,8 @@ pub enum Rank {
     Sound,
     /// Whoever takes packets and decides what they mean; also whoever stands in for the boards.
     Sensing,
+    /// Whoever tells another computer what was sensed, which gives it up for lost otherwise.
+    Telling,
 }
 
 /// Asks the system to let the calling thread go before everybody else's; a thread that already does keeps its place.
@@ -35,6 +37,7 @@ fn claim(rank: Rank) -> Priority {
     let value: u8 = match rank {
         Rank::Sound => 60,
         Rank::Sensing => 40,
+        Rank::Telling => 35,
     };
     let Ok(value) = ThreadPriorityValue::try_from(value) else { return Priority::Denied };
     let policy = ThreadSchedulePolicy::Realtime(Fifo);

@@ -1,7 +1,7 @@
 //! What other programs are told.
 
-use super::HeldReport;
 use super::crack_rate::{CrackNews, CrackRateLimiter};
+use super::{AreaNews, HeldReport};
 use crate::engine::{ControlState, PageShown};
 use crate::feel::{DeviceStatus, Muted};
 use crate::ground::GroundEvent;
@@ -36,6 +36,8 @@ pub enum Report<'a> {
     Muted(Instant, &'a Muted),
     /// An app has changed a control or asked for it: how it is now.
     Control(Instant, &'a ControlState),
+    /// How one area of a floor that several computers serve stands has changed.
+    Area(&'a AreaNews),
 }
 
 /// A report on its way to another thread.
@@ -52,6 +54,7 @@ pub(crate) enum OwnedReport {
     Alive(Instant, u32),
     Muted(Instant, Muted),
     Control(Instant, Box<ControlState>),
+    Area(AreaNews),
 }
 
 impl OwnedReport {
@@ -69,6 +72,7 @@ impl OwnedReport {
             Report::Alive(at, sequence) => Self::Alive(at, sequence),
             Report::Muted(at, muted) => Self::Muted(at, muted.clone()),
             Report::Control(at, state) => Self::Control(at, Box::new(state.clone())),
+            Report::Area(news) => Self::Area(news.clone()),
         })
     }
 
@@ -79,6 +83,7 @@ impl OwnedReport {
             Self::Page(page) => page.at,
             Self::Crack(news) => news.at,
             Self::Held(report) => report.at,
+            Self::Area(news) => news.at,
             Self::Contacts(at, _)
             | Self::Link(at, _)
             | Self::Health(at, _)

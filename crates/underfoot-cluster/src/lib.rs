@@ -9,6 +9,10 @@
 //! |---|---|
 //! | [`message`] | what nodes and gateway tell each other |
 //! | [`gateway`] | many areas' contacts and events into one floor's; pure: time is handed in, no I/O |
+//! | [`node`] | what a node tells of its floor |
+//! | [`transport`] | messages through Zenoh; the only module that knows it |
 
 pub mod gateway;
 pub mod message;
+pub mod node;
+pub mod transport;

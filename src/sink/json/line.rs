@@ -7,6 +7,7 @@ use crate::engine::{ControlState, ValueRange};
 use crate::feel::DeviceStatus;
 use crate::floor::SensorId;
 use crate::sense::{Contact, ContactId, SensorHealth, Trouble};
+use crate::sink::AreaNews;
 use crate::sink::backlog::Gap;
 use crate::sink::crack_rate::CrackNews;
 use crate::sink::report::OwnedReport;
@@ -58,6 +59,12 @@ enum Body<'a> {
         underruns: u64,
         reopened: u64,
         priority: &'static str,
+    },
+    Area {
+        area: &'a str,
+        state: &'static str,
+        why: &'a str,
+        doubt_s: f64,
     },
     Gap {
         dropped: u64,
@@ -159,6 +166,9 @@ impl<'a> Body<'a> {
                 Self::Mute { all: muted.all, tiles }
             }
             OwnedReport::Control(_, state) => Self::state(state),
+            OwnedReport::Area(AreaNews { area, state, why, doubt, .. }) => {
+                Self::Area { area, state: state.name(), why, doubt_s: doubt.as_secs_f64() }
+            }
         })
     }
 

@@ -25,6 +25,7 @@ use std::time::Duration;
 use glam::Vec2;
 use thiserror::Error;
 use underfoot::floor::Floor;
+use underfoot::sink::AreaNews;
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
@@ -38,7 +39,7 @@ use crate::message::{
 
 pub use area::LOST_AFTER;
 pub use clock::NodeClock;
-pub use told::{AreaNews, Counters, Told};
+pub use told::{Counters, Told};
 
 /// How long what one area tells waits for what others may tell of earlier moments.
 pub const WINDOW: Duration = Duration::from_millis(25);
@@ -200,6 +201,18 @@ impl Gateway {
         std::mem::take(&mut self.out)
     }
 
+    /// What is to be told when the gateway stops at `now`: nobody knows from then on what feet hold.
+    pub fn end(&mut self, now: Instant) -> Vec<Told> {
+        for number in 0..self.areas.len() {
+            if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
+                self.fall(number, Standing::Lost, "the gateway has stopped", now);
+            }
+        }
+        self.tell_contacts(now, now);
+        self.tell_state(now);
+        std::mem::take(&mut self.out)
+    }
+
     /// The number of the area that a message is about, if it is one of this floor.
     fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
         let area = self.names.iter().position(|name| *name == message.area);
@@ -233,7 +246,7 @@ impl Gateway {
             area.presses.shut(&message.held);
             let (at, name) = (now, self.names.get(number).cloned().unwrap_or_default());
             let doubt = area.clock.doubt(now).unwrap_or_default();
-            let news = AreaNews { at, area: name, standing: Standing::Live, why: String::new(), doubt };
+            let news = AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), doubt };
             self.out.push(Told::Area(news));
         } else if is_torn {
             // What was pressed may have been let go and pressed again in what is missing.
@@ -268,7 +281,7 @@ impl Gateway {
         let name = self.names.get(number).cloned().unwrap_or_default();
         self.out.extend(cancelled.into_iter().map(Told::Event));
         let (why, doubt) = (why.to_owned(), Duration::ZERO);
-        self.out.push(Told::Area(AreaNews { at: now, area: name, standing, why, doubt }));
+        self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, doubt }));
     }
 
     fn tell(&mut self, number: usize, at: Instant, item: Item) {

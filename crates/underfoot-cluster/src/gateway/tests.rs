@@ -2,6 +2,7 @@
 
 use proptest::prelude::*;
 use underfoot::floor::{Area, Geometry, TileBlock, TileId};
+use underfoot::sink::AreaState;
 use underfoot::widget::EventKind;
 
 use super::*;
@@ -261,7 +262,7 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     assert!((100_000..103_000).contains(&cancelled.unwrap()), "{cancelled:?}");
     assert_eq!(stage.contacts(), [(2, 3.0)], "east's foot is still there, west's is not");
     let news = stage.last_area().unwrap();
-    assert_eq!((news.area.as_str(), news.standing), ("west", Standing::Lost));
+    assert_eq!((news.area.as_str(), news.state), ("west", AreaState::Lost));
     assert!(stage.told.contains(&Told::Link(news.at, LinkState::Partial)));
     let held = stage.told.iter().rev().find_map(|told| match told {
         Told::Held(report) => Some(report),
@@ -339,7 +340,7 @@ fn of_two_nodes_that_claim_an_area_neither_acts() {
     }
     assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
     let news = stage.last_area().unwrap();
-    assert_eq!(news.standing, Standing::Disputed);
+    assert_eq!(news.state, AreaState::Disputed);
     assert!(news.why.contains("node 1 and node 3"), "{}", news.why);
     // One of them gives way: after a second the other is believed again.
     for step in 0..600_u64 {

@@ -1,14 +1,10 @@
 //! What the gateway tells, and what it counts.
 
-use std::time::Duration;
-
 use underfoot::sense::Contact;
-use underfoot::sink::{HeldReport, Report};
+use underfoot::sink::{AreaNews, HeldReport, Report};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
-
-use crate::message::Standing;
 
 /// One thing that the gateway tells; times are on its clock.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +27,7 @@ pub enum Told {
 }
 
 impl Told {
-    /// The same for the outputs of a single floor; `None` for what such a floor does not tell.
+    /// The same for the outputs of a single floor; `None` for what only a person is told.
     #[must_use]
     pub fn report(&self) -> Option<Report<'_>> {
         match self {
@@ -40,24 +36,10 @@ impl Told {
             Self::Held(report) => Some(Report::Held(report)),
             Self::Link(at, state) => Some(Report::Link(*at, *state)),
             Self::Alive(at, sequence) => Some(Report::Alive(*at, *sequence)),
-            Self::Area(_) | Self::Notice(_) => None,
+            Self::Area(news) => Some(Report::Area(news)),
+            Self::Notice(_) => None,
         }
     }
-}
-
-/// How one area stands from now on.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct AreaNews {
-    /// When that was found.
-    pub at: Instant,
-    /// Which area.
-    pub area: String,
-    /// How it stands.
-    pub standing: Standing,
-    /// Why, in words for a person; empty for one that lives.
-    pub why: String,
-    /// By how much the times of its events may be wrong; zero for one that does not live.
-    pub doubt: Duration,
 }
 
 /// What came in and what was not told, since the start.

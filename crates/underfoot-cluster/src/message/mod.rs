@@ -10,6 +10,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use thiserror::Error;
 use underfoot::floor::Floor;
+use underfoot::sink::AreaState;
 
 pub use contact::NodeContact;
 pub use event::{NodeEvent, NodeValue};
@@ -94,15 +95,13 @@ pub enum Standing {
     Disputed,
 }
 
-impl Standing {
-    /// The word for it.
-    #[must_use]
-    pub const fn name(self) -> &'static str {
-        match self {
-            Self::Waiting => "waiting",
-            Self::Live => "live",
-            Self::Lost => "lost",
-            Self::Disputed => "disputed",
+impl From<Standing> for AreaState {
+    fn from(standing: Standing) -> Self {
+        match standing {
+            Standing::Waiting => Self::Waiting,
+            Standing::Live => Self::Live,
+            Standing::Lost => Self::Lost,
+            Standing::Disputed => Self::Disputed,
         }
     }
 }

@@ -1,0 +1,56 @@
+//! The program `underfoot-cluster`: a node or the gateway of a floor that several computers serve.
+//!
+//! Exit status 0: done; 1: the work failed (standard error says why); 2: wrong usage.
+
+mod program;
+
+use std::process::ExitCode;
+
+use clap::{Parser, Subcommand};
+use tracing_subscriber::EnvFilter;
+
+use program::Failure;
+
+/// One floor served by several computers.
+///
+/// Each computer runs a node, which serves one area of the floor file; one of them, or another one, runs the gateway,
+/// to which apps listen as to `underfoot run`.
+#[derive(Debug, Parser)]
+#[command(name = "underfoot-cluster", version, propagate_version = true)]
+struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// Say more on standard error (-v: what happens, -vv: everything).
+    #[arg(short, long, action = clap::ArgAction::Count, global = true)]
+    verbose: u8,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Serve one area: sensor packets in, actuator samples out, and what happens to the gateway.
+    Node(program::node::Args),
+    /// Join what the nodes tell, and tell it as one floor.
+    Gateway(program::gateway::Args),
+}
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let level = match cli.verbose {
+        0 => "warn,zenoh=error,jack=off",
+        1 => "info,underfoot=debug,zenoh=warn,jack=off",
+        _ => "debug",
+    };
+    let filter = EnvFilter::try_from_default_env().unwrap_or_else(|_| EnvFilter::new(level));
+    tracing_subscriber::fmt().with_env_filter(filter).with_writer(std::io::stderr).with_target(false).init();
+    let done: Result<(), Failure> = match cli.command {
+        Command::Node(args) => program::node::run(args),
+        Command::Gateway(args) => program::gateway::run(&args),
+    };
+    match done {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(failure) => {
+            eprintln!("error: {failure}");
+            ExitCode::FAILURE
+        }
+    }
+}

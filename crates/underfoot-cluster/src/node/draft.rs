@@ -1,0 +1,97 @@
+//! What has happened since the last message.
+
+use underfoot::sink::Report;
+use underfoot::wire::LinkState;
+
+use crate::message::{NodeContact, NodeEvent, NodeMessage};
+
+/// Most events that wait for a message; older ones are dropped, which their numbers show.
+const MOST_EVENTS: usize = 2048;
+
+/// A message but for who sends it when.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Draft {
+    frame: Option<u64>,
+    silent: bool,
+    contacts: Vec<NodeContact>,
+    first_event: u64,
+    events: Vec<NodeEvent>,
+    held: Vec<String>,
+}
+
+impl Draft {
+    /// Takes note of `report`; whether it is about a new frame.
+    pub fn note(&mut self, report: &Report<'_>) -> bool {
+        match report {
+            Report::Event(event) => {
+                if self.events.len() == MOST_EVENTS {
+                    self.events.remove(0);
+                    self.first_event += 1;
+                }
+                self.events.push(NodeEvent::of(event));
+            }
+            Report::Contacts(at, contacts) => {
+                self.frame = Some(at.micros());
+                self.contacts.clear();
+                self.contacts.extend(contacts.iter().map(NodeContact::of));
+                return true;
+            }
+            Report::Held(report) => {
+                self.held.clear();
+                self.held.extend(report.held.iter().map(|id| id.as_str().to_owned()));
+            }
+            Report::Link(_, state) => self.silent = matches!(state, LinkState::Lost | LinkState::Waiting),
+            _ => {}
+        }
+        false
+    }
+
+    /// Whether events wait.
+    #[must_use]
+    pub fn has_events(&self) -> bool {
+        !self.events.is_empty()
+    }
+
+    /// Begins the next one: what it tells of was told.
+    pub fn sent(&mut self) {
+        self.first_event += self.events.len() as u64;
+        self.events.clear();
+    }
+
+    /// The message.
+    #[must_use]
+    pub fn message(self) -> NodeMessage {
+        let Self { frame, silent, contacts, first_event, events, held } = self;
+        NodeMessage { frame, silent, contacts, first_event, events, held, ..NodeMessage::default() }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use underfoot::units::{Instant, Newtons};
+    use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
+
+    use super::*;
+
+    #[test]
+    fn events_are_numbered_through_and_what_is_dropped_leaves_a_gap() {
+        let event = WidgetEvent {
+            at: Instant::START,
+            id: WidgetId::new("zoom"),
+            kind: EventKind::Ticked,
+            contact: None,
+            force: Newtons::ZERO,
+            position: Default::default(),
+        };
+        let mut draft = Draft::default();
+        draft.note(&Report::Event(&event));
+        draft.note(&Report::Event(&event));
+        assert_eq!((draft.first_event, draft.events.len()), (0, 2));
+        draft.sent();
+        (0..MOST_EVENTS + 3).for_each(|_| {
+            draft.note(&Report::Event(&event));
+        });
+        let message = draft.message();
+        assert_eq!((message.first_event, message.events.len()), (5, MOST_EVENTS));
+    }
+}

@@ -1,0 +1,161 @@
+//! What a node does when its gateway does not, or must not, believe it.
+//!
+//! Apps were told that what feet held is cancelled; the node must not feel, and later tell, anything else.
+
+use std::time::Duration;
+
+use underfoot::units::Instant;
+
+use crate::message::{Echo, GatewayMessage, Standing, VERSION};
+
+/// How long a gateway may be silent; it tells something every 50 ms.
+const SILENT_AFTER: Duration = Duration::from_millis(150);
+
+/// Gateways that a node remembers.
+const MOST: usize = 4;
+
+/// What is to be done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
+pub enum Action {
+    /// A gateway hears this node.
+    Heard,
+    /// Cancel what feet hold; the gateway has, or is gone.
+    Cancel(Reason),
+    /// Cancel what feet hold and let no actuator move: another node serves the area too.
+    Mute,
+    /// Let actuators move again: the other one has stopped.
+    Unmute,
+}
+
+/// Why what feet hold is cancelled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reason {
+    /// The gateway got nothing new for 100 ms.
+    Late,
+    /// Nothing came from the gateway.
+    Silent,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Known {
+    echo: Echo,
+    standing: Standing,
+    is_silent: bool,
+}
+
+/// What a node knows of gateways.
+#[derive(Clone, Debug)]
+pub struct Guard {
+    area: String,
+    gateways: Vec<Known>,
+    is_muted: bool,
+}
+
+impl Guard {
+    /// The guard of the node of `area`.
+    #[must_use]
+    pub fn new(area: &str) -> Self {
+        Self { area: area.to_owned(), gateways: Vec::new(), is_muted: false }
+    }
+
+    /// What to tell gateways of when they were heard.
+    pub fn echoes(&self) -> impl Iterator<Item = Echo> + '_ {
+        self.gateways.iter().map(|known| known.echo)
+    }
+
+    /// Takes note of what a gateway said, received at `now` on the node's clock.
+    pub fn hear(&mut self, message: &GatewayMessage, now: Instant) -> Vec<Action> {
+        let Some((_, standing)) = message.areas.iter().find(|(area, _)| *area == self.area) else {
+            return Vec::new();
+        };
+        if message.version != VERSION {
+            return Vec::new();
+        }
+        let echo = Echo { gateway: message.gateway, sent: message.sent, received: now.micros() };
+        let next = Known { echo, standing: *standing, is_silent: false };
+        let before = match self.gateways.iter_mut().find(|known| known.echo.gateway == message.gateway) {
+            Some(known) => Some(std::mem::replace(known, next)),
+            None => {
+                if self.gateways.len() == MOST {
+                    self.gateways.remove(0);
+                }
+                self.gateways.push(next);
+                None
+            }
+        };
+        let was_live = before.is_some_and(|known| known.standing == Standing::Live && !known.is_silent);
+        let mut actions = Vec::new();
+        match standing {
+            Standing::Live if !was_live => actions.push(Action::Heard),
+            Standing::Lost if was_live => actions.push(Action::Cancel(Reason::Late)),
+            _ => {}
+        }
+        actions.extend(self.mute());
+        actions
+    }
+
+    /// Takes note that it is `now`.
+    pub fn tick(&mut self, now: Instant) -> Vec<Action> {
+        let mut actions = Vec::new();
+        for known in &mut self.gateways {
+            let heard = Instant::from_micros(known.echo.received);
+            if !known.is_silent && now.since(heard) > SILENT_AFTER {
+                known.is_silent = true;
+                if known.standing == Standing::Live {
+                    actions.push(Action::Cancel(Reason::Silent));
+                }
+            }
+        }
+        // A gateway that started again has another number.
+        self.gateways
+            .retain(|known| now.since(Instant::from_micros(known.echo.received)) < Duration::from_secs(60));
+        actions
+    }
+
+    fn mute(&mut self) -> Option<Action> {
+        let is_disputed =
+            self.gateways.iter().any(|known| known.standing == Standing::Disputed && !known.is_silent);
+        let was_muted = std::mem::replace(&mut self.is_muted, is_disputed);
+        match (was_muted, is_disputed) {
+            (false, true) => Some(Action::Mute),
+            (true, false) => Some(Action::Unmute),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn said(standing: Standing, sent: u64) -> GatewayMessage {
+        GatewayMessage { version: VERSION, gateway: 9, sent, areas: vec![("west".into(), standing)] }
+    }
+
+    #[test]
+    fn what_feet_hold_is_cancelled_once_when_the_gateway_no_longer_hears_or_speaks() {
+        let mut guard = Guard::new("west");
+        let hear =
+            |guard: &mut Guard, standing, ms| guard.hear(&said(standing, ms), Instant::from_millis(ms));
+        assert_eq!(hear(&mut guard, Standing::Waiting, 0), []);
+        assert_eq!(hear(&mut guard, Standing::Live, 50), [Action::Heard]);
+        assert_eq!(guard.tick(Instant::from_millis(200)), []);
+        assert_eq!(guard.tick(Instant::from_millis(201)), [Action::Cancel(Reason::Silent)]);
+        assert_eq!(guard.tick(Instant::from_millis(400)), []);
+        assert_eq!(hear(&mut guard, Standing::Live, 500), [Action::Heard]);
+        assert_eq!(hear(&mut guard, Standing::Lost, 550), [Action::Cancel(Reason::Late)]);
+        assert_eq!(hear(&mut guard, Standing::Lost, 600), []);
+        assert_eq!(guard.echoes().map(|echo| echo.received).collect::<Vec<_>>(), [600_000]);
+    }
+
+    #[test]
+    fn a_node_whose_area_is_disputed_is_mute_until_it_no_longer_is() {
+        let mut guard = Guard::new("west");
+        let mut hear = |standing| guard.hear(&said(standing, 1), Instant::from_millis(1));
+        assert_eq!(hear(Standing::Disputed), [Action::Mute]);
+        assert_eq!(hear(Standing::Disputed), []);
+        assert_eq!(hear(Standing::Lost), [Action::Unmute]);
+        assert_eq!(hear(Standing::Live), [Action::Heard]);
+    }
+}

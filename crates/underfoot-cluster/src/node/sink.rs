@@ -1,0 +1,85 @@
+//! A node's floor as one that is told what happens.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::SyncSender;
+use std::time::Duration;
+
+use underfoot::sink::{EventSink, Report};
+use underfoot::units::Instant;
+
+use super::draft::Draft;
+
+/// Time between two messages while frames come and nothing happens.
+const EVERY: Duration = Duration::from_millis(2);
+
+/// Time between two messages while no frames come.
+const QUIET: Duration = Duration::from_millis(20);
+
+/// Hands what happens on a floor to the thread that sends it, without ever waiting for it.
+#[derive(Debug)]
+pub struct NodeSink {
+    out: SyncSender<Draft>,
+    draft: Draft,
+    has_frame: bool,
+    sent: Instant,
+    held_up: Arc<AtomicU64>,
+}
+
+impl NodeSink {
+    /// A sink that hands drafts to `out`. What `out` does not take is told with the next one.
+    #[must_use]
+    pub fn new(out: SyncSender<Draft>) -> Self {
+        let (draft, held_up) = (Draft::default(), Arc::default());
+        Self { out, draft, has_frame: false, sent: Instant::START, held_up }
+    }
+
+    /// How often the sending thread was not fast enough, which delays events and leaves out contacts.
+    #[must_use]
+    pub fn held_up(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.held_up)
+    }
+}
+
+impl EventSink for NodeSink {
+    fn report(&mut self, report: Report<'_>) {
+        self.has_frame |= self.draft.note(&report);
+    }
+
+    /// Called after each packet, when what is held is known as well.
+    fn poll(&mut self, now: Instant) {
+        let since = now.since(self.sent);
+        let is_due = (self.has_frame && since >= EVERY) || since >= QUIET;
+        if !is_due && !self.draft.has_events() {
+            return;
+        }
+        (self.sent, self.has_frame) = (now, false);
+        if self.out.try_send(self.draft.clone()).is_ok() {
+            self.draft.sent();
+        } else {
+            self.held_up.fetch_add(1, Ordering::Relaxed);
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::mpsc::sync_channel;
+
+    use underfoot::sense::Contact;
+
+    use super::*;
+
+    #[test]
+    fn frames_are_told_every_2_ms_and_silence_every_20() {
+        let (out, drafts) = sync_channel(100);
+        let mut sink = NodeSink::new(out);
+        for ms in 1000..1010 {
+            sink.report(Report::Contacts(Instant::from_millis(ms), &[Contact::default()]));
+            sink.poll(Instant::from_millis(ms));
+        }
+        (1010..=1070).for_each(|ms| sink.poll(Instant::from_millis(ms)));
+        let frames: Vec<_> = drafts.try_iter().map(|draft| draft.message().frame.unwrap() / 1000).collect();
+        assert_eq!(frames, [1000, 1002, 1004, 1006, 1008, 1009, 1009, 1009, 1009]);
+    }
+}

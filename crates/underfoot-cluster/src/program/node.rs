@@ -1,0 +1,278 @@
+//! `underfoot-cluster node`: one area is served, and told of.
+
+use std::net::SocketAddr;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::time::{Duration, Instant as HostInstant};
+
+use underfoot::floor::{Floor, Geometry};
+use underfoot::layout::Layout;
+use underfoot::runtime::{EndReason, Kind, Session};
+use underfoot::schema::{self, Effects, Kinds};
+use underfoot::serve::Command;
+use underfoot::sink::{Rank, claim_priority};
+use underfoot::source::UdpSource;
+use underfoot::units::HostClock;
+use underfoot::wire::ControlMessage;
+use underfoot_cluster::message::{NodeMessage, NodeValue, VERSION, decode, encode, fingerprint};
+use underfoot_cluster::node::{Action, Draft, Guard, NodeSink, Reason};
+use underfoot_cluster::transport::{ENDPOINT, Transport};
+
+use super::notices::Notices;
+use super::sound::SoundArgs;
+use super::{Failure, drawn, stop_flag};
+
+/// What a node is asked to do.
+#[derive(clap::Args, Debug)]
+pub(crate) struct Args {
+    /// Layout file, or the name of a built-in one; the same on all nodes.
+    #[arg(value_name = "LAYOUT")]
+    layout: PathBuf,
+    /// Floor file with `areas`; the same on all nodes and the gateway, but for calibration.
+    #[arg(long, value_name = "FILE")]
+    floor: PathBuf,
+    /// The area that this node serves.
+    #[arg(long, value_name = "NAME")]
+    area: String,
+    /// Where the boards' packets arrive: an address of this machine and a port.
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
+    listen: SocketAddr,
+    /// Where the gateway listens; may be given several times, for a second gateway beside the first.
+    #[arg(long, value_name = "ENDPOINT", default_value = ENDPOINT)]
+    gateway: Vec<String>,
+    #[command(flatten)]
+    sound: SoundArgs,
+    /// Stop after so many seconds.
+    #[arg(long, value_name = "S")]
+    seconds: Option<f64>,
+}
+
+/// Messages that may wait for the thread that sends them: a fifth of a second.
+const WAITING: usize = 100;
+
+/// Time between two tellings of all values, with which a gateway compares what it knows.
+const VALUES_EVERY: Duration = Duration::from_millis(500);
+
+/// How often is looked whether gateways are silent.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+/// Serves an area until told to stop.
+pub(crate) fn run(args: Args) -> Result<(), Failure> {
+    let floor = schema::load_floor(&args.floor)?;
+    let (part, layout) = served(&floor, &args.area, &args.layout)?;
+    let stop = stop_flag(args.seconds)?;
+    let source = UdpSource::bind(args.listen, &part)?;
+    let clock = source.clock();
+    let (drafts, drafted) = sync_channel(WAITING);
+    let sink = NodeSink::new(drafts);
+    let held_up = sink.held_up();
+    let sound = args.sound;
+    let session = Session::source(Box::new(source), Arc::clone(&clock))
+        .floor(part)
+        .layout(layout)
+        .sink(sink)
+        .actuators(move |floor, start, _| sound.open(floor, start))
+        .realtime()
+        .stop_flag(stop)
+        .start()?;
+    let notices = Notices::start();
+    // What tells, and Zenoh's threads, which inherit it.
+    claim_priority(Rank::Telling);
+    let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
+    let refused = Arc::<AtomicU64>::default();
+    let transport = {
+        let obeying = Obeying { session: session.clone(), notices: notices.clone() };
+        let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
+        Transport::node(&args.gateway, &args.area, move |bytes| {
+            let now = clock();
+            let Ok(message) = decode(bytes) else {
+                refused.fetch_add(1, Ordering::Relaxed);
+                return;
+            };
+            let actions = guard.lock().unwrap_or_else(PoisonError::into_inner).hear(&message, now);
+            actions.into_iter().for_each(|action| obeying.obey(action));
+        })?
+    };
+    notices.say(format!(
+        "Serving area \"{}\" on {}, for the gateway at {}. Ctrl-C ends it.",
+        args.area,
+        args.listen,
+        args.gateway.join(", ")
+    ));
+    let teller = Teller {
+        head: NodeMessage {
+            version: VERSION,
+            floor: fingerprint(&floor),
+            area: args.area,
+            node: drawn(),
+            name: format!("{} (process {})", args.listen, std::process::id()),
+            ..NodeMessage::default()
+        },
+        transport,
+        guard,
+        clock,
+        obeying: Obeying { session: session.clone(), notices: notices.clone() },
+        unsent: 0,
+    };
+    let unsent = teller.run(&drafted);
+    let lost = [
+        (held_up.load(Ordering::Relaxed), "messages held up"),
+        (unsent, "messages not sent"),
+        (refused.load(Ordering::Relaxed), "messages not understood"),
+    ];
+    lost.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| eprintln!("{count} {what}."));
+    ended(&session)
+}
+
+/// The part of the floor that `area` serves, and that of its layout.
+fn served(floor: &Floor, area: &str, layout: &Path) -> Result<(Floor, Layout), Failure> {
+    let found = floor.area(area).and_then(|area| Some((area, floor.part(area)?)));
+    let Some((area, part)) = found else {
+        let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
+        return Err(Failure::Other(format!(
+            "the floor has no area \"{area}\": there are {}",
+            ids.join(", ")
+        )));
+    };
+    Ok((part, load_layout(layout, &floor.geometry)?.part(area, &floor.geometry)))
+}
+
+/// The layout at `path`, or the built-in one of that name; its warnings are logged.
+fn load_layout(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> {
+    let builtin = path.to_str().filter(|_| !path.exists()).and_then(schema::builtin_layout);
+    let loaded = match builtin {
+        Some(text) => schema::parse_layout(
+            text,
+            &path.to_string_lossy(),
+            &Kinds::shipped(Effects::builtin())?,
+            geometry,
+        )?,
+        None => {
+            let mut effects = Effects::builtin();
+            if let Some(folder) = schema::folder_beside(path, "effects") {
+                effects.read_folder(&folder)?;
+            }
+            let mut kinds = Kinds::shipped(effects)?;
+            if let Some(folder) = schema::folder_beside(path, "widgets") {
+                kinds.read_folder(&folder)?;
+            }
+            schema::load_layout(path, &kinds, geometry)?
+        }
+    };
+    if !loaded.warnings.is_empty() {
+        tracing::warn!("{}", loaded.warnings);
+    }
+    Ok(loaded.layout)
+}
+
+/// Does what the guard says.
+struct Obeying {
+    session: Session,
+    notices: Notices,
+}
+
+impl Obeying {
+    fn obey(&self, action: Action) {
+        let (commands, notice): (&[ControlMessage], &str) = match action {
+            Action::Heard => (&[], "The gateway hears this node."),
+            Action::Cancel(Reason::Late) => (
+                &[ControlMessage::CancelAll],
+                "The gateway got nothing new for 100 ms: what was held is cancelled.",
+            ),
+            Action::Cancel(Reason::Silent) => {
+                (&[ControlMessage::CancelAll], "The gateway is silent: what was held is cancelled.")
+            }
+            Action::Mute => (
+                &[ControlMessage::CancelAll, ControlMessage::Mute { on: true }],
+                "Another node serves this area too: neither is believed, and nothing is felt. Stop one of them.",
+            ),
+            Action::Unmute => {
+                (&[ControlMessage::Mute { on: false }], "The other node has stopped: this one works again.")
+            }
+            _ => return,
+        };
+        self.notices.say(notice);
+        // A floor that has ended holds nothing.
+        commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
+    }
+}
+
+/// Sends what happens, for as long as anything does.
+struct Teller {
+    /// What all messages have in common, and the number of the last one.
+    head: NodeMessage,
+    transport: Transport,
+    guard: Arc<Mutex<Guard>>,
+    clock: HostClock,
+    obeying: Obeying,
+    unsent: u64,
+}
+
+impl Teller {
+    /// Works until the floor has ended; how many messages could not be sent.
+    fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
+        let mut values_told: Option<HostInstant> = None;
+        loop {
+            match drafts.recv_timeout(PATIENCE) {
+                Ok(draft) => {
+                    let is_due = values_told.is_none_or(|told| told.elapsed() >= VALUES_EVERY);
+                    let values = is_due.then(|| self.values());
+                    if is_due {
+                        values_told = Some(HostInstant::now());
+                    }
+                    self.send(draft, values);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return self.unsent,
+            }
+            let now = (self.clock)();
+            let actions = self.guard.lock().unwrap_or_else(PoisonError::into_inner).tick(now);
+            actions.into_iter().for_each(|action| self.obeying.obey(action));
+        }
+    }
+
+    fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
+        let echoes = self.guard.lock().unwrap_or_else(PoisonError::into_inner).echoes().collect();
+        self.head.sequence += 1;
+        let NodeMessage { frame, silent, contacts, first_event, events, held, .. } = draft.message();
+        let mut message = NodeMessage {
+            frame,
+            silent,
+            contacts,
+            first_event,
+            events,
+            held,
+            values,
+            echoes,
+            ..self.head.clone()
+        };
+        // Last, so that nothing but the way of the message follows.
+        message.sent = (self.clock)().micros();
+        if !self.transport.send(encode(&message)) {
+            self.unsent += 1;
+        }
+    }
+
+    /// What the controls hold that no foot holds.
+    fn values(&self) -> Vec<(String, NodeValue)> {
+        let snapshot = self.obeying.session.snapshot();
+        let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);
+        let free = all.filter(|(widget, _)| !snapshot.floor.held.contains(&widget.id));
+        free.filter_map(|(widget, state)| Some((widget.id.as_str().to_owned(), state.value?.into())))
+            .collect()
+    }
+}
+
+/// What the floor's end was.
+fn ended(session: &Session) -> Result<(), Failure> {
+    while let Some(event) = session.next_event_timeout(Duration::from_secs(2)) {
+        match event.kind {
+            Kind::Ended(EndReason::Stopped | EndReason::SourceEnded) => return Ok(()),
+            Kind::Ended(reason) => return Err(Failure::Other(format!("{reason}: {}", event.message()))),
+            _ => {}
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,226 @@
+//! The hall: its files, its computers, and the boards under the feet in it.
+
+use std::io::{BufRead, BufReader, Write};
+use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::thread::{self, JoinHandle};
+use std::time::Duration;
+
+use tempfile::TempDir;
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::runtime::Session;
+use underfoot::schema::{self, Kinds};
+use underfoot::sim::{Scenario, Script, SimConfig, SimFloor};
+use underfoot::sink::{JsonSink, Rank, claim_priority};
+use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSource};
+use underfoot::wire::{SensorEncoder, SensorFormat};
+
+use crate::lines::Lines;
+
+/// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Nine boards of 4 x 4 tiles, as large as boards can
+/// be, since one machine does the work of six here.
+fn floor_text() -> String {
+    let board = |number: u16| {
+        let (west, south) = (number % 3 * 4, number / 3 * 4);
+        let tiles = (0..16).map(|tile| format!("({}, {})", west + tile % 4, south + tile / 4));
+        format!("(tiles: [{}])", tiles.collect::<Vec<_>>().join(", "))
+    };
+    let boards: Vec<String> = (0..9).map(board).collect();
+    let areas = r#"[
+        (id: "sw", at: (0, 0), size: (6, 6)),
+        (id: "se", at: (6, 0), size: (6, 6)),
+        (id: "nw", at: (0, 6), size: (6, 6)),
+        (id: "ne", at: (6, 6), size: (6, 6)),
+    ]"#;
+    format!("Floor(columns: 12, rows: 12, areas: {areas}, boards: [{}])", boards.join(", "))
+}
+
+/// Two controls over borders, of which `drive` is the south-east's, and one in each other area.
+const LAYOUT: &str = r#"Layout(
+    version: 1,
+    title: "Hall",
+    regions: [
+        (id: "west_desk", at: (1.5, 3), size: (2, 1)),
+        (id: "drive_desk", at: (5, 3), size: (2, 1)),
+        (id: "gate_desk", at: (3, 5.6), size: (1, 1)),
+        (id: "door_desk", at: (8.5, 9), size: (2, 1)),
+        (id: "level_desk", at: (1.5, 9), size: (2.5, 1)),
+    ],
+    widgets: [
+        (id: "ticket", kind: "button", at: (2, 3), size: (0.8, 0.8), label: "Ticket"),
+        (id: "drive", kind: "hold", at: (5.7, 3), size: (0.8, 0.8), label: "Drive"),
+        (id: "gate", kind: "button", at: (3.1, 5.7), size: (0.8, 0.8), label: "Gate"),
+        (id: "door", kind: "button", at: (9, 9), size: (0.8, 0.8), label: "Door"),
+        (id: "level", kind: "slider", at: (1.8, 9.1), size: (1.8, 0.6), label: "Level"),
+    ],
+)"#;
+
+/// The areas' names.
+pub(crate) const AREAS: [&str; 4] = ["sw", "se", "nw", "ne"];
+
+/// A program that ends with the test.
+pub(crate) struct Program(pub(crate) Child);
+
+impl Drop for Program {
+    fn drop(&mut self) {
+        let _ = self.0.kill();
+        let _ = self.0.wait();
+    }
+}
+
+impl Program {
+    fn start(folder: &Path, args: &[&str]) -> Self {
+        let mut child = Command::new(env!("CARGO_BIN_EXE_underfoot-cluster"))
+            .args(args)
+            .current_dir(folder)
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        let mut chatter = BufReader::new(child.stderr.take().unwrap());
+        let mut line = String::new();
+        chatter.read_line(&mut line).unwrap();
+        assert!(line.contains("Ctrl-C ends it"), "{line}");
+        let name = args[0].to_owned();
+        // What it says goes where the test's own output goes.
+        thread::spawn(move || {
+            chatter.lines().map_while(Result::ok).for_each(|line| println!("{name}: {line}"))
+        });
+        Self(child)
+    }
+
+    pub(crate) fn signal(&self, signal: &str) {
+        let sent = Command::new("kill").args([signal, &self.0.id().to_string()]).status().unwrap();
+        assert!(sent.success());
+    }
+}
+
+/// The hall and its gateway.
+pub(crate) struct Hall {
+    folder: TempDir,
+    pub(crate) floor: Floor,
+    pub(crate) layout: Layout,
+    pub(crate) ports: [u16; 4],
+    endpoint: String,
+    _gateway: Program,
+    pub(crate) lines: Lines,
+}
+
+impl Hall {
+    pub(crate) fn open() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("hall.ron"), floor_text()).unwrap();
+        std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
+        let floor = schema::parse_floor(&floor_text(), "hall").unwrap();
+        let layout =
+            schema::parse_layout(LAYOUT, "controls", &Kinds::builtin(), &floor.geometry).unwrap().layout;
+        let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
+        let args = ["gateway", "--floor", "hall.ron", "--listen", &endpoint, "--json", "--json-contacts"];
+        let mut gateway = Program::start(folder.path(), &args);
+        let lines = Lines::of(gateway.0.stdout.take().unwrap());
+        let ports = AREAS.map(|_| free_port());
+        Self { folder, floor, layout, ports, endpoint, _gateway: gateway, lines }
+    }
+
+    /// Starts the node of one area.
+    pub(crate) fn node(&self, area: &str) -> Program {
+        let number = AREAS.iter().position(|one| *one == area).unwrap();
+        let listen = format!("127.0.0.1:{}", self.ports[number]);
+        let node = ["node", "controls.ron", "--floor", "hall.ron", "--gateway", &self.endpoint];
+        Program::start(self.folder.path(), &[&node[..], &["--area", area, "--listen", &listen]].concat())
+    }
+
+    /// Waits until an area is live, as told from line `from` on.
+    pub(crate) fn await_live(&self, area: &str, from: usize) {
+        self.lines.find(from, "live", |line| line.area() == Some((area, "live")));
+    }
+
+    /// What people do, by a scenario.
+    pub(crate) fn script(&self, scenario: &str) -> Script {
+        Scenario::parse("hall", scenario).unwrap().resolve(&self.layout, &self.floor.geometry).unwrap()
+    }
+
+    /// Lets boards send to the four nodes, and to `others`, what `script` makes them read.
+    pub(crate) fn boards(&self, script: Script, others: &[u16]) -> Boards {
+        let targets = self.ports.iter().chain(others);
+        let targets = targets.map(|port| SocketAddr::from(([127, 0, 0, 1], *port))).collect();
+        Boards::start(&self.floor, script, targets)
+    }
+
+    /// One computer for the whole floor, in this process: where it listens, and what it tells.
+    pub(crate) fn single(&self) -> (Session, u16, Lines) {
+        let source = UdpSource::bind(([127, 0, 0, 1], 0).into(), &self.floor).unwrap();
+        let (port, clock, lines) = (source.local_addr().unwrap().port(), source.clock(), Lines::default());
+        let session = Session::source(Box::new(source), clock)
+            .floor(self.floor.clone())
+            .layout(self.layout.clone())
+            .sink(JsonSink::new(lines.clone()).unwrap().with_contacts())
+            .realtime()
+            .start()
+            .unwrap();
+        (session, port, lines)
+    }
+}
+
+fn free_port() -> u16 {
+    UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
+}
+
+/// The hall's boards, which send on a thread of their own.
+pub(crate) struct Boards {
+    stop: Arc<AtomicBool>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Boards {
+    fn start(floor: &Floor, script: Script, targets: Vec<SocketAddr>) -> Self {
+        let stop = Arc::<AtomicBool>::default();
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
+        let sim = SimFloor::new(floor, SimConfig::default(), 1);
+        let mut source = SimulatedSource::new(sim, Box::new(script), Pace::RealTime);
+        let until = Arc::clone(&stop);
+        let thread = thread::spawn(move || {
+            // Boards are punctual.
+            claim_priority(Rank::Sensing);
+            while !until.load(Ordering::Relaxed) {
+                match source.next(Duration::from_millis(10)) {
+                    Ok(Some(packet)) => {
+                        let datagram = encoder.encode(&packet).unwrap();
+                        for target in &targets {
+                            // A node that is not there is no matter of the boards.
+                            let _ = socket.send_to(datagram, target);
+                        }
+                    }
+                    Ok(None) => {}
+                    Err(SourceError::Ended) => break,
+                    Err(error) => panic!("{error}"),
+                }
+            }
+        });
+        Self { stop, thread: Some(thread) }
+    }
+
+    /// Waits until the people have gone.
+    pub(crate) fn finish(mut self) {
+        self.thread.take().unwrap().join().unwrap();
+    }
+}
+
+impl Drop for Boards {
+    fn drop(&mut self) {
+        self.stop.store(true, Ordering::Relaxed);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+/// Writes a line that a person who measures wants to see.
+pub(crate) fn say(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{text}");
+}

@@ -1,0 +1,6 @@
+//! A hall of four areas, served by real processes over real loopback sockets, with people walking over all borders.
+
+mod faults;
+mod hall;
+mod lines;
+mod same;
