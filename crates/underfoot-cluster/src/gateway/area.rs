@@ -72,7 +72,8 @@ impl AreaState {
         let Some(frame) = message.frame.and_then(|frame| self.clock.here(frame)) else {
             return Worth::Nothing;
         };
-        if now.since(frame) > LOST_AFTER {
+        // What a node says of silent boards is no news of the floor, however new.
+        if message.silent || now.since(frame) > LOST_AFTER {
             return Worth::Stale;
         }
         self.newest = Some(frame);

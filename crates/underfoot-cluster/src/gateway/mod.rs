@@ -34,7 +34,7 @@ use self::area::{AreaState, Worth};
 use self::held::HeldReports;
 use self::join::Joiner;
 use crate::message::{
-    GatewayMessage, NodeContact, NodeEvent, NodeMessage, NodeValue, Standing, VERSION, fingerprint,
+    GatewayMessage, NodeContact, NodeEvent, NodeFrame, NodeMessage, NodeValue, Standing, VERSION, fingerprint,
 };
 
 pub use area::LOST_AFTER;
@@ -67,8 +67,9 @@ pub enum NoGateway {
 /// Something that an area told, waiting for its turn.
 #[derive(Clone, Debug)]
 enum Item {
-    Event(Instant, NodeEvent),
-    Frame { contacts: Vec<NodeContact>, held: Vec<String>, values: Option<Vec<(String, NodeValue)>> },
+    Event(NodeEvent),
+    Frame { contacts: Vec<NodeContact> },
+    Held { held: Vec<String>, values: Option<Vec<(String, NodeValue)>> },
 }
 
 /// The areas of a floor, joined.
@@ -79,8 +80,8 @@ pub struct Gateway {
     names: Vec<String>,
     areas: Vec<AreaState>,
     joiner: Joiner,
-    /// By moment, area and number.
-    queue: BTreeMap<(Instant, usize, u64), Item>,
+    /// By moment, area and number; with the moment that is told, which may be before the one that orders.
+    queue: BTreeMap<(Instant, usize, u64), (Instant, Item)>,
     number: u64,
     /// Up to when everything has been told.
     told_until: Instant,
@@ -192,8 +193,8 @@ impl Gateway {
         // Who is late is not waited for.
         let until = told.min().unwrap_or(now).max(now.before(WINDOW));
         while let Some(entry) = self.queue.first_entry().filter(|entry| entry.key().0 <= until) {
-            let ((at, area, _), item) = entry.remove_entry();
-            self.tell(area, at, item);
+            let ((at, area, _), (happened, item)) = entry.remove_entry();
+            self.tell(area, at, happened, item);
         }
         self.told_until = self.told_until.max(until);
         self.tell_contacts(until, now);
@@ -216,15 +217,16 @@ impl Gateway {
     /// The number of the area that a message is about, if it is one of this floor.
     fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
         let area = self.names.iter().position(|name| *name == message.area);
-        let sizes = [message.contacts.len(), message.events.len(), message.held.len(), message.echoes.len()];
+        let NodeMessage { contacts, earlier, events, held, echoes, .. } = message;
+        let sizes = [contacts.len(), earlier.len(), events.len(), held.len(), echoes.len()];
+        let mut all = contacts.iter().chain(earlier.iter().flat_map(|frame| &frame.contacts));
         let why = if message.version != VERSION {
             format!("speaks version {} of the messages, this gateway {VERSION}", message.version)
         } else if message.floor != self.floor {
             "has a floor file with other tiles or areas".to_owned()
         } else if area.is_none() {
             "serves an area that the floor file does not name".to_owned()
-        } else if sizes.iter().any(|size| *size > MOST) || !message.contacts.iter().all(NodeContact::is_sound)
-        {
+        } else if sizes.iter().any(|size| *size > MOST) || !all.all(NodeContact::is_sound) {
             "tells what no node tells".to_owned()
         } else {
             return area;
@@ -254,20 +256,23 @@ impl Gateway {
             area.presses.shut(&message.held);
             self.out.extend(cancelled.into_iter().map(Told::Event));
         }
-        let NodeMessage { events, contacts, held, values, .. } = message;
-        let mut items = Vec::with_capacity(events.len() + 1);
-        for event in events {
-            let at = area.here(event.at);
-            if area.is_of_interest(at) {
-                items.push((area.in_order(at), Item::Event(at, event)));
-            } else {
-                self.counters.withheld += 1;
+        let NodeMessage { events, contacts, earlier, held, values, .. } = message;
+        let mut items = Vec::with_capacity(events.len() + earlier.len() + 1);
+        let mut events = events.into_iter().peekable();
+        for NodeFrame { at, contacts } in earlier {
+            while let Some(event) = events.next_if(|event| event.at <= at) {
+                items.push((area.here(event.at), Item::Event(event)));
             }
+            items.push((area.here(at), Item::Frame { contacts }));
         }
-        items.push((area.in_order(frame), Item::Frame { contacts, held, values }));
+        items.extend(events.map(|event| (area.here(event.at), Item::Event(event))));
+        let past = items.extract_if(.., |(at, _)| !area.is_of_interest(*at));
+        self.counters.withheld += past.filter(|(_, item)| matches!(item, Item::Event(_))).count() as u64;
+        items.push((frame, Item::Frame { contacts }));
+        items.push((frame, Item::Held { held, values }));
         for (at, item) in items {
             self.number += 1;
-            self.queue.insert((at, number, self.number), item);
+            self.queue.insert((area.in_order(at), number, self.number), (at, item));
         }
     }
 
@@ -284,10 +289,10 @@ impl Gateway {
         self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, doubt }));
     }
 
-    fn tell(&mut self, number: usize, at: Instant, item: Item) {
+    fn tell(&mut self, number: usize, at: Instant, happened: Instant, item: Item) {
         let Some(area) = self.areas.get_mut(number) else { return };
         match item {
-            Item::Event(happened, event) => {
+            Item::Event(event) => {
                 let place = Vec2::from(event.position);
                 let contact = event.contact.and_then(|id| self.joiner.name(number, id, place, at));
                 let Some(told) = event.event(happened, contact) else {
@@ -301,10 +306,10 @@ impl Gateway {
                 self.counters.late += u64::from(at < self.told_until);
                 self.out.push(Told::Event(told));
             }
-            Item::Frame { contacts, held, values } => {
+            Item::Frame { contacts } => self.joiner.frame(number, at, contacts),
+            Item::Held { held, values } => {
                 area.presses.hold(&held);
                 let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();
-                self.joiner.frame(number, at, contacts);
                 self.out.extend(changed.into_iter().map(Told::Event));
             }
         }

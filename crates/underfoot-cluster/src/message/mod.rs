@@ -44,6 +44,8 @@ pub struct NodeMessage {
     pub silent: bool,
     /// All contacts of that frame, those beyond the area too.
     pub contacts: Vec<NodeContact>,
+    /// Frames before that one that were not told, oldest first: where several were assembled at once.
+    pub earlier: Vec<NodeFrame>,
     /// The number of the first of `events`; each has the one after the last's.
     pub first_event: u64,
     /// What happened since the last message, in order.
@@ -54,6 +56,15 @@ pub struct NodeMessage {
     pub values: Option<Vec<(String, NodeValue)>>,
     /// What the node has heard last of each gateway.
     pub echoes: Vec<Echo>,
+}
+
+/// The contacts of one frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct NodeFrame {
+    /// The frame's time.
+    pub at: u64,
+    /// All its contacts, those beyond the area too.
+    pub contacts: Vec<NodeContact>,
 }
 
 /// That a node has heard a gateway, and when.

@@ -3,10 +3,16 @@
 use underfoot::sink::Report;
 use underfoot::wire::LinkState;
 
-use crate::message::{NodeContact, NodeEvent, NodeMessage};
+use crate::message::{NodeContact, NodeEvent, NodeFrame, NodeMessage};
 
 /// Most events that wait for a message; older ones are dropped, which their numbers show.
 const MOST_EVENTS: usize = 2048;
+
+/// Longest time between two frames that are told, in microseconds: in it the fastest foot goes some millimetres.
+const FRAMES_US: u64 = 2000;
+
+/// Most frames that wait for a message; older ones are left out.
+const MOST_FRAMES: usize = 64;
 
 /// A message but for who sends it when.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -14,6 +20,9 @@ pub struct Draft {
     frame: Option<u64>,
     silent: bool,
     contacts: Vec<NodeContact>,
+    earlier: Vec<NodeFrame>,
+    /// The last frame that is told, or will be.
+    told: u64,
     first_event: u64,
     events: Vec<NodeEvent>,
     held: Vec<String>,
@@ -31,7 +40,16 @@ impl Draft {
                 self.events.push(NodeEvent::of(event));
             }
             Report::Contacts(at, contacts) => {
-                self.frame = Some(at.micros());
+                let at = at.micros();
+                if let Some(last) = self.frame.filter(|last| *last > self.told && at > self.told + FRAMES_US)
+                {
+                    if self.earlier.len() == MOST_FRAMES {
+                        self.earlier.remove(0);
+                    }
+                    self.earlier.push(NodeFrame { at: last, contacts: self.contacts.clone() });
+                    self.told = last;
+                }
+                self.frame = Some(at);
                 self.contacts.clear();
                 self.contacts.extend(contacts.iter().map(NodeContact::of));
                 return true;
@@ -56,13 +74,15 @@ impl Draft {
     pub fn sent(&mut self) {
         self.first_event += self.events.len() as u64;
         self.events.clear();
+        self.earlier.clear();
+        self.told = self.frame.unwrap_or(0);
     }
 
     /// The message.
     #[must_use]
     pub fn message(self) -> NodeMessage {
-        let Self { frame, silent, contacts, first_event, events, held } = self;
-        NodeMessage { frame, silent, contacts, first_event, events, held, ..NodeMessage::default() }
+        let Self { frame, silent, contacts, earlier, first_event, events, held, .. } = self;
+        NodeMessage { frame, silent, contacts, earlier, first_event, events, held, ..NodeMessage::default() }
     }
 }
 
@@ -72,6 +92,21 @@ mod tests {
     use underfoot::widget::{EventKind, WidgetEvent, WidgetId};
 
     use super::*;
+
+    #[test]
+    fn of_frames_that_come_at_once_one_is_told_every_2_ms() {
+        let mut draft = Draft::default();
+        let note = |draft: &mut Draft, ms| _ = draft.note(&Report::Contacts(Instant::from_millis(ms), &[]));
+        note(&mut draft, 1);
+        draft.sent();
+        (2..9).for_each(|ms| note(&mut draft, ms));
+        let message = draft.clone().message();
+        let told: Vec<u64> = message.earlier.iter().map(|frame| frame.at / 1000).collect();
+        assert_eq!((told, message.frame), (vec![3, 5, 7], Some(8000)));
+        draft.sent();
+        note(&mut draft, 10);
+        assert!(draft.message().earlier.is_empty());
+    }
 
     #[test]
     fn events_are_numbered_through_and_what_is_dropped_leaves_a_gap() {

@@ -236,11 +236,12 @@ impl Teller {
     fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
         let echoes = self.guard.lock().unwrap_or_else(PoisonError::into_inner).echoes().collect();
         self.head.sequence += 1;
-        let NodeMessage { frame, silent, contacts, first_event, events, held, .. } = draft.message();
+        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, .. } = draft.message();
         let mut message = NodeMessage {
             frame,
             silent,
             contacts,
+            earlier,
             first_event,
             events,
             held,

@@ -7,7 +7,7 @@ use crate::lines::Line;
 
 /// Somebody who holds the control over the border again and again; the node of the south-east decides it.
 fn holding(times: usize) -> String {
-    let hold = "Press(widget: \"drive\", force_n: 140, hold_ms: 2500), Wait(ms: 300),".repeat(times);
+    let hold = "Wait(ms: 500), Press(widget: \"drive\", force_n: 110, hold_ms: 2500),".repeat(times);
     format!(
         "Scenario(title: \"Holding\", steps: [Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)), {hold} Leave(to: South)])"
     )

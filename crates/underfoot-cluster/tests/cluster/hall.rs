@@ -1,11 +1,12 @@
 //! The hall: its files, its computers, and the boards under the feet in it.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
@@ -14,8 +15,8 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::runtime::Session;
 use underfoot::schema::{self, Kinds};
-use underfoot::sim::{Scenario, Script, SimConfig, SimFloor};
-use underfoot::sink::{JsonSink, Rank, claim_priority};
+use underfoot::sim::{Scenario, Script, SimConfig, SimFloor, calibrated};
+use underfoot::sink::{EventSink, JsonSink, Rank, Report, claim_priority};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSource};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
@@ -58,6 +59,9 @@ const LAYOUT: &str = r#"Layout(
         (id: "level", kind: "slider", at: (1.8, 9.1), size: (1.8, 0.6), label: "Level"),
     ],
 )"#;
+
+/// Which floor of its kind.
+const SEED: u64 = 1;
 
 /// The areas' names.
 pub(crate) const AREAS: [&str; 4] = ["sw", "se", "nw", "ne"];
@@ -113,9 +117,13 @@ pub(crate) struct Hall {
 impl Hall {
     pub(crate) fn open() -> Self {
         let folder = tempfile::tempdir().unwrap();
-        std::fs::write(folder.path().join("hall.ron"), floor_text()).unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
-        let floor = schema::parse_floor(&floor_text(), "hall").unwrap();
+        // Calibrated and tared, as a floor in use is: computers that tare by themselves differ by their sensors' noise.
+        let bare = schema::parse_floor(&floor_text(), "hall").unwrap();
+        let sim = SimFloor::new(&bare, SimConfig::default(), SEED);
+        let written = schema::write_floor(&calibrated(&bare, &sim, SEED).unwrap());
+        std::fs::write(folder.path().join("hall.ron"), &written).unwrap();
+        let floor = schema::parse_floor(&written, "hall").unwrap();
         let layout =
             schema::parse_layout(LAYOUT, "controls", &Kinds::builtin(), &floor.geometry).unwrap().layout;
         let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
@@ -152,17 +160,41 @@ impl Hall {
     }
 
     /// One computer for the whole floor, in this process: where it listens, and what it tells.
-    pub(crate) fn single(&self) -> (Session, u16, Lines) {
+    pub(crate) fn single(&self) -> (Session, u16, Lines, Frames) {
         let source = UdpSource::bind(([127, 0, 0, 1], 0).into(), &self.floor).unwrap();
         let (port, clock, lines) = (source.local_addr().unwrap().port(), source.clock(), Lines::default());
+        let frames = Frames::default();
         let session = Session::source(Box::new(source), clock)
             .floor(self.floor.clone())
             .layout(self.layout.clone())
-            .sink(JsonSink::new(lines.clone()).unwrap().with_contacts())
+            .sink(JsonSink::new(lines.clone()).unwrap())
+            .sink(frames.clone())
             .realtime()
             .start()
             .unwrap();
-        (session, port, lines)
+        (session, port, lines, frames)
+    }
+}
+
+/// Every contact of every frame.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Frames(Arc<Mutex<BTreeMap<u64, Vec<(f64, f64, f64)>>>>);
+
+impl Frames {
+    /// When and where each contact was.
+    pub(crate) fn tracks(&self) -> BTreeMap<u64, Vec<(f64, f64, f64)>> {
+        self.0.lock().unwrap().clone()
+    }
+}
+
+impl EventSink for Frames {
+    fn report(&mut self, report: Report<'_>) {
+        let Report::Contacts(at, contacts) = report else { return };
+        let mut tracks = self.0.lock().unwrap();
+        for contact in contacts {
+            let [x, y] = contact.centroid.to_array().map(f64::from);
+            tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
+        }
     }
 }
 
@@ -181,7 +213,7 @@ impl Boards {
         let stop = Arc::<AtomicBool>::default();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
-        let sim = SimFloor::new(floor, SimConfig::default(), 1);
+        let sim = SimFloor::new(floor, SimConfig::default(), SEED);
         let mut source = SimulatedSource::new(sim, Box::new(script), Pace::RealTime);
         let until = Arc::clone(&stop);
         let thread = thread::spawn(move || {
