@@ -113,6 +113,8 @@ pub struct Geometry {
     first: TileId,
     columns: u16,
     rows: u16,
+    /// Columns and rows of the whole floor that this is a part of.
+    whole: (u16, u16),
     tile_m: f32,
     pitch_m: f32,
     sensor_inset_m: f32,
@@ -176,17 +178,40 @@ impl Geometry {
         if !(0.0..0.5 * tile_m).contains(&sensor_inset_m) {
             return Err(GeometryError::Inset(sensor_inset_m));
         }
-        Ok(Self { first: TileId::new(0, 0), columns, rows, tile_m, pitch_m, sensor_inset_m })
+        let whole = (columns, rows);
+        Ok(Self { first: TileId::new(0, 0), columns, rows, whole, tile_m, pitch_m, sensor_inset_m })
     }
 
     /// The same grid as a part of a larger floor, in which its south-west corner is `first`; columns and rows past
-    /// [`Geometry::FARTHEST`] count as that.
+    /// [`Geometry::FARTHEST`] count as that. The larger floor ends where this part does: see [`Geometry::within`].
     #[must_use]
     pub const fn beginning_at(self, first: TileId) -> Self {
         const fn near(at: u16) -> u16 {
             if at > Geometry::FARTHEST { Geometry::FARTHEST } else { at }
         }
-        Self { first: TileId::new(near(first.column), near(first.row)), ..self }
+        let first = TileId::new(near(first.column), near(first.row));
+        Self { first, ..self }.within((0, 0))
+    }
+
+    /// The same part of a floor of so many columns and rows, or as many as the part takes if those are more.
+    #[must_use]
+    pub const fn within(self, (columns, rows): (u16, u16)) -> Self {
+        const fn most(one: u16, other: u16) -> u16 {
+            if one > other { one } else { other }
+        }
+        let least = self.least_whole();
+        Self { whole: (most(columns, least.0), most(rows, least.1)), ..self }
+    }
+
+    /// Columns and rows of the smallest floor that this can be a part of.
+    pub(crate) const fn least_whole(&self) -> (u16, u16) {
+        (self.first.column + self.columns, self.first.row + self.rows)
+    }
+
+    /// Columns and rows of the whole floor: its own, unless this is a part of a larger one.
+    #[must_use]
+    pub const fn whole(&self) -> (u16, u16) {
+        self.whole
     }
 
     /// What of it lies within `block`; `None` if nothing does.
@@ -332,6 +357,7 @@ impl Default for Geometry {
             first: TileId::new(0, 0),
             columns: 6,
             rows: 6,
+            whole: (6, 6),
             tile_m: 0.304,
             pitch_m: 0.304,
             sensor_inset_m: 0.02,
@@ -372,6 +398,9 @@ mod tests {
         let block = TileBlock { first: TileId::new(4, 3), columns: 30, rows: 2 };
         let part = whole.part(&block).unwrap();
         assert_eq!((part.first(), part.columns(), part.rows()), (TileId::new(4, 3), 8, 2));
+        assert_eq!((part.whole(), part.part(&block).unwrap().whole()), ((12, 9), (12, 9)));
+        let read = Geometry::of_paper_tiles(8, 2).unwrap().beginning_at(TileId::new(4, 3));
+        assert_eq!((read.whole(), read.within((12, 9))), ((12, 5), part));
         for (index, tile) in part.tiles().enumerate() {
             assert_eq!(part.index(tile), Some(index));
             assert_eq!(part.tile_at_index(index), tile);

@@ -17,6 +17,8 @@ record! {
     struct MeasuresRecord = "Measures";
     /// The tile in the south-west corner, if this is a part of a larger floor.
     first: TileId = "first", FIRST => TileId::default();
+    /// Columns and rows of that larger floor.
+    whole: Option<[u16; 2]> = "whole", Opt(WHOLE) => None;
     /// Tiles from west to east.
     columns: u16 = "columns", SIDE => Geometry::default().columns();
     /// Tiles from south to north.
@@ -37,6 +39,19 @@ const FIRST: By<TileId> = By {
     },
     ..TILE
 };
+
+/// How large the floor is of which this is a part.
+const WHOLE: By<[u16; 2]> = By {
+    shape: || FieldType::Words("(columns, rows), each a whole number from 1 to 4351"),
+    read: |node| {
+        let sides = node.tuple::<2>("(columns, rows)")?;
+        let [columns, rows] = sides.map(|side| side.whole(1..=WHOLE_MOST.into()));
+        Some([columns? as u16, rows? as u16])
+    },
+    ..TILES
+};
+
+const WHOLE_MOST: u16 = Geometry::FARTHEST + Geometry::MAX_SIDE;
 
 const FIRST_END: u16 = Geometry::FARTHEST + 1;
 
@@ -101,6 +116,7 @@ impl Codec<Geometry> for Measures {
     ) {
         let record = MeasuresRecord {
             first: geometry.first(),
+            whole: Some(geometry.whole()).filter(|whole| *whole != geometry.least_whole()).map(Into::into),
             columns: geometry.columns(),
             rows: geometry.rows(),
             tile_m: geometry.tile_m(),
@@ -123,9 +139,9 @@ impl Codec<Geometry> for Measures {
 
 impl MeasuresRecord {
     fn built(&self) -> Result<Geometry, GeometryError> {
-        let Self { first, columns, rows, tile_m, pitch_m, inset_m } = *self;
+        let Self { first, whole, columns, rows, tile_m, pitch_m, inset_m } = *self;
         let built = Geometry::new(columns, rows, tile_m, pitch_m.unwrap_or(tile_m), inset_m);
-        built.map(|geometry| geometry.beginning_at(first))
+        built.map(|geometry| geometry.beginning_at(first).within(whole.unwrap_or_default().into()))
     }
 }
 

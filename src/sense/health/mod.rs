@@ -85,6 +85,8 @@ pub(super) struct Health {
     creep: Creep,
     /// How far the floor's plates give way to twist.
     twist: Twist,
+    /// The first tile of each share of the floor, and the end of the last one.
+    shares: [usize; SHARES + 1],
     /// When each share of the floor was last visited.
     visited: [Option<Instant>; SHARES],
     /// How far each may be followed: 20 % of the sensor's range.
@@ -137,6 +139,7 @@ impl Health {
         };
         Self {
             geometry: floor.geometry,
+            shares: shares(&floor.geometry),
             zeros: vec![[0.0; 4]; tiles],
             crept: vec![[0.0; 4]; tiles],
             memories: vec![Memory::default(); tiles],
@@ -257,13 +260,12 @@ impl Health {
 
     /// Adds this frame to the averages of every [`SHARES`]th part of the floor in turn.
     fn visit_share(&mut self, frame: &ForceFrame) {
-        let tiles = self.slow.len();
         let share = self.number as usize % SHARES;
         let last = self.visited[share].replace(frame.at);
         let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32().min(GAP_S));
         let parts = Parts::of(dt);
         self.creep.ease(dt / SHARES as f32);
-        for tile in tiles * share / SHARES..tiles * (share + 1) / SHARES {
+        for tile in self.shares[share]..self.shares[share + 1] {
             let connected = is_connected(&frame.quality[tile], &self.sensors[tile]);
             if self.slow[tile].add(frame.forces[tile], self.ends[tile], connected) {
                 self.finish_block(tile, frame.at);
@@ -370,6 +372,18 @@ impl Health {
 }
 
 /// Whether all four sensors deliver, those known to be broken apart.
+/// The first tile of each share of the floor, and the end of the last one.
+///
+/// A tile is in the same share however the whole floor is cut, so that each computer that senses it averages it over the
+/// same frames.
+fn shares(geometry: &Geometry) -> [usize; SHARES + 1] {
+    let (columns, rows) = geometry.whole();
+    let (columns, whole) = (usize::from(columns), usize::from(columns) * usize::from(rows));
+    let place = |tile: TileId| usize::from(tile.row) * columns + usize::from(tile.column);
+    let places: Vec<usize> = geometry.tiles().map(place).collect();
+    std::array::from_fn(|share| places.partition_point(|&place| place < whole * share / SHARES))
+}
+
 fn is_connected(quality: &[Quality; 4], sensors: &[Sensor; 4]) -> bool {
     quality.iter().zip(sensors).all(|(quality, sensor)| *quality < Quality::Stale || sensor.is_out())
 }

@@ -80,6 +80,8 @@ struct Joint {
     leaving: Option<Instant>,
     /// Where it was last, and when.
     last: (Vec2, Instant),
+    /// The area that ended it while it was believed of it: what appears there later is another foot.
+    ended_by: Option<usize>,
 }
 
 impl Joint {
@@ -165,42 +167,71 @@ impl Joiner {
         told.collect()
     }
 
-    /// Ends what the node of `area` called `id`.
+    /// Ends what the node of `area` called `id`. If that node is believed of it and no other one has it in its own area,
+    /// it has ended for all.
     fn end(&mut self, area: usize, id: u32, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         let Some(joint) = view.joints.remove(&id) else { return };
         view.past.insert(id, (joint, at));
-        if let Some(joint) = self.joints.iter_mut().find(|one| one.id == joint) {
-            joint.members.retain(|member| *member != (area, id));
+        let Some(joint) = self.joints.iter_mut().find(|one| one.id == joint) else { return };
+        joint.members.retain(|member| *member != (area, id));
+        if joint.owner != Some(area) {
+            return;
+        }
+        let is_own = |&(other, id): &(usize, u32)| {
+            let seen = self.views.get(other).and_then(|view| view.latest(id));
+            let own = self.areas.get(other);
+            seen.zip(own).is_some_and(|(seen, own)| own.holds(&self.geometry, seen.place()))
+        };
+        if joint.members.iter().any(is_own) {
+            return;
+        }
+        (joint.owner, joint.ended_by) = (None, Some(area));
+        for (other, id) in std::mem::take(&mut joint.members) {
+            if let Some(view) = self.views.get_mut(other) {
+                view.joints.remove(&id);
+            }
         }
     }
 
-    /// Takes a contact out of its joint if the others see that one elsewhere, and notes where it is.
+    /// Notes where a contact is, and takes apart those that are not the same foot: who sees it elsewhere than its owner
+    /// sees another one.
     fn check(&mut self, area: usize, contact: &NodeContact, at: Instant) {
         let Some(view) = self.views.get(area) else { return };
         let Some(id) = view.joints.get(&contact.id).copied() else { return };
-        let Some(place) = self.joints.iter().position(|joint| joint.id == id) else { return };
-        let Some(joint) = self.joints.get(place) else { return };
-        let mut others = joint.members.iter().filter(|(other, _)| *other != area);
-        let is_elsewhere = others.any(|&(other, id)| {
+        let Some(joint) = self.joints.iter().find(|joint| joint.id == id) else { return };
+        let is_elsewhere = |&(other, id): &(usize, u32)| {
             let seen = self.views.get(other).and_then(|view| view.latest(id));
             seen.is_some_and(|seen| seen.place().distance(contact.place()) > APART_M)
-        });
-        // One that only this area sees and that it does not own may be what another one has told of since.
-        let is_alone = joint.members.len() == 1 && joint.owner.is_none();
-        let is_other = is_alone && self.nearest(area, contact.place(), Some(id), at).is_some();
-        if is_elsewhere || is_other {
-            if let Some(joint) = self.joints.get_mut(place) {
-                joint.members.retain(|member| *member != (area, contact.id));
-                if is_other {
-                    joint.last.1 = Instant::START;
-                }
+        };
+        let others = || joint.members.iter().filter(|(other, _)| *other != area);
+        let own = (area, contact.id);
+        let strays: Vec<(usize, u32)> = if joint.owner == Some(area) {
+            others().filter(|other| is_elsewhere(other)).copied().collect()
+        } else {
+            let owner = others().find(|(other, _)| joint.owner == Some(*other));
+            let is_away = owner.map_or_else(|| others().any(is_elsewhere), is_elsewhere);
+            // What nobody owns may be what its owner has told of since.
+            let is_other = joint.owner.is_none()
+                && self.nearest(area, contact.place(), Some(id), at).is_some_and(|(_, nearest)| {
+                    joint.members.len() == 1
+                        || self.joints.iter().any(|one| one.id == nearest && one.owner.is_some())
+                });
+            if is_away || is_other { vec![own] } else { Vec::new() }
+        };
+        let stays = !strays.contains(&own);
+        for &(other, id) in &strays {
+            if let Some(view) = self.views.get_mut(other) {
+                view.joints.remove(&id);
             }
-            if let Some(view) = self.views.get_mut(area) {
-                view.joints.remove(&contact.id);
-            }
-        } else if let Some(joint) = self.joints.get_mut(place) {
+        }
+        let Some(joint) = self.joints.iter_mut().find(|joint| joint.id == id) else { return };
+        joint.members.retain(|member| !strays.contains(member));
+        if stays {
             joint.last = (contact.place(), at);
+        } else if joint.members.is_empty() && joint.owner.is_none() {
+            // Others are not to find it again.
+            joint.last.1 = Instant::START;
         }
     }
 
@@ -208,7 +239,8 @@ impl Joiner {
     fn nearest(&self, area: usize, place: Vec2, but: Option<u32>, at: Instant) -> Option<(f32, u32)> {
         let candidates = self.joints.iter().filter(|joint| {
             let is_late = joint.members.is_empty() && at.since(joint.last.1) > LATE;
-            joint.name_in(area).is_none() && Some(joint.id) != but && !is_late
+            let is_over = joint.ended_by == Some(area) && joint.owner.is_none();
+            joint.name_in(area).is_none() && Some(joint.id) != but && !is_late && !is_over
         });
         let seen = |(other, id): &(usize, u32)| Some(self.views.get(*other)?.latest(*id)?.place());
         let distances = candidates.map(|joint| {
@@ -242,7 +274,7 @@ impl Joiner {
     fn begin(&mut self, place: Vec2, at: Instant) -> u32 {
         self.last_id = self.last_id.wrapping_add(1);
         let (id, members) = (self.last_id, Vec::new());
-        self.joints.push(Joint { id, members, owner: None, leaving: None, last: (place, at) });
+        self.joints.push(Joint { id, members, owner: None, leaving: None, last: (place, at), ended_by: None });
         id
     }
 

@@ -103,6 +103,29 @@ impl Program {
     }
 }
 
+/// The hall's floor, calibrated and tared, as one in use is: computers that tare by themselves differ by their sensors'
+/// noise.
+pub(crate) fn floor() -> Floor {
+    let bare = schema::parse_floor(&floor_text(), "hall").unwrap();
+    let sim = SimFloor::new(&bare, SimConfig::default(), SEED);
+    calibrated(&bare, &sim, SEED).unwrap()
+}
+
+/// The hall's controls.
+pub(crate) fn layout(floor: &Floor) -> Layout {
+    schema::parse_layout(LAYOUT, "controls", &Kinds::builtin(), &floor.geometry).unwrap().layout
+}
+
+/// The people of a scenario in the hall.
+pub(crate) fn script(scenario: &str, floor: &Floor, layout: &Layout) -> Script {
+    Scenario::parse("hall", scenario).unwrap().resolve(layout, &floor.geometry).unwrap()
+}
+
+/// What the boards of the hall send.
+pub(crate) fn source(floor: &Floor, script: Script, pace: Pace) -> SimulatedSource {
+    SimulatedSource::new(SimFloor::new(floor, SimConfig::default(), SEED), Box::new(script), pace)
+}
+
 /// The hall and its gateway.
 pub(crate) struct Hall {
     folder: TempDir,
@@ -118,14 +141,9 @@ impl Hall {
     pub(crate) fn open() -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
-        // Calibrated and tared, as a floor in use is: computers that tare by themselves differ by their sensors' noise.
-        let bare = schema::parse_floor(&floor_text(), "hall").unwrap();
-        let sim = SimFloor::new(&bare, SimConfig::default(), SEED);
-        let written = schema::write_floor(&calibrated(&bare, &sim, SEED).unwrap());
-        std::fs::write(folder.path().join("hall.ron"), &written).unwrap();
-        let floor = schema::parse_floor(&written, "hall").unwrap();
-        let layout =
-            schema::parse_layout(LAYOUT, "controls", &Kinds::builtin(), &floor.geometry).unwrap().layout;
+        let floor = floor();
+        std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
+        let layout = layout(&floor);
         let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
         let args = ["gateway", "--floor", "hall.ron", "--listen", &endpoint, "--json", "--json-contacts"];
         let mut gateway = Program::start(folder.path(), &args);
@@ -149,7 +167,7 @@ impl Hall {
 
     /// What people do, by a scenario.
     pub(crate) fn script(&self, scenario: &str) -> Script {
-        Scenario::parse("hall", scenario).unwrap().resolve(&self.layout, &self.floor.geometry).unwrap()
+        script(scenario, &self.floor, &self.layout)
     }
 
     /// Lets boards send to the four nodes, and to `others`, what `script` makes them read.
@@ -213,8 +231,7 @@ impl Boards {
         let stop = Arc::<AtomicBool>::default();
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
-        let sim = SimFloor::new(floor, SimConfig::default(), SEED);
-        let mut source = SimulatedSource::new(sim, Box::new(script), Pace::RealTime);
+        let mut source = source(floor, script, Pace::RealTime);
         let until = Arc::clone(&stop);
         let thread = thread::spawn(move || {
             // Boards are punctual.

@@ -3,4 +3,5 @@
 mod faults;
 mod hall;
 mod lines;
+mod offline;
 mod same;

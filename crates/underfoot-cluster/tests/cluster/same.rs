@@ -6,7 +6,7 @@ use crate::hall::{AREAS, Hall, Program, say};
 use crate::lines::Line;
 
 /// Four people who together cross each border in both directions and work each control, `rounds` times.
-fn crowd(rounds: usize) -> String {
+pub(crate) fn crowd(rounds: usize) -> String {
     let steps = |enter: &str, round: &str, leave: &str| {
         format!("Wait(ms: 1500), {enter} {} {leave}", round.repeat(rounds))
     };
@@ -82,7 +82,7 @@ impl Account {
 
 /// How far `place` is from the way that a contact went from 2 ms before `t_s` to 2 ms after it; `None` if it was not
 /// there.
-fn distance(track: &[(f64, f64, f64)], t_s: f64, place: (f64, f64)) -> Option<f64> {
+pub(crate) fn distance(track: &[(f64, f64, f64)], t_s: f64, place: (f64, f64)) -> Option<f64> {
     const APART_S: f64 = 0.002;
     let first = track.partition_point(|(time, _, _)| *time < t_s - APART_S);
     let end = track.partition_point(|(time, _, _)| *time <= t_s + APART_S);

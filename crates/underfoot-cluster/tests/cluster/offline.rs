@@ -1,0 +1,133 @@
+//! The same without sockets and clocks: four nodes and a gateway against one computer, each frame of it.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::atomic::AtomicBool;
+use std::sync::mpsc::sync_channel;
+
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::sense::Method;
+use underfoot::serve::Server;
+use underfoot::sink::EventSink;
+use underfoot::source::Pace;
+use underfoot::units::Instant;
+use underfoot_cluster::gateway::{Gateway, Told};
+use underfoot_cluster::message::{Echo, NodeMessage, VERSION, fingerprint};
+use underfoot_cluster::node::NodeSink;
+
+use crate::hall::{AREAS, Frames, floor, layout, say, script, source};
+use crate::same::{crowd, distance};
+
+/// Lets one computer serve `part` of the hall, in which people walk about for `rounds`, and tell `sink`.
+fn serve(
+    (whole, controls, rounds): (&Floor, &Layout, usize),
+    part: &Floor,
+    own: Layout,
+    sink: impl EventSink + 'static,
+) {
+    let people = script(&crowd(rounds), whole, controls);
+    let source = Box::new(source(whole, people, Pace::FreeRunning));
+    Server::new(part, own, Method::default(), source)
+        .with_events(Box::new(sink))
+        .run(&AtomicBool::new(false))
+        .unwrap();
+}
+
+/// What the node of an area sends; its clock is the simulated one.
+fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMessage> {
+    let (floor, layout, _) = hall;
+    // One every 2 ms and some for events, of a round of half a minute.
+    let (out, drafts) = sync_channel(30_000 * hall.2);
+    let area = floor.area(area).unwrap();
+    let part = floor.part(area).unwrap();
+    serve(hall, &part, layout.clone().part(area, &floor.geometry), NodeSink::new(out));
+    let numbered = drafts.try_iter().zip(1..);
+    let message = numbered.map(|(draft, sequence)| {
+        let told = draft.message();
+        let sent = told.frame.unwrap_or(0) + 5000;
+        let echoes = vec![Echo { gateway: 9, sent: sent - 200, received: sent }];
+        let area = area.id.clone();
+        NodeMessage {
+            version: VERSION,
+            floor: fingerprint(floor),
+            area,
+            node,
+            sequence,
+            sent,
+            echoes,
+            ..told
+        }
+    });
+    message.filter(|message| message.frame.is_some()).collect()
+}
+
+/// Lets people walk about for `rounds`, and compares every contact of every frame.
+fn compare(rounds: usize) {
+    let floor = floor();
+    let layout = layout(&floor);
+    let hall = (&floor, &layout, rounds);
+    let whole = Frames::default();
+    serve(hall, &floor, layout.clone(), whole.clone());
+    let whole = whole.tracks();
+    let mut all: Vec<NodeMessage> =
+        AREAS.iter().zip(1..).flat_map(|(area, node)| messages(hall, area, node)).collect();
+    all.sort_by_key(|message| message.sent);
+    let mut gateway = Gateway::new(&floor, 9).unwrap();
+    let mut tracks = BTreeMap::<u64, Vec<(f64, f64, f64)>>::new();
+    for message in all {
+        let now = Instant::from_micros(message.sent + 200);
+        gateway.take(message, now);
+        for told in gateway.advance(now) {
+            let Told::Contacts(at, contacts) = told else { continue };
+            for contact in contacts {
+                let [x, y] = contact.centroid.to_array().map(f64::from);
+                tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
+            }
+        }
+    }
+    let mut pairs = BTreeMap::new();
+    let (mut places, mut apart, mut worst) = (0, 0, 0.0_f64);
+    for (id, track) in &tracks {
+        let near = |other: &[(f64, f64, f64)]| {
+            let distances = track.iter().filter_map(|&(t_s, x, y)| distance(other, t_s, (x, y)));
+            distances.filter(|distance| *distance < 0.001).count()
+        };
+        let (other, there) = whole.iter().max_by_key(|(_, other)| near(other)).unwrap();
+        pairs.insert(*id, *other);
+        let mut first = None;
+        for &(t_s, x, y) in track {
+            let distance = distance(there, t_s, (x, y)).unwrap_or(1.0);
+            places += 1;
+            worst = worst.max(distance);
+            if distance > 0.001 {
+                apart += 1;
+                first.get_or_insert((t_s, x, y, distance));
+            }
+        }
+        if let Some(first) = first {
+            say(&format!("{id}, there {other}, of {} places: first apart {first:.4?}", track.len()));
+        }
+    }
+    say(&format!(
+        "{} contacts, {} there; {apart} of {places} places more than 1 mm apart, at most {:.2} mm",
+        tracks.len(),
+        whole.len(),
+        worst * 1e3
+    ));
+    let others: BTreeSet<u64> = pairs.values().copied().collect();
+    assert_eq!((tracks.len(), others.len()), (whole.len(), whole.len()));
+    // The last bit of what a node computes is its own, and may decide a millisecond earlier or later how two feet that
+    // share tiles divide their load. Measured: 4 places of 10,000, by 1.4 mm.
+    assert!(apart * 1000 <= places && worst < 0.005, "{apart} of {places}, {worst} m");
+}
+
+#[test]
+fn contacts_of_four_nodes_are_those_of_one_computer() {
+    compare(1);
+}
+
+#[test]
+#[ignore = "a minute or two of computing"]
+fn the_same_for_eight_rounds() {
+    compare(8);
+}
