@@ -12,6 +12,10 @@ use crate::message::{NodeMessage, Standing};
 /// How old the newest frame of an area may be. What feet hold there is cancelled then.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
+/// How far in the future a frame may be: the doubt of clocks that are known to a round trip. What is further is of a
+/// clock that was set, of which the next echo tells.
+const AHEAD: Duration = Duration::from_millis(20);
+
 /// One area.
 #[derive(Clone, Debug, Default)]
 pub(super) struct AreaState {
@@ -22,7 +26,7 @@ pub(super) struct AreaState {
     pub(super) presses: Presses,
     /// When its newest frame was, on the gateway's clock.
     pub(super) newest: Option<Instant>,
-    /// Up to when what it told has been put in order; never goes back.
+    /// Up to when what it told has been put in order; never goes back while it lives.
     pub(super) told: Instant,
     /// Whether its boards are silent, as its node says.
     pub(super) silent: bool,
@@ -38,8 +42,10 @@ pub(super) struct AreaState {
 pub(super) enum Worth {
     /// Nothing: it is an old one, from a node that is not believed, or of a time that is not known yet.
     Nothing,
-    /// It is too old to act on.
+    /// It is too old to act on, or of a moment that has not come yet.
     Stale,
+    /// It shows that the node's clock was set: nobody knows of when the last messages were.
+    ClockSet,
     /// It tells what is now; `lost` events are missing before it.
     Fresh { lost: u64 },
 }
@@ -61,19 +67,21 @@ impl AreaState {
         }
         self.sequence = message.sequence;
         self.silent = message.silent;
+        let mut was_set = false;
         for echo in message.echoes.iter().filter(|echo| echo.gateway == gateway) {
-            if self.clock.note(echo, message.sent, now) {
-                tracing::warn!("the clock of area \"{}\" was set", message.area);
-            }
+            was_set |= self.clock.note(echo, message.sent, now);
         }
         let expected =
             self.next_event.replace(message.first_event.saturating_add(message.events.len() as u64));
         let lost = message.first_event.saturating_sub(expected.unwrap_or(message.first_event));
+        if was_set {
+            return Worth::ClockSet;
+        }
         let Some(frame) = message.frame.and_then(|frame| self.clock.here(frame)) else {
             return Worth::Nothing;
         };
         // What a node says of silent boards is no news of the floor, however new.
-        if message.silent || now.since(frame) > LOST_AFTER {
+        if message.silent || now.since(frame) > LOST_AFTER || frame > now + AHEAD {
             return Worth::Stale;
         }
         self.newest = Some(frame);
@@ -99,7 +107,7 @@ impl AreaState {
     /// Begins to believe what is told from `at` on.
     pub(super) fn begin(&mut self, at: Instant) {
         self.standing = Standing::Live;
-        self.since = at;
+        (self.since, self.told) = (at, at);
     }
 
     /// Whether it has to be given up at `now`, and as what.

@@ -274,7 +274,14 @@ impl Joiner {
     fn begin(&mut self, place: Vec2, at: Instant) -> u32 {
         self.last_id = self.last_id.wrapping_add(1);
         let (id, members) = (self.last_id, Vec::new());
-        self.joints.push(Joint { id, members, owner: None, leaving: None, last: (place, at), ended_by: None });
+        self.joints.push(Joint {
+            id,
+            members,
+            owner: None,
+            leaving: None,
+            last: (place, at),
+            ended_by: None,
+        });
         id
     }
 

@@ -165,6 +165,11 @@ impl Gateway {
         match worth {
             Worth::Nothing => {}
             Worth::Stale => self.counters.stale += 1,
+            Worth::ClockSet => {
+                if self.areas.get(number).is_some_and(|area| area.standing == Standing::Live) {
+                    self.fall(number, Standing::Lost, "its node's clock was set", now);
+                }
+            }
             Worth::Fresh { lost } => {
                 self.counters.lost += lost;
                 self.join(number, message, lost > 0, now);

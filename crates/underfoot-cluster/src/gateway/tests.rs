@@ -308,6 +308,55 @@ fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghost
     assert_eq!(stage.kinds().len(), 3, "the next press is told again");
 }
 
+/// What is told when the clock of west, in which a foot holds `drive`, is set by `step_us` and echoes tell of it 40 ms
+/// later: the kinds of events, and how long after the step the hold was cancelled and the next press was told.
+fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
+    let (mut stage, mut west, mut east) = holding(50_000);
+    let begun = START + 50_000;
+    west.ahead = west.ahead.checked_add_signed(step_us).unwrap();
+    let (mut cancelled, mut pressed) = (None, None);
+    for step in 0..200_u64 {
+        let at = begun + step * 2000;
+        let press = west.event(at, EventKind::Pressed, "horn", Some(8), (1.4, 1.0));
+        let release = west.event(at, EventKind::Released, "drive", Some(7), (1.0, 1.0));
+        let events = match step {
+            80 => vec![release],
+            100 => vec![press],
+            _ => vec![],
+        };
+        if step == 80 {
+            west.held.clear();
+        }
+        let mut message = west.message(at, &[(7, 1.0, 1.0), (8, 1.4, 1.0)], events);
+        if step < 20 {
+            message.echoes.clear();
+        }
+        stage.take(message, at);
+        stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
+        stage.advance(at + 300);
+        let count = stage.kinds().len();
+        if count > 1 {
+            cancelled.get_or_insert(at + 300 - begun);
+        }
+        if count > 2 {
+            pressed.get_or_insert(at + 300 - (begun + 200_000));
+        }
+    }
+    assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
+    (stage.kinds(), cancelled.unwrap(), pressed.unwrap())
+}
+
+#[test]
+fn a_node_whose_clock_is_set_is_cancelled_soon_and_what_it_tells_later_is_not_held_up() {
+    let expected = [EventKind::Pressed, EventKind::Cancelled, EventKind::Pressed];
+    for step_us in [1_000_000, -1_000_000, 30_000] {
+        let (kinds, cancelled, pressed) = step_of_the_clock(step_us);
+        assert_eq!(kinds, expected, "{step_us}");
+        assert!(cancelled <= 100_000, "{step_us}: {cancelled}");
+        assert!(pressed < 5000, "{step_us}: {pressed}");
+    }
+}
+
 #[test]
 fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     let (mut stage, _, mut east) = holding(50_000);

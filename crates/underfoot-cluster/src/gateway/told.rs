@@ -49,7 +49,7 @@ pub struct Counters {
     pub messages: u64,
     /// Messages of another version, another floor, an unknown area, or with numbers that mean nothing.
     pub refused: u64,
-    /// Messages whose newest frame was more than 100 ms old.
+    /// Messages whose newest frame was more than 100 ms old, or of a moment that had not come yet.
     pub stale: u64,
     /// Events of the time in which their area was not believed, or of presses that apps were told are cancelled.
     pub withheld: u64,

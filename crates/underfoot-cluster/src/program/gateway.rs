@@ -167,7 +167,7 @@ fn report(counters: Counters, garbled: u64, dropped: u64, unsent: u64) {
     let all = [
         (refused + garbled, "messages refused"),
         (dropped, "messages dropped, since they came faster than they could be joined"),
-        (stale, "messages older than 100 ms"),
+        (stale, "messages older than 100 ms, or of a clock that was set"),
         (withheld, "events of areas or presses that had been given up"),
         (late, "events told out of order"),
         (lost, "events that never came"),

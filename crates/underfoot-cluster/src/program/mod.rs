@@ -4,6 +4,7 @@ pub(crate) mod gateway;
 pub(crate) mod node;
 mod notices;
 mod sound;
+mod stepped;
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;

@@ -13,7 +13,7 @@ use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema::{self, Effects, Kinds};
 use underfoot::serve::Command;
 use underfoot::sink::{Rank, claim_priority};
-use underfoot::source::UdpSource;
+use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::HostClock;
 use underfoot::wire::ControlMessage;
 use underfoot_cluster::message::{NodeMessage, NodeValue, VERSION, decode, encode, fingerprint};
@@ -22,6 +22,7 @@ use underfoot_cluster::transport::{ENDPOINT, Transport};
 
 use super::notices::Notices;
 use super::sound::SoundArgs;
+use super::stepped::SteppedSource;
 use super::{Failure, drawn, stop_flag};
 
 /// What a node is asked to do.
@@ -47,6 +48,9 @@ pub(crate) struct Args {
     /// Stop after so many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
+    /// For tests: SIGUSR1 sets this node's clock forward by a second.
+    #[arg(long, hide = true)]
+    step_clock: bool,
 }
 
 /// Messages that may wait for the thread that sends them: a fifth of a second.
@@ -64,12 +68,19 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let (part, layout) = served(&floor, &args.area, &args.layout)?;
     let stop = stop_flag(args.seconds)?;
     let source = UdpSource::bind(args.listen, &part)?;
-    let clock = source.clock();
+    let (source, clock): (Box<dyn SensorSource>, HostClock) = if args.step_clock {
+        let source = SteppedSource::new(source)?;
+        let clock = source.clock();
+        (Box::new(source), clock)
+    } else {
+        let clock = source.clock();
+        (Box::new(source), clock)
+    };
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
     let sound = args.sound;
-    let session = Session::source(Box::new(source), Arc::clone(&clock))
+    let session = Session::source(source, Arc::clone(&clock))
         .floor(part)
         .layout(layout)
         .sink(sink)

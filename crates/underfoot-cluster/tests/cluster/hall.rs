@@ -5,7 +5,7 @@ use std::io::{BufRead, BufReader, Write};
 use std::net::{SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -21,6 +21,7 @@ use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSou
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use crate::lines::Lines;
+use crate::link::Link;
 
 /// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Nine boards of 4 x 4 tiles, as large as boards can
 /// be, since one machine does the work of six here.
@@ -132,7 +133,10 @@ pub(crate) struct Hall {
     pub(crate) floor: Floor,
     pub(crate) layout: Layout,
     pub(crate) ports: [u16; 4],
+    /// Where the gateway listens.
     endpoint: String,
+    /// Between it and the nodes.
+    pub(crate) links: [Link; 4],
     _gateway: Program,
     pub(crate) lines: Lines,
 }
@@ -144,20 +148,30 @@ impl Hall {
         let floor = floor();
         std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
         let layout = layout(&floor);
-        let endpoint = format!("tcp/{}", TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
+        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let (endpoint, links) = (format!("tcp/{address}"), AREAS.map(|_| Link::to(address.port())));
         let args = ["gateway", "--floor", "hall.ron", "--listen", &endpoint, "--json", "--json-contacts"];
         let mut gateway = Program::start(folder.path(), &args);
         let lines = Lines::of(gateway.0.stdout.take().unwrap());
         let ports = AREAS.map(|_| free_port());
-        Self { folder, floor, layout, ports, endpoint, _gateway: gateway, lines }
+        Self { folder, floor, layout, ports, endpoint, links, _gateway: gateway, lines }
     }
 
     /// Starts the node of one area.
     pub(crate) fn node(&self, area: &str) -> Program {
-        let number = AREAS.iter().position(|one| *one == area).unwrap();
-        let listen = format!("127.0.0.1:{}", self.ports[number]);
-        let node = ["node", "controls.ron", "--floor", "hall.ron", "--gateway", &self.endpoint];
-        Program::start(self.folder.path(), &[&node[..], &["--area", area, "--listen", &listen]].concat())
+        self.start(area, &self.endpoint, &[])
+    }
+
+    /// Starts the node of one area at the end of a link that can be cut, with a clock that can be set.
+    pub(crate) fn frail_node(&self, area: &str) -> Program {
+        self.start(area, &self.links[number(area)].endpoint(), &["--step-clock"])
+    }
+
+    fn start(&self, area: &str, gateway: &str, more: &[&str]) -> Program {
+        let listen = format!("127.0.0.1:{}", self.ports[number(area)]);
+        let node = ["node", "controls.ron", "--floor", "hall.ron", "--gateway", gateway];
+        let own = ["--area", area, "--listen", &listen];
+        Program::start(self.folder.path(), &[&node[..], &own, more].concat())
     }
 
     /// Waits until an area is live, as told from line `from` on.
@@ -216,6 +230,10 @@ impl EventSink for Frames {
     }
 }
 
+fn number(area: &str) -> usize {
+    AREAS.iter().position(|one| *one == area).unwrap()
+}
+
 fn free_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
@@ -223,12 +241,17 @@ fn free_port() -> u16 {
 /// The hall's boards, which send on a thread of their own.
 pub(crate) struct Boards {
     stop: Arc<AtomicBool>,
+    /// Of a thousand packets to each computer, how many are lost.
+    lost: Arc<AtomicU64>,
     thread: Option<JoinHandle<()>>,
 }
 
 impl Boards {
     fn start(floor: &Floor, script: Script, targets: Vec<SocketAddr>) -> Self {
-        let stop = Arc::<AtomicBool>::default();
+        let (stop, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
+        let loss = Arc::clone(&lost);
+        // Any sequence without a pattern.
+        let mut random = 1_u64;
         let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
         let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
         let mut source = source(floor, script, Pace::RealTime);
@@ -241,6 +264,10 @@ impl Boards {
                     Ok(Some(packet)) => {
                         let datagram = encoder.encode(&packet).unwrap();
                         for target in &targets {
+                            random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+                            if (random >> 33) % 1000 < loss.load(Ordering::Relaxed) {
+                                continue;
+                            }
                             // A node that is not there is no matter of the boards.
                             let _ = socket.send_to(datagram, target);
                         }
@@ -251,7 +278,12 @@ impl Boards {
                 }
             }
         });
-        Self { stop, thread: Some(thread) }
+        Self { stop, lost, thread: Some(thread) }
+    }
+
+    /// Loses so many of a thousand packets from now on.
+    pub(crate) fn lose(&self, per_mille: u64) {
+        self.lost.store(per_mille, Ordering::Relaxed);
     }
 
     /// Waits until the people have gone.

@@ -3,5 +3,6 @@
 mod faults;
 mod hall;
 mod lines;
+mod link;
 mod offline;
 mod same;

@@ -1,0 +1,79 @@
+//! A node's source whose clock can be set while it runs, as a person or a time server sets a computer's.
+
+use std::net::SocketAddr;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::thread;
+use std::time::Duration;
+
+use signal_hook::consts::SIGUSR1;
+use signal_hook::flag;
+use underfoot::source::{SensorSource, SourceError, UdpSource};
+use underfoot::units::{HostClock, Instant};
+use underfoot::wire::{LinkCounters, Request, SensorPacket};
+
+use super::Failure;
+
+/// By how much the clock is set.
+const STEP: Duration = Duration::from_secs(1);
+
+/// How soon after the signal.
+const LOOK_EVERY: Duration = Duration::from_millis(1);
+
+/// Packets as they come, on a clock that each SIGUSR1 sets forward.
+pub(super) struct SteppedSource {
+    inner: UdpSource,
+    steps_us: Arc<AtomicU64>,
+}
+
+impl SteppedSource {
+    pub(super) fn new(inner: UdpSource) -> Result<Self, Failure> {
+        let (asked, steps_us) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
+        flag::register(SIGUSR1, Arc::clone(&asked))
+            .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
+        let steps = Arc::clone(&steps_us);
+        thread::spawn(move || {
+            loop {
+                if asked.swap(false, Ordering::Relaxed) {
+                    steps.fetch_add(STEP.as_micros() as u64, Ordering::Relaxed);
+                }
+                thread::sleep(LOOK_EVERY);
+            }
+        });
+        Ok(Self { inner, steps_us })
+    }
+
+    /// The clock that stamps packets.
+    pub(super) fn clock(&self) -> HostClock {
+        let (clock, steps_us) = (self.inner.clock(), Arc::clone(&self.steps_us));
+        Arc::new(move || clock() + stepped(&steps_us))
+    }
+}
+
+fn stepped(steps_us: &AtomicU64) -> Duration {
+    Duration::from_micros(steps_us.load(Ordering::Relaxed))
+}
+
+impl SensorSource for SteppedSource {
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        let next = self.inner.next(patience)?;
+        let later = stepped(&self.steps_us);
+        Ok(next.map(|packet| SensorPacket { received: packet.received + later, ..packet }))
+    }
+
+    fn now(&self) -> Instant {
+        self.inner.now() + stepped(&self.steps_us)
+    }
+
+    fn take_request(&mut self) -> Option<Request> {
+        self.inner.take_request()
+    }
+
+    fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
+        self.inner.answer(to, datagram);
+    }
+
+    fn counters(&self) -> LinkCounters {
+        self.inner.counters()
+    }
+}
