@@ -37,6 +37,7 @@ impl Crack {
     ///
     /// # Source
     /// Stefan's law: the thickness of new ice grows with the square root of time.
+    #[cfg_attr(not(feature = "scene"), allow(dead_code))]
     #[must_use]
     pub(crate) fn openness(&self, now: Instant, refreeze_s: Option<f32>) -> f32 {
         let age_s = now.since(self.born).as_secs_f32();

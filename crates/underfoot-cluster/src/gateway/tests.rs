@@ -202,6 +202,42 @@ fn two_feet_on_the_border_are_two_and_one_that_lands_later_elsewhere_is_another(
 }
 
 #[test]
+fn a_foot_that_its_owner_has_elsewhere_keeps_its_name_and_who_is_not_believed_sees_another_one() {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    // West senses beyond its area only half of what east takes for two feet from the tenth step on.
+    let (foot, one, other) = (BORDER_M + 0.1, BORDER_M + 0.18, BORDER_M + 0.02);
+    for step in 0..20_u64 {
+        let at = START + step * 2000;
+        let is_one = step < 10;
+        let there = if is_one { vec![(31, foot, 1.0)] } else { vec![(31, one, 1.0), (32, other, 1.0)] };
+        stage.take(west.message(at, &[(7, if is_one { foot } else { other }, 1.0)], vec![]), at);
+        stage.take(east.message(at, &there, vec![]), at);
+        stage.advance(at + 300);
+    }
+    let contacts = stage.contacts();
+    assert_eq!((contacts[0], contacts[1].1, contacts.len()), ((1, one), other, 2));
+}
+
+#[test]
+fn what_the_owner_ends_is_over_and_what_it_sees_there_next_is_another_foot() {
+    let mut stage = Stage::new();
+    let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));
+    for step in 0..20_u64 {
+        let at = START + step * 2000;
+        let feet = match step {
+            0..10 => vec![(31, 3.0, 1.0)],
+            10 | 11 => vec![],
+            _ => vec![(32, 3.03, 1.0)],
+        };
+        stage.take(west.message(at, &[], vec![]), at);
+        stage.take(east.message(at, &feet, vec![]), at);
+        stage.advance(at + 300);
+    }
+    assert_eq!(stage.names(), (vec![1, 2], 1));
+}
+
+#[test]
 fn events_of_all_areas_come_in_time_order_with_joint_names() {
     let mut stage = Stage::new();
     let (mut west, mut east) = (Node::new("west", 1), Node::new("east", 2));

@@ -6,3 +6,4 @@ mod lines;
 mod link;
 mod offline;
 mod same;
+mod soak;
