@@ -33,7 +33,7 @@ enum Harm {
 struct Fault {
     hall: Hall,
     nodes: Vec<Program>,
-    _boards: Boards,
+    boards: Boards,
 }
 
 impl Fault {
@@ -42,7 +42,7 @@ impl Fault {
         let nodes = AREAS.iter().map(|area| hall.frail_node(area)).collect();
         let boards = hall.boards(hall.script(&holding(holds)), &[]);
         AREAS.iter().for_each(|area| hall.await_live(area, 0));
-        Self { hall, nodes, _boards: boards }
+        Self { hall, nodes, boards }
     }
 
     /// Waits for the next press, and half a second more.
@@ -86,9 +86,9 @@ impl Fault {
                 std::thread::sleep(Duration::from_millis(400));
                 let back = lines.len();
                 if harm == Harm::Cut {
-                    link.mend()
+                    link.mend();
                 } else {
-                    node.signal("-CONT")
+                    node.signal("-CONT");
                 }
                 back
             }
@@ -189,7 +189,7 @@ fn twenty_clocks_that_are_set() {
 fn a_network_that_loses_packets_and_is_late_presses_nothing_by_itself() {
     let fault = Fault::new(22);
     let from = fault.hall.lines.len();
-    fault._boards.lose(50);
+    fault.boards.lose(50);
     fault.hall.links.iter().for_each(|link| link.jitter(20));
     (0..20).for_each(|_| fault.await_hold());
     let lines = fault.hall.lines.all();

@@ -93,7 +93,7 @@ impl Program {
         let name = args[0].to_owned();
         // What it says goes where the test's own output goes.
         thread::spawn(move || {
-            chatter.lines().map_while(Result::ok).for_each(|line| println!("{name}: {line}"))
+            chatter.lines().map_while(Result::ok).for_each(|line| println!("{name}: {line}"));
         });
         Self(child)
     }
@@ -210,11 +210,14 @@ impl Hall {
 
 /// Every contact of every frame.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Frames(Arc<Mutex<BTreeMap<u64, Vec<(f64, f64, f64)>>>>);
+pub(crate) struct Frames(Arc<Mutex<Tracks>>);
+
+/// When and where each contact was, by its name.
+pub(crate) type Tracks = BTreeMap<u64, Vec<(f64, f64, f64)>>;
 
 impl Frames {
     /// When and where each contact was.
-    pub(crate) fn tracks(&self) -> BTreeMap<u64, Vec<(f64, f64, f64)>> {
+    pub(crate) fn tracks(&self) -> Tracks {
         self.0.lock().unwrap().clone()
     }
 }
