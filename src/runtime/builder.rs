@@ -21,7 +21,7 @@ use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
 #[cfg(feature = "record")]
 use crate::recording::{Recorder, WhenBehind};
-use crate::schema::{self, Diagnostics, Effects, Kinds};
+use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
 use crate::source::{SensorSource, SourceError, UdpSource};
@@ -142,15 +142,7 @@ impl SessionBuilder {
     /// Everything wrong with the file, its kinds and its effects.
     pub fn layout_file(self, path: impl AsRef<Path>) -> Result<Self, Diagnostics> {
         let path = path.as_ref();
-        let mut effects = Effects::builtin();
-        if let Some(folder) = schema::folder_beside(path, "effects") {
-            effects.read_folder(&folder)?;
-        }
-        let mut kinds = Kinds::shipped(effects)?;
-        if let Some(folder) = schema::folder_beside(path, "widgets") {
-            kinds.read_folder(&folder)?;
-        }
-        let loaded = schema::load_layout(path, &kinds, &self.floor.geometry)?;
+        let loaded = schema::load_layout(path, &schema::kinds_beside(path)?, &self.floor.geometry)?;
         if !loaded.warnings.is_empty() {
             tracing::warn!("{}", loaded.warnings);
         }

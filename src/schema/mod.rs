@@ -60,7 +60,7 @@ pub use floor_text::write_floor;
 #[cfg(feature = "edit")]
 pub(crate) use ground::ground_fields;
 pub use kind::{Kind, Kinds};
-pub use page::{Loaded, folder_beside, load_layout, parse_layout};
+pub use page::{Loaded, folder_beside, kinds_beside, load_layout, parse_layout};
 pub use places::Places;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Chapter, reference, write_reference};

@@ -22,6 +22,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::units::{UNITS, Units};
 use super::version::{self, VERSION};
+use crate::feel::Effects;
 use crate::floor::Geometry;
 use crate::format::codec::{At, Distinct, Written};
 use crate::format::{Id, Name, Record, Text, record};
@@ -53,6 +54,22 @@ pub fn load_layout(path: &Path, kinds: &Kinds, geometry: &Geometry) -> Result<Lo
 pub fn folder_beside(path: &Path, name: &str) -> Option<PathBuf> {
     let home = std::path::absolute(path).ok()?;
     home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
+}
+
+/// The shipped kinds and effects, and those in folders `widgets` and `effects` beside the file `path` or beside its folder.
+///
+/// # Errors
+/// Everything wrong with the files in these folders, or that one cannot be read.
+pub fn kinds_beside(path: &Path) -> Result<Kinds, Diagnostics> {
+    let mut effects = Effects::builtin();
+    if let Some(folder) = folder_beside(path, "effects") {
+        effects.read_folder(&folder)?;
+    }
+    let mut kinds = Kinds::shipped(effects)?;
+    if let Some(folder) = folder_beside(path, "widgets") {
+        kinds.read_folder(&folder)?;
+    }
+    Ok(kinds)
 }
 
 /// The layout that `text` describes, made of `kinds` and placed on a floor of this `geometry`.

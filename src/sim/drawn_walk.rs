@@ -10,6 +10,7 @@ use super::person::Person;
 use super::scenario::Scenario;
 use super::script::Script;
 use super::visit::{AWAY_M, PAUSE, upper, working};
+use super::way::{simplified, spaced};
 use crate::floor::{Geometry, Rect};
 use crate::layout::{Layout, Widget};
 use crate::widget::{Behaviour, WidgetId};
@@ -148,7 +149,7 @@ impl Plan<'_> {
 
     /// Comes and goes along `way`.
     fn steps_along(&self, way: &[Vec2]) -> Vec<String> {
-        let points = spaced(&simplified(&self.on_floor(way)));
+        let points = spaced(&simplified(&self.on_floor(way), LOOSE_M), APART_M);
         let Some((first, rest)) = points.split_first() else { return Vec::new() };
         let mut steps = vec![format!("Enter(from: {}, at: {})", self.side_for(*first), self.tiles(*first))];
         if let Some((last, between)) = rest.split_last() {
@@ -247,44 +248,6 @@ impl Plan<'_> {
 
 fn wait(time: Duration) -> String {
     format!("Wait(ms: {})", time.as_millis())
-}
-
-/// `way` with no more points than its shape needs: the farthest from the straight line is kept, and so on to both
-/// sides of it (Ramer, Douglas and Peucker).
-fn simplified(way: &[Vec2]) -> Vec<Vec2> {
-    let (Some(first), Some(last)) = (way.first(), way.last()) else { return Vec::new() };
-    let off = |point: Vec2| {
-        let (along, from) = (*last - *first, point - *first);
-        let share = (from.dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
-        from.distance(along * share)
-    };
-    let farthest =
-        (1..way.len().saturating_sub(1)).max_by(|one, other| off(way[*one]).total_cmp(&off(way[*other])));
-    match farthest.filter(|index| off(way[*index]) > LOOSE_M) {
-        None => vec![*first, *last],
-        Some(index) => {
-            let mut points = simplified(&way[..=index]);
-            points.pop();
-            points.extend(simplified(&way[index..]));
-            points
-        }
-    }
-}
-
-/// The points without those that are near to the one before; the last one stays.
-fn spaced(way: &[Vec2]) -> Vec<Vec2> {
-    let mut points: Vec<Vec2> = Vec::new();
-    for (index, point) in way.iter().enumerate() {
-        let is_far = points.last().is_none_or(|last| last.distance(*point) >= APART_M);
-        let is_last = index + 1 == way.len();
-        if is_last && !is_far && points.len() > 1 {
-            points.pop();
-        }
-        if is_far || (is_last && points.first().is_some_and(|first| first.distance(*point) > LOOSE_M)) {
-            points.push(*point);
-        }
-    }
-    points
 }
 
 #[cfg(test)]

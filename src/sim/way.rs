@@ -45,6 +45,48 @@ pub(super) fn bend(from: Vec2, at: Vec2, to: Vec2) -> f32 {
     turn_between(heading_of(at - from), heading_of(to - at)).abs()
 }
 
+/// The points of `points` that its shape needs: no other is farther than `off_m` from the lines between them.
+///
+/// # Source
+/// Ramer 1972, Douglas and Peucker 1973: of each stretch the point that is farthest from the straight line is kept, and so on
+/// to both sides of it.
+pub(super) fn simplified(points: &[Vec2], off_m: f32) -> Vec<Vec2> {
+    let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
+    let mut kept = vec![false; points.len()];
+    // Not by calls of itself: a line may be long.
+    let mut stretches = vec![(0, end)];
+    while let Some((first, last)) = stretches.pop() {
+        (kept[first], kept[last]) = (true, true);
+        let off = |index: usize| distance_from(points[index], points[first], points[last]);
+        let farthest = (first + 1..last).max_by(|one, other| off(*one).total_cmp(&off(*other)));
+        if let Some(index) = farthest.filter(|index| off(*index) > off_m) {
+            stretches.extend([(first, index), (index, last)]);
+        }
+    }
+    points.iter().zip(kept).filter(|(_, is_kept)| *is_kept).map(|(point, _)| *point).collect()
+}
+
+/// How far `point` is from the straight stretch between two others.
+fn distance_from(point: Vec2, from: Vec2, to: Vec2) -> f32 {
+    let (along, beside) = (to - from, point - from);
+    let share = (beside.dot(along) / along.length_squared().max(1e-12)).clamp(0.0, 1.0);
+    beside.distance(along * share)
+}
+
+/// The points without those that are within `apart_m` of the one kept before; the last one stays, as the only one if all are.
+pub(super) fn spaced(points: &[Vec2], apart_m: f32) -> Vec<Vec2> {
+    let mut kept: Vec<Vec2> = Vec::new();
+    for point in points {
+        if kept.last().is_none_or(|last| last.distance(*point) >= apart_m) {
+            kept.push(*point);
+        }
+    }
+    if let (Some(end), Some(last)) = (points.last(), kept.last_mut()) {
+        *last = *end;
+    }
+    kept
+}
+
 #[cfg(test)]
 mod tests {
     use std::f32::consts::FRAC_PI_2;
@@ -61,5 +103,25 @@ mod tests {
         assert_eq!(way.at(99.0).0, Vec2::ONE);
         assert_eq!(Way::new(&[]).at(1.0).0, Vec2::ZERO);
         assert!((bend(points[0], points[1], points[3]) - FRAC_PI_2).abs() < 1e-6);
+    }
+
+    #[test]
+    fn only_the_points_that_a_shape_needs_are_kept() {
+        let corner = [Vec2::ZERO, Vec2::new(0.5, 0.01), Vec2::X, Vec2::new(1.0, 0.4), Vec2::ONE];
+        assert_eq!(simplified(&corner, 0.05), [Vec2::ZERO, Vec2::X, Vec2::ONE]);
+        assert_eq!(simplified(&corner, 0.005).len(), 4);
+        assert_eq!(simplified(&[Vec2::X], 0.05), [Vec2::X]);
+        assert!(simplified(&[], 0.05).is_empty());
+        // A zigzag keeps every point, however many.
+        let zigzag: Vec<Vec2> = (0..5000).map(|k| Vec2::new(k as f32, (k % 2) as f32)).collect();
+        assert_eq!(simplified(&zigzag, 0.05).len(), 5000);
+    }
+
+    #[test]
+    fn points_that_are_near_the_one_before_count_as_one_and_the_end_stays() {
+        let points = [0.0, 0.1, 0.5, 0.6, 0.7].map(|x| Vec2::X * x);
+        assert_eq!(spaced(&points, 0.25), [Vec2::ZERO, Vec2::X * 0.7]);
+        assert_eq!(spaced(&points[..2], 0.25), [Vec2::X * 0.1]);
+        assert!(spaced(&[], 0.25).is_empty());
     }
 }

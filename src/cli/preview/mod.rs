@@ -1,37 +1,34 @@
 //! `underfoot preview`: the window, with its floor served on a thread of its own.
 
+mod commands;
+mod feeds;
 mod player;
 
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{self, Receiver, Sender, SyncSender, TrySendError};
-use std::thread;
+use std::sync::mpsc;
 use std::time::Duration;
 
-use underfoot::edit;
-use underfoot::feel::{Renderer, ScopeReader};
+use underfoot::feel::Renderer;
 use underfoot::floor::Floor;
-use underfoot::glam::Vec2;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    self, DesignInput, EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewError,
-    PreviewFoot, PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed, ShoeFeed, Warnings,
+    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed,
+    ShoeFeed, Warnings,
 };
 use underfoot::recording::Recording;
 use underfoot::runtime::{EndReason, Kind, Session};
-use underfoot::schema::{self, Diagnostics};
+use underfoot::schema;
 use underfoot::sense::Method;
-use underfoot::serve::Command;
-use underfoot::sim::{
-    ArrivalHandle, Foot, FootDriver, FootHandle, LoopingScript, arrivals, feet_by_hand, watched,
-};
-use underfoot::sink::{EventSink, LatencyStages, Report};
+use underfoot::sim::{ArrivalHandle, FootDriver, LoopingScript, arrivals, feet_by_hand, watched};
+use underfoot::sink::LatencyStages;
 use underfoot::source::{FaultSwitch, Faults, Pace, RehearsalSource, SensorSource, SimulatedSource};
 use underfoot::units::HostClock;
-use underfoot::wire::ControlMessage;
 
+use self::commands::{CommandHandler, Desk};
+use self::feeds::{Mouse, Scopes, ToWindow, shoe};
 use self::player::{Player, Window};
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
@@ -42,7 +39,6 @@ use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
 use super::run::end;
-use super::watch::Watch;
 
 /// What `underfoot preview` is asked to do.
 #[derive(clap::Args, Debug, Default)]
@@ -142,8 +138,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let desk = Desk { session: session.clone(), news };
     let watch = desk.watch(&args.layout)?;
     let choices = args.choices();
-    let told = Obeyed { files: args.layout.clone(), watch, choices: choices.clone(), floor, desk };
-    told.process_commands(wished, notice_sender);
+    let handler = CommandHandler { files: args.layout.clone(), watch, choices: choices.clone(), floor, desk };
+    handler.process_commands(wished, notice_sender);
 
     let scopes = scopes.try_iter().last().flatten();
     let scopes = scopes.map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
@@ -320,204 +316,5 @@ impl Args {
     fn choices(&self) -> Vec<String> {
         let given = self.layout.path().map(|path| path.display().to_string());
         given.into_iter().chain(schema::builtin_layouts().map(String::from)).collect()
-    }
-}
-
-/// Gives layouts to the floor and tells the window which.
-#[derive(Clone)]
-struct Desk {
-    session: Session,
-    news: Sender<LayoutNews>,
-}
-
-impl Desk {
-    /// Puts what was read on the floor, or tells why that can't be.
-    fn take(&self, name: &str, cause: LayoutCause, read: Result<(Layout, Diagnostics), String>) {
-        match read {
-            Ok((layout, warnings)) => self.put(name, cause, layout, Warnings::from(&warnings)),
-            Err(diagnostics) => {
-                let _ = self.news.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
-            }
-        }
-    }
-
-    fn put(&self, name: &str, cause: LayoutCause, layout: Layout, warnings: Warnings) {
-        let loaded = Arc::new(layout.clone());
-        let revision = self.session.set_layout(layout);
-        let name = name.to_owned();
-        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
-    }
-
-    /// Tells the window, which has the text, of each change of the files.
-    fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
-        let news = self.news.clone();
-        Watch::on_change(files, move || {
-            let _ = news.send(LayoutNews::Changed);
-        })
-    }
-}
-
-/// What the wishes of the person at the window need.
-struct Obeyed {
-    files: LayoutArgs,
-    /// Ends with the next one.
-    watch: Option<Watch>,
-    choices: Vec<String>,
-    floor: Floor,
-    desk: Desk,
-}
-
-impl Obeyed {
-    /// Does what the person at the window wants, on a thread that ends with the window.
-    fn process_commands(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
-        thread::spawn(move || {
-            for wish in wished {
-                let command = match wish {
-                    PreviewCommand::Open(choice) => {
-                        self.open(choice);
-                        continue;
-                    }
-                    PreviewCommand::Watch(path) => {
-                        self.files.layout = path;
-                        match self.desk.watch(&self.files) {
-                            Ok(watch) => self.watch = watch,
-                            Err(failure) => drop(notices.send(failure.to_string())),
-                        }
-                        continue;
-                    }
-                    PreviewCommand::Try { layout, name, warnings, cause } => {
-                        self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
-                        continue;
-                    }
-                    PreviewCommand::SaveEffect { name, text } => {
-                        // A window that is closed already need not know.
-                        let _ = notices.send(self.save(&name, &text));
-                        continue;
-                    }
-                    PreviewCommand::Enable { id, enabled: true } => {
-                        Command::Control(ControlMessage::Enable { id })
-                    }
-                    PreviewCommand::Enable { id, enabled: false } => {
-                        Command::Control(ControlMessage::Disable { id })
-                    }
-                    PreviewCommand::Mute(on) => Command::Control(ControlMessage::Mute { on }),
-                    PreviewCommand::MuteTile { tile, on } => {
-                        Command::Control(ControlMessage::MuteTile { tile, on })
-                    }
-                    PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
-                    PreviewCommand::Feel { effect, gesture, tile } => {
-                        let tile = u16::try_from(tile).unwrap_or(u16::MAX);
-                        Command::Audition { effect, gesture: Box::new(gesture), tile }
-                    }
-                };
-                if !self.desk.session.send(command) {
-                    break;
-                }
-            }
-        });
-    }
-
-    fn open(&mut self, choice: usize) {
-        let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
-        self.files.layout = Some(PathBuf::from(&name));
-        let read = self.files.reviewed(&self.floor).map_err(|failure| failure.to_string());
-        self.desk.take(&name, LayoutCause::Opened, read);
-    }
-
-    /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
-    fn save(&self, name: &str, text: &str) -> String {
-        let folder = self.files.effects_folder().unwrap_or_else(|| {
-            let beside = self.files.path().and_then(std::path::Path::parent);
-            beside.map_or_else(|| PathBuf::from("effects"), |folder| folder.join("effects"))
-        });
-        let path = folder.join(format!("{name}.ron"));
-        if let Err(error) = std::fs::create_dir_all(&folder) {
-            return format!("{} can't be made: {error}", folder.display());
-        }
-        // What somebody has written beside the numbers stays.
-        let old = std::fs::read_to_string(&path).unwrap_or_default();
-        let text = edit::refit(&old, text);
-        match schema::save_text(&text, &path) {
-            Ok(_) => {
-                let _ = self.desk.news.send(LayoutNews::Changed);
-                format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
-            }
-            Err(error) => error.to_string(),
-        }
-    }
-}
-
-/// Passes events on to the window.
-struct ToWindow {
-    events: SyncSender<EventNews>,
-    missed: u64,
-}
-
-impl EventSink for ToWindow {
-    fn report(&mut self, report: Report<'_>) {
-        if let Report::Event(event) = report
-            && let Err(TrySendError::Full(_)) = self.events.try_send(EventNews::Event(event.clone()))
-        {
-            self.missed += 1;
-        }
-    }
-
-    fn dropped(&self) -> u64 {
-        self.missed
-    }
-}
-
-/// The mouse's feet on the simulated floor.
-struct Mouse(FootHandle);
-
-impl FootSink for Mouse {
-    fn lead(&mut self, over_s: f32, paths: &[Vec<PreviewFoot>]) {
-        self.0.lead(over_s, paths.iter().map(|path| path.iter().map(foot).collect()).collect());
-    }
-
-    fn centre_of_pressure(&self, shoe: &PreviewFoot) -> Vec2 {
-        foot(shoe).centre_of_pressure()
-    }
-}
-
-/// A centimetre of shoe around the foot's length.
-const SHOE_M: f32 = 0.01;
-
-fn foot(shoe: &PreviewFoot) -> Foot {
-    Foot {
-        position: shoe.position,
-        heading: shoe.heading_rad,
-        length_m: shoe.length_m - SHOE_M,
-        force: shoe.force,
-        roll: shoe.roll,
-    }
-}
-
-/// The shoe around a foot; a foot of a scenario has no side, the mouse's second one is the left.
-fn shoe(foot: &Foot, left: bool) -> PreviewFoot {
-    PreviewFoot { length_m: foot.length_m + SHOE_M, left, ..PreviewFoot::from(foot) }
-}
-
-/// What the actuators did, as the window draws it.
-struct Scopes {
-    reader: ScopeReader,
-    points: Vec<(f32, f32)>,
-}
-
-impl Scopes {
-    fn new(reader: ScopeReader) -> Self {
-        Self { reader, points: Vec::new() }
-    }
-}
-
-impl ScopeFeed for Scopes {
-    fn update(&mut self) {
-        self.reader.update();
-    }
-
-    fn scope(&mut self, channel: usize) -> &[(f32, f32)] {
-        self.points.clear();
-        self.points.extend(self.reader.channel(channel).iter().map(|point| (point.min, point.max)));
-        &self.points
     }
 }

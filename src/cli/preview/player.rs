@@ -230,7 +230,7 @@ impl Playing {
     fn play(mut self) {
         loop {
             match self.orders.recv_timeout(LOOK) {
-                Ok(order) => self.obey(order),
+                Ok(order) => self.apply(order),
                 Err(RecvTimeoutError::Timeout) => {}
                 Err(RecvTimeoutError::Disconnected) => return,
             }
@@ -238,7 +238,7 @@ impl Playing {
         }
     }
 
-    fn obey(&mut self, order: PlaybackOrder) {
+    fn apply(&mut self, order: PlaybackOrder) {
         let speed_of = |times: f64| if times.is_finite() { Speed::Times(times) } else { Speed::Max };
         match order {
             PlaybackOrder::Pause(is_paused) => {
@@ -306,7 +306,7 @@ impl Playing {
         let is_over = self.run.progress.is_over();
         match repeats.filter(|_| is_there && !is_paused) {
             Some((from, to)) if at_s >= to || is_over => self.go_to(from),
-            _ if is_over && is_there && !is_paused => self.obey(PlaybackOrder::Pause(true)),
+            _ if is_over && is_there && !is_paused => self.apply(PlaybackOrder::Pause(true)),
             _ => {}
         }
     }

@@ -104,7 +104,7 @@ impl Projection {
     }
 
     /// What keys do in this window; the answer is whether the placement has changed.
-    fn obey_keys(&mut self, ui: &Ui, size: Vec2, floor: f32) -> bool {
+    fn handle_keys(&mut self, ui: &Ui, size: Vec2, floor: f32) -> bool {
         let pressed = |key: Key| ui.input(|i| i.key_pressed(key));
         if pressed(Key::Escape) && self.adjusting.is_some() {
             self.adjusting = None;
@@ -244,7 +244,7 @@ impl App {
         let floor = self.floor.geometry.bounds();
         let shape = floor.size().x / floor.size().y;
         self.projection.placement.get_or_insert_with(|| Placement::fit(shape, size.x / size.y));
-        let changed = self.projection.obey_keys(ui, size, shape);
+        let changed = self.projection.handle_keys(ui, size, shape);
         let theme = self.appearance.projected();
         ui.painter().rect_filled(picture, 0.0, color(theme.canvas));
         self.draw_projected(ui, &theme, picture, size);

@@ -94,7 +94,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
     let transport = {
-        let obeying = Obeying { session: session.clone(), notices: notices.clone() };
+        let commander = Commander { session: session.clone(), notices: notices.clone() };
         let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
         Transport::node(&args.gateway, &args.area, move |bytes| {
             let now = clock();
@@ -103,7 +103,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
                 return;
             };
             let actions = guard.lock().unwrap_or_else(PoisonError::into_inner).hear(&message, now);
-            actions.into_iter().for_each(|action| obeying.obey(action));
+            actions.into_iter().for_each(|action| commander.apply(action));
         })?
     };
     notices.say(format!(
@@ -124,7 +124,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         transport,
         guard,
         clock,
-        obeying: Obeying { session: session.clone(), notices: notices.clone() },
+        commander: Commander { session: session.clone(), notices: notices.clone() },
         unsent: 0,
     };
     let unsent = teller.run(&drafted);
@@ -160,17 +160,7 @@ fn load_layout(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> {
             &Kinds::shipped(Effects::builtin())?,
             geometry,
         )?,
-        None => {
-            let mut effects = Effects::builtin();
-            if let Some(folder) = schema::folder_beside(path, "effects") {
-                effects.read_folder(&folder)?;
-            }
-            let mut kinds = Kinds::shipped(effects)?;
-            if let Some(folder) = schema::folder_beside(path, "widgets") {
-                kinds.read_folder(&folder)?;
-            }
-            schema::load_layout(path, &kinds, geometry)?
-        }
+        None => schema::load_layout(path, &schema::kinds_beside(path)?, geometry)?,
     };
     if !loaded.warnings.is_empty() {
         tracing::warn!("{}", loaded.warnings);
@@ -179,13 +169,13 @@ fn load_layout(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> {
 }
 
 /// Does what the guard says.
-struct Obeying {
+struct Commander {
     session: Session,
     notices: Notices,
 }
 
-impl Obeying {
-    fn obey(&self, action: Action) {
+impl Commander {
+    fn apply(&self, action: Action) {
         let (commands, notice): (&[ControlMessage], &str) = match action {
             Action::Heard => (&[], "The gateway hears this node."),
             Action::Cancel(Reason::Late) => (
@@ -217,7 +207,7 @@ struct Teller {
     transport: Transport,
     guard: Arc<Mutex<Guard>>,
     clock: HostClock,
-    obeying: Obeying,
+    commander: Commander,
     unsent: u64,
 }
 
@@ -240,7 +230,7 @@ impl Teller {
             }
             let now = (self.clock)();
             let actions = self.guard.lock().unwrap_or_else(PoisonError::into_inner).tick(now);
-            actions.into_iter().for_each(|action| self.obeying.obey(action));
+            actions.into_iter().for_each(|action| self.commander.apply(action));
         }
     }
 
@@ -269,7 +259,7 @@ impl Teller {
 
     /// What the controls hold that no foot holds.
     fn values(&self) -> Vec<(String, NodeValue)> {
-        let snapshot = self.obeying.session.snapshot();
+        let snapshot = self.commander.session.snapshot();
         let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);
         let free = all.filter(|(widget, _)| !snapshot.floor.held.contains(&widget.id));
         free.filter_map(|(widget, state)| Some((widget.id.as_str().to_owned(), state.value?.into())))

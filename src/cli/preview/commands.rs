@@ -1,0 +1,143 @@
+//! What the person at the window wants: layouts opened and tried, effects saved, controls set.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender};
+use std::thread;
+
+use underfoot::edit;
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::preview::{LayoutCause, LayoutNews, PreviewCommand, Warnings};
+use underfoot::runtime::Session;
+use underfoot::schema::{self, Diagnostics};
+use underfoot::serve::Command;
+use underfoot::wire::ControlMessage;
+
+use super::super::failure::Failure;
+use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::super::watch::Watch;
+
+/// Gives layouts to the floor and tells the window which.
+#[derive(Clone)]
+pub(super) struct Desk {
+    pub(super) session: Session,
+    pub(super) news: Sender<LayoutNews>,
+}
+
+impl Desk {
+    /// Puts what was read on the floor, or tells why that can't be.
+    fn take(&self, name: &str, cause: LayoutCause, read: Result<(Layout, Diagnostics), String>) {
+        match read {
+            Ok((layout, warnings)) => self.put(name, cause, layout, Warnings::from(&warnings)),
+            Err(diagnostics) => {
+                let _ = self.news.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
+            }
+        }
+    }
+
+    fn put(&self, name: &str, cause: LayoutCause, layout: Layout, warnings: Warnings) {
+        let loaded = Arc::new(layout.clone());
+        let revision = self.session.set_layout(layout);
+        let name = name.to_owned();
+        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
+    }
+
+    /// Tells the window, which has the text, of each change of the files.
+    pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
+        let news = self.news.clone();
+        Watch::on_change(files, move || {
+            let _ = news.send(LayoutNews::Changed);
+        })
+    }
+}
+
+/// Does what the person at the window wants, with what that needs.
+pub(super) struct CommandHandler {
+    pub(super) files: LayoutArgs,
+    /// Ends with the next one.
+    pub(super) watch: Option<Watch>,
+    pub(super) choices: Vec<String>,
+    pub(super) floor: Floor,
+    pub(super) desk: Desk,
+}
+
+impl CommandHandler {
+    /// Does what the person at the window wants, on a thread that ends with the window.
+    pub(super) fn process_commands(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
+        thread::spawn(move || {
+            for wish in wished {
+                let command = match wish {
+                    PreviewCommand::Open(choice) => {
+                        self.open(choice);
+                        continue;
+                    }
+                    PreviewCommand::Watch(path) => {
+                        self.files.layout = path;
+                        match self.desk.watch(&self.files) {
+                            Ok(watch) => self.watch = watch,
+                            Err(failure) => drop(notices.send(failure.to_string())),
+                        }
+                        continue;
+                    }
+                    PreviewCommand::Try { layout, name, warnings, cause } => {
+                        self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
+                        continue;
+                    }
+                    PreviewCommand::SaveEffect { name, text } => {
+                        // A window that is closed already need not know.
+                        let _ = notices.send(self.save(&name, &text));
+                        continue;
+                    }
+                    PreviewCommand::Enable { id, enabled: true } => {
+                        Command::Control(ControlMessage::Enable { id })
+                    }
+                    PreviewCommand::Enable { id, enabled: false } => {
+                        Command::Control(ControlMessage::Disable { id })
+                    }
+                    PreviewCommand::Mute(on) => Command::Control(ControlMessage::Mute { on }),
+                    PreviewCommand::MuteTile { tile, on } => {
+                        Command::Control(ControlMessage::MuteTile { tile, on })
+                    }
+                    PreviewCommand::Set { id, value } => Command::Control(ControlMessage::Set { id, value }),
+                    PreviewCommand::Feel { effect, gesture, tile } => {
+                        let tile = u16::try_from(tile).unwrap_or(u16::MAX);
+                        Command::Audition { effect, gesture: Box::new(gesture), tile }
+                    }
+                };
+                if !self.desk.session.send(command) {
+                    break;
+                }
+            }
+        });
+    }
+
+    fn open(&mut self, choice: usize) {
+        let name = self.choices.get(choice).map_or(DEFAULT_LAYOUT, String::as_str).to_owned();
+        self.files.layout = Some(PathBuf::from(&name));
+        let read = self.files.reviewed(&self.floor).map_err(|failure| failure.to_string());
+        self.desk.take(&name, LayoutCause::Opened, read);
+    }
+
+    /// Keeps an effect where layouts find it, and shows the layout with it; the answer is what to say.
+    fn save(&self, name: &str, text: &str) -> String {
+        let folder = self.files.effects_folder().unwrap_or_else(|| {
+            let beside = self.files.path().and_then(Path::parent);
+            beside.map_or_else(|| PathBuf::from("effects"), |folder| folder.join("effects"))
+        });
+        let path = folder.join(format!("{name}.ron"));
+        if let Err(error) = std::fs::create_dir_all(&folder) {
+            return format!("{} can't be made: {error}", folder.display());
+        }
+        // What somebody has written beside the numbers stays.
+        let old = std::fs::read_to_string(&path).unwrap_or_default();
+        let text = edit::refit(&old, text);
+        match schema::save_text(&text, &path) {
+            Ok(_) => {
+                let _ = self.desk.news.send(LayoutNews::Changed);
+                format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
+            }
+            Err(error) => error.to_string(),
+        }
+    }
+}
