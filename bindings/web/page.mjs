@@ -57,8 +57,9 @@ await page.evaluate((id) => {
     const held = document.querySelector("#row-" + id).cells[2].textContent === "held";
     if (held !== was) sayHeld(held);
     was = held;
-    requestAnimationFrame(look);
   };
+  // The rows are made anew with each layout.
+  new MutationObserver(look).observe(document.querySelector("#controls"), { childList: true, subtree: true });
   look();
 }, watched);
 print({ listening: address });

@@ -1,6 +1,6 @@
 //! The window.
 
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use eframe::egui::{
     self, Align2, Color32, Context, CornerRadius, FontId, Frame, Key, Margin, RawInput, Rect, Response,
@@ -36,9 +36,27 @@ pub struct App {
     feet: FootInput,
     small: SmallFloor,
     projector: Projector,
-    tiles: Option<Tiles>,
+    picture: Picture,
     drag: Vec2,
     levels: f64,
+}
+
+/// Pictures over the map's own shapes.
+#[derive(Default)]
+pub struct Picture {
+    pub tiles: Option<Tiles>,
+    /// Whose they are; empty if nobody is to be named.
+    pub attribution: String,
+}
+
+impl Picture {
+    /// Whose shapes and pictures are seen, and why some are not.
+    fn credits(&self) -> String {
+        let attribution = Some(self.attribution.clone()).filter(|text| !text.is_empty());
+        let trouble = self.tiles.as_ref().and_then(Tiles::trouble).map(|why| format!("No tiles: {why}"));
+        let all = std::iter::once("Shapes: Natural Earth".to_owned()).chain(attribution).chain(trouble);
+        all.collect::<Vec<_>>().join("   ")
+    }
 }
 
 impl App {
@@ -49,14 +67,14 @@ impl App {
         geometry: Geometry,
         free: floor::Rect,
         hand: Option<FootHandle>,
-        tiles: Option<Tiles>,
+        picture: Picture,
         project: bool,
     ) -> Self {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Light);
         let (small, projector) = (SmallFloor::new(Theme::LIGHT, hand), Projector::new(project));
         let (drag, levels) = (Vec2::ZERO, 0.0);
-        Self { guide, geometry, feet: FootInput::new(free), small, projector, tiles, drag, levels }
+        Self { guide, geometry, feet: FootInput::new(free), small, projector, picture, drag, levels }
     }
 
     /// The card in a corner that says where one is.
@@ -123,8 +141,8 @@ impl eframe::App for App {
             self.projector.toggle();
         }
         chart::shapes(ui.painter(), rect, &self.guide.world, &self.guide.state);
-        if let Some(tiles) = &mut self.tiles {
-            tiles.paint(ui.ctx(), ui.painter(), rect, &self.guide.state.camera);
+        if let Some(tiles) = &mut self.picture.tiles {
+            tiles.paint(ui.ctx(), ui.painter(), rect, &self.guide.state.camera, Instant::now());
         }
         chart::layers(ui.painter(), rect, &self.guide.world, &self.guide.state);
         chart::scale_bar(
@@ -135,7 +153,7 @@ impl eframe::App for App {
         );
         let below = pos2(rect.left() + 28.0, rect.bottom() - 6.0);
         let font = FontId::proportional(11.0);
-        ui.painter().text(below, Align2::LEFT_BOTTOM, "Shapes: Natural Earth", font, QUIET);
+        ui.painter().text(below, Align2::LEFT_BOTTOM, self.picture.credits(), font, QUIET);
         self.title(ui, rect, &snapshot);
         self.floor(ui, rect, &snapshot);
         self.projector.show(&ui.ctx().clone(), &self.geometry, &snapshot);

@@ -20,6 +20,7 @@ use underfoot::schema::{self, Kinds};
 use underfoot::sim::{FootHandle, Scenario, feet_by_hand};
 use underfoot_egui::FootInput;
 
+use crate::app::Picture;
 use crate::guide::Guide;
 use crate::state::State;
 use crate::tiles::Tiles;
@@ -54,9 +55,13 @@ struct Args {
     /// Open no window.
     #[arg(long)]
     no_window: bool,
-    /// Show the pictures of this folder, `level/x/y.png` in Web Mercator, over the map's own shapes.
-    #[arg(long, value_name = "FOLDER")]
-    tiles: Option<PathBuf>,
+    /// Show pictures in Web Mercator over the map's own shapes: those of a folder, `level/x/y.png`, or of a server, such
+    /// as `http://127.0.0.1:8080/{z}/{x}/{y}.png`.
+    #[arg(long, value_name = "FOLDER|URL")]
+    tiles: Option<String>,
+    /// Whose pictures they are, told at the map's edge.
+    #[arg(long, value_name = "TEXT", requires = "tiles")]
+    attribution: Option<String>,
     /// Also open a window for a projector above the floor; the key P does the same.
     #[arg(long)]
     project: bool,
@@ -114,7 +119,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         let waker = context.egui_ctx.clone();
         let floor = builder.wake(move || waker.request_repaint()).start()?;
         let guide = Guide::new(floor, world, state, args.print_state);
-        let app = app::App::new(&context.egui_ctx, guide, geometry, free, hand, tiles, args.project);
+        let picture = Picture { tiles, attribution: args.attribution.unwrap_or_default() };
+        let app = app::App::new(&context.egui_ctx, guide, geometry, free, hand, picture, args.project);
         Ok(Box::new(app) as Box<dyn eframe::App>)
     });
     Ok(eframe::run_native("Atlas", native, start)?)

@@ -45,11 +45,17 @@ impl Fault {
         Self { hall, nodes, boards }
     }
 
-    /// Waits for the next press, and half a second more.
+    /// Waits for the next press that holds for half a second: a busy machine may stall for long enough to lose one.
     fn await_hold(&self) {
-        let from = self.hall.lines.len();
-        self.hall.lines.find(from, "pressed", |line| is(line, "pressed"));
-        std::thread::sleep(Duration::from_millis(500));
+        loop {
+            let from = self.hall.lines.len();
+            self.hall.lines.find(from, "pressed", |line| is(line, "pressed"));
+            std::thread::sleep(Duration::from_millis(500));
+            let lines = self.hall.lines.all();
+            if !lines.iter().skip(from).any(|line| is(line, "cancelled") || is(line, "released")) {
+                return;
+            }
+        }
     }
 
     /// One round: how long it took until everything that was held was told to be over.

@@ -1,0 +1,116 @@
+//! Threads that get pictures, so that the map goes on moving meanwhile.
+
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use eframe::egui::{ColorImage, Context};
+
+use super::source::{Key, NoPicture, Source};
+
+/// How many pictures are waited for at once: a server is asked for no more than a browser would.
+const READERS: usize = 4;
+
+/// What became of a tile.
+pub type Answer = (Key, Result<ColorImage, NoPicture>);
+
+/// Gets what is wanted at this moment, and forgets what no longer is.
+pub struct Readers {
+    wanted: Arc<Wanted>,
+    answers: Receiver<Answer>,
+    sender: Sender<Answer>,
+    source: Arc<Source>,
+    are_there: bool,
+}
+
+#[derive(Default)]
+struct Wanted {
+    list: Mutex<List>,
+    more: Condvar,
+}
+
+#[derive(Default)]
+struct List {
+    /// The first one last.
+    keys: Vec<Key>,
+    /// Those somebody is getting.
+    begun: Vec<Key>,
+    is_over: bool,
+}
+
+impl Wanted {
+    fn lock(&self) -> MutexGuard<'_, List> {
+        self.list.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// The next one to get, for which it waits; `None` once nobody wants any.
+    fn next(&self) -> Option<Key> {
+        let mut list = self.lock();
+        loop {
+            if list.is_over {
+                return None;
+            }
+            if let Some(key) = list.keys.pop() {
+                list.begun.push(key);
+                return Some(key);
+            }
+            list = self.more.wait(list).unwrap_or_else(PoisonError::into_inner);
+        }
+    }
+}
+
+impl Readers {
+    pub fn new(source: Arc<Source>) -> Self {
+        let (sender, answers) = mpsc::channel();
+        Self { wanted: Arc::default(), answers, sender, source, are_there: false }
+    }
+
+    /// Gets these, the first one first, in place of those it was told of before and has not begun.
+    pub fn want(&mut self, context: &Context, keys: impl DoubleEndedIterator<Item = Key>) {
+        let mut list = self.wanted.lock();
+        let begun = std::mem::take(&mut list.begun);
+        list.keys.clear();
+        list.keys.extend(keys.rev().filter(|key| !begun.contains(key)));
+        list.begun = begun;
+        let is_needed = !list.keys.is_empty();
+        drop(list);
+        if is_needed {
+            self.start(context);
+            self.wanted.more.notify_all();
+        }
+    }
+
+    /// What has come since the last time.
+    pub fn answers(&self) -> impl Iterator<Item = Answer> + '_ {
+        self.answers.try_iter().inspect(|(key, _)| self.wanted.lock().begun.retain(|begun| begun != key))
+    }
+
+    fn start(&mut self, context: &Context) {
+        if std::mem::replace(&mut self.are_there, true) {
+            return;
+        }
+        for _ in 0..READERS {
+            let (wanted, answers) = (Arc::clone(&self.wanted), self.sender.clone());
+            let (source, context) = (Arc::clone(&self.source), context.clone());
+            let get = move || {
+                while let Some(key) = wanted.next() {
+                    if answers.send((key, source.read(key))).is_err() {
+                        return;
+                    }
+                    context.request_repaint();
+                }
+            };
+            if let Err(error) = thread::Builder::new().name("tiles".into()).spawn(get) {
+                eprintln!("no thread reads tiles: {error}");
+            }
+        }
+    }
+}
+
+impl Drop for Readers {
+    /// Threads that wait for a server end by themselves.
+    fn drop(&mut self) {
+        self.wanted.lock().is_over = true;
+        self.wanted.more.notify_all();
+    }
+}
