@@ -253,7 +253,7 @@ impl Pond {
         let heading = self.rng.random_range(-0.5..0.5);
         for millis in 0..STEP_MS {
             let force = Newtons(WEIGHT_N * manner.load(millis as f32 * 1e-3));
-            let foot = Foot { position, heading, length_m: 0.27, force, roll: 0.5 };
+            let foot = Foot { position, heading, length_m: 0.27, force, roll: 0.5, left: false };
             self.pass(&[foot.as_load()]);
         }
         std::mem::take(&mut self.events)

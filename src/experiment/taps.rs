@@ -109,7 +109,7 @@ impl TapScene {
             Stance::Beside => (FRAC_PI_2, 0.5 * shoe.x),
         };
         let position = Vec2::new(along, region.min.y - gap - reach);
-        let standing = Foot { position, heading, length_m, force: heavy, roll: 0.4 };
+        let standing = Foot { position, heading, length_m, force: heavy, roll: 0.4, left: false };
         // The other foot works to its right or left, not on top of where the first one stands.
         let side = if rng.random_bool(0.5) { 1.0 } else { -1.0 };
         let touching = Foot { roll: 0.6, force: Newtons::ZERO, heading: 0.15 * side, ..standing };

@@ -73,17 +73,18 @@ const LENGTH_MS: u32 = 1600;
 fn feet(milli: f32) -> [Foot; 2] {
     let down = |from: f32| ((milli - from) / 200.0).clamp(0.0, 1.0);
     let (first, second) = (down(50.0), down(550.0));
-    let foot = |x: f32, y: f32, heading, force, roll| Foot {
+    let foot = |x: f32, y: f32, heading, force, roll, left| Foot {
         position: Vec2::new(x, y),
         heading,
         length_m: 0.26,
         force: Newtons(force),
         roll,
+        left,
     };
     // The whole weight of 690 N is on the left foot until the right one takes its share.
     [
-        foot(0.165, 0.335, 0.12, 690.0 * first - 320.0 * second, 0.42),
-        foot(0.352, 0.285, -0.20, 320.0 * second, 0.40),
+        foot(0.165, 0.335, 0.12, 690.0 * first - 320.0 * second, 0.42, true),
+        foot(0.352, 0.285, -0.20, 320.0 * second, 0.40, false),
     ]
 }
 

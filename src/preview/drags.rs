@@ -31,6 +31,7 @@ impl FootSink for Mouse {
             length_m: shoe.length_m - 0.01,
             force: shoe.force,
             roll: shoe.roll,
+            left: shoe.left,
         };
         self.0.lead(over_s, paths.iter().map(|path| path.iter().map(foot).collect()).collect());
     }

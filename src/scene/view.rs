@@ -28,7 +28,7 @@ pub struct Shoe {
 
 #[cfg(feature = "sim")]
 impl From<&crate::sim::Foot> for Shoe {
-    /// A right shoe of the foot's own length: a simulated foot has no side.
+    /// A shoe of the foot's own length.
     fn from(foot: &crate::sim::Foot) -> Self {
         Self {
             position: foot.position,
@@ -36,7 +36,7 @@ impl From<&crate::sim::Foot> for Shoe {
             length_m: foot.length_m,
             force: foot.force,
             roll: foot.roll,
-            left: false,
+            left: foot.left,
         }
     }
 }

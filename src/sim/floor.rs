@@ -414,7 +414,7 @@ mod tests {
     use crate::sim::Print;
 
     fn foot(position: Vec2, force: f32) -> Foot {
-        Foot { position, heading: 0.2, length_m: 0.27, force: Newtons(force), roll: 0.4 }
+        Foot { position, heading: 0.2, length_m: 0.27, force: Newtons(force), roll: 0.4, left: false }
     }
 
     /// Net force and centroid of everything on the floor, by the sensors' own newtons.

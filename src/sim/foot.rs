@@ -21,6 +21,8 @@ pub struct Foot {
     pub force: Newtons,
     /// How far the load has rolled from the heel (0) to the toes (1).
     pub roll: f32,
+    /// Whether it is a left foot; the floor feels no difference.
+    pub left: bool,
 }
 
 impl Foot {
@@ -259,7 +261,7 @@ mod tests {
     use super::*;
 
     fn foot(position: Vec2, heading: f32, roll: f32) -> Foot {
-        Foot { position, heading, length_m: 0.27, force: Newtons(700.0), roll }
+        Foot { position, heading, length_m: 0.27, force: Newtons(700.0), roll, left: false }
     }
 
     fn sum(loads: &[TileLoad]) -> (f32, Vec2) {

@@ -152,8 +152,14 @@ struct Follower {
 impl Follower {
     /// A foot in the air over the first place of its path.
     fn over(first: Option<&Foot>) -> Self {
-        let anywhere =
-            Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.27, force: Newtons::ZERO, roll: 0.0 };
+        let anywhere = Foot {
+            position: Vec2::ZERO,
+            heading: 0.0,
+            length_m: 0.27,
+            force: Newtons::ZERO,
+            roll: 0.0,
+            left: false,
+        };
         let goal = Foot { force: Newtons::ZERO, ..first.copied().filter(is_finite).unwrap_or(anywhere) };
         let mut follower = Self {
             x: Spring::at(0.0),
@@ -292,6 +298,7 @@ impl Follower {
             length_m: self.goal.length_m,
             force: Newtons(force),
             roll: self.roll.value,
+            left: self.goal.left,
         }
     }
 }
@@ -324,7 +331,14 @@ mod tests {
     use super::*;
 
     fn foot(x: f32, force: f32) -> Foot {
-        Foot { position: Vec2::new(x, 0.5), heading: 0.0, length_m: 0.27, force: Newtons(force), roll: 0.4 }
+        Foot {
+            position: Vec2::new(x, 0.5),
+            heading: 0.0,
+            length_m: 0.27,
+            force: Newtons(force),
+            roll: 0.4,
+            left: false,
+        }
     }
 
     /// What becomes of a hand that tells its path every `frame_ms`, `at` each millisecond.

@@ -149,7 +149,7 @@ mod tests {
     }
 
     fn standing(position: Vec2, force: f32) -> Foot {
-        Foot { position, heading: 0.3, length_m: 0.27, force: Newtons(force), roll: 0.45 }
+        Foot { position, heading: 0.3, length_m: 0.27, force: Newtons(force), roll: 0.45, left: false }
     }
 
     #[test]

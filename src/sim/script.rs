@@ -110,6 +110,7 @@ impl Performance {
                 length_m: self.person.foot_length_m,
                 force: weight * (loads[side] + shifted).max(0.0),
                 roll: (track.roll.at(at_s) + rolled).clamp(0.0, 1.0),
+                left: side == 0,
             })
         })
     }
@@ -244,6 +245,8 @@ mod tests {
         let middle = (last[0].position + last[1].position) * 0.5;
         assert!(middle.distance(Vec2::new(1.6, 0.9)) < 0.03, "{middle}");
         assert!((last[0].position.y - last[1].position.y - 0.16).abs() < 1e-3, "{last:?}");
+        // Facing east the left foot is the northern one.
+        assert!(last[0].left && !last[1].left, "{last:?}");
         for feet in &frames {
             let share = total(feet) / 686.7;
             assert!((0.6..1.35).contains(&share), "{share}");

@@ -189,7 +189,14 @@ mod tests {
         fn feet(&mut self, at: Instant, feet: &mut Vec<Foot>) -> bool {
             feet.clear();
             let position = Vec2::new(0.3 + at.secs() as f32, 0.5);
-            feet.push(Foot { position, heading: 0.0, length_m: 0.27, force: Newtons(500.0), roll: 0.4 });
+            feet.push(Foot {
+                position,
+                heading: 0.0,
+                length_m: 0.27,
+                force: Newtons(500.0),
+                roll: 0.4,
+                left: false,
+            });
             at < Instant::from_millis(self.0)
         }
     }

@@ -111,6 +111,7 @@ impl Walker {
             length_m: 0.27,
             force: Newtons::ZERO,
             roll: 0.5,
+            left: false,
         });
         self.ramp(|walker, share| walker.stance.as_mut().unwrap().force = weight * share);
     }
@@ -314,8 +315,14 @@ fn take(
 
 /// A foot in the air whose centre of pressure is at `point`, toes pointing north.
 fn foot_at(point: Vec2) -> Foot {
-    let mut foot =
-        Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: ROLL };
+    let mut foot = Foot {
+        position: Vec2::ZERO,
+        heading: 0.0,
+        length_m: 0.26,
+        force: Newtons::ZERO,
+        roll: ROLL,
+        left: false,
+    };
     foot.position = point - foot.centre_of_pressure();
     foot
 }

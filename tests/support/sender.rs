@@ -76,5 +76,5 @@ impl Drop for Sender {
 
 /// A foot at `at`.
 pub fn standing(at: Vec2) -> Foot {
-    Foot { position: at, heading: 0.2, length_m: 0.27, force: Newtons(350.0), roll: 0.5 }
+    Foot { position: at, heading: 0.2, length_m: 0.27, force: Newtons(350.0), roll: 0.5, left: false }
 }

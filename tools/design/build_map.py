@@ -66,7 +66,7 @@ class Things:
     """The list of what can be put down, which is scrolled by the wheel."""
 
     NAMES, RIGHT = 78, 166  # where a row's name begins, and a place beside most names
-    TOP = 100  # below the bars
+    TOP, BOTTOM = 100, 575  # below the bars, and above what is on the floor
 
     def __init__(self, window):
         self.window = window
@@ -83,7 +83,7 @@ class Things:
         while True:
             screen = self.window.look()
             plain = screen.plain(self.RIGHT, range(36, 40))
-            found = [(top + end) // 2 for top, end in plain if top > self.TOP]
+            found = [(top + end) // 2 for top, end in plain if self.TOP < top and end < self.BOTTOM]
             if len(found) > 2 and found == before:
                 break
             before = found

@@ -83,6 +83,6 @@ impl SmallFloor {
 
 /// A foot that looks north and presses at `place`, on its ball.
 fn foot_at(place: Vec2) -> Foot {
-    let foot = Foot { position: place, heading: 0.0, length_m: FOOT_M, force: PRESS, roll: 0.7 };
+    let foot = Foot { position: place, heading: 0.0, length_m: FOOT_M, force: PRESS, roll: 0.7, left: false };
     Foot { position: place - (foot.centre_of_pressure() - place), ..foot }
 }

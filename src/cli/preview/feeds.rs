@@ -51,12 +51,13 @@ fn foot(shoe: &PreviewFoot) -> Foot {
         length_m: shoe.length_m - SHOE_M,
         force: shoe.force,
         roll: shoe.roll,
+        left: shoe.left,
     }
 }
 
-/// The shoe around a foot; a foot of a scenario or a walk has no side, the mouse's second one is the left.
-pub(super) fn shoe(foot: &Foot, left: bool) -> PreviewFoot {
-    PreviewFoot { length_m: foot.length_m + SHOE_M, left, ..PreviewFoot::from(foot) }
+/// The shoe around a foot.
+pub(super) fn shoe(foot: &Foot) -> PreviewFoot {
+    PreviewFoot { length_m: foot.length_m + SHOE_M, ..PreviewFoot::from(foot) }
 }
 
 /// What the actuators did, as the window draws it.

@@ -271,11 +271,9 @@ impl Args {
             };
         let (people, driver) = arrivals(driver);
         let (driver, mut seen) = watched(Box::new(driver));
-        let is_led = feet.is_some();
         let shoes: ShoeFeed = Box::new(move |shoes| {
             shoes.clear();
-            shoes
-                .extend(seen.read().iter().enumerate().map(|(index, foot)| shoe(foot, is_led && index == 1)));
+            shoes.extend(seen.read().iter().map(shoe));
         });
         let (sim, floor) = self.sim.calibrated(floor)?;
         let driver = Box::new(driver);

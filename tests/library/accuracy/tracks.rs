@@ -104,6 +104,7 @@ fn a_foot_dragged_over_a_seam_leaves_a_track_without_jumps() {
                     length_m: 0.26,
                     force: Newtons(120.0),
                     roll: 0.6,
+                    left: false,
                 };
                 foot.force = Newtons(120.0 * (f32::from(milli) / 60.0).min(1.0));
                 bench.step(&[foot.as_load()]);

@@ -175,8 +175,14 @@ impl Bench {
 pub const BUTTON: Vec2 = Vec2::splat(0.152);
 
 pub fn foot(at: Vec2, force: f32) -> Foot {
-    let mut foot =
-        Foot { position: Vec2::ZERO, heading: 0.0, length_m: 0.24, force: Newtons(force), roll: 0.5 };
+    let mut foot = Foot {
+        position: Vec2::ZERO,
+        heading: 0.0,
+        length_m: 0.24,
+        force: Newtons(force),
+        roll: 0.5,
+        left: false,
+    };
     foot.position = at - foot.centre_of_pressure();
     foot
 }

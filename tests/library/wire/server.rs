@@ -100,7 +100,8 @@ fn server_on(
 ) -> (Server, mpsc::Receiver<(u64, String)>) {
     let page = layout("map");
     let home = page.widgets[page.widget_index("home").unwrap()].area.centre();
-    let mut foot = Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6 };
+    let mut foot =
+        Foot { position: home, heading: 0.0, length_m: 0.26, force: Newtons::ZERO, roll: 0.6, left: false };
     foot.position += home - foot.centre_of_pressure();
     let visit = Visit {
         sim,

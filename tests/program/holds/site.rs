@@ -196,6 +196,7 @@ fn feet(ms: u32) -> Vec<Foot> {
             length_m: 0.24,
             force: Newtons(newtons * share),
             roll: 0.6,
+            left: false,
         };
         foot.position = at - foot.centre_of_pressure();
         (share > 0.0).then_some(foot)
