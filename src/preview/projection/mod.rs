@@ -51,6 +51,8 @@ pub(super) struct Projection {
     file: Option<PathBuf>,
     /// `None` until the picture's shape is known and no file says it.
     placement: Option<Placement>,
+    /// Whether people have set it; else it follows the window, which is given its screen some frames after it opens.
+    is_set: bool,
     /// The corner that keys move, while corners are adjusted.
     adjusting: Option<usize>,
     scene: Scene,
@@ -71,6 +73,7 @@ impl Projection {
             is_full: options.open || options.monitor.is_some(),
             monitor: options.monitor,
             file,
+            is_set: placement.is_some(),
             placement,
             adjusting: None,
             scene: Scene::new(),
@@ -243,12 +246,16 @@ impl App {
         let size = Vec2::new(picture.width(), picture.height()).max(Vec2::ONE);
         let floor = self.floor.geometry.bounds();
         let shape = floor.size().x / floor.size().y;
-        self.projection.placement.get_or_insert_with(|| Placement::fit(shape, size.x / size.y));
+        let fit = Placement::fit(shape, size.x / size.y);
+        if !self.projection.is_set {
+            self.projection.placement = Some(fit);
+        }
         let changed = self.projection.handle_keys(ui, size, shape);
         let theme = self.appearance.projected();
         ui.painter().rect_filled(picture, 0.0, color(theme.canvas));
         self.draw_projected(ui, &theme, picture, size);
         let moved = self.projection.adjust(ui, &theme, picture, size);
+        self.projection.is_set = self.projection.placement != Some(fit);
         if self.projection.adjusting.is_none() {
             ui.ctx().set_cursor_icon(CursorIcon::None);
         }

@@ -270,6 +270,20 @@ fn the_projection_shows_controls_only_and_is_closed_by_the_key_that_opened_it() 
 }
 
 #[test]
+fn a_projection_that_nobody_has_adjusted_keeps_the_floors_shape_when_its_window_gets_another_one() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Project").click();
+    room.run(3);
+    // From 4:3, as a window opens, to the 16:10 of a screen that it is moved to.
+    for size in [vec2(960.0, 720.0), vec2(1280.0, 800.0)] {
+        room.window.set_size(size);
+        room.run(3);
+        let home = room.window.get_by_label("Projected Home").rect().size();
+        assert!((home.x / home.y - 1.0).abs() < 0.01, "a round button is round: {home}");
+    }
+}
+
+#[test]
 fn the_projection_is_laid_onto_the_floor_by_its_corners() {
     let mut room = Room::simulated();
     room.window.get_by_label("Project").click();
