@@ -135,9 +135,10 @@ mod tests {
         Camera { lon, lat: 0.0, zoom }
     }
 
-    /// How many tiles are drawn around the middle of the world at zoom 2, where there are four, once all are known.
-    fn shown(tiles: &mut Tiles, now: Instant) -> usize {
-        let (context, rect) = (Context::default(), Rect::from_min_size(pos2(0.0, 0.0), vec2(500.0, 500.0)));
+    /// How many tiles are drawn around the middle of the world at zoom 2, in a window of this width that sees so many
+    /// different ones, once all are known.
+    fn shown(tiles: &mut Tiles, (width, seen): (f32, usize), now: Instant) -> usize {
+        let (context, rect) = (Context::default(), Rect::from_min_size(pos2(0.0, 0.0), vec2(width, 500.0)));
         let mut shown = 0;
         // A reader answers within some milliseconds; five seconds are patience enough for a busy machine.
         for _ in 0..500 {
@@ -146,13 +147,15 @@ mod tests {
             });
             shown = output.shapes.len();
             output.drop_without_applying_deltas();
-            if tiles.tiles.len() == 4 || tiles.trouble().is_some() {
+            if tiles.tiles.len() == seen || tiles.trouble().is_some() {
                 break;
             }
             thread::sleep(Duration::from_millis(10));
         }
         shown
     }
+
+    const FOUR: (f32, usize) = (500.0, 4);
 
     fn png() -> Vec<u8> {
         let mut bytes = std::io::Cursor::new(Vec::new());
@@ -186,7 +189,7 @@ mod tests {
         let mut tiles = Tiles::open(path).unwrap();
         // Of a level that the folder hasn't got, the nearest one is shown.
         assert_eq!(tiles.source.level(5.8), Some(2));
-        assert_eq!(shown(&mut tiles, Instant::now()), 2, "two of the four tiles around the middle");
+        assert_eq!(shown(&mut tiles, FOUR, Instant::now()), 2, "two of the four tiles around the middle");
         assert_eq!(tiles.tiles.values().filter(|tile| matches!(tile, Tile::Missing)).count(), 2);
     }
 
@@ -220,13 +223,18 @@ mod tests {
     #[test]
     fn a_server_is_asked_for_what_is_seen_and_left_alone_for_a_while_when_it_is_gone() {
         let mut tiles = Tiles::open(&server(4)).unwrap();
-        assert_eq!(shown(&mut tiles, Instant::now()), 1, "it has one of the four");
+        assert_eq!(shown(&mut tiles, FOUR, Instant::now()), 1, "it has one of the four");
+        assert!(tiles.trouble().is_none());
+
+        // A window that is wider than the world, of which it sees a part twice, asks once for each of the eight.
+        let mut tiles = Tiles::open(&server(8)).unwrap();
+        assert_eq!(shown(&mut tiles, (1500.0, 8), Instant::now()), 1);
         assert!(tiles.trouble().is_none());
 
         let gone = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
         let mut tiles = Tiles::open(&format!("http://{gone}/{{z}}/{{x}}/{{y}}.png")).unwrap();
         let now = Instant::now();
-        assert_eq!(shown(&mut tiles, now), 0);
+        assert_eq!(shown(&mut tiles, FOUR, now), 0);
         assert!(tiles.trouble().is_some() && tiles.tiles.is_empty(), "none of them is given up");
         assert!(Tiles::open("http://127.0.0.1/tiles").is_err(), "an address of every tile");
     }

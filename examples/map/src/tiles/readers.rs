@@ -68,10 +68,13 @@ impl Readers {
     /// Gets these, the first one first, in place of those it was told of before and has not begun.
     pub fn want(&mut self, context: &Context, keys: impl DoubleEndedIterator<Item = Key>) {
         let mut list = self.wanted.lock();
-        let begun = std::mem::take(&mut list.begun);
         list.keys.clear();
-        list.keys.extend(keys.rev().filter(|key| !begun.contains(key)));
-        list.begun = begun;
+        for key in keys.rev() {
+            // A tile may be seen twice.
+            if !list.begun.contains(&key) && !list.keys.contains(&key) {
+                list.keys.push(key);
+            }
+        }
         let is_needed = !list.keys.is_empty();
         drop(list);
         if is_needed {
