@@ -2,8 +2,8 @@
 //!
 //! [`Server`] pulls packets from a source, assembles frames, steps the engine
 //! and hands out what comes of it. Nothing it waits for depends on a window,
-//! a disk or another program. `take_tare` and `ForceWatch` are for the
-//! people who set a floor up.
+//! a disk or another program. `take_tare`, `ForceWatch`, `WiringWalk` and
+//! `WalkTest` are for the people who set a floor up.
 
 mod changes;
 #[cfg(any(feature = "internals", test))]
@@ -15,6 +15,10 @@ mod server;
 #[cfg(any(feature = "internals", test))]
 mod tare;
 mod trial;
+#[cfg(any(feature = "internals", test))]
+mod walk_test;
+#[cfg(any(feature = "internals", test))]
+mod wiring;
 
 #[cfg(any(feature = "internals", test))]
 pub use measure::{ForceRange, ForceWatch, TileRange};
@@ -23,3 +27,7 @@ pub use reference::{Argument, Direction, Entry, Reference};
 pub use server::{Command, Ended, Server};
 #[cfg(any(feature = "internals", test))]
 pub use tare::{TareFailure, take_tare};
+#[cfg(any(feature = "internals", test))]
+pub use walk_test::{SensorVerdict, WalkTest};
+#[cfg(any(feature = "internals", test))]
+pub use wiring::{FeltLoad, FeltTwice, STEP_N, Wiring, WiringStep, WiringTask, WiringWalk};

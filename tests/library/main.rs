@@ -20,6 +20,7 @@ mod examples;
 mod fault_table;
 mod faults;
 mod feel;
+mod floor_walks;
 mod ground;
 mod ignored;
 mod intent;

@@ -1,0 +1,250 @@
+//! A walk over all tiles, in any order, that finds sensors which do not answer.
+
+use crate::floor::{Corner, Floor, SensorId, TileId};
+use crate::wire::{Readings, SensorPacket};
+
+/// How many packets of a board make the mean of the empty floor.
+const REST: u32 = 300;
+
+/// What a sensor must read to be believed, and what its plate must demand of it for its silence to count, in newtons: a
+/// footstep puts several times that on each corner it comes near (our choice).
+const READS_N: f32 = 20.0;
+const DEMANDS_N: f32 = 60.0;
+
+/// Share of what its plate demands that a sensor must read at least: parts that were never calibrated differ by a
+/// quarter, plates that bend by as much again.
+const SHARE: f32 = 0.3;
+
+/// For how many packets a sensor must have read something plausible, and for how many it must have failed to.
+const ENOUGH: u32 = 20;
+const FAILED: u32 = 100;
+
+/// How much more often than it is plausible a sensor may fail: a dead one misleads about the one opposite of it.
+const MISLED: u32 = 4;
+
+/// Below this a sensor reads nothing, in newtons.
+const NOTHING_N: f32 = 10.0;
+
+/// A walk over all tiles: each sensor must have been seen to answer to a load on its plate.
+///
+/// The plate is rigid: what one of its corners bears follows from the other three, as the sum of its neighbours less the
+/// opposite corner. Each sensor that has read a fair share of that for a while answers; one of which much was demanded
+/// and that never did is named. It needs no tare: it takes for granted that the floor is empty at the beginning.
+#[derive(Clone, Debug)]
+pub struct WalkTest {
+    tiles: Vec<TileTest>,
+    boards: Vec<BoardRest>,
+}
+
+/// How a sensor has done.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SensorVerdict {
+    /// It has not been loaded yet.
+    Untried,
+    /// It answers as its plate demands.
+    Answers,
+    /// Its board gives no reading for it.
+    NoReading,
+    /// It does not change whatever stands on its tile.
+    Still,
+    /// It reads far less than its plate demands.
+    Weak,
+}
+
+impl SensorVerdict {
+    /// Whether something is wrong with it.
+    #[must_use]
+    pub const fn is_fault(self) -> bool {
+        matches!(self, Self::NoReading | Self::Still | Self::Weak)
+    }
+
+    /// In words, after the sensor's name.
+    #[must_use]
+    pub const fn words(self) -> &'static str {
+        match self {
+            Self::Untried => "has not been loaded yet",
+            Self::Answers => "answers",
+            Self::NoReading => "gives no reading",
+            Self::Still => "does not react",
+            Self::Weak => "reads far too little",
+        }
+    }
+}
+
+#[derive(Clone, Debug)]
+struct TileTest {
+    id: TileId,
+    /// Over what the corner read at rest; `None` while nobody reads it.
+    forces: [Option<f32>; 4],
+    sensors: [SensorTest; 4],
+}
+
+#[derive(Clone, Copy, Debug, Default)]
+struct SensorTest {
+    plausible: u32,
+    failed: u32,
+    missing: u32,
+    most_n: f32,
+}
+
+/// One board: where its channels are, and what they read on the empty floor.
+#[derive(Clone, Debug)]
+struct BoardRest {
+    channels: Vec<Option<Channel>>,
+    /// Indices of the tiles that it reads something of.
+    tiles: Vec<usize>,
+    rested: u32,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Channel {
+    tile: usize,
+    corner: usize,
+    calibration: crate::floor::Calibration,
+    /// The sum of what it read at rest.
+    rest: f32,
+    /// Of how many readings.
+    read: u32,
+}
+
+impl WalkTest {
+    /// A walk over all tiles of `floor`.
+    #[must_use]
+    pub fn new(floor: &Floor) -> Self {
+        let tile = |index| TileTest {
+            id: floor.geometry.tile_at_index(index),
+            forces: [None; 4],
+            sensors: Default::default(),
+        };
+        let channel = |sensor: &SensorId| {
+            let tile = floor.geometry.index(sensor.tile)?;
+            let corner = sensor.corner.index();
+            let calibration = *floor.calibration.get(tile)?.get(corner)?;
+            Some(Channel { tile, corner, calibration, rest: 0.0, read: 0 })
+        };
+        let board = |board: &crate::floor::Board| {
+            let channels: Vec<Option<Channel>> =
+                board.channels.iter().map(|sensor| sensor.as_ref().and_then(channel)).collect();
+            let mut tiles: Vec<usize> = channels.iter().flatten().map(|channel| channel.tile).collect();
+            tiles.sort_unstable();
+            tiles.dedup();
+            BoardRest { channels, tiles, rested: 0 }
+        };
+        Self {
+            tiles: (0..floor.geometry.tile_count()).map(tile).collect(),
+            boards: floor.boards.iter().map(board).collect(),
+        }
+    }
+
+    /// Takes a packet.
+    pub fn take(&mut self, packet: &SensorPacket) {
+        let Some(board) = self.boards.get_mut(usize::from(packet.board)) else { return };
+        if packet.readings.len() != board.channels.len() {
+            return;
+        }
+        let is_rested = board.rested >= REST;
+        board.rested = board.rested.saturating_add(1);
+        for (number, channel) in board.channels.iter_mut().enumerate() {
+            let Some(channel) = channel else { continue };
+            let force = match &packet.readings {
+                Readings::Counts(counts) => {
+                    counts.get(number).copied().flatten().map(|count| channel.calibration.force(count).0)
+                }
+                Readings::Newtons(forces) => forces.get(number).copied().filter(|force| force.is_finite()),
+            };
+            if !is_rested {
+                channel.rest += force.unwrap_or(0.0);
+                channel.read += u32::from(force.is_some());
+                continue;
+            }
+            let Some(tile) = self.tiles.get_mut(channel.tile) else { continue };
+            let rest = channel.rest / channel.read.max(1) as f32;
+            if let Some(place) = tile.forces.get_mut(channel.corner) {
+                *place = force.map(|force| force - rest);
+            }
+        }
+        for &tile in board.tiles.iter().filter(|_| is_rested) {
+            if let Some(tile) = self.tiles.get_mut(tile) {
+                tile.judge();
+            }
+        }
+    }
+
+    /// Whether the empty floor has been read: before that, nobody should step on it.
+    #[must_use]
+    pub fn is_rested(&self) -> bool {
+        self.boards.iter().all(|board| board.rested >= REST || board.channels.iter().flatten().count() == 0)
+    }
+
+    /// How the sensors of the tile with this index have done, in [`Corner::ALL`] order; `None` if there is no such tile.
+    #[must_use]
+    pub fn tile(&self, index: usize) -> Option<[SensorVerdict; 4]> {
+        self.tiles.get(index).map(|tile| tile.sensors.map(|sensor| sensor.verdict()))
+    }
+
+    /// Tiles of which all four sensors answer.
+    #[must_use]
+    pub fn passed(&self) -> usize {
+        let passes =
+            |tile: &&TileTest| tile.sensors.iter().all(|sensor| sensor.verdict() == SensorVerdict::Answers);
+        self.tiles.iter().filter(passes).count()
+    }
+
+    /// Whether of each sensor it is known how it does.
+    #[must_use]
+    pub fn is_done(&self) -> bool {
+        let sensors = || self.tiles.iter().flat_map(|tile| &tile.sensors);
+        self.is_rested() && sensors().all(|sensor| sensor.verdict() != SensorVerdict::Untried)
+    }
+
+    /// The sensors that something is wrong with.
+    pub fn faults(&self) -> impl Iterator<Item = (SensorId, SensorVerdict)> + '_ {
+        self.tiles.iter().flat_map(|tile| {
+            let sensors = Corner::ALL.into_iter().zip(tile.sensors);
+            sensors.filter_map(|(corner, sensor)| {
+                let verdict = sensor.verdict();
+                verdict.is_fault().then_some((SensorId { tile: tile.id, corner }, verdict))
+            })
+        })
+    }
+}
+
+impl TileTest {
+    /// Counts what each sensor reads for or against it.
+    fn judge(&mut self) {
+        let known = self.forces.map(|force| force.unwrap_or(0.0));
+        let total: f32 = known.iter().sum();
+        let [south_west, south_east, north_west, north_east] = known;
+        let (one, other) = (south_east + north_west, south_west + north_east);
+        // Of each corner: its neighbours less the opposite one.
+        let demanded = [one - north_east, other - north_west, other - south_east, one - south_west];
+        for ((sensor, reading), demanded) in self.sensors.iter_mut().zip(self.forces).zip(demanded) {
+            let Some(reading) = reading else {
+                sensor.missing = sensor.missing.saturating_add(u32::from(total >= DEMANDS_N));
+                continue;
+            };
+            sensor.most_n = sensor.most_n.max(reading);
+            if reading >= READS_N && reading >= SHARE * demanded {
+                sensor.plausible = sensor.plausible.saturating_add(1);
+            } else if demanded >= DEMANDS_N && reading < SHARE * demanded {
+                sensor.failed = sensor.failed.saturating_add(1);
+            }
+        }
+    }
+}
+
+impl SensorTest {
+    const fn verdict(self) -> SensorVerdict {
+        if self.plausible >= ENOUGH && self.failed / MISLED <= self.plausible {
+            SensorVerdict::Answers
+        } else if self.missing >= FAILED {
+            SensorVerdict::NoReading
+        } else if self.failed < FAILED {
+            SensorVerdict::Untried
+        } else if self.most_n < NOTHING_N {
+            SensorVerdict::Still
+        } else {
+            SensorVerdict::Weak
+        }
+    }
+}
