@@ -99,6 +99,8 @@ pub mod floor;
 mod format;
 pub mod ground;
 pub mod layout;
+#[cfg(feature = "record")]
+pub mod mirror;
 #[cfg(feature = "internals")]
 pub mod outgoing;
 #[cfg(not(feature = "internals"))]

@@ -76,7 +76,7 @@ struct Cli {
 enum Command {
     /// Open the window on a layout: a simulated floor with the mouse as a foot, a scenario, or a real floor.
     #[cfg(feature = "preview")]
-    Preview(preview::Args),
+    Preview(Box<preview::Args>),
     /// Serve a floor: sensor packets in, events and actuator samples out.
     Run(Box<run::Args>),
     /// Play a scenario on a simulated floor in a process of its own, sending real packets.

@@ -103,12 +103,16 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         None => (source, floor, layout, None),
     };
+    let door = args.web.open()?;
+    let source = match &door {
+        Some(door) => door.source(source, floor.geometry),
+        None => source,
+    };
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
-    let door = args.web.open()?;
     if let Some(door) = &door {
         outputs.push(door.sink()?);
     }
@@ -150,7 +154,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     let apps = args.commands.apps().to_vec();
-    let web = door.map(|door| door.serve(session.clone(), geometry, apps)).transpose()?;
+    let web = door.map(|door| door.serve(session.clone(), floor, method, apps)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }

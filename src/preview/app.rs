@@ -11,8 +11,9 @@ use super::PreviewOptions;
 use super::appearance::Appearance;
 use super::bars::TELL_S;
 use super::design::Designer;
-use super::feed::{FootSink, PreviewCommand, PreviewInput, ShoeFeed};
+use super::feed::{FootSink, PreviewCommand, PreviewInput, ServerFeed, ServerState, ShoeFeed};
 use super::feet::MouseFeet;
+use super::floor_check::FloorCheck;
 use super::floor_view::Grip;
 use super::keyboard::Keyboard;
 use super::messages::Messages;
@@ -46,6 +47,10 @@ const PLOT: Duration = Duration::from_millis(50);
 pub(super) struct App {
     pub(super) floor: Arc<Floor>,
     pub(super) source: String,
+    /// `None` unless a server's floor is shown.
+    pub(super) server_feed: Option<ServerFeed>,
+    /// How it was at this frame.
+    pub(super) server: Option<ServerState>,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     pub(super) messages: Messages,
     pub(super) scopes: Scopes,
@@ -82,6 +87,8 @@ pub(super) struct App {
     /// What lines of the list of events have to contain; empty for all.
     pub(super) wanted_events: String,
     pub(super) appearance: Appearance,
+    /// `None` where the floor can't be checked.
+    pub(super) floor_check: Option<FloorCheck>,
     /// `None` where nothing can be designed.
     pub(super) designer: Option<Designer>,
     commands: Sender<PreviewCommand>,
@@ -126,8 +133,11 @@ impl App {
             walks: input.people.map(Walks::new),
             floor: input.floor,
             source: input.source,
+            server_feed: input.server,
+            server: None,
             snapshots: input.snapshots,
             choices: input.choices,
+            floor_check: input.packets.map(FloorCheck::new),
             tuner: Tuner::new(input.effects),
             commands: input.commands,
             grip: Grip::default(),
@@ -159,6 +169,7 @@ impl App {
     /// One frame.
     pub(super) fn show(&mut self, ui: &mut Ui) {
         self.receive(ui);
+        self.follow_check(ui);
         self.handle_text_keys(ui);
         self.appearance.enlarge(ui.ctx());
         self.handle_mute_key(ui);
@@ -175,7 +186,11 @@ impl App {
             self.design(ui);
             return self.request_next_frame(ui);
         }
-        self.side_panel(ui);
+        if self.is_checking() {
+            self.check_panel(ui);
+        } else {
+            self.side_panel(ui);
+        }
         self.tuner_panel(ui);
         self.problems(ui);
         self.warnings(ui);
@@ -189,6 +204,7 @@ impl App {
     fn receive(&mut self, ui: &Ui) {
         let (now_s, elapsed_s) = ui.input(|i| (i.time, i.stable_dt));
         self.now_s = now_s;
+        self.server = self.server_feed.as_mut().map(|feed| feed());
         let fresh = self.snapshots.update();
         let snapshot = self.snapshots.output_buffer();
         self.messages.receive(now_s, snapshot.layout_revision);

@@ -91,8 +91,11 @@ impl App {
                 pill(ui, self.theme.fault, &self.theme, &format!("{} has problems", file.name));
             }
             Some(file) if self.now_s - file.at_s < TELL_S && !file.came_by_itself() => {
-                let is_opened = file.cause == Some(LayoutCause::Opened);
-                let what = if is_opened { "opened" } else { "saved changes loaded" };
+                let what = match file.cause {
+                    Some(LayoutCause::Opened) => "opened",
+                    Some(LayoutCause::Served) => "on the server’s floor",
+                    _ => "saved changes loaded",
+                };
                 pill(ui, self.theme.good, &self.theme, &format!("{}: {what}", file.name));
             }
             Some(file) => {
@@ -229,6 +232,8 @@ impl App {
                     ("Wheel", "zoom"),
                     ("F2", "try it"),
                 ]
+            } else if self.is_checking() {
+                &[("Step", "where the floor is marked"), ("Escape", "end the check")]
             } else if self.draws_walks() {
                 &[
                     ("Drag", "a way over the floor: somebody walks it"),
@@ -259,8 +264,11 @@ impl App {
                     ("Click", "look at a tile"),
                     ("Ctrl-wheel", "zoom"),
                 ]
-            } else {
+            } else if self.scopes.is_fed() {
                 &[("Click", "look at a tile"), ("Arrows", "the next one"), ("M", "mute")]
+            } else {
+                // What is not felt here can't be muted here.
+                &[("Click", "look at a tile"), ("Arrows", "the next one")]
             };
             // A narrow window tells the first ones only; the rest is in the documentation.
             let told = if ui.available_width() < TWO_LINES { 4 } else { steps.len() };

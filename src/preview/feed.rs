@@ -12,6 +12,7 @@ use crate::engine::Snapshot;
 use crate::feel::{Effect, Gesture};
 use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
+use crate::recording::OverheardPackets;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
 use crate::sim::ArrivalHandle;
@@ -36,6 +37,8 @@ pub struct PreviewInput {
     pub warnings: Warnings,
     /// What the floor is, in a few words: `simulated floor`, `walk.mcap`, `port 9000`.
     pub source: String,
+    /// The server whose floor is shown; `None` for a floor of this program's own or a recording.
+    pub server: Option<ServerFeed>,
     /// The latest state, written by the sensing thread.
     pub snapshots: triple_buffer::Output<Snapshot>,
     /// Every event, in order.
@@ -62,6 +65,8 @@ pub struct PreviewInput {
     pub choices: Vec<String>,
     /// The effects that can be tuned, by name; empty if there is no tuner.
     pub effects: Vec<NamedEffect>,
+    /// What the boards send, for checks of the floor; `None` where it can't be checked, such as a recording.
+    pub packets: Option<OverheardPackets>,
     /// The layout as text, to be designed in the window; `None` where that can't be done.
     pub design: Option<DesignInput>,
     /// What the person at the window wants.
@@ -70,6 +75,31 @@ pub struct PreviewInput {
 
 /// Puts the shoes on or above the floor, as they are now, in place of those of the last call.
 pub type ShoeFeed = Box<dyn FnMut(&mut Vec<Shoe>)>;
+
+/// How it is with the server, to be asked for each frame.
+pub type ServerFeed = Box<dyn FnMut() -> ServerState + Send>;
+
+/// A server whose floor is shown.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ServerState {
+    /// Where it is: `127.0.0.1:9002`.
+    pub address: String,
+    /// Whether it is there.
+    pub link: ServerLink,
+    /// Whether it takes layouts that are designed in the window.
+    pub takes_layouts: bool,
+    /// Packets that it could not tell.
+    pub left_out: u64,
+}
+
+/// Whether a server is there.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum ServerLink {
+    /// What its boards send comes here as well.
+    Joined,
+    /// It is gone, for this reason; it is tried again each second.
+    Lost(String),
+}
 
 /// What happened on the floor.
 #[derive(Clone, Debug, PartialEq)]
@@ -107,6 +137,8 @@ pub enum LayoutCause {
     Designed,
     /// The recording goes on with it.
     Recorded,
+    /// The server has put it on its floor.
+    Served,
 }
 
 /// What became of a layout file that changed.
@@ -187,6 +219,15 @@ pub enum PreviewCommand {
         gesture: Gesture,
         /// Index of the tile.
         tile: usize,
+    },
+    /// Switch all controls off that are on, or those on again.
+    RestControls(bool),
+    /// Keep the floor in a file; what that held before is kept beside it.
+    SaveFloor {
+        /// The floor.
+        floor: Box<Floor>,
+        /// The file.
+        path: PathBuf,
     },
     /// Keep an effect in the folder `effects`.
     SaveEffect {

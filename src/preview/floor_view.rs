@@ -50,6 +50,7 @@ impl App {
         let on_handle = self.move_feet(ui, &canvas, map);
         self.draw(ui, rect, map, show);
         self.show_walks(ui, rect, map);
+        self.show_check(ui, rect, map);
         self.name_controls(ui, map);
         if self.zoom.is_closer() {
             self.zoom_out_button(ui, rect);
@@ -64,7 +65,7 @@ impl App {
             }
         }
         let link = self.snapshots.output_buffer().link;
-        if let Some(banner) = self.watch.banner(self.now_s, link, &self.source) {
+        if let Some(banner) = self.watch.banner(self.now_s, link, &self.source, self.server.as_ref()) {
             show_banner(ui, rect, &self.theme, &banner);
         }
     }

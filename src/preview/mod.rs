@@ -12,6 +12,7 @@ mod design;
 mod drags;
 mod feed;
 mod feet;
+mod floor_check;
 mod floor_view;
 mod keyboard;
 mod lookout;
@@ -41,7 +42,7 @@ mod zoom;
 pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed,
-    ShoeFeed, Warnings,
+    ServerFeed, ServerLink, ServerState, ShoeFeed, Warnings,
 };
 pub use playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
 pub use projection::ProjectionOptions;

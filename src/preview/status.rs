@@ -5,8 +5,9 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Align, Label, Layout, Margin, Panel, RichText, Ui, WidgetInfo, vec2};
 
 use super::app::App;
+use super::feed::{ServerLink, ServerState};
 use super::panel::grouped;
-use super::style::{panel_frame, quiet};
+use super::style::panel_frame;
 use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::sink::{LatencyMeter, LatencyStages};
@@ -115,12 +116,29 @@ impl App {
                 let source = vec2(room - MODE - gap - taken, 18.0);
                 ui.allocate_ui_with_layout(source, Layout::left_to_right(Align::Center), |ui| {
                     ui.set_min_size(source);
-                    let text = quiet(&theme, &self.source).size(LETTERS);
-                    ui.add(Label::new(text).truncate()).on_hover_text(&self.source);
+                    let (said, colour) = self.said_source();
+                    let text = RichText::new(&said).size(LETTERS).color(color(colour));
+                    ui.add(Label::new(text).truncate()).on_hover_text(&said);
                 });
                 figures.iter().for_each(|one| figure(ui, one));
             });
         });
+    }
+
+    /// Where the floor comes from, and what is wrong with that.
+    fn said_source(&self) -> (String, Colour) {
+        let theme = &self.theme;
+        let Some(ServerState { address, link, left_out, .. }) = &self.server else {
+            return (self.source.clone(), theme.quiet);
+        };
+        match link {
+            ServerLink::Lost(why) => (format!("lost {address}: {why}; trying again"), theme.fault),
+            ServerLink::Joined if *left_out > 0 => {
+                let left_out = grouped(*left_out);
+                (format!("joined {address}; {left_out} packets left out on the way"), theme.warning)
+            }
+            ServerLink::Joined => (format!("joined {address}"), theme.quiet),
+        }
     }
 
     fn mode(&self) -> &'static str {

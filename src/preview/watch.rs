@@ -1,5 +1,6 @@
 //! Whether what is shown is still true: how long no packet and no snapshot has come.
 
+use super::feed::{ServerLink, ServerState};
 use crate::engine::Snapshot;
 use crate::wire::LinkState;
 
@@ -49,7 +50,13 @@ impl Watch {
     }
 
     /// What is wrong at `now_s`, if anything.
-    pub(super) fn banner(&self, now_s: f64, link: LinkState, source: &str) -> Option<Banner> {
+    pub(super) fn banner(
+        &self,
+        now_s: f64,
+        link: LinkState,
+        source: &str,
+        server: Option<&ServerState>,
+    ) -> Option<Banner> {
         let still_s = self.snapshot_at_s.map_or(0.0, |at| now_s - at);
         if still_s >= STOPPED_S && link != LinkState::Waiting {
             return Some(Banner {
@@ -59,6 +66,15 @@ impl Watch {
             });
         }
         let silent_s = now_s - self.packets_at_s;
+        if let (LinkState::Lost, Some(ServerState { address, link: ServerLink::Lost(why), .. })) =
+            (link, server)
+        {
+            return Some(Banner {
+                headline: format!("No word from {address} for {silent_s:.1} s: trying again"),
+                detail: format!("What happens on the floor is not known here: {why}."),
+                weight: Weight::Fault,
+            });
+        }
         match link {
             LinkState::Live => None,
             LinkState::Waiting => Some(Banner {
@@ -95,26 +111,45 @@ mod tests {
         let mut watch = Watch::default();
         watch.observe(5.0, &at(600), true);
         watch.observe(5.4, &at(600), true);
-        let banner = watch.banner(5.4, LinkState::Lost, "").unwrap();
+        let banner = watch.banner(5.4, LinkState::Lost, "", None).unwrap();
         assert_eq!(banner.headline, "No sensor packets for 0.4 s");
         assert_eq!(banner.weight, Weight::Fault);
         watch.observe(5.5, &at(606), true);
-        assert_eq!(watch.banner(5.5, LinkState::Live, ""), None);
+        assert_eq!(watch.banner(5.5, LinkState::Live, "", None), None);
+    }
+
+    #[test]
+    fn a_server_that_is_gone_is_named_with_the_reason() {
+        let mut watch = Watch::default();
+        watch.observe(5.0, &at(600), true);
+        watch.observe(5.4, &at(600), true);
+        let mut server = ServerState {
+            address: "10.0.0.7:9002".into(),
+            link: ServerLink::Joined,
+            takes_layouts: false,
+            left_out: 0,
+        };
+        let boards = watch.banner(5.4, LinkState::Lost, "", Some(&server)).unwrap();
+        assert_eq!(boards.headline, "No sensor packets for 0.4 s", "the server is there, the boards are not");
+        server.link = ServerLink::Lost("the server is silent".into());
+        let gone = watch.banner(5.4, LinkState::Lost, "", Some(&server)).unwrap();
+        assert_eq!(gone.headline, "No word from 10.0.0.7:9002 for 0.4 s: trying again");
+        assert!(gone.detail.ends_with("the server is silent."), "{}", gone.detail);
     }
 
     #[test]
     fn a_sensing_thread_that_stops_writing_is_noticed() {
         let mut watch = Watch::default();
         watch.observe(1.0, &at(1), true);
-        assert_eq!(watch.banner(1.4, LinkState::Live, ""), None);
+        assert_eq!(watch.banner(1.4, LinkState::Live, "", None), None);
         watch.observe(1.6, &at(1), false);
-        assert!(watch.banner(1.6, LinkState::Live, "").unwrap().headline.starts_with("Nothing new"));
+        assert!(watch.banner(1.6, LinkState::Live, "", None).unwrap().headline.starts_with("Nothing new"));
     }
 
     #[test]
     fn before_the_first_packet_the_window_says_what_it_waits_for() {
         let watch = Watch::default();
-        let banner = watch.banner(9.0, LinkState::Waiting, "port 9000").unwrap();
+        let banner = watch.banner(9.0, LinkState::Waiting, "port 9000", None).unwrap();
         assert_eq!(banner.detail, "Listening: port 9000");
         assert_eq!(banner.weight, Weight::Pause);
     }

@@ -17,7 +17,7 @@ use crate::wire::{Batch, ControlMessage, Decoder, Prefix, Readings, Request, Sen
     clippy::large_enum_variant,
     reason = "nearly all are packets, and packets are not allocated one by one"
 )]
-pub(super) enum Entry {
+pub(crate) enum Entry {
     /// A packet.
     Packet(SensorPacket),
     /// No packet came for as long as the server waited.
@@ -37,7 +37,7 @@ const COUNTS: u8 = 0;
 const NEWTONS: u8 = 1;
 
 impl Entry {
-    pub(super) const fn topic(&self) -> &'static str {
+    pub(crate) const fn topic(&self) -> &'static str {
         match self {
             Self::Packet(_) => PACKETS,
             Self::Silence => SILENCE,
@@ -49,7 +49,7 @@ impl Entry {
     }
 
     /// When it came, on the floor's clock: of a packet its arrival; `taken` of all others.
-    pub(super) const fn came(&self, taken: Instant) -> Instant {
+    pub(crate) const fn came(&self, taken: Instant) -> Instant {
         match self {
             Self::Packet(packet) => packet.received,
             _ => taken,
@@ -57,7 +57,7 @@ impl Entry {
     }
 
     /// Appends its bytes to `bytes`.
-    pub(super) fn write(&self, bytes: &mut Vec<u8>) {
+    pub(crate) fn write(&self, bytes: &mut Vec<u8>) {
         match self {
             Self::Packet(packet) => write_packet(packet, bytes),
             Self::Request(request) => write_request(request, bytes),
@@ -68,7 +68,7 @@ impl Entry {
     }
 
     /// The entry of these bytes, which came at `came`; `None` if it is of no known topic or not whole.
-    pub(super) fn read(topic: &str, bytes: &[u8], came: Instant, decoder: &Decoder) -> Option<Self> {
+    pub(crate) fn read(topic: &str, bytes: &[u8], came: Instant, decoder: &Decoder) -> Option<Self> {
         Some(match topic {
             PACKETS => Self::Packet(read_packet(bytes, came)?),
             SILENCE => Self::Silence,
@@ -177,6 +177,6 @@ fn read_request(bytes: &[u8], decoder: &Decoder) -> Option<Request> {
 }
 
 /// What reads requests: they are kept with the shipped prefix, whatever the floor's is.
-pub(super) fn decoder() -> Decoder {
+pub(crate) fn decoder() -> Decoder {
     Decoder::new(&Floor::default())
 }

@@ -35,8 +35,8 @@ impl EventLines {
             // A float becomes the nearest integer of its range.
             Instant::from_micros((t_s * 1e6).round() as u64)
         });
-        if self.recorder.hand(Job::Event(at, line)).is_some() {
-            self.recorder.count_lost(1);
+        if self.recorder.hand_job(Job::Event(at, line)).is_some() {
+            self.recorder.note_lost(1);
             return Err(io::Error::other("the recording does not keep up"));
         }
         Ok(())

@@ -6,6 +6,7 @@
 
 mod entry;
 mod events;
+mod overheard;
 mod reader;
 mod recorder;
 mod replay;
@@ -23,20 +24,24 @@ use thiserror::Error;
 
 use crate::schema::Diagnostics;
 
+pub(crate) use entry::{Entry, decoder};
+pub use overheard::{OverheardPackets, Overhearing};
 pub use reader::Recording;
+pub(crate) use recorder::read_layout;
 pub use recorder::{Recorder, WhenBehind};
 pub use replay::{Progress, ReplaySource, Speed};
-pub use tap::RecordedSource;
+pub use tap::TappedSource;
+pub(crate) use tap::{Entries, Tape};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
 
 /// The topics of a recording.
-const PACKETS: &str = "/underfoot/packets";
-const SILENCE: &str = "/underfoot/silence";
-const REQUESTS: &str = "/underfoot/requests";
-const LAYOUTS: &str = "/underfoot/layouts";
-const GAPS: &str = "/underfoot/gaps";
-const END: &str = "/underfoot/end";
+pub(crate) const PACKETS: &str = "/underfoot/packets";
+pub(crate) const SILENCE: &str = "/underfoot/silence";
+pub(crate) const REQUESTS: &str = "/underfoot/requests";
+pub(crate) const LAYOUTS: &str = "/underfoot/layouts";
+pub(crate) const GAPS: &str = "/underfoot/gaps";
+pub(crate) const END: &str = "/underfoot/end";
 const EVENTS: &str = "/underfoot/events";
 
 /// The name of the metadata, and the version of all this.

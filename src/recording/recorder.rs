@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::EventLines;
-use super::tap::RecordedSource;
+use super::tap::{Entries, Tape, TappedSource};
 use super::writer::{Job, RecordingFile};
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
@@ -78,10 +78,11 @@ impl Recorder {
         &self.layout
     }
 
-    /// `inner`, with all that it gives recorded.
+    /// `inner`, with all that it gives recorded. Its time stands still from one packet to the next, so that a replay can
+    /// tell the same time whenever it is asked.
     #[must_use]
-    pub fn source(&self, inner: Box<dyn SensorSource>) -> RecordedSource {
-        RecordedSource::new(inner, self.clone())
+    pub fn source(&self, inner: Box<dyn SensorSource>) -> TappedSource {
+        TappedSource::new(inner, Box::new(self.clone()), self.floor.geometry)
     }
 
     /// Records events: the lines of [`JsonSink`].
@@ -99,7 +100,7 @@ impl Recorder {
     }
 
     /// Hands `job` on; gives it back if it does not fit.
-    pub(super) fn hand(&self, job: Job) -> Option<Job> {
+    pub(super) fn hand_job(&self, job: Job) -> Option<Job> {
         let mut job = self.worker.hand(job)?;
         if self.behind == WhenBehind::LeaveOut {
             return Some(job);
@@ -110,8 +111,36 @@ impl Recorder {
         }
     }
 
-    pub(super) fn count_lost(&self, count: u64) {
+    pub(super) fn note_lost(&self, count: u64) {
         self.lost.fetch_add(count, Ordering::Relaxed);
+    }
+}
+
+/// How much of the floor's time is handed to the writing thread at once: its queue has room for 20 s of it.
+const BATCH: Duration = Duration::from_millis(20);
+
+impl Tape for Recorder {
+    fn is_wanted(&self) -> bool {
+        true
+    }
+
+    fn batch(&self) -> Duration {
+        BATCH
+    }
+
+    fn is_exact(&self) -> bool {
+        true
+    }
+
+    fn hand(&self, entries: Entries) -> Option<Entries> {
+        match self.hand_job(Job::Entries(entries))? {
+            Job::Entries(entries) => Some(entries),
+            Job::Event(..) => None,
+        }
+    }
+
+    fn count_lost(&self, entries: u64) {
+        self.note_lost(entries);
     }
 }
 
@@ -122,6 +151,6 @@ pub(super) fn as_kept(layout: &Layout, geometry: &Geometry) -> Result<(String, L
     Ok((text, layout))
 }
 
-pub(super) fn read_layout(text: &str, geometry: &Geometry) -> Result<Layout, Diagnostics> {
+pub(crate) fn read_layout(text: &str, geometry: &Geometry) -> Result<Layout, Diagnostics> {
     Ok(schema::parse_layout(text, super::LAYOUT, &Kinds::builtin(), geometry)?.layout)
 }

@@ -72,7 +72,7 @@ impl Progress {
     }
 }
 
-/// Gives what a [`super::RecordedSource`] gave, with the same times.
+/// Gives what a [`super::TappedSource`] gave, with the same times.
 #[derive(Debug)]
 pub struct ReplaySource {
     messages: Messages,

@@ -1,43 +1,64 @@
-//! A source that is recorded.
+//! A tap: what a source gives is handed on to somebody else as well.
 
 use std::fmt;
 use std::net::SocketAddr;
 use std::time::Duration;
 
 use super::entry::Entry;
-use super::recorder::{Recorder, as_kept};
-use super::writer::Job;
+use super::recorder::as_kept;
 use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
 use crate::wire::{LinkCounters, Request, SensorPacket};
 
-/// How much of the floor's time is handed to the writing thread at once: its queue has room for 20 s of it.
-const BATCH: Duration = Duration::from_millis(20);
+/// Entries, each with the moment at which the server took it.
+pub(crate) type Entries = Vec<(Instant, Entry)>;
 
-/// A source, with all that it gives recorded.
-///
-/// Its time stands still from one packet to the next, so that a replay can tell the same time whenever it is asked.
-pub struct RecordedSource {
+/// Takes what a source gives: a recording, or windows elsewhere that show the same floor.
+pub(crate) trait Tape: Send {
+    /// Whether anybody wants it now; without, nothing is put together.
+    fn is_wanted(&self) -> bool;
+
+    /// How much of the floor's time is handed on at once.
+    fn batch(&self) -> Duration;
+
+    /// Whether all of it must be told again to the bit: the source's time then stands still from one packet to the
+    /// next, so that it is the same whenever it is asked, and the floor gets each layout as it is kept.
+    fn is_exact(&self) -> bool;
+
+    /// Takes `entries` on; gives them back if there is no room.
+    fn hand(&self, entries: Entries) -> Option<Entries>;
+
+    /// Counts entries that could not be handed on.
+    fn count_lost(&self, entries: u64);
+}
+
+/// A source, with all that it gives handed on as well.
+pub struct TappedSource {
     inner: Box<dyn SensorSource>,
-    recorder: Recorder,
+    tape: Box<dyn Tape>,
     geometry: Geometry,
     now: Instant,
-    batch: Vec<(Instant, Entry)>,
+    batch: Entries,
     /// Entries that did not fit since the last that did.
     left_out: u64,
 }
 
-impl RecordedSource {
-    pub(super) fn new(inner: Box<dyn SensorSource>, recorder: Recorder) -> Self {
-        let (now, geometry) = (inner.now(), recorder.floor().geometry);
-        Self { inner, recorder, geometry, now, batch: Vec::new(), left_out: 0 }
+impl TappedSource {
+    pub(crate) fn new(inner: Box<dyn SensorSource>, tape: Box<dyn Tape>, geometry: Geometry) -> Self {
+        let now = inner.now();
+        Self { inner, tape, geometry, now, batch: Vec::new(), left_out: 0 }
     }
 
-    fn put(&mut self, entry: Entry) {
-        self.batch.push((self.now, entry));
-        if self.batch.first().is_some_and(|(first, _)| self.now.since(*first) >= BATCH) {
+    fn put(&mut self, entry: impl FnOnce() -> Entry) {
+        if !self.tape.is_wanted() {
+            self.batch.clear();
+            self.left_out = 0;
+            return;
+        }
+        self.batch.push((self.now, entry()));
+        if self.batch.first().is_some_and(|(first, _)| self.now.since(*first) >= self.tape.batch()) {
             self.hand_on();
         }
     }
@@ -48,55 +69,68 @@ impl RecordedSource {
             entries.insert(0, (*at, Entry::Gap(self.left_out)));
         }
         let room = entries.len();
-        match self.recorder.hand(Job::Entries(entries)) {
+        match self.tape.hand(entries) {
             None => self.left_out = 0,
-            Some(Job::Entries(entries)) => {
+            Some(entries) => {
                 let kept_out = entries.iter().filter(|(_, entry)| !matches!(entry, Entry::Gap(_))).count();
                 self.left_out += kept_out as u64;
-                self.recorder.count_lost(kept_out as u64);
+                self.tape.count_lost(kept_out as u64);
             }
-            Some(Job::Event(..)) => {}
         }
         self.batch.reserve(room);
     }
 }
 
-impl SensorSource for RecordedSource {
+impl SensorSource for TappedSource {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let given = self.inner.next(patience);
         self.now = self.now.max(self.inner.now());
         match &given {
-            Ok(Some(packet)) => self.put(Entry::Packet(packet.clone())),
-            Ok(None) => self.put(Entry::Silence),
-            Err(SourceError::Ended) => self.put(Entry::End),
+            Ok(Some(packet)) => self.put(|| Entry::Packet(packet.clone())),
+            Ok(None) => self.put(|| Entry::Silence),
+            Err(SourceError::Ended) => self.put(|| Entry::End),
             Err(_) => {}
         }
         given
     }
 
     fn now(&self) -> Instant {
-        self.now
+        if self.tape.is_exact() { self.now } else { self.inner.now() }
     }
 
     fn take_request(&mut self) -> Option<Request> {
         let request = self.inner.take_request()?;
-        self.put(Entry::Request(request.clone()));
+        self.put(|| Entry::Request(request.clone()));
         Some(request)
     }
 
+    fn take_layout(&mut self) -> Option<Layout> {
+        let layout = self.inner.take_layout()?;
+        // It was read from what a recording or another server keeps: it can be kept again.
+        self.put(|| Entry::Layout(crate::schema::write_layout(&layout)));
+        Some(layout)
+    }
+
     fn note_request(&mut self, request: &Request) {
-        self.put(Entry::Request(request.clone()));
+        self.inner.note_request(request);
+        self.put(|| Entry::Request(request.clone()));
     }
 
     fn note_layout(&mut self, layout: &mut Layout) {
+        self.inner.note_layout(layout);
+        if !self.tape.is_wanted() {
+            return;
+        }
         match as_kept(layout, &self.geometry) {
             Ok((text, kept)) => {
-                *layout = kept;
-                self.put(Entry::Layout(text));
+                if self.tape.is_exact() {
+                    *layout = kept;
+                }
+                self.put(|| Entry::Layout(text));
             }
             Err(problems) => {
-                self.recorder.count_lost(1);
-                tracing::warn!("a layout could not be recorded, its replay will differ: {problems}");
+                self.tape.count_lost(1);
+                tracing::warn!("a layout could not be handed on, what is made of it will differ: {problems}");
             }
         }
     }
@@ -110,14 +144,14 @@ impl SensorSource for RecordedSource {
     }
 }
 
-impl Drop for RecordedSource {
+impl Drop for TappedSource {
     fn drop(&mut self) {
         self.hand_on();
     }
 }
 
-impl fmt::Debug for RecordedSource {
+impl fmt::Debug for TappedSource {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("RecordedSource").field("now", &self.now).finish_non_exhaustive()
+        f.debug_struct("TappedSource").field("now", &self.now).finish_non_exhaustive()
     }
 }

@@ -33,6 +33,8 @@ mod control;
 mod event;
 mod held;
 mod queue;
+#[cfg(any(feature = "internals", test))]
+mod rest;
 mod session;
 mod snapshot;
 mod thread;
@@ -41,6 +43,8 @@ pub use builder::{SessionBuilder, StartError};
 pub use control::{Control, Refusal};
 pub use event::{EndReason, Event, Kind};
 pub use held::Held;
+#[cfg(any(feature = "internals", test))]
+pub use rest::ControlsOff;
 pub use session::Session;
 pub use snapshot::Snapshot;
 pub use thread::Actuators;

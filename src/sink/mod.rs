@@ -40,6 +40,8 @@ pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, outp
 pub(crate) use disk::Disk;
 pub use fanout::Fanout;
 pub use json::JsonSink;
+#[cfg(feature = "record")]
+pub(crate) use json::control_line;
 #[cfg(feature = "preview")]
 pub(crate) use json::event_line;
 pub use manual::ManualSink;

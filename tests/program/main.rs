@@ -14,6 +14,7 @@ mod console;
 mod end_to_end;
 mod holds;
 mod input;
+mod mirror;
 mod output;
 mod page_commands;
 mod plan;

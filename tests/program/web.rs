@@ -23,7 +23,7 @@ const SOON: Duration = Duration::from_millis(150);
 /// How often it is tried again on a machine that had something else to do.
 const TRIES: usize = 6;
 
-fn free_address() -> SocketAddr {
+pub(super) fn free_address() -> SocketAddr {
     TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap()
 }
 
@@ -34,7 +34,7 @@ fn run(site: &Site, more: &[&str]) -> (Run, SocketAddr) {
     (run, web)
 }
 
-fn stream(web: SocketAddr) -> TcpStream {
+pub(super) fn stream(web: SocketAddr) -> TcpStream {
     let end = Instant::now() + AT_LAST;
     loop {
         match TcpStream::connect(web) {
@@ -138,7 +138,7 @@ impl Page {
     }
 }
 
-fn signal(run: &Run, name: &str) {
+pub(super) fn signal(run: &Run, name: &str) {
     let status = Command::new("kill").args(["-s", name, &run.child.id().to_string()]).status().unwrap();
     assert!(status.success());
 }

@@ -9,8 +9,8 @@ use underfoot::edit;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::preview::{LayoutCause, LayoutNews, PreviewCommand, Warnings};
-use underfoot::runtime::Session;
-use underfoot::schema::{self, Diagnostics};
+use underfoot::runtime::{ControlsOff, Session};
+use underfoot::schema::{self, Diagnostics, Saved};
 use underfoot::serve::Command;
 use underfoot::wire::ControlMessage;
 
@@ -60,6 +60,8 @@ pub(super) struct CommandHandler {
     pub(super) choices: Vec<String>,
     pub(super) floor: Floor,
     pub(super) desk: Desk,
+    /// While the floor is checked.
+    pub(super) rest: Option<ControlsOff>,
 }
 
 impl CommandHandler {
@@ -82,6 +84,14 @@ impl CommandHandler {
                     }
                     PreviewCommand::Try { layout, name, warnings, cause } => {
                         self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
+                        continue;
+                    }
+                    PreviewCommand::RestControls(rest) => {
+                        self.rest = rest.then(|| self.desk.session.controls_off());
+                        continue;
+                    }
+                    PreviewCommand::SaveFloor { floor, path } => {
+                        let _ = notices.send(keep_floor(&floor, &path));
                         continue;
                     }
                     PreviewCommand::SaveEffect { name, text } => {
@@ -139,5 +149,17 @@ impl CommandHandler {
             }
             Err(error) => error.to_string(),
         }
+    }
+}
+
+/// Keeps a floor that was checked; the answer is what to say.
+pub(super) fn keep_floor(floor: &Floor, path: &Path) -> String {
+    match schema::save_floor(floor, path) {
+        Ok(Saved::New) => format!("Written to {}.", path.display()),
+        Ok(Saved::Unchanged) => format!("{} holds all this already.", path.display()),
+        Ok(Saved::Replaced { backup }) => {
+            format!("Written to {}; what it held before is in {}.", path.display(), backup.display())
+        }
+        Err(error) => error.to_string(),
     }
 }

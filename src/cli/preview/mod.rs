@@ -2,7 +2,9 @@
 
 mod commands;
 mod feeds;
+mod joined;
 mod player;
+mod watched;
 
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
@@ -18,7 +20,7 @@ use underfoot::preview::{
     self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed,
     ShoeFeed, Warnings,
 };
-use underfoot::recording::Recording;
+use underfoot::recording::{OverheardPackets, Recording};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
@@ -29,6 +31,7 @@ use underfoot::units::HostClock;
 
 use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, Scopes, ToWindow, shoe};
+use self::joined::Joined;
 use self::player::{Player, Window};
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
@@ -50,6 +53,9 @@ pub(crate) struct Args {
     /// Show a real floor, whose packets arrive here.
     #[arg(long, value_name = "ADDR", conflicts_with_all = ["scenario", "session"])]
     listen: Option<SocketAddr>,
+    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from here.
+    #[arg(long, value_name = "ADDR", conflicts_with_all = JOINED_IS_SERVED)]
+    join: Option<SocketAddr>,
     #[command(flatten)]
     boards: BoardArgs,
     #[command(flatten)]
@@ -83,6 +89,12 @@ pub(crate) struct Args {
     eq4: bool,
 }
 
+/// What is the server's to say, where its floor is shown.
+const JOINED_IS_SERVED: [&str; 14] = [
+    "listen", "allow", "pin", "commands", "scenario", "session", "record", "floor", "grid", "osc", "tuio",
+    "tuio2", "wav", "eq4",
+];
+
 /// Whether a window can be hoped for.
 pub(crate) fn has_display() -> bool {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -106,6 +118,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(path) = args.recording() {
         return replayed(args, path);
     }
+    if let Some(address) = args.join {
+        return joined(args, address);
+    }
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let stage = args.stage(&floor, &layout)?;
@@ -121,7 +136,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let latency = LatencyStages::default();
     let actuators =
         args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice_sender.clone());
-    let mut session = Session::source(stage.source, stage.clock)
+    let (overhearing, packets) = OverheardPackets::new();
+    let source = overhearing.source(stage.source, floor.geometry);
+    let mut session = Session::source(Box::new(source), stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
@@ -138,7 +155,14 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let desk = Desk { session: session.clone(), news };
     let watch = desk.watch(&args.layout)?;
     let choices = args.choices();
-    let handler = CommandHandler { files: args.layout.clone(), watch, choices: choices.clone(), floor, desk };
+    let handler = CommandHandler {
+        files: args.layout.clone(),
+        watch,
+        choices: choices.clone(),
+        floor,
+        desk,
+        rest: None,
+    };
     handler.process_commands(wished, notice_sender);
 
     let scopes = scopes.try_iter().last().flatten();
@@ -148,6 +172,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         layout: Arc::new(layout),
         warnings: Warnings::from(&warnings),
         source: stage.name,
+        server: None,
         snapshots: session.take_snapshots(),
         events,
         layouts,
@@ -158,6 +183,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         playback: None,
         faults: stage.faults,
         people: stage.people,
+        packets: Some(packets),
         shoes: stage.shoes,
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
@@ -195,6 +221,7 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
         layout,
         warnings: Warnings::default(),
         source: name,
+        server: None,
         snapshots,
         events,
         layouts,
@@ -205,10 +232,51 @@ fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
         playback: Some(Box::new(player)),
         faults: None,
         people: None,
+        packets: None,
         shoes: None,
         choices: Vec::new(),
         effects: Vec::new(),
         design: None,
+        commands,
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
+/// Shows a server's floor.
+fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
+    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
+    let (news, layouts) = mpsc::channel();
+    let (notice_sender, notices) = mpsc::channel();
+    let (commands, wished) = mpsc::channel();
+    let window =
+        joined::Window { events: event_sender, layouts: news, notices: notice_sender, commands: wished };
+    let joined = Joined::start(address, window, args.layout.clone())?;
+    let server = Some(joined.feed());
+    let design = match args.layout.layout {
+        Some(_) => args.design()?,
+        None => Some(args.design_of("the server’s layout", joined.layout_text, None)),
+    };
+    let input = PreviewInput {
+        floor: Arc::new(joined.floor),
+        layout: joined.layout,
+        warnings: Warnings::default(),
+        source: address.to_string(),
+        server,
+        snapshots: joined.snapshots,
+        events,
+        layouts,
+        notices,
+        scopes: None,
+        latency: None,
+        feet: None,
+        playback: None,
+        faults: None,
+        people: None,
+        packets: Some(joined.packets),
+        shoes: None,
+        choices: Vec::new(),
+        effects: Vec::new(),
+        design,
         commands,
     };
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
@@ -301,13 +369,18 @@ impl Args {
             Some(path) => std::fs::read_to_string(path).ok(),
             None => schema::builtin_layout(name).map(str::to_owned),
         };
+        Ok(text.map(|text| self.design_of(name, text, path)))
+    }
+
+    /// A layout of this name, text and file, to be designed.
+    fn design_of(&self, name: &str, text: String, path: Option<PathBuf>) -> DesignInput {
         let files = self.layout.clone();
         let kinds_of = Box::new(move |path: Option<&std::path::Path>| {
             let layout = path.map(std::path::Path::to_path_buf);
             LayoutArgs { layout, ..files.clone() }.kinds().map(Arc::new)
         });
         let state = preview::usual_state();
-        Ok(text.map(|text| DesignInput { name: name.to_owned(), text, path, kinds_of, state }))
+        DesignInput { name: name.to_owned(), text, path, kinds_of, state }
     }
 
     /// The layout given and the built-in ones.

@@ -12,17 +12,16 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::preview::{
     EventNews, LayoutCause, LayoutNews, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
-    Warnings,
 };
-use underfoot::recording::{Mark, MarkKind, Progress, ReplaySource, Speed, Timeline, Transport};
+use underfoot::recording::{Mark, MarkKind, Progress, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
-use underfoot::source::{SensorSource, SourceError};
+use underfoot::source::SensorSource;
 use underfoot::units::Instant;
-use underfoot::wire::{LinkCounters, Request, SensorPacket};
 
 use super::super::failure::Failure;
 use super::super::replay;
 use super::ToWindow;
+use super::watched::Watched;
 
 /// Time between looks at the floor that is sensed: half of a picture's.
 const LOOK: Duration = Duration::from_millis(8);
@@ -151,7 +150,7 @@ impl Run {
         source.transport().stay_at_the_end();
         let (transport, progress, first) = (source.transport(), source.progress(), source.now());
         let clock = source.clock();
-        let source = Watched { source, layouts: window.layouts.clone(), given: 0 };
+        let source = Watched::new(source, window.layouts.clone(), LayoutCause::Recorded);
         let session = Session::source(Box::new(source), clock)
             .floor(floor.clone())
             .layout(layout.clone())
@@ -172,44 +171,6 @@ impl Run {
 
     fn at_s(&self) -> f64 {
         self.progress.now().max(self.first).since(self.first).as_secs_f64()
-    }
-}
-
-/// A replay that tells the window of layouts that came later.
-struct Watched {
-    source: ReplaySource,
-    layouts: Sender<LayoutNews>,
-    given: u64,
-}
-
-impl SensorSource for Watched {
-    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
-        self.source.next(patience)
-    }
-
-    fn now(&self) -> Instant {
-        self.source.now()
-    }
-
-    fn take_request(&mut self) -> Option<Request> {
-        self.source.take_request()
-    }
-
-    fn take_layout(&mut self) -> Option<Layout> {
-        let layout = self.source.take_layout()?;
-        self.given += 1;
-        let _ = self.layouts.send(LayoutNews::Loaded {
-            layout: Arc::new(layout.clone()),
-            revision: self.given,
-            name: "recorded change".into(),
-            cause: LayoutCause::Recorded,
-            warnings: Warnings::default(),
-        });
-        Some(layout)
-    }
-
-    fn counters(&self) -> LinkCounters {
-        self.source.counters()
     }
 }
 

@@ -1,20 +1,27 @@
-//! One stream of lines to many clients, none of which holds up another.
+//! One stream of lines to many clients, and of frames to windows that have joined; none of them holds up another.
 
 use std::io::{self, Write};
 use std::net::SocketAddr;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use tracing::warn;
-use tungstenite::Utf8Bytes;
+use tungstenite::{Bytes, Message};
 
 /// Lines that may wait for one client: two seconds of contacts.
 const WAITING: usize = 256;
 
+/// Lines and frames that may wait for one window: two seconds of both.
+const WAITING_FRAMES: usize = 1024;
+
 /// Everybody who is told.
 #[derive(Debug, Default)]
-pub(super) struct Clients(Mutex<State>);
+pub(super) struct Clients {
+    state: Mutex<State>,
+    /// How many windows have joined.
+    windows: Arc<AtomicUsize>,
+}
 
 #[derive(Debug, Default)]
 struct State {
@@ -30,32 +37,40 @@ struct State {
 #[derive(Debug)]
 struct Client {
     peer: SocketAddr,
-    lines: SyncSender<Utf8Bytes>,
+    lines: SyncSender<Message>,
+    /// Whether it is a window, which is told frames as well.
+    joins: bool,
     dropped: Arc<AtomicBool>,
 }
 
 /// What one client is told.
 pub(super) struct Lines {
-    pub(super) queue: Receiver<Utf8Bytes>,
+    pub(super) queue: Receiver<Message>,
     /// Whether too much waits for it: nothing more will come, and what waits is old.
     pub(super) dropped: Arc<AtomicBool>,
 }
 
 impl Clients {
     fn lock(&self) -> MutexGuard<'_, State> {
-        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// One more, who hears what happens from now on.
-    pub(super) fn join(&self, peer: SocketAddr) -> Lines {
-        let (lines, queue) = sync_channel(WAITING);
+    /// Counts the windows that have joined.
+    pub(super) fn windows(&self) -> Arc<AtomicUsize> {
+        Arc::clone(&self.windows)
+    }
+
+    /// One more, who hears what happens from now on; `joins` if it is a window, which also gets what the boards send.
+    pub(super) fn join(&self, peer: SocketAddr, joins: bool) -> Lines {
+        let (lines, queue) = sync_channel(if joins { WAITING_FRAMES } else { WAITING });
         let dropped = Arc::<AtomicBool>::default();
         let mut state = self.lock();
         state.served += 1;
         if !state.ended {
-            state.there.push(Client { peer, lines, dropped: Arc::clone(&dropped) });
+            state.there.push(Client { peer, lines, joins, dropped: Arc::clone(&dropped) });
         }
         state.tell_counts();
+        self.count_windows(&state);
         Lines { queue, dropped }
     }
 
@@ -70,6 +85,19 @@ impl Clients {
             }
             state.tell_counts();
         }
+        self.count_windows(&state);
+    }
+
+    fn count_windows(&self, state: &State) {
+        let joined = state.there.iter().filter(|client| client.joins).count();
+        self.windows.store(joined, Ordering::Relaxed);
+    }
+
+    /// Tells all windows what the boards sent.
+    pub(super) fn tell_frame(&self, frame: Vec<u8>) {
+        let mut state = self.lock();
+        state.send(&Message::Binary(Bytes::from(frame)), |client| client.joins);
+        self.count_windows(&state);
     }
 
     /// Notes a web page that is not let in. Told ever more seldom: a page may try for as long as it is open.
@@ -91,12 +119,15 @@ impl Clients {
 
 impl State {
     fn tell(&mut self, line: &str) {
-        let line = Utf8Bytes::from(line);
+        self.send(&Message::text(line), |_| true);
+    }
+
+    fn send(&mut self, message: &Message, concerns: impl Fn(&Client) -> bool) {
         let mut slow = Vec::new();
-        self.there.retain(|client| match client.lines.try_send(line.clone()) {
-            Ok(()) => true,
-            Err(TrySendError::Disconnected(_)) => false,
-            Err(TrySendError::Full(_)) => {
+        self.there.retain(|client| match concerns(client).then(|| client.lines.try_send(message.clone())) {
+            None | Some(Ok(())) => true,
+            Some(Err(TrySendError::Disconnected(_))) => false,
+            Some(Err(TrySendError::Full(_))) => {
                 client.dropped.store(true, Ordering::Relaxed);
                 slow.push(client.peer);
                 false
@@ -168,13 +199,13 @@ mod tests {
     #[test]
     fn who_does_not_read_is_dropped_and_the_others_hear_of_it() {
         let clients = Arc::<Clients>::default();
-        let [stalled, reading] = [1, 2].map(|port| clients.join(([127, 0, 0, 1], port).into()));
+        let [stalled, reading] = [1, 2].map(|port| clients.join(([127, 0, 0, 1], port).into(), false));
         let mut out = Broadcast::new(Arc::clone(&clients));
         let mut heard = 0;
         for number in 0..=WAITING {
             write!(out, "{{\"number\":{number}").unwrap();
             out.write_all(b"}\n").unwrap();
-            heard += reading.queue.try_iter().filter(|line| line.contains("number")).count();
+            heard += reading.queue.try_iter().filter(|line| line.to_string().contains("number")).count();
         }
         assert_eq!((heard, clients.counts()), (WAITING + 1, (2, 1)));
         assert!(stalled.dropped.load(Ordering::Relaxed) && !reading.dropped.load(Ordering::Relaxed));
@@ -182,5 +213,20 @@ mod tests {
         assert_eq!(clients.counts(), (2, 1), "counted once");
         drop(out);
         assert!(reading.queue.recv().is_err(), "the floor has ended");
+    }
+
+    #[test]
+    fn only_windows_get_frames_and_one_that_does_not_read_is_counted() {
+        let clients = Arc::<Clients>::default();
+        let [page, window] =
+            [false, true].map(|joins| clients.join(([127, 0, 0, 1], 1 + u16::from(joins)).into(), joins));
+        let is_frame = |message: &Message| message.is_binary();
+        clients.tell_frame(vec![1]);
+        assert_eq!(window.queue.try_iter().filter(is_frame).count(), 1);
+        assert_eq!(page.queue.try_iter().filter(is_frame).count(), 0);
+        assert_eq!(clients.windows().load(Ordering::Relaxed), 1);
+        (0..=WAITING_FRAMES).for_each(|_| clients.tell_frame(vec![1]));
+        assert!(window.dropped.load(Ordering::Relaxed) && !page.dropped.load(Ordering::Relaxed));
+        assert_eq!((clients.windows().load(Ordering::Relaxed), clients.counts()), (0, (2, 1)));
     }
 }

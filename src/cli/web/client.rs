@@ -1,4 +1,4 @@
-//! One web client: lines out, requests in, on one thread that never waits for it.
+//! One web client: lines and frames out, requests in, on one thread that never waits for it.
 
 use std::io::ErrorKind;
 use std::net::{SocketAddr, TcpStream};
@@ -13,9 +13,12 @@ use tungstenite::http::{StatusCode, header};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Bytes, Error, Message, WebSocket, accept_hdr_with_config};
 
+use underfoot::runtime::ControlsOff;
+
 use super::House;
 use super::broadcast::Lines;
-use super::greeting::greeting;
+use super::greeting::{greeting, mirror_greeting};
+use super::layout;
 use super::origin::may_connect;
 use super::request::process;
 
@@ -49,7 +52,7 @@ enum End {
 
 /// Serves one client until it goes.
 #[allow(clippy::result_large_err, reason = "what refuses a client is as tungstenite has it")]
-pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
+pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House, joins: bool) {
     let Ok(own) = stream.local_addr() else { return };
     // With more room at the system's a client is only dropped later.
     let _ = SockRef::from(&stream).set_send_buffer_size(WAITING_BYTES);
@@ -64,9 +67,10 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
         *refused.status_mut() = StatusCode::FORBIDDEN;
         Err(refused)
     };
+    let most = if joins && house.takes_layouts { layout::MOST_BYTES } else { MOST_BYTES };
     let config = WebSocketConfig::default()
-        .max_message_size(Some(MOST_BYTES))
-        .max_frame_size(Some(MOST_BYTES))
+        .max_message_size(Some(most))
+        .max_frame_size(Some(most))
         .write_buffer_size(0);
     let socket = match accept_hdr_with_config(stream, check, Some(config)) {
         Ok(socket) => socket,
@@ -75,8 +79,9 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House) {
     if socket.get_ref().set_nonblocking(true).is_err() {
         return;
     }
-    let lines = house.clients.join(peer);
-    let mut client = Client { socket, peer, house, waits_since: None, heard: Instant::now() };
+    let lines = house.clients.join(peer, joins);
+    let mut client =
+        Client { socket, peer, house, joins, off: None, waits_since: None, heard: Instant::now() };
     let end = client.talk(&lines);
     house.clients.leave(peer, end == End::Slow);
 }
@@ -85,6 +90,10 @@ struct Client<'a> {
     socket: WebSocket<TcpStream>,
     peer: SocketAddr,
     house: &'a House,
+    /// Whether it is a window that shows the floor as well.
+    joins: bool,
+    /// While it keeps the controls off.
+    off: Option<ControlsOff>,
     /// Since when something written waits for the client to read.
     waits_since: Option<Instant>,
     /// When something came from it.
@@ -104,7 +113,8 @@ impl Client<'_> {
         loop {
             let seen_layout = self.house.session.snapshot();
             if shown.replace(seen_layout.floor.layout_revision) != Some(seen_layout.floor.layout_revision) {
-                self.send(Message::text(greeting(&seen_layout, &self.house.geometry)))?;
+                let greeting = if self.joins { mirror_greeting } else { greeting };
+                self.send(Message::text(greeting(&seen_layout, self.house)))?;
             }
             // Until the next look at the layout.
             let look = Instant::now() + PING_EVERY;
@@ -136,7 +146,7 @@ impl Client<'_> {
             return Ok(false);
         }
         match lines.queue.recv_timeout(LOOK_EVERY) {
-            Ok(line) => self.send(Message::Text(line))?,
+            Ok(message) => self.send(message)?,
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => return Ok(true),
         }
@@ -182,7 +192,7 @@ impl Client<'_> {
             self.heard = Instant::now();
             match message {
                 Message::Text(text) => {
-                    if let Err(refusal) = process(&text, self.peer, self.house) {
+                    if let Err(refusal) = process(&text, self.peer, self.house, &mut self.off) {
                         self.send(Message::text(refusal))?;
                     }
                 }

@@ -1,12 +1,34 @@
-//! What a web client is told first: where the controls are, and how they are.
+//! What a web client is told first: where the controls are, and how they are; and a window, all of it.
+
+use std::sync::mpsc::sync_channel;
+use std::time::Duration;
 
 use serde_json::{Value, json};
-use underfoot::floor::Geometry;
+use underfoot::mirror::Greeting;
 use underfoot::runtime::Snapshot;
+use underfoot::serve::Command;
 use underfoot::widget;
 
+use super::House;
+
+/// How long the tare is waited for; without it, whoever joins measures its own.
+const PATIENCE: Duration = Duration::from_millis(200);
+
+/// What a window is told that joins: the floor as it is measured now, the layout, and how its controls are.
+pub(super) fn mirror_greeting(seen: &Snapshot, house: &House) -> String {
+    let mut floor = house.floor.clone();
+    let (answer, answered) = sync_channel(1);
+    if house.session.send(Command::GiveTare(answer))
+        && let Ok(Some(tare)) = answered.recv_timeout(PATIENCE)
+    {
+        floor.tare = tare;
+    }
+    Greeting::line(&floor, &seen.layout, &seen.floor, house.method, house.takes_layouts)
+}
+
 /// The floor and its controls as a line.
-pub(super) fn greeting(seen: &Snapshot, geometry: &Geometry) -> String {
+pub(super) fn greeting(seen: &Snapshot, house: &House) -> String {
+    let geometry = &house.floor.geometry;
     let pages = &seen.layout.pages;
     let controls: Vec<Value> = seen
         .layout

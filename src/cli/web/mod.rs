@@ -1,8 +1,10 @@
-//! The door for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours.
+//! The door for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
+//! that show the same floor join here, at `/mirror`.
 
 mod broadcast;
 mod client;
 mod greeting;
+mod layout;
 mod origin;
 mod request;
 
@@ -14,9 +16,12 @@ use std::thread::{self, Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use tracing::warn;
-use underfoot::floor::{Geometry, Network};
+use underfoot::floor::{Floor, Geometry, Network};
+use underfoot::mirror::MirrorFeed;
 use underfoot::runtime::Session;
+use underfoot::sense::Method;
 use underfoot::sink::{EventSink, JsonSink};
+use underfoot::source::SensorSource;
 
 use super::failure::Failure;
 use broadcast::{Broadcast, Clients};
@@ -32,6 +37,9 @@ pub(crate) struct WebArgs {
     /// of this machine only.
     #[arg(long, value_name = "ORIGIN", requires = "web")]
     web_origin: Vec<Origin>,
+    /// Let windows that have joined put other layouts on the floor, from where requests are taken.
+    #[arg(long, requires = "web")]
+    web_layouts: bool,
 }
 
 /// Connections at once; each is a thread.
@@ -52,13 +60,17 @@ const PAGE: &str = include_str!("page.html");
 pub(crate) struct Door {
     listener: TcpListener,
     origins: Vec<Origin>,
+    takes_layouts: bool,
     clients: Arc<Clients>,
+    feed: MirrorFeed,
 }
 
 /// What every connection knows.
 struct House {
     session: Session,
-    geometry: Geometry,
+    floor: Floor,
+    method: Method,
+    takes_layouts: bool,
     origins: Vec<Origin>,
     /// Whose requests are taken.
     apps: Vec<Network>,
@@ -69,6 +81,7 @@ struct House {
 /// The door at work; closes when dropped.
 pub(crate) struct Web {
     house: Arc<House>,
+    feed: MirrorFeed,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -79,7 +92,11 @@ impl WebArgs {
         let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
-        Ok(Some(Door { listener, origins: self.web_origin.clone(), clients: Arc::default() }))
+        let clients = Arc::<Clients>::default();
+        let told = Arc::clone(&clients);
+        let feed = MirrorFeed::start(clients.windows(), move |frame| told.tell_frame(frame))?;
+        let (origins, takes_layouts) = (self.web_origin.clone(), self.web_layouts);
+        Ok(Some(Door { listener, origins, takes_layouts, clients, feed }))
     }
 }
 
@@ -89,22 +106,36 @@ impl Door {
         Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
     }
 
+    /// `source`, with all that it gives shown to windows that join.
+    pub(crate) fn source(&self, source: Box<dyn SensorSource>, geometry: Geometry) -> Box<dyn SensorSource> {
+        Box::new(self.feed.source(source, geometry))
+    }
+
     /// Opens it.
     pub(crate) fn serve(
         self,
         session: Session,
-        geometry: Geometry,
+        floor: Floor,
+        method: Method,
         apps: Vec<Network>,
     ) -> Result<Web, Failure> {
-        let Self { listener, origins, clients } = self;
+        let Self { listener, origins, takes_layouts, clients, feed } = self;
         let failed = |error| Failure::Other(format!("the door for web pages can't be opened: {error}"));
         errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
-        let house =
-            Arc::new(House { session, geometry, origins, apps, clients, over: AtomicBool::new(false) });
+        let house = Arc::new(House {
+            session,
+            floor,
+            method,
+            takes_layouts,
+            origins,
+            apps,
+            clients,
+            over: AtomicBool::new(false),
+        });
         let own = Arc::clone(&house);
         let serve = move || accept(&listener, &own);
         let thread = Some(Builder::new().name("web door".into()).spawn(serve).map_err(failed)?);
-        Ok(Web { house, thread })
+        Ok(Web { house, feed, thread })
     }
 }
 
@@ -115,6 +146,9 @@ impl Drop for Web {
         let _ = self.thread.take().map(JoinHandle::join);
         let (served, dropped) = self.house.clients.counts();
         errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
+        if self.feed.lost() > 0 {
+            errln!("Web: {} packets could not be shown to windows.", self.feed.lost());
+        }
     }
 }
 
@@ -156,7 +190,7 @@ fn receive(stream: TcpStream, peer: SocketAddr, house: &House) {
     // Who has gone meanwhile is no news.
     let Some(head) = set.ok().and_then(|()| head(&stream)) else { return };
     if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
-        client::serve(stream, peer, house);
+        client::serve(stream, peer, house, head.starts_with("GET /mirror "));
     } else if head.starts_with("GET / ") {
         show_page(stream);
     } else {

@@ -45,6 +45,10 @@ impl App {
 
     /// F2 changes the mode; files are taken in, in any mode, that are dropped on the window or saved outside.
     pub(in crate::preview) fn handle_mode_key(&mut self, ui: &Ui) {
+        // Whoever walks over the floor to check it edits nothing.
+        if self.is_checking() {
+            return;
+        }
         if ui.input(|i| i.key_pressed(Key::F2)) {
             self.turn_mode(ui.ctx());
         }
@@ -94,7 +98,10 @@ impl App {
     pub(in crate::preview) fn mode_button(&mut self, ui: &mut Ui) {
         let Some(designer) = &self.designer else { return };
         let button = egui::Button::selectable(designer.is_open, "Design").frame_when_inactive(true);
-        if ui.add(button).on_hover_text("Design the layout, or try it with feet; F2 does the same").clicked()
+        if ui
+            .add_enabled(!self.is_checking(), button)
+            .on_hover_text("Design the layout, or try it with feet; F2 does the same")
+            .clicked()
         {
             self.turn_mode(ui.ctx());
         }
@@ -140,7 +147,8 @@ impl App {
         let is_changed = designer.document.revision() != before;
         let wish = designer.wish.take();
         self.designer = Some(designer);
-        if is_changed {
+        // Others' floors get what is designed only when it is to be tried.
+        if is_changed && self.server.is_none() {
             self.try_layout(LayoutCause::Designed);
         }
         if let Some(wish) = wish {

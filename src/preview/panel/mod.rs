@@ -54,6 +54,7 @@ impl App {
                 self.faults_part(ui);
                 self.grounds_part(ui);
                 self.health_part(ui);
+                self.check_button(ui);
                 self.device_part(ui);
                 self.link_part(ui);
                 self.other_parts = ui.cursor().top() - top - events;

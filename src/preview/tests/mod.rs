@@ -3,9 +3,11 @@
 mod bars;
 mod faults;
 mod feet;
+mod floor_check;
 mod panel;
 mod plots;
 mod presses;
+mod server;
 mod status;
 mod time_line;
 mod walks;
@@ -111,6 +113,7 @@ impl Room {
             layout,
             warnings: Warnings::default(),
             source: "simulated floor".into(),
+            server: None,
             snapshots: output,
             events: event_list,
             layouts: news,
@@ -121,6 +124,7 @@ impl Room {
             playback: None,
             faults: None,
             people: None,
+            packets: None,
             shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),

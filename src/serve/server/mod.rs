@@ -27,10 +27,10 @@ use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
-use crate::sense::{Assembler, Method, Tare};
+use crate::sense::{Assembler, Method, Tare, TareOutcome};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{SensorSource, SourceError};
-use crate::units::Instant;
+use crate::units::{Instant, Newtons};
 use crate::widget::SetError;
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
@@ -58,6 +58,8 @@ pub enum Command {
     Control(ControlMessage),
     /// Do what an app may also ask over OSC, but mute, and answer.
     Ask(ControlMessage, SyncSender<Result<(), SetError>>),
+    /// Give the tare in use, per tile and corner as in [`Floor::tare`]; `None` where it is the floor's own, or not known.
+    GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
     /// Play an effect on one tile as an imagined foot would, in place of what was being played so.
     Audition {
         /// What is felt.
@@ -366,6 +368,11 @@ impl Server {
                 Command::Ask(message, answer) => {
                     self.source.note_request(&message.clone().into());
                     self.answer(message, &answer);
+                }
+                Command::GiveTare(to) => {
+                    let is_measured = self.assembler.tare_outcome() == TareOutcome::Taken;
+                    // Who no longer waits for it need not know.
+                    let _ = to.try_send(is_measured.then(|| self.assembler.tare()));
                 }
                 Command::Audition { effect, gesture, tile } => {
                     self.haptics.trial = Some(Trial::new(effect, *gesture, tile));

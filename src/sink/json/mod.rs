@@ -18,6 +18,8 @@ use super::periodic::PeriodicSender;
 use super::report::OwnedReport;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
+#[cfg(feature = "record")]
+use crate::engine::ControlState;
 use crate::units::Instant;
 #[cfg(feature = "preview")]
 use crate::widget::WidgetEvent;
@@ -257,6 +259,15 @@ pub(crate) fn event_line(event: &WidgetEvent) -> String {
     let mut line = Vec::new();
     // A vector takes everything.
     let _ = write_line(&Job::Told(OwnedReport::Event(event.clone())), &mut line);
+    String::from_utf8_lossy(&line).trim_end().to_owned()
+}
+
+/// How a control is, as [`JsonSink`] writes it, without the end of the line.
+#[cfg(feature = "record")]
+pub(crate) fn control_line(at: Instant, state: &ControlState) -> String {
+    let mut line = Vec::new();
+    // A vector takes everything.
+    let _ = write_line(&Job::Told(OwnedReport::Control(at, Box::new(state.clone()))), &mut line);
     String::from_utf8_lossy(&line).trim_end().to_owned()
 }
 

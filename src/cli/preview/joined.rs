@@ -1,0 +1,360 @@
+//! A server's floor behind the window: sensed here again from what its boards send there. Nothing is put out from here.
+
+use std::net::SocketAddr;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, TryRecvError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread::{self, Builder};
+use std::time::{Duration, Instant as HostInstant};
+
+use serde_json::{Value, json};
+use underfoot::engine::Snapshot;
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
+use underfoot::preview::{
+    EventNews, LayoutCause, LayoutNews, PreviewCommand, ServerFeed, ServerLink, ServerState,
+};
+use underfoot::recording::{OverheardPackets, Overhearing};
+use underfoot::runtime::Session;
+use underfoot::schema;
+use underfoot::serve::Command;
+use underfoot::widget;
+
+use super::super::failure::Failure;
+use super::super::layout_args::LayoutArgs;
+use super::super::watch::Watch;
+use super::ToWindow;
+use super::commands::keep_floor;
+use super::watched::Watched;
+
+/// Time between looks at the floor that is sensed: half of a picture's.
+const LOOK: Duration = Duration::from_millis(8);
+
+/// How often controls are compared with what the server says of them.
+const COMPARE_EVERY: Duration = Duration::from_millis(100);
+
+/// How long the server may take to greet before there is no window.
+const PATIENCE: Duration = Duration::from_secs(3);
+
+/// Where the window hears of the floor, and asks of it.
+pub(super) struct Window {
+    pub(super) events: SyncSender<EventNews>,
+    pub(super) layouts: Sender<LayoutNews>,
+    pub(super) notices: Sender<String>,
+    pub(super) commands: Receiver<PreviewCommand>,
+}
+
+/// A server's floor that is being shown; ends when the window hangs up.
+pub(super) struct Joined {
+    pub(super) floor: Floor,
+    pub(super) layout: Arc<Layout>,
+    pub(super) layout_text: String,
+    pub(super) snapshots: triple_buffer::Output<Snapshot>,
+    /// What the boards send.
+    pub(super) packets: OverheardPackets,
+    shared: Shared,
+}
+
+/// What the window says of the server.
+#[derive(Clone)]
+struct Shared(Arc<Mutex<ServerState>>);
+
+impl Shared {
+    fn state(&self) -> MutexGuard<'_, ServerState> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Joined {
+    /// Joins the server whose door for web pages is at `address`; `files` are those of the layout that is designed here.
+    pub(super) fn start(address: SocketAddr, window: Window, files: LayoutArgs) -> Result<Self, Failure> {
+        let failed = |error: std::io::Error| Failure::Other(format!("can't join {address}: {error}"));
+        let (link, news) = MirrorLink::start(address).map_err(failed)?;
+        let (greeting, source) = first(&news, address)?;
+        let (overhearing, packets) = OverheardPackets::new();
+        let run = Run::begin(&greeting, source, &window, &overhearing)?;
+        let state = ServerState {
+            address: address.to_string(),
+            link: ServerLink::Joined,
+            takes_layouts: greeting.takes_layouts,
+            left_out: 0,
+        };
+        let shared = Shared(Arc::new(Mutex::new(state)));
+        let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+        let (floor, layout_text) = (greeting.floor.clone(), greeting.layout_text.clone());
+        let layout = Arc::new(greeting.layout.clone());
+        let mut playing = Playing {
+            link,
+            news,
+            run,
+            overhearing,
+            window,
+            floor: floor.clone(),
+            served: layout_text.clone(),
+            tried: None,
+            rests: false,
+            snapshots: input,
+            follower: Follower::default(),
+            begun: HostInstant::now(),
+            compared: HostInstant::now(),
+            shared: shared.clone(),
+            watch: None,
+            files,
+        };
+        playing.follower.begin(&greeting, Duration::ZERO);
+        playing.watch = playing.watched();
+        Builder::new().name("joined".into()).spawn(move || playing.play()).map_err(failed)?;
+        Ok(Self { floor, layout, layout_text, snapshots, packets, shared })
+    }
+
+    /// What the window says of the server.
+    pub(super) fn feed(&self) -> ServerFeed {
+        let shared = self.shared.clone();
+        Box::new(move || shared.state().clone())
+    }
+}
+
+/// The first greeting, which the window needs before it can open.
+fn first(news: &Receiver<MirrorNews>, address: SocketAddr) -> Result<(Box<Greeting>, MirrorSource), Failure> {
+    let until = HostInstant::now() + PATIENCE;
+    let mut why = "it says nothing".to_owned();
+    loop {
+        match news.recv_timeout(until.saturating_duration_since(HostInstant::now())) {
+            Ok(MirrorNews::Joined(greeting, source)) => return Ok((greeting, source)),
+            Ok(MirrorNews::Lost(reason)) => why = reason,
+            Ok(_) => {}
+            Err(_) => {
+                return Err(Failure::Other(format!(
+                    "can't join the floor at {address}: {why}; it must be served by `underfoot run` with --web {address}"
+                )));
+            }
+        }
+    }
+}
+
+/// One time with the server, from its greeting until it is gone.
+struct Run {
+    session: Session,
+    snapshots: triple_buffer::Output<Snapshot>,
+    left_out: Box<dyn Fn() -> u64 + Send>,
+}
+
+impl Run {
+    fn begin(
+        greeting: &Greeting,
+        source: MirrorSource,
+        window: &Window,
+        overhearing: &Overhearing,
+    ) -> Result<Self, Failure> {
+        let (clock, left_out) = (source.clock(), Box::new(source.left_out()));
+        let source = Watched::new(source, window.layouts.clone(), LayoutCause::Served);
+        let source = overhearing.source(Box::new(source), greeting.floor.geometry);
+        let session = Session::source(Box::new(source), clock)
+            .floor(greeting.floor.clone())
+            .layout(greeting.layout.clone())
+            .method(greeting.method)
+            .sink(ToWindow { events: window.events.clone(), missed: 0 })
+            .start()?;
+        let snapshots = session.take_snapshots();
+        Ok(Self { session, snapshots, left_out })
+    }
+
+    /// Ends it, and with it what is told of it.
+    fn end(&self) {
+        self.session.stop();
+        while !self.session.has_ended() {
+            thread::sleep(Duration::from_millis(1));
+        }
+    }
+}
+
+struct Playing {
+    link: MirrorLink,
+    news: Receiver<MirrorNews>,
+    run: Run,
+    overhearing: Overhearing,
+    window: Window,
+    /// The floor that the window shows.
+    floor: Floor,
+    /// The layout that the server has, as text.
+    served: String,
+    /// The name of the layout that was last sent to it.
+    tried: Option<String>,
+    /// Whether its controls are to be off while the floor is checked.
+    rests: bool,
+    snapshots: triple_buffer::Input<Snapshot>,
+    follower: Follower,
+    begun: HostInstant,
+    compared: HostInstant,
+    shared: Shared,
+    /// Ends with the next one.
+    watch: Option<Watch>,
+    files: LayoutArgs,
+}
+
+impl Playing {
+    /// Shows the floor until the window hangs up.
+    fn play(mut self) {
+        loop {
+            match self.news.recv_timeout(LOOK) {
+                Ok(news) => self.hear(news),
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => thread::sleep(LOOK),
+            }
+            loop {
+                match self.window.commands.try_recv() {
+                    Ok(command) => self.apply(command),
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => return self.run.end(),
+                }
+            }
+            self.look();
+        }
+    }
+
+    fn say(&self, notice: impl Into<String>) {
+        // A window that is closed need not know.
+        let _ = self.window.notices.send(notice.into());
+    }
+
+    fn hear(&mut self, news: MirrorNews) {
+        match news {
+            MirrorNews::Joined(greeting, source) => self.join_again(&greeting, source),
+            MirrorNews::Again(greeting) => self.take(&greeting),
+            MirrorNews::Line(line) => self.hear_line(&line),
+            MirrorNews::Lost(why) => self.shared.state().link = ServerLink::Lost(why),
+        }
+    }
+
+    /// Takes the floor up again, from its beginning: nothing of before is believed.
+    fn join_again(&mut self, greeting: &Greeting, source: MirrorSource) {
+        if !is_same(&greeting.floor, &self.floor) {
+            let why = "the server has another floor now: open the window anew to see it";
+            self.shared.state().link = ServerLink::Lost(why.into());
+            return;
+        }
+        self.run.end();
+        let layout = Arc::new(greeting.layout.clone());
+        let _ = self.window.events.send(EventNews::Restarted(layout));
+        match Run::begin(greeting, source, &self.window, &self.overhearing) {
+            Ok(run) => self.run = run,
+            Err(failure) => return self.say(failure.to_string()),
+        }
+        self.shared.state().link = ServerLink::Joined;
+        self.take(greeting);
+        if self.rests {
+            self.link.ask(CONTROLS_OFF, &[json!(true)]);
+        }
+    }
+
+    /// What the server has, by its own word.
+    fn take(&mut self, greeting: &Greeting) {
+        self.served.clone_from(&greeting.layout_text);
+        self.shared.state().takes_layouts = greeting.takes_layouts;
+        self.follower.begin(greeting, self.begun.elapsed());
+    }
+
+    fn hear_line(&mut self, line: &Value) {
+        let text = |field: &str| line.get(field).and_then(Value::as_str).unwrap_or_default();
+        if text("event") != "error" {
+            return self.follower.hear(line, self.begun.elapsed());
+        }
+        let why = text("why").to_owned();
+        match self.tried.take_if(|_| text("request") == LAYOUT) {
+            Some(name) => drop(self.window.layouts.send(LayoutNews::Refused { name, diagnostics: why })),
+            None => self.say(format!("The server refuses {}: {why}", text("request"))),
+        }
+    }
+
+    /// Passes on what is to be seen, and lets controls be as the server says.
+    fn look(&mut self) {
+        if self.run.snapshots.update() {
+            self.snapshots.input_buffer_mut().clone_from(self.run.snapshots.output_buffer());
+            self.snapshots.publish();
+        }
+        if self.compared.elapsed() < COMPARE_EVERY {
+            return;
+        }
+        self.compared = HostInstant::now();
+        self.shared.state().left_out = (self.run.left_out)();
+        let (layout, here) = (self.run.session.snapshot().layout, self.run.snapshots.output_buffer());
+        // Between two layouts, names and places may not belong together.
+        if here.widgets.len() == layout.widgets.len() {
+            for message in self.follower.corrections(&layout, here, self.begun.elapsed()) {
+                self.run.session.send(Command::Control(message));
+            }
+        }
+    }
+
+    /// Asks of the server what the person at the window wants of the floor.
+    fn apply(&mut self, command: PreviewCommand) {
+        match command {
+            PreviewCommand::Enable { id, enabled } => {
+                self.link.ask(&format!("widget/{id}/{}", if enabled { "enable" } else { "disable" }), &[]);
+            }
+            PreviewCommand::Set { id, value } => {
+                let arguments = match value {
+                    widget::Value::Switch(on) => vec![json!(on)],
+                    widget::Value::Number(number) => vec![json!(number)],
+                    widget::Value::Choice(choice) => vec![json!(choice)],
+                    widget::Value::Pair(pair) => vec![json!(pair.x), json!(pair.y)],
+                };
+                self.link.ask(&format!("widget/{id}/set"), &arguments);
+            }
+            PreviewCommand::Mute(on) => self.link.ask("mute/set", &[json!(on)]),
+            PreviewCommand::MuteTile { tile, on } => {
+                self.link.ask("mute/tile", &[json!(tile.column), json!(tile.row), json!(on)]);
+            }
+            PreviewCommand::Try { layout, name, .. } => self.try_layout(&layout, name),
+            PreviewCommand::Watch(path) => {
+                self.files.layout = path;
+                self.watch = self.watched();
+            }
+            PreviewCommand::RestControls(rest) => {
+                self.rests = rest;
+                self.link.ask(CONTROLS_OFF, &[json!(rest)]);
+            }
+            PreviewCommand::SaveFloor { floor, path } => self.say(keep_floor(&floor, &path)),
+            PreviewCommand::Open(_) | PreviewCommand::Feel { .. } | PreviewCommand::SaveEffect { .. } => {
+                self.say("That is done where the floor is served.");
+            }
+        }
+    }
+
+    /// Sends the server a layout, if it takes any.
+    fn try_layout(&mut self, layout: &Layout, name: String) {
+        let text = schema::write_layout(layout);
+        if text == self.served {
+            return;
+        }
+        if !self.shared.state().takes_layouts {
+            return self.say(KEEPS);
+        }
+        self.tried = Some(name);
+        self.link.ask(LAYOUT, &[Value::String(text)]);
+    }
+
+    /// Tells the window of each change of the layout's files.
+    fn watched(&self) -> Option<Watch> {
+        let news = self.window.layouts.clone();
+        let watch = Watch::on_change(&self.files, move || {
+            let _ = news.send(LayoutNews::Changed);
+        });
+        watch.inspect_err(|failure| self.say(failure.to_string())).ok().flatten()
+    }
+}
+
+/// The request that puts a layout on the server's floor.
+const LAYOUT: &str = "layout";
+
+/// The request that keeps controls off while this window checks the floor.
+const CONTROLS_OFF: &str = "controls_off";
+
+/// What is said to who designs a layout for a server that takes none.
+const KEEPS: &str = "What is designed stays in this window: the server keeps its layout, and would take another if it were \
+                     started with --web-layouts.";
+
+/// Whether the window that shows `shown` can show `now`: whatever was measured on it may be new.
+fn is_same(now: &Floor, shown: &Floor) -> bool {
+    now.geometry == shown.geometry && now.boards == shown.boards
+}

@@ -1,0 +1,82 @@
+//! What a server takes, as frames for whoever has joined.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
+use std::time::Duration;
+
+use super::frame;
+use crate::floor::Geometry;
+use crate::recording::{Entries, Tape, TappedSource};
+use crate::sink::{SinkError, Worker};
+use crate::source::SensorSource;
+
+/// How much of the floor's time makes a frame: what it adds to the delay, at most.
+const BATCH: Duration = Duration::from_millis(4);
+
+/// Taps the source of a server, and gives what it takes as frames; costs nothing while nobody has joined.
+#[derive(Clone, Debug)]
+pub struct MirrorFeed {
+    worker: Arc<Worker<Entries>>,
+    joined: Arc<AtomicUsize>,
+    lost: Arc<AtomicU64>,
+}
+
+impl MirrorFeed {
+    /// Calls `tell` with each frame, on a thread of its own, while `joined` is not zero: how many have joined.
+    ///
+    /// # Errors
+    /// [`SinkError::Output`] if the system gives no thread.
+    pub fn start(
+        joined: Arc<AtomicUsize>,
+        mut tell: impl FnMut(Vec<u8>) + Send + 'static,
+    ) -> Result<Self, SinkError> {
+        let failed = |source| SinkError::Output {
+            message: format!("the floor can't be shown elsewhere: {source}"),
+            source,
+        };
+        let work = move |batches: &std::sync::mpsc::Receiver<Entries>| {
+            for entries in batches {
+                let mut bytes = Vec::with_capacity(128 * entries.len());
+                frame::write(&entries, &mut bytes);
+                tell(bytes);
+            }
+        };
+        let worker = Arc::new(Worker::spawn("mirror", work).map_err(failed)?);
+        Ok(Self { worker, joined, lost: Arc::default() })
+    }
+
+    /// `inner`, with all that it gives told to whoever has joined; for a floor of this geometry.
+    #[must_use]
+    pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
+        TappedSource::new(inner, Box::new(self.clone()), geometry)
+    }
+
+    /// What could not be told because its thread did not keep up; where it is missing, the stream says so.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
+    }
+}
+
+impl Tape for MirrorFeed {
+    fn is_wanted(&self) -> bool {
+        self.joined.load(Ordering::Relaxed) > 0
+    }
+
+    fn batch(&self) -> Duration {
+        BATCH
+    }
+
+    /// The server's own time is not touched by who looks on.
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    fn hand(&self, entries: Entries) -> Option<Entries> {
+        if entries.is_empty() { None } else { self.worker.hand(entries) }
+    }
+
+    fn count_lost(&self, entries: u64) {
+        self.lost.fetch_add(entries, Ordering::Relaxed);
+    }
+}

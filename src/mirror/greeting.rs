@@ -1,0 +1,136 @@
+//! What a window that joins has to know first.
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use thiserror::Error;
+
+use super::VERSION;
+use crate::engine::{ControlState, Snapshot};
+use crate::floor::Floor;
+use crate::layout::Layout;
+use crate::recording::read_layout;
+use crate::schema::{self, Diagnostics};
+use crate::sense::Method;
+use crate::sink::control_line;
+use crate::units::Instant;
+
+/// Why a window can't join.
+#[derive(Debug, Error)]
+pub enum MirrorError {
+    /// What was said is not a greeting.
+    #[error("the server does not greet as one of this program does: {0}")]
+    Greeting(#[from] serde_json::Error),
+    /// The server speaks another version.
+    #[error(
+        "the server speaks version {0} of the stream, this program {VERSION}: use the same program on both sides"
+    )]
+    Version(u8),
+    /// Its floor or its layout can't be read.
+    #[error("{0}")]
+    Diagnostics(#[from] Diagnostics),
+}
+
+/// A floor at work, as it is when somebody joins.
+#[derive(Clone, Debug)]
+pub struct Greeting {
+    /// The floor, with the tare that is in use.
+    pub floor: Floor,
+    /// The layout that is on it.
+    pub layout: Layout,
+    /// The same as text.
+    pub layout_text: String,
+    /// How feet are told apart.
+    pub method: Method,
+    /// The server's time.
+    pub now: Instant,
+    /// The page that is shown; `None` in a layout without pages.
+    pub page: Option<String>,
+    /// Whether layouts of others may be put on the floor.
+    pub takes_layouts: bool,
+    /// How each control is, as lines of JSON say it.
+    pub controls: Vec<Value>,
+}
+
+/// The greeting as it is sent.
+#[derive(Deserialize, Serialize)]
+struct Words {
+    event: String,
+    version: u8,
+    method: String,
+    t_s: f64,
+    page: Option<String>,
+    takes_layouts: bool,
+    floor: String,
+    layout: String,
+    controls: Vec<Value>,
+}
+
+const EVENT: &str = "mirror";
+const EQ4: &str = "eq4";
+const TRACKER: &str = "tracker";
+
+impl Greeting {
+    /// The greeting of a server as a line of JSON.
+    #[must_use]
+    pub fn line(
+        floor: &Floor,
+        layout: &Layout,
+        snapshot: &Snapshot,
+        method: Method,
+        takes_layouts: bool,
+    ) -> String {
+        let states = (0..layout.widgets.len()).filter_map(|index| ControlState::of(layout, index, snapshot));
+        let words = Words {
+            event: EVENT.into(),
+            version: VERSION,
+            method: if method == Method::Eq4 { EQ4 } else { TRACKER }.into(),
+            t_s: snapshot.at.secs(),
+            page: layout.pages.get(snapshot.page).map(|page| page.id.to_string()),
+            takes_layouts,
+            floor: schema::write_floor(floor),
+            layout: schema::write_layout(layout),
+            controls: states.filter_map(|state| spoken(&state)).collect(),
+        };
+        // Text and numbers always have a form in JSON.
+        serde_json::to_string(&words).unwrap_or_default()
+    }
+
+    /// Whether a line is a greeting, whatever it says.
+    #[must_use]
+    pub fn is_in(line: &Value) -> bool {
+        line.get("event").is_some_and(|event| event == EVENT)
+    }
+
+    /// Reads what [`Greeting::line`] wrote.
+    ///
+    /// # Errors
+    /// [`MirrorError`] if it is none, of another version, or if its floor or layout can't be read.
+    pub fn read(line: Value) -> Result<Self, MirrorError> {
+        // Of another version nothing else need be as it is here.
+        if let Some(version) = line.get("version").and_then(Value::as_u64)
+            && version != u64::from(VERSION)
+        {
+            return Err(MirrorError::Version(u8::try_from(version).unwrap_or(u8::MAX)));
+        }
+        let words: Words = serde_json::from_value(line)?;
+        let floor = schema::parse_floor(&words.floor, "the server's floor")?;
+        let layout = read_layout(&words.layout, &floor.geometry)?;
+        // A float becomes the nearest integer of its range.
+        let now = Instant::from_micros((words.t_s * 1e6).round() as u64);
+        Ok(Self {
+            floor,
+            layout,
+            layout_text: words.layout,
+            method: if words.method == EQ4 { Method::Eq4 } else { Method::Tracker },
+            now,
+            page: words.page,
+            takes_layouts: words.takes_layouts,
+            controls: words.controls,
+        })
+    }
+}
+
+/// How a control is, as JSON lines say it.
+pub(super) fn spoken(state: &ControlState) -> Option<Value> {
+    serde_json::from_str(&control_line(Instant::START, state)).ok()
+}

@@ -1,0 +1,194 @@
+//! The stream as a source of packets.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::thread;
+use std::time::{Duration, Instant as HostInstant};
+
+use super::Greeting;
+use super::frame::{self, BadFrame};
+use crate::floor::Geometry;
+use crate::layout::Layout;
+use crate::recording::{Entries, Entry, decoder, read_layout};
+use crate::source::{SensorSource, SourceError};
+use crate::units::{HostClock, Instant};
+use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
+
+/// Frames that may wait to be sensed: four seconds of them. Whoever has more waits.
+const WAITING: usize = 1024;
+
+/// How late a frame may be before time goes on without it: less than what makes a board count as lost, and more than
+/// a network of one building holds a frame up.
+const LATE: Duration = Duration::from_millis(40);
+
+/// Where frames of the stream go in.
+#[derive(Debug)]
+pub struct MirrorInput {
+    frames: SyncSender<Entries>,
+    decoder: Decoder,
+    counters: Arc<Counters>,
+}
+
+#[derive(Debug, Default)]
+struct Counters {
+    now_us: AtomicU64,
+    bad: AtomicU64,
+    left_out: AtomicU64,
+}
+
+impl MirrorInput {
+    /// Takes a frame; waits while four seconds of others do. Frames for a source that is gone are dropped.
+    ///
+    /// # Errors
+    /// [`BadFrame`] if it makes no sense; that is counted, and nothing of it is taken.
+    pub fn put(&self, bytes: &[u8]) -> Result<(), BadFrame> {
+        let entries = frame::read(bytes, &self.decoder).inspect_err(|_| {
+            self.counters.bad.fetch_add(1, Ordering::Relaxed);
+        })?;
+        // A floor that has ended needs no more packets.
+        let _ = self.frames.send(entries);
+        Ok(())
+    }
+}
+
+impl MirrorInput {
+    /// Says which layout the server has; the same one again changes nothing.
+    pub(super) fn put_layout(&self, text: String) {
+        let at = Instant::from_micros(self.counters.now_us.load(Ordering::Relaxed));
+        // As above.
+        let _ = self.frames.send(vec![(at, Entry::Layout(text))]);
+    }
+}
+
+/// Gives what the server's source gave, in the same order and with the same times.
+///
+/// Its time is the server's as of the last frame, and goes on with this machine's while none comes: so silence is
+/// noticed here as it is there, whatever the way between them takes.
+#[derive(Debug)]
+pub struct MirrorSource {
+    frames: Receiver<Entries>,
+    ahead: VecDeque<(Instant, Entry)>,
+    now: Instant,
+    /// The server's time at the end of the last frame, and when that came.
+    arrived: (Instant, HostInstant),
+    geometry: Geometry,
+    /// The text of the layout that is on the floor.
+    layout: String,
+    counters: Arc<Counters>,
+}
+
+impl MirrorSource {
+    /// A source for the floor of this greeting, and where its frames go in.
+    #[must_use]
+    pub fn new(greeting: &Greeting) -> (MirrorInput, Self) {
+        let (now, geometry, layout) = (greeting.now, greeting.floor.geometry, greeting.layout_text.clone());
+        let (sender, frames) = sync_channel(WAITING);
+        let counters = Arc::<Counters>::default();
+        counters.now_us.store(now.micros(), Ordering::Relaxed);
+        let input = MirrorInput { frames: sender, decoder: decoder(), counters: Arc::clone(&counters) };
+        let arrived = (now, HostInstant::now());
+        (input, Self { frames, ahead: VecDeque::new(), now, arrived, geometry, layout, counters })
+    }
+
+    /// The server's clock, as far as it is known here.
+    #[must_use]
+    pub fn clock(&self) -> HostClock {
+        let counters = Arc::clone(&self.counters);
+        Arc::new(move || Instant::from_micros(counters.now_us.load(Ordering::Relaxed)))
+    }
+
+    /// Counts what the server could not tell, to be looked at from elsewhere.
+    pub fn left_out(&self) -> impl Fn() -> u64 + Send + 'static {
+        let counters = Arc::clone(&self.counters);
+        move || counters.left_out.load(Ordering::Relaxed)
+    }
+
+    fn set_now(&mut self, to: Instant) {
+        self.now = self.now.max(to);
+        self.counters.now_us.store(self.now.micros(), Ordering::Relaxed);
+    }
+
+    /// The next entry.
+    fn advance(&mut self) -> Option<Entry> {
+        let (taken, entry) = self.ahead.pop_front()?;
+        self.set_now(taken);
+        Some(entry)
+    }
+
+    /// Waits for a frame at most so long; without one, lets time go on.
+    fn wait(&mut self, patience: Duration) {
+        match self.frames.recv_timeout(patience) {
+            Ok(entries) => {
+                let until = entries.last().map_or(self.now, |(taken, _)| self.now.max(*taken));
+                self.arrived = (until, HostInstant::now());
+                self.ahead.extend(entries);
+            }
+            Err(gone) => {
+                if gone == RecvTimeoutError::Disconnected {
+                    thread::sleep(patience);
+                }
+                let (until, at) = self.arrived;
+                let silent = at.elapsed();
+                if silent > LATE {
+                    self.set_now(until + silent);
+                }
+            }
+        }
+    }
+}
+
+impl SensorSource for MirrorSource {
+    /// The next packet, or `None` where none came; never ends by itself, since a server may come back.
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        if self.ahead.is_empty() {
+            self.wait(patience);
+        }
+        loop {
+            match self.advance() {
+                Some(Entry::Packet(packet)) => return Ok(Some(packet)),
+                Some(Entry::Silence | Entry::End) | None => return Ok(None),
+                Some(Entry::Gap(entries)) => {
+                    self.counters.left_out.fetch_add(entries, Ordering::Relaxed);
+                }
+                Some(entry @ (Entry::Request(_) | Entry::Layout(_))) => {
+                    // These are taken before the next packet.
+                    self.ahead.push_front((self.now, entry));
+                    return Ok(None);
+                }
+            }
+        }
+    }
+
+    fn now(&self) -> Instant {
+        self.now
+    }
+
+    fn take_request(&mut self) -> Option<Request> {
+        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Request(_)))?;
+        match self.advance()? {
+            // Who asked has been answered there.
+            Entry::Request(request) => Some(Request { sender: None, ..request }),
+            _ => None,
+        }
+    }
+
+    fn take_layout(&mut self) -> Option<Layout> {
+        self.ahead.front().filter(|(_, entry)| matches!(entry, Entry::Layout(_)))?;
+        match self.advance()? {
+            Entry::Layout(text) if text != self.layout => {
+                let layout = read_layout(&text, &self.geometry)
+                    .inspect_err(|problems| tracing::warn!("the server's layout can't be read: {problems}"))
+                    .ok()?;
+                self.layout = text;
+                Some(layout)
+            }
+            _ => None,
+        }
+    }
+
+    fn counters(&self) -> LinkCounters {
+        LinkCounters { malformed: self.counters.bad.load(Ordering::Relaxed), ..LinkCounters::default() }
+    }
+}

@@ -1,0 +1,241 @@
+use std::time::Duration;
+
+use arrayvec::ArrayVec;
+use proptest::prelude::*;
+use serde_json::{Value, json};
+
+use super::frame::{self, BadFrame};
+use super::{Follower, Greeting, MirrorError, MirrorSource};
+use crate::engine::{Engine, Snapshot};
+use crate::floor::Floor;
+use crate::layout::Layout;
+use crate::recording::{Entries, Entry, decoder};
+use crate::schema::{Kinds, builtin_layout, parse_layout};
+use crate::sense::Method;
+use crate::source::SensorSource;
+use crate::units::{Instant, Newtons};
+use crate::wire::{ControlMessage, Readings, Request, SensorPacket, read_json};
+
+fn layout(name: &str) -> Layout {
+    let text = builtin_layout(name).unwrap();
+    parse_layout(text, name, &Kinds::builtin(), &Floor::default().geometry).unwrap().layout
+}
+
+fn engine(layout: &Layout) -> Engine {
+    Engine::new(Floor::default().geometry, layout.clone(), Method::Tracker)
+}
+
+fn seen(engine: &Engine) -> Snapshot {
+    let mut snapshot = Snapshot::default();
+    engine.snapshot(&mut snapshot);
+    snapshot
+}
+
+fn greeting_of(engine: &Engine, layout: &Layout) -> Greeting {
+    let line = Greeting::line(&Floor::default(), layout, &seen(engine), Method::Tracker, true);
+    Greeting::read(serde_json::from_str(&line).unwrap()).unwrap()
+}
+
+fn packet(board: u16, sequence: u32, received_us: u64) -> SensorPacket {
+    let counts: ArrayVec<_, 64> = (0..24).map(|n| (n % 5 > 0).then_some(n * 1000)).collect();
+    let received = Instant::from_micros(received_us);
+    SensorPacket { board, sequence, received, readings: Readings::Counts(counts) }
+}
+
+fn everything() -> Entries {
+    let at = Instant::from_micros;
+    let request = read_json("widget/zoom/set", &[json!(0.5)]).unwrap();
+    vec![
+        (at(9_000_100), Entry::Packet(packet(2, u32::MAX, 9_000_040))),
+        (at(9_000_100), Entry::Request(Request { message: request, sender: None })),
+        (at(9_002_000), Entry::Silence),
+        (at(9_002_500), Entry::Layout("Layout()".into())),
+        (at(9_003_000), Entry::Gap(7)),
+        // Stamped by the system later than it was taken.
+        (at(9_003_500), Entry::Packet(packet(0, 0, 9_003_600))),
+        (at(9_004_000), Entry::End),
+    ]
+}
+
+fn framed(entries: &Entries) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    frame::write(entries, &mut bytes);
+    bytes
+}
+
+#[test]
+fn a_frame_gives_the_same_entries_with_the_same_times() {
+    assert_eq!(frame::read(&framed(&everything()), &decoder()), Ok(everything()));
+    assert_eq!(frame::read(&framed(&Entries::new()), &decoder()), Ok(Entries::new()));
+}
+
+#[test]
+fn frames_that_are_cut_or_of_another_version_are_refused_whole() {
+    let whole = framed(&everything());
+    let one = framed(&everything()[..1].to_vec()).len();
+    for length in 0..whole.len() {
+        // Between two entries nobody can see the cut.
+        let is_between = frame::read(&whole[..length], &decoder()).is_ok_and(|read| read.len() < 7);
+        assert!(is_between || frame::read(&whole[..length], &decoder()) == Err(BadFrame), "{length}");
+        assert!(!(10..one).contains(&length) || !is_between, "{length}");
+    }
+    let mut other = whole;
+    other[0] += 1;
+    assert_eq!(frame::read(&other, &decoder()), Err(BadFrame));
+}
+
+proptest! {
+    #[test]
+    fn no_bytes_make_the_reader_panic_and_what_makes_no_sense_is_counted(
+        bytes in prop::collection::vec(0_u8.., 0..300),
+        flips in prop::collection::vec((0_usize..600, 1_u8..), 0..4),
+        cut in 0_usize..600,
+    ) {
+        let engine = engine(&layout("map"));
+        let (input, source) = MirrorSource::new(&greeting_of(&engine, &layout("map")));
+        let mut damaged = framed(&everything());
+        for (at, bits) in flips {
+            let length = damaged.len();
+            damaged[at % length] ^= bits;
+        }
+        damaged.truncate(cut);
+        let refused = [bytes, damaged].iter().filter(|frame| input.put(frame).is_err()).count();
+        prop_assert_eq!(source.counters().malformed, refused as u64);
+    }
+}
+
+#[test]
+fn the_source_gives_what_the_server_took_in_its_order() {
+    let layout = layout("map");
+    let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
+    let left_out = source.left_out();
+    input.put(&framed(&everything())).unwrap();
+    let patience = Duration::from_millis(1);
+    assert_eq!(source.next(patience).unwrap(), Some(packet(2, u32::MAX, 9_000_040)));
+    assert_eq!(source.now(), Instant::from_micros(9_000_100));
+    assert!(source.take_layout().is_none(), "first comes a request");
+    assert!(matches!(source.take_request().unwrap().message, ControlMessage::Set { .. }));
+    assert_eq!(source.next(patience).unwrap(), None, "silence");
+    assert!(source.take_layout().is_none(), "it can't be read");
+    assert_eq!(source.next(patience).unwrap(), Some(packet(0, 0, 9_003_600)));
+    assert_eq!((left_out(), source.now()), (7, Instant::from_micros(9_003_500)));
+    assert_eq!(source.next(patience).unwrap(), None, "the end there is silence here: a server may come back");
+}
+
+#[test]
+fn a_frame_that_is_a_little_late_does_not_let_time_pass_and_silence_does() {
+    let layout = layout("map");
+    let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
+    input.put(&framed(&vec![(Instant::from_millis(5000), Entry::Silence)])).unwrap();
+    assert_eq!(source.next(Duration::ZERO).unwrap(), None);
+    assert_eq!(source.next(Duration::ZERO).unwrap(), None);
+    // However slow this machine is: not before the frame is late, and then by as much as it is.
+    let begun = std::time::Instant::now();
+    while source.now() == Instant::from_millis(5000) {
+        assert_eq!(source.next(Duration::from_millis(1)).unwrap(), None);
+        assert!(begun.elapsed() < Duration::from_secs(60));
+    }
+    assert!(source.now() > Instant::from_millis(5040), "{:?}", source.now());
+    let before = source.now();
+    input.put(&framed(&vec![(Instant::from_millis(5004), Entry::Silence)])).unwrap();
+    assert_eq!(source.next(Duration::from_millis(1)).unwrap(), None);
+    assert!(source.now() >= before, "it never goes back");
+}
+
+#[test]
+fn a_layout_is_taken_once_however_often_the_server_says_it() {
+    let (map, other) = (layout("map"), layout("surgical"));
+    let greeting = greeting_of(&engine(&map), &map);
+    let (input, mut source) = MirrorSource::new(&greeting);
+    let taken = |text: &str, source: &mut MirrorSource| {
+        input.put_layout(text.into());
+        let _ = source.next(Duration::from_millis(1));
+        source.take_layout().map(|layout| layout.title)
+    };
+    assert_eq!(taken(&greeting.layout_text, &mut source), None);
+    let text = crate::schema::write_layout(&other);
+    assert_eq!(taken(&text, &mut source), Some(other.title));
+    assert_eq!(taken(&text, &mut source), None);
+    assert_eq!(taken(&greeting.layout_text, &mut source), Some(map.title));
+}
+
+#[test]
+fn a_greeting_says_the_floor_as_it_is_and_how_its_controls_are() {
+    let layout = layout("map");
+    let mut engine = engine(&layout);
+    engine.set_enabled("home", false).unwrap();
+    let mut floor = Floor::default();
+    floor.tare[7][2] = Newtons(3.5);
+    let line = Greeting::line(&floor, &layout, &seen(&engine), Method::Eq4, false);
+    let line: Value = serde_json::from_str(&line).unwrap();
+    assert!(Greeting::is_in(&line) && !Greeting::is_in(&json!({"event": "floor"})));
+    let read = Greeting::read(line.clone()).unwrap();
+    assert_eq!((read.floor, read.method, read.takes_layouts), (floor, Method::Eq4, false));
+    assert_eq!(read.layout.widgets.len(), layout.widgets.len());
+    let home = read.controls.iter().find(|control| control["id"] == "home").unwrap();
+    assert_eq!(home["enabled"], json!(false));
+
+    let mut newer = line.clone();
+    newer["version"] = json!(2);
+    assert!(matches!(Greeting::read(newer), Err(MirrorError::Version(2))));
+    let mut broken = line;
+    broken["layout"] = json!("Layout(");
+    assert!(matches!(Greeting::read(broken), Err(MirrorError::Diagnostics(_))));
+    assert!(matches!(Greeting::read(json!({"event": "mirror"})), Err(MirrorError::Greeting(_))));
+}
+
+/// Does what `follower` asks, as a server does.
+fn follow(follower: &mut Follower, engine: &mut Engine, layout: &Layout, now_ms: u64) -> usize {
+    let asked = follower.corrections(layout, &seen(engine), Duration::from_millis(now_ms));
+    for message in &asked {
+        match message {
+            ControlMessage::Set { id, value } => engine.set_value(id.as_str(), *value).unwrap(),
+            ControlMessage::Enable { id } => engine.set_enabled(id.as_str(), true).unwrap(),
+            ControlMessage::Disable { id } => engine.set_enabled(id.as_str(), false).unwrap(),
+            ControlMessage::Label { id, text } => engine.set_label(id.as_str(), text).unwrap(),
+            ControlMessage::SetRange { id, least, greatest } => {
+                engine.set_range(id.as_str(), *least, *greatest).unwrap();
+            }
+            other => panic!("{other:?}"),
+        }
+    }
+    asked.len()
+}
+
+#[test]
+fn controls_become_what_the_server_says_and_then_nothing_more_is_asked() {
+    let layout = layout("map");
+    let mut there = engine(&layout);
+    there.set_range("zoom", 0.0, 2.0).unwrap();
+    there.set_value("zoom", crate::widget::Value::Number(1.75)).unwrap();
+    there.set_value("satellite", crate::widget::Value::Switch(true)).unwrap();
+    there.set_enabled("home", false).unwrap();
+    there.set_label("home", "Away").unwrap();
+    let mut here = engine(&layout);
+    let mut follower = Follower::default();
+    follower.begin(&greeting_of(&there, &layout), Duration::ZERO);
+    assert_eq!(follow(&mut follower, &mut here, &layout, 1), 5);
+    for id in ["zoom", "satellite", "home"] {
+        assert_eq!(here.control_state(id), there.control_state(id));
+    }
+    assert_eq!(follow(&mut follower, &mut here, &layout, 1000), 0);
+
+    // A change that this side has not sensed is asked for after a while; what both sense, never.
+    let changed = json!({"event": "changed", "id": "zoom", "value": 0.5});
+    follower.hear(&changed, Duration::from_millis(2000));
+    assert_eq!(follow(&mut follower, &mut here, &layout, 2100), 0);
+    assert_eq!(follow(&mut follower, &mut here, &layout, 2300), 1);
+    assert_eq!(here.value("zoom"), Some(crate::widget::Value::Number(0.5)));
+}
+
+#[test]
+fn what_is_refused_is_not_asked_for_ever() {
+    let layout = layout("map");
+    let mut follower = Follower::default();
+    follower.begin(&greeting_of(&engine(&layout), &layout), Duration::ZERO);
+    follower.hear(&json!({"event": "changed", "id": "zoom", "value": 99.0}), Duration::ZERO);
+    let here = seen(&engine(&layout));
+    let asked = (0..100).map(|tenth| Duration::from_millis(100 * tenth));
+    let count: usize = asked.map(|now| follower.corrections(&layout, &here, now).len()).sum();
+    assert_eq!(count, 3);
+}

@@ -1,0 +1,179 @@
+//! The floor is checked by walking on it: which board reads which tiles, and whether every sensor answers.
+//!
+//! What counts as a step or an answer is [`crate::serve::WiringWalk`]'s and [`crate::serve::WalkTest`]'s; here is only
+//! what is seen and touched. Meanwhile the floor's controls are off.
+
+mod marks;
+mod panel;
+
+use std::path::PathBuf;
+
+use eframe::egui::{Key, Ui};
+
+use super::app::App;
+use super::feed::PreviewCommand;
+use crate::floor::{Floor, TileId};
+use crate::recording::OverheardPackets;
+use crate::serve::{FeltLoad, SensorVerdict, WalkTest, Wiring, WiringTask, WiringWalk};
+
+/// Checks a floor while the window shows it.
+pub(super) struct FloorCheck {
+    packets: OverheardPackets,
+    /// `None` while nothing is checked.
+    walk: Option<Walk>,
+    /// What was found of the boards by the last walk that came to its end.
+    found: Option<Wiring>,
+    /// Where the floor is to be kept.
+    path: String,
+}
+
+/// Which walk is under way.
+enum Walk {
+    Wiring(Box<WiringWalk>),
+    Test(Box<WalkTest>),
+}
+
+/// Where the floor is kept unless somebody writes another name.
+const KEPT: &str = "checked_floor.ron";
+
+/// How one tile is marked.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum TileMark {
+    /// Nothing is known of it yet.
+    Open,
+    /// Some of its sensors have answered.
+    Begun,
+    /// It is as it should be.
+    Good,
+    /// Something is wrong with it.
+    Bad,
+    /// It is to be stepped on.
+    Wanted,
+    /// Somebody stands on it, and it is not the one that was to be stepped on.
+    Felt,
+}
+
+impl TileMark {
+    /// In words, after the tile's name.
+    const fn words(self) -> &'static str {
+        match self {
+            Self::Open => "not yet",
+            Self::Begun => "some sensors answer",
+            Self::Good => "good",
+            Self::Bad => "something is wrong",
+            Self::Wanted => "step here",
+            Self::Felt => "feels somebody",
+        }
+    }
+}
+
+impl FloorCheck {
+    pub(super) fn new(packets: OverheardPackets) -> Self {
+        Self { packets, walk: None, found: None, path: KEPT.into() }
+    }
+
+    /// Takes in what the boards have sent since the last frame.
+    fn receive(&mut self) {
+        match &mut self.walk {
+            Some(Walk::Wiring(walk)) => self.packets.take(|packet| {
+                walk.take(packet);
+            }),
+            Some(Walk::Test(walk)) => self.packets.take(|packet| walk.take(packet)),
+            // What came before a walk began is none of its.
+            None => self.packets.take(|_| {}),
+        }
+    }
+
+    fn begin(&mut self, walk: Option<Walk>) {
+        self.packets.want(walk.is_some());
+        self.packets.take(|_| {});
+        self.walk = walk;
+    }
+
+    /// How the tile with this index is marked.
+    fn mark(&self, floor: &Floor, index: usize) -> TileMark {
+        let tile = floor.geometry.tile_at_index(index);
+        match &self.walk {
+            None => TileMark::Open,
+            Some(Walk::Wiring(walk)) => wiring_mark(walk, tile),
+            Some(Walk::Test(walk)) => test_mark(walk.tile(index).unwrap_or([SensorVerdict::Untried; 4])),
+        }
+    }
+}
+
+fn wiring_mark(walk: &WiringWalk, tile: TileId) -> TileMark {
+    if walk.task() == WiringTask::Step(tile) {
+        return TileMark::Wanted;
+    }
+    if walk.felt().is_some_and(|felt| felt.tile == tile) && matches!(walk.task(), WiringTask::Step(_)) {
+        return TileMark::Felt;
+    }
+    match walk.steps().iter().find(|step| step.tile == tile) {
+        Some(step) if step.board == step.found && step.tile == step.felt => TileMark::Good,
+        Some(_) => TileMark::Bad,
+        None => TileMark::Open,
+    }
+}
+
+fn test_mark(sensors: [SensorVerdict; 4]) -> TileMark {
+    if sensors.iter().any(|sensor| sensor.is_fault()) {
+        TileMark::Bad
+    } else if sensors.iter().all(|sensor| *sensor == SensorVerdict::Answers) {
+        TileMark::Good
+    } else if sensors.contains(&SensorVerdict::Answers) {
+        TileMark::Begun
+    } else {
+        TileMark::Open
+    }
+}
+
+/// What is felt now, in words.
+fn felt_words(felt: FeltLoad) -> String {
+    format!("Board {} feels {:.0} N, by the floor file on tile {}.", felt.board, felt.force_n, felt.tile)
+}
+
+impl App {
+    /// Whether the floor is being checked: its controls are off, and nothing is designed.
+    pub(super) fn is_checking(&self) -> bool {
+        self.floor_check.as_ref().is_some_and(|check| check.walk.is_some())
+    }
+
+    /// Takes in what a walk needs.
+    pub(super) fn follow_check(&mut self, ui: &Ui) {
+        let Some(check) = &mut self.floor_check else { return };
+        check.receive();
+        if let Some(Walk::Wiring(walk)) = &check.walk
+            && check.found.is_none()
+            && let Some(Ok(found)) = walk.outcome(&self.floor)
+        {
+            check.found = (!found.moved.is_empty()).then_some(found);
+        }
+        if ui.input(|i| i.key_pressed(Key::Escape)) && check.walk.is_some() {
+            return self.begin_check(None);
+        }
+        if check.walk.is_some() {
+            ui.ctx().request_repaint_after(std::time::Duration::from_millis(33));
+        }
+    }
+
+    /// Begins a walk, or ends it; controls are off meanwhile.
+    fn begin_check(&mut self, walk: Option<Walk>) {
+        let was = self.is_checking();
+        let Some(check) = &mut self.floor_check else { return };
+        check.found = None;
+        check.begin(walk);
+        let is = self.is_checking();
+        if is != was {
+            self.command(PreviewCommand::RestControls(is));
+        }
+    }
+
+    /// Keeps the floor with the boards as the walk has found them.
+    fn save_checked(&self) {
+        let Some(check) = &self.floor_check else { return };
+        if let Some(found) = &check.found {
+            let path = PathBuf::from(check.path.trim());
+            self.command(PreviewCommand::SaveFloor { floor: Box::new(found.floor.clone()), path });
+        }
+    }
+}

@@ -1,0 +1,96 @@
+//! Packets for whoever checks a floor while it is at work.
+
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::time::Duration;
+
+use super::entry::Entry;
+use super::tap::{Entries, Tape, TappedSource};
+use crate::floor::Geometry;
+use crate::source::SensorSource;
+use crate::wire::SensorPacket;
+
+/// How much of the floor's time is handed on at once, and how much may wait: two seconds.
+const BATCH: Duration = Duration::from_millis(8);
+const WAITING: usize = 256;
+
+/// The packets of a floor at work, while somebody wants them.
+#[derive(Debug)]
+pub struct OverheardPackets {
+    wanted: Arc<AtomicBool>,
+    batches: Receiver<Entries>,
+    lost: Arc<AtomicU64>,
+}
+
+/// Lets packets of sources be overheard, one source after the other.
+#[derive(Clone, Debug)]
+pub struct Overhearing {
+    wanted: Arc<AtomicBool>,
+    batches: SyncSender<Entries>,
+    lost: Arc<AtomicU64>,
+}
+
+impl OverheardPackets {
+    /// What is overheard, and what lets it be; nothing is until it is wanted.
+    #[must_use]
+    pub fn new() -> (Overhearing, Self) {
+        let (wanted, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
+        let (sender, batches) = sync_channel(WAITING);
+        let tape = Overhearing { wanted: Arc::clone(&wanted), batches: sender, lost: Arc::clone(&lost) };
+        (tape, Self { wanted, batches, lost })
+    }
+
+    /// Whether packets are wanted from now on.
+    pub fn want(&self, wanted: bool) {
+        self.wanted.store(wanted, Ordering::Relaxed);
+    }
+
+    /// Gives all that have come since the last call, in their order.
+    pub fn take(&self, mut packet: impl FnMut(&SensorPacket)) {
+        for (_, entry) in self.batches.try_iter().flatten() {
+            if let Entry::Packet(one) = &entry {
+                packet(one);
+            }
+        }
+    }
+
+    /// Packets that were not taken in time.
+    #[must_use]
+    pub fn lost(&self) -> u64 {
+        self.lost.load(Ordering::Relaxed)
+    }
+}
+
+impl Overhearing {
+    /// `inner`, on a floor of this geometry, overheard.
+    #[must_use]
+    pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
+        TappedSource::new(inner, Box::new(self.clone()), geometry)
+    }
+}
+
+impl Tape for Overhearing {
+    fn is_wanted(&self) -> bool {
+        self.wanted.load(Ordering::Relaxed)
+    }
+
+    fn batch(&self) -> Duration {
+        BATCH
+    }
+
+    fn is_exact(&self) -> bool {
+        false
+    }
+
+    fn hand(&self, entries: Entries) -> Option<Entries> {
+        match self.batches.try_send(entries) {
+            Ok(()) | Err(TrySendError::Disconnected(_)) => None,
+            Err(TrySendError::Full(entries)) => Some(entries),
+        }
+    }
+
+    fn count_lost(&self, entries: u64) {
+        self.lost.fetch_add(entries, Ordering::Relaxed);
+    }
+}

@@ -1,0 +1,36 @@
+//! A floor whose controls do not act for a while.
+
+use super::session::Session;
+use crate::serve::Command;
+use crate::widget::WidgetId;
+use crate::wire::ControlMessage;
+
+/// Keeps the controls of a floor off while it lives, so that people can walk over it to check it; what they held is
+/// cancelled. When this is dropped, those that were on before are switched on again.
+#[derive(Debug)]
+pub struct ControlsOff {
+    session: Session,
+    ids: Vec<WidgetId>,
+}
+
+impl Session {
+    /// Switches all controls off that are on.
+    #[must_use]
+    pub fn controls_off(&self) -> ControlsOff {
+        let seen = self.snapshot();
+        let on = seen.layout.widgets.iter().zip(&seen.floor.widgets).filter(|(_, state)| !state.disabled);
+        let ids: Vec<WidgetId> = on.map(|(widget, _)| widget.id.clone()).collect();
+        for id in &ids {
+            self.send(Command::Control(ControlMessage::Disable { id: id.clone() }));
+        }
+        ControlsOff { session: self.clone(), ids }
+    }
+}
+
+impl Drop for ControlsOff {
+    fn drop(&mut self) {
+        for id in self.ids.drain(..) {
+            self.session.send(Command::Control(ControlMessage::Enable { id }));
+        }
+    }
+}
