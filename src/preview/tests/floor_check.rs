@@ -94,7 +94,8 @@ impl Site {
 
 fn foot(at: Vec2) -> crate::sim::Foot {
     let force = Newtons(500.0);
-    let mut foot = crate::sim::Foot { position: at, heading: 0.0, length_m: 0.2, force, roll: 0.5 };
+    let mut foot =
+        crate::sim::Foot { position: at, heading: 0.0, length_m: 0.2, force, roll: 0.5, left: false };
     foot.position += at - foot.centre_of_pressure();
     foot
 }
