@@ -1,16 +1,20 @@
 //! Options for one computer of several.
 
+use std::net::{IpAddr, SocketAddr};
+
 use clap::Args;
-use underfoot::floor::{Area, Floor, Geometry};
+use underfoot::floor::{Area, Floor, Forwarding, Geometry};
 use underfoot::layout::Layout;
 use underfoot::sink::{Fanout, Within};
+use underfoot::source::UdpSource;
 
 use super::failure::Failure;
 
 /// Which part of a large floor it is about.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct AreaArgs {
-    /// Serve only this area of the floor file: its boards and those within 0.9 m of it, its controls, its actuators.
+    /// Serve only this area of the floor file: its boards and those within 0.9 m of it, its controls, its actuators. Its
+    /// packets arrive where the floor file says, unless --listen does, and go on to the areas that need them too.
     #[arg(long, value_name = "NAME", requires = "floor", conflicts_with = "record")]
     area: Option<String>,
 }
@@ -22,13 +26,21 @@ pub(crate) struct Served {
     pub(crate) geometry: Geometry,
     /// `None` for the whole floor.
     area: Option<Area>,
+    /// What the others need of its boards, and from where they forward what it needs of theirs.
+    forwardings: Vec<Forwarding>,
+    forwarders: Vec<IpAddr>,
 }
 
 impl AreaArgs {
     /// What is served of `floor`, and the part of it that is.
     pub(crate) fn of(&self, floor: Floor) -> Result<(Served, Floor), Failure> {
         let geometry = floor.geometry;
-        let Some(id) = &self.area else { return Ok((Served { geometry, area: None }, floor)) };
+        let Some(id) = &self.area else {
+            return Ok((
+                Served { geometry, area: None, forwardings: Vec::new(), forwarders: Vec::new() },
+                floor,
+            ));
+        };
         let found = floor.area(id).and_then(|area| Some((area.clone(), floor.part(area)?)));
         let Some((area, part)) = found else {
             let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
@@ -38,11 +50,27 @@ impl AreaArgs {
             };
             return Err(Failure::Other(format!("the floor has no area \"{id}\": {known}")));
         };
-        Ok((Served { geometry, area: Some(area) }, part))
+        let (forwardings, forwarders) = (floor.forwardings(&area), floor.forwarders(&area).collect());
+        Ok((Served { geometry, area: Some(area), forwardings, forwarders }, part))
     }
 }
 
 impl Served {
+    /// Where packets arrive, as the floor file says.
+    pub(crate) fn listen(&self) -> Option<SocketAddr> {
+        self.area.as_ref()?.listen
+    }
+
+    /// `source`, which takes what other areas' computers forward, and forwards what they need.
+    pub(crate) fn among_neighbours(&self, source: UdpSource) -> Result<UdpSource, Failure> {
+        let source = source.also_allowing(self.forwarders.iter().copied());
+        if self.forwardings.is_empty() {
+            return Ok(source);
+        }
+        let (source, _) = source.forwarding(&self.forwardings)?;
+        Ok(source)
+    }
+
     /// What of `layout` is served here.
     pub(crate) fn layout(&self, layout: Layout) -> Layout {
         match &self.area {

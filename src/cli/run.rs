@@ -1,6 +1,6 @@
 //! `underfoot run`: a floor is served.
 
-use std::net::SocketAddr;
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
@@ -36,6 +36,9 @@ use super::watch::Watch;
 use super::watchdog::Watchdog;
 use super::web::WebArgs;
 
+/// Where packets arrive unless anything says otherwise.
+const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
+
 /// What `underfoot run` is asked to do.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -46,9 +49,9 @@ pub(crate) struct Args {
     #[command(flatten)]
     area: AreaArgs,
     /// Where the boards' packets arrive: an address of this machine and a port. Another machine's boards need the
-    /// address of the network card that they are on.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
-    listen: SocketAddr,
+    /// address of the network card that they are on. 127.0.0.1:9000 unless the floor file says where for --area.
+    #[arg(long, value_name = "ADDR")]
+    listen: Option<SocketAddr>,
     /// Wait for that address if this machine has not got it yet, as when it starts before its network does.
     #[arg(long)]
     await_address: bool,
@@ -85,11 +88,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let prefix = args.outputs.prefix.osc_prefix.clone();
     let stop = stop_flag()?;
     let panicked = panic_flag(&stop);
+    let listen = args.listen.or(served.listen()).unwrap_or(LISTEN);
     let source = if args.await_address {
-        args.boards.bind_once_there(args.listen, &floor, &stop)?
+        args.boards.bind_once_there(listen, &floor, &stop)?
     } else {
-        args.boards.bind(args.listen, &floor)?
+        args.boards.bind(listen, &floor)?
     };
+    let source = served.among_neighbours(source)?;
     let source = source.with_prefix(prefix.clone());
     let source = args.commands.open(source)?;
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
@@ -158,7 +163,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }
-    let console = Console::start(address.as_ref().copied().unwrap_or(args.listen), session.clone())
+    let console = Console::start(address.as_ref().copied().unwrap_or(listen), session.clone())
         .map_err(|error| Failure::Other(format!("the console can't be started: {error}")))?;
     let end = end(&session);
     drop((watch, console, web));

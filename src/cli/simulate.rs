@@ -1,7 +1,8 @@
 //! `underfoot simulate`: a simulated floor that sends real packets.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
-use std::net::{SocketAddr, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
@@ -22,6 +23,9 @@ use super::number::lifetime;
 use super::play::{self, SimArgs};
 use super::stop::stop_flag;
 
+/// Where boards send unless anything says otherwise.
+const SEND: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
+
 /// What `underfoot simulate` is asked to do.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
@@ -34,8 +38,9 @@ pub(crate) struct Args {
     floor: FloorArgs,
     #[command(flatten)]
     sim: SimArgs,
-    /// Where the boards send their packets; several, with commas between them, where several computers serve areas.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_delimiter = ',')]
+    /// Where all boards send their packets; several, with commas between them, where several computers serve areas.
+    /// Without it, each board sends to its area's computer if the floor file says where, and to 127.0.0.1:9000 if not.
+    #[arg(long, value_name = "ADDR", value_delimiter = ',')]
     send: Vec<SocketAddr>,
     /// What the boards send; newtons with --ideal, counts otherwise.
     #[arg(long, value_enum)]
@@ -86,7 +91,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         write(path, &sim::press_table(&calibrated, &sim, args.sim.seed))?;
     }
     let sent = args.send_all(&floor, &layout, &sim, encoder)?;
-    let targets: Vec<String> = args.send.iter().map(ToString::to_string).collect();
+    let targets: BTreeSet<SocketAddr> = args.targets(&floor).into_iter().flatten().collect();
+    let targets: Vec<String> = targets.iter().map(ToString::to_string).collect();
     errln!("{sent} packets sent to {}.", targets.join(", "));
     Ok(())
 }
@@ -115,6 +121,13 @@ impl Args {
         Ok((SimFloor::new(floor, config, self.sim.seed), SensorEncoder::new(floor, format)))
     }
 
+    /// Where each board sends.
+    fn targets(&self, floor: &Floor) -> Vec<Vec<SocketAddr>> {
+        let home = |board| floor.home(board).and_then(|area| area.listen).unwrap_or(SEND);
+        let targets = |board| if self.send.is_empty() { vec![home(board)] } else { self.send.clone() };
+        floor.boards.iter().map(targets).collect()
+    }
+
     /// Gives the number of packets sent.
     fn send_all(
         &self,
@@ -125,11 +138,13 @@ impl Args {
     ) -> Result<u64, Failure> {
         let no_socket =
             |to, error: io::Error| Failure::Other(format!("packets can't be sent to {to}: {error}"));
-        let socket_to = |&to: &SocketAddr| {
+        let socket_to = |to: SocketAddr| {
             let here: SocketAddr = if to.is_ipv4() { ([0; 4], 0).into() } else { ([0; 16], 0).into() };
-            UdpSocket::bind(here).map(|socket| (socket, to)).map_err(|error| no_socket(to, error))
+            UdpSocket::bind(here).map(|socket| (to, socket)).map_err(|error| no_socket(to, error))
         };
-        let sockets: Vec<_> = self.send.iter().map(socket_to).collect::<Result<_, _>>()?;
+        let targets = self.targets(floor);
+        let all: BTreeSet<SocketAddr> = targets.iter().flatten().copied().collect();
+        let sockets: BTreeMap<_, _> = all.into_iter().map(socket_to).collect::<Result<_, _>>()?;
         let stop = stop_flag()?;
         let until = self.seconds.map(|seconds| Instant::now() + seconds);
         // Boards are punctual.
@@ -150,7 +165,8 @@ impl Args {
                     Err(error) => return Err(error.into()),
                 };
                 let datagram = encoder.encode(&packet).map_err(|error| Failure::Other(error.to_string()))?;
-                for (socket, to) in &sockets {
+                for to in targets.get(usize::from(packet.board)).into_iter().flatten() {
+                    let Some(socket) = sockets.get(to) else { continue };
                     match socket.send_to(datagram, *to) {
                         Ok(_) => sent += 1,
                         // Nobody listens yet: a board doesn't mind either.

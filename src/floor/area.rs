@@ -1,5 +1,7 @@
 //! Areas of a floor that is too large for one computer.
 
+use std::net::SocketAddr;
+
 use glam::Vec2;
 
 use super::{Actuator, Board, Floor, Geometry, Rect, SensorId, TileBlock, TileId};
@@ -11,6 +13,9 @@ pub struct Area {
     pub id: String,
     /// Its tiles; no other area has them.
     pub tiles: TileBlock,
+    /// Where its computer takes packets: those of its boards, and what its neighbours forward to it; `None` where that
+    /// is not known, and nothing is forwarded.
+    pub listen: Option<SocketAddr>,
 }
 
 /// How far beyond its area a computer senses, in metres: a step (0.7 m) and the half of a foot, so that both feet of
@@ -18,6 +23,12 @@ pub struct Area {
 pub const SENSED_BEYOND_M: f32 = 0.9;
 
 impl Area {
+    /// The area called `id` of these `tiles`, whose computer may be anywhere.
+    #[must_use]
+    pub fn new(id: &str, tiles: TileBlock) -> Self {
+        Self { id: id.to_owned(), tiles, listen: None }
+    }
+
     /// The tiles that its computer senses: its own and those within [`SENSED_BEYOND_M`] of them.
     #[must_use]
     pub fn sensed(&self, geometry: &Geometry) -> TileBlock {
@@ -95,6 +106,7 @@ impl Floor {
             tared: self.tared,
             allow: self.allow.clone(),
             areas: Vec::new(),
+            gateway: None,
         })
     }
 }
@@ -119,9 +131,8 @@ mod tests {
 
     /// Four areas of 6 x 6 tiles.
     fn hall() -> Floor {
-        let areas = [("sw", 0, 0), ("se", 6, 0), ("nw", 0, 6), ("ne", 6, 6)].map(|(id, column, row)| Area {
-            id: id.into(),
-            tiles: TileBlock { first: TileId::new(column, row), columns: 6, rows: 6 },
+        let areas = [("sw", 0, 0), ("se", 6, 0), ("nw", 0, 6), ("ne", 6, 6)].map(|(id, column, row)| {
+            Area::new(id, TileBlock { first: TileId::new(column, row), columns: 6, rows: 6 })
         });
         Floor::of(Geometry::of_paper_tiles(12, 12).unwrap()).with_areas(areas.into())
     }

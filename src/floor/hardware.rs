@@ -1,5 +1,7 @@
 //! Everything that is known of one floor.
 
+use std::net::SocketAddr;
+
 use super::{
     Area, Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, Network,
     PositionMap, Response, SensorId, TileId,
@@ -40,6 +42,8 @@ pub struct Floor {
     pub allow: Vec<Network>,
     /// The parts of the floor that a computer of its own serves; empty where one serves them all.
     pub areas: Vec<Area>,
+    /// Where the gateway listens for the areas' computers; `None` where that is said elsewhere.
+    pub gateway: Option<SocketAddr>,
 }
 
 impl Floor {
@@ -63,6 +67,7 @@ impl Floor {
             tared: None,
             allow: Vec::new(),
             areas: Vec::new(),
+            gateway: None,
             geometry,
         }
     }

@@ -4,6 +4,7 @@
 //! (right), y north (away from the user), in metres. [`Geometry`] knows where
 //! tiles and sensors are; [`Floor`] adds what is wired to them.
 
+mod address;
 mod area;
 mod block;
 mod calibration;
@@ -11,6 +12,7 @@ mod contact_id;
 mod drive;
 mod exp;
 mod geometry;
+mod halo;
 mod hardware;
 mod laws;
 mod network;
@@ -25,10 +27,11 @@ pub use calibration::{Calibration, LawKind};
 pub use contact_id::ContactId;
 pub use drive::{Drive, Loudspeaker, Response};
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
+pub use halo::Forwarding;
 pub use hardware::{Actuator, Board, Floor};
 pub use laws::{Divider, Exponential, Linear, Power};
 pub use network::{Network, NotANetwork};
 pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
-pub(crate) use {exp::exp, network::NETWORK, record::DAY};
+pub(crate) use {address::ADDRESS, exp::exp, network::NETWORK, record::DAY};

@@ -86,12 +86,13 @@ impl AreaDemand {
 
     /// Of a floor that one computer serves.
     pub(super) fn whole(floor: &Floor, crowd: &Crowd) -> Self {
-        let area = Area { id: String::new(), tiles: floor.geometry.block() };
+        let area = Area::new("", floor.geometry.block());
         Self::of(floor, &area, crowd)
     }
 
     /// Of an area of a floor file; nothing of one that has no tile on the floor.
-    pub(super) fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
+    #[must_use]
+    pub fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
         let Some(part) = floor.part(area) else { return Self { id: area.id.clone(), ..Self::default() } };
         let TileBlock { columns, rows, .. } = area.tiles.common(&floor.geometry.block());
         let bytes = |board: &Board| {
@@ -180,11 +181,10 @@ mod tests {
 
     #[test]
     fn an_area_of_a_hall_receives_what_is_sensed_around_it() {
-        let west =
-            Area { id: "west".into(), tiles: TileBlock { first: TileId::default(), columns: 6, rows: 6 } };
+        let west = Area::new("west", TileBlock { first: TileId::default(), columns: 6, rows: 6 });
         let east = TileBlock { first: TileId::new(6, 0), columns: 6, rows: 6 };
         let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap())
-            .with_areas(vec![west.clone(), Area { id: "east".into(), tiles: east }]);
+            .with_areas(vec![west.clone(), Area::new("east", east)]);
         let demand = AreaDemand::of(&floor, &west, &Crowd { crowding: 1.0, ..Crowd::of(8) });
         // Three tiles are 0.912 m; both boards of a row reach into the nine columns.
         assert_eq!((demand.sensed_columns, demand.sensed_rows, demand.channels), (9, 6, 36));

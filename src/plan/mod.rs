@@ -272,9 +272,8 @@ mod tests {
 
     #[test]
     fn areas_of_a_file_are_taken_as_they_are() {
-        let half = |id: &str, column| Area {
-            id: id.into(),
-            tiles: TileBlock { first: TileId::new(column, 0), columns: 12, rows: 12 },
+        let half = |id: &str, column| {
+            Area::new(id, TileBlock { first: TileId::new(column, 0), columns: 12, rows: 12 })
         };
         let floor = Floor::of(Geometry::of_paper_tiles(24, 12).unwrap())
             .with_areas(vec![half("west", 0), half("east", 12)]);

@@ -193,7 +193,7 @@ mod tests {
                         columns: (east - west) as u16,
                         rows: (north - south) as u16,
                     };
-                    Area { id: String::new(), tiles }
+                    Area::new("", tiles)
                 })
                 .collect();
             let geometry = Geometry::of_paper_tiles(columns as u16, rows as u16).unwrap();

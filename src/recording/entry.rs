@@ -3,13 +3,12 @@
 use std::net::SocketAddr;
 
 use arrayvec::ArrayVec;
-use rosc::{OscMessage, OscPacket, OscType};
+use rosc::{OscMessage, OscPacket};
 
 use super::{END, GAPS, LAYOUTS, PACKETS, REQUESTS, SILENCE};
 use crate::floor::Floor;
 use crate::units::Instant;
-use crate::widget::Value;
-use crate::wire::{Batch, ControlMessage, Decoder, Prefix, Readings, Request, SensorPacket};
+use crate::wire::{Batch, Decoder, Prefix, Readings, Request, SensorPacket};
 
 /// One thing that a source gave, in the order in which the server took it.
 #[derive(Clone, Debug, PartialEq)]
@@ -133,39 +132,9 @@ fn write_request(request: &Request, bytes: &mut Vec<u8>) {
     bytes.extend(sender.as_bytes());
     bytes.push(0);
     let addr = Prefix::default().address(&request.message.path());
-    let message = OscPacket::Message(OscMessage { addr, args: arguments(&request.message) });
+    let message = OscPacket::Message(OscMessage { addr, args: request.message.arguments() });
     // Only a bundle could fail, by its size.
     bytes.extend(rosc::encoder::encode(&message).unwrap_or_default());
-}
-
-fn arguments(message: &ControlMessage) -> Vec<OscType> {
-    match message {
-        ControlMessage::Set { value, .. } => match *value {
-            Value::Switch(on) => vec![OscType::Bool(on)],
-            Value::Number(number) => vec![OscType::Float(number)],
-            Value::Choice(choice) => vec![OscType::Int(choice.into())],
-            Value::Pair(pair) => vec![OscType::Float(pair.x), OscType::Float(pair.y)],
-        },
-        ControlMessage::Label { text, .. } => vec![OscType::String(text.clone())],
-        ControlMessage::Indicate { indicator, .. } => vec![OscType::String(indicator.name().into())],
-        ControlMessage::SetRange { least, greatest, .. } => {
-            vec![OscType::Float(*least), OscType::Float(*greatest)]
-        }
-        ControlMessage::ShowPage { page } => vec![OscType::String(page.to_string())],
-        ControlMessage::Mute { on } => vec![OscType::Bool(*on)],
-        ControlMessage::MuteTile { tile, on } => {
-            vec![OscType::Int(tile.column.into()), OscType::Int(tile.row.into()), OscType::Bool(*on)]
-        }
-        ControlMessage::Enable { .. }
-        | ControlMessage::Disable { .. }
-        | ControlMessage::Lock { .. }
-        | ControlMessage::Unlock { .. }
-        | ControlMessage::Get { .. }
-        | ControlMessage::GetAll
-        | ControlMessage::CancelAll
-        | ControlMessage::GetPage
-        | ControlMessage::GetMute => Vec::new(),
-    }
 }
 
 fn read_request(bytes: &[u8], decoder: &Decoder) -> Option<Request> {

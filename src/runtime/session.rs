@@ -186,7 +186,12 @@ impl Session {
         self.0.held.has_ended()
     }
 
-    pub(super) fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
+    /// Asks for what an app may ask over the wire, and waits for the answer as a [`Control`] does. What is muted is asked for
+    /// by [`Session::send`].
+    ///
+    /// # Errors
+    /// [`Refusal`] says why nothing has changed.
+    pub fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
         let (answer, answered) = sync_channel(1);
         if !self.send(Command::Ask(message, answer)) {
             return Err(Refusal::Ended);

@@ -1,5 +1,6 @@
 //! Floor files: geometry, boards, sensors, actuators.
 
+use std::net::SocketAddr;
 use std::path::Path;
 
 use super::diagnostic::Diagnostics;
@@ -14,7 +15,7 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
-use crate::floor::{Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
+use crate::floor::{ADDRESS, Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
 use crate::format::codec::Distinct;
 use crate::format::{Flat, Opt, Rec, Record, list, record};
 
@@ -66,6 +67,8 @@ record! {
     pub(super) geometry: Geometry = "", Measures;
     /// The parts of the floor that a computer of its own serves; one computer serves the whole floor if there are none.
     pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
+    /// Where the gateway that joins these computers listens for them.
+    pub(super) gateway: Option<SocketAddr> = "gateway", Opt(ADDRESS) => None;
     /// The boards; unless they are written, each row of tiles has its own, up to eight tiles a board.
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
@@ -156,6 +159,7 @@ impl FloorRecord {
                 *own = self.response.of(actuator.full_scale);
             }
         }
+        floor.gateway = self.gateway;
         floor.tared = self.tared;
         floor.allow.clone_from(&self.allow);
         floor.drive = self.drive;
@@ -176,6 +180,7 @@ impl FloorRecord {
             version: FORMAT_VERSION,
             geometry: floor.geometry,
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
+            gateway: floor.gateway,
             boards,
             allow: floor.allow.clone(),
             tared: floor.tared,

@@ -1,12 +1,14 @@
 //! The areas of a floor that several computers serve.
 
+use std::net::SocketAddr;
+
 use super::fields::Fields;
 use super::floor_codecs::{TILE, TILES};
 use super::problem::Problem;
 use super::reader::Reader;
-use crate::floor::{Area, Geometry, TileBlock, TileId};
+use crate::floor::{ADDRESS, Area, Geometry, TileBlock, TileId};
 use crate::format::codec::{At, Distinct, Seen, Written};
-use crate::format::{Id, record};
+use crate::format::{Id, Opt, record};
 
 record! {
     /// The tiles of a large floor that one computer serves.
@@ -17,6 +19,8 @@ record! {
     first: TileId = "at", TILE;
     /// How many tiles it is wide and deep.
     size: [u16; 2] = "size", TILES;
+    /// Where its computer takes the packets of its boards, and those that its neighbours forward to it.
+    listen: Option<Written<SocketAddr>> = "listen", Opt(At(ADDRESS)) => None;
 }
 
 /// The areas of a floor; more computers than this no floor has.
@@ -32,12 +36,19 @@ impl AreaRecord {
 
     pub(super) fn area(&self) -> Area {
         let [columns, rows] = self.size;
-        Area { id: self.id.value.clone(), tiles: TileBlock { first: self.first, columns, rows } }
+        let tiles = TileBlock { first: self.first, columns, rows };
+        let listen = self.listen.as_ref().map(|listen| listen.value);
+        Area { id: self.id.value.clone(), tiles, listen }
     }
 
     pub(super) fn of(area: &Area) -> Self {
         let TileBlock { first, columns, rows } = area.tiles;
-        Self { id: area.id.clone().into(), first, size: [columns, rows] }
+        Self {
+            id: area.id.clone().into(),
+            first,
+            size: [columns, rows],
+            listen: area.listen.map(Written::from),
+        }
     }
 }
 
@@ -60,6 +71,17 @@ pub(super) fn check(reader: &Reader<'_>, geometry: &Geometry, records: &[AreaRec
             let tile = shared.common(block).first;
             let message = format!("the areas \"{}\" and \"{id}\" share tile {tile}", other.id.value);
             report(message, "expected each tile in one area".into());
+        }
+    }
+    for (number, record) in records.iter().enumerate() {
+        let Some(listen) = &record.listen else { continue };
+        let is_same =
+            |other: &&AreaRecord| other.listen.as_ref().is_some_and(|one| one.value == listen.value);
+        if let Some(other) = records.iter().take(number).find(is_same) {
+            let message =
+                format!("the areas \"{}\" and \"{}\" have one address", other.id.value, record.id.value);
+            let problem = Problem::error(listen.at.clone(), message);
+            reader.report(problem.expected("expected an address for each computer"));
         }
     }
     let Some(last) = records.last().filter(|_| sound) else { return };

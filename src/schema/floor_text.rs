@@ -6,8 +6,9 @@ use crate::format::Record;
 use crate::format::text::Text;
 
 /// What is said above a field, and in place of one that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 10] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 11] = [
     ("areas", &["The parts of the floor that a computer of its own serves."], None),
+    ("gateway", &["Where the computer that joins them listens."], None),
     (
         "boards",
         &["Which tiles, or which sensors, are on the channels of each board."],

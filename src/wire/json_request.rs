@@ -26,6 +26,22 @@ pub fn read_json(path: &str, args: &[Value]) -> Result<ControlMessage, String> {
     }
 }
 
+/// The path and the arguments that [`read_json`] makes `message` of; its numbers are finite, as all requests' are.
+///
+/// A choice becomes a whole number, as in OSC, which stands for a choice where the control is a selector.
+#[must_use]
+pub fn write_json(message: &ControlMessage) -> (String, Vec<Value>) {
+    let value = |argument| match argument {
+        OscType::Bool(on) => Value::Bool(on),
+        OscType::Int(number) => number.into(),
+        OscType::Float(number) => f64::from(number).into(),
+        OscType::String(text) => Value::String(text),
+        // No request has others.
+        _ => Value::Null,
+    };
+    (message.path(), message.arguments().into_iter().map(value).collect())
+}
+
 fn argument(value: &Value) -> Option<OscType> {
     match value {
         Value::Bool(on) => Some(OscType::Bool(*on)),
@@ -53,6 +69,23 @@ mod tests {
         assert_eq!(read_json("widget/zoom/set", &[json!(0.5)]), Ok(set));
         let range = ControlMessage::SetRange { id, least: 1.0, greatest: 120.0 };
         assert_eq!(read_json("widget/zoom/range/set", &[json!(1), json!(120)]), Ok(range));
+        let id = WidgetId::new("zoom");
+        for message in [
+            ControlMessage::Set { id: id.clone(), value: widget::Value::Number(0.1) },
+            ControlMessage::Set { id: id.clone(), value: widget::Value::Number(2.0) },
+            ControlMessage::Set { id: id.clone(), value: widget::Value::Switch(true) },
+            ControlMessage::Set { id: id.clone(), value: widget::Value::Pair(glam::Vec2::new(0.5, -1.0)) },
+            ControlMessage::Label { id: id.clone(), text: "Zoom".into() },
+            ControlMessage::Indicate { id: id.clone(), indicator: widget::Indicator::Busy },
+            ControlMessage::SetRange { id: id.clone(), least: 0.0, greatest: 0.5 },
+            ControlMessage::Disable { id },
+            ControlMessage::ShowPage { page: WidgetId::new("more") },
+            ControlMessage::MuteTile { tile: crate::floor::TileId::new(3, 4), on: true },
+            ControlMessage::GetAll,
+        ] {
+            let (path, args) = write_json(&message);
+            assert_eq!(read_json(&path, &args), Ok(message));
+        }
         for (path, args) in [
             ("widget/zoom/burn", vec![]),
             ("widget/zoom/set", vec![json!("much")]),

@@ -2,6 +2,8 @@
 
 use std::net::SocketAddr;
 
+use rosc::OscType;
+
 use crate::floor::TileId;
 use crate::widget::{Indicator, Value, WidgetId};
 
@@ -96,7 +98,7 @@ pub enum ControlMessage {
 
 impl ControlMessage {
     /// The control it is about, if it is about one.
-    pub(crate) fn id_mut(&mut self) -> Option<&mut WidgetId> {
+    pub fn id_mut(&mut self) -> Option<&mut WidgetId> {
         match self {
             Self::Set { id, .. }
             | Self::Enable { id }
@@ -139,6 +141,38 @@ impl ControlMessage {
             Self::GetMute => return "mute/get".into(),
         };
         format!("widget/{id}/{verb}")
+    }
+
+    /// The arguments behind that address.
+    #[must_use]
+    pub(crate) fn arguments(&self) -> Vec<OscType> {
+        match self {
+            Self::Set { value, .. } => match *value {
+                Value::Switch(on) => vec![OscType::Bool(on)],
+                Value::Number(number) => vec![OscType::Float(number)],
+                Value::Choice(choice) => vec![OscType::Int(choice.into())],
+                Value::Pair(pair) => vec![OscType::Float(pair.x), OscType::Float(pair.y)],
+            },
+            Self::Label { text, .. } => vec![OscType::String(text.clone())],
+            Self::Indicate { indicator, .. } => vec![OscType::String(indicator.name().into())],
+            Self::SetRange { least, greatest, .. } => {
+                vec![OscType::Float(*least), OscType::Float(*greatest)]
+            }
+            Self::ShowPage { page } => vec![OscType::String(page.to_string())],
+            Self::Mute { on } => vec![OscType::Bool(*on)],
+            Self::MuteTile { tile, on } => {
+                vec![OscType::Int(tile.column.into()), OscType::Int(tile.row.into()), OscType::Bool(*on)]
+            }
+            Self::Enable { .. }
+            | Self::Disable { .. }
+            | Self::Lock { .. }
+            | Self::Unlock { .. }
+            | Self::Get { .. }
+            | Self::GetAll
+            | Self::CancelAll
+            | Self::GetPage
+            | Self::GetMute => Vec::new(),
+        }
     }
 }
 

@@ -19,14 +19,15 @@ mod packet;
 mod pattern;
 mod prefix;
 mod sensor_message;
+mod split;
 
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
 pub use link::LinkState;
 pub use message::{ControlMessage, Request};
 pub use packet::{Readings, SensorPacket};
-pub(crate) use pattern::{is_pattern, matches};
 pub use prefix::{BadPrefix, Prefix};
+pub(crate) use split::each_message;
 
 internal! {
     use argument::{ArgumentKind, MAX_LABEL};
@@ -34,6 +35,7 @@ internal! {
     use decode::{Batch, Decoder, WireError};
     use encode::{EncodeError, SensorEncoder, SensorFormat};
     use guard::{Limits, Malformed, check};
-    use json_request::{read_json};
+    use json_request::{read_json, write_json};
     use packet::{MAX_CHANNELS};
+    use pattern::{is_pattern, matches};
 }

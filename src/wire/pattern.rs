@@ -4,7 +4,8 @@
 //! second time, so that a request would meet other controls than OSC says.
 
 /// Whether `text` has characters that mean a pattern.
-pub(crate) fn is_pattern(text: &str) -> bool {
+#[must_use]
+pub fn is_pattern(text: &str) -> bool {
     text.contains(['*', '?', '[', ']', '{', '}'])
 }
 
@@ -16,7 +17,8 @@ pub(crate) fn is_pattern(text: &str) -> bool {
 /// # Source
 /// Open Sound Control 1.0, "OSC Message Dispatching and Pattern Matching": `?` is any one character, `*` any number of
 /// them, `[a-cx]` one of these, `[!a-c]` one that is not, `{one,two}` one of these words.
-pub(crate) fn matches(pattern: &str, name: &str) -> bool {
+#[must_use]
+pub fn matches(pattern: &str, name: &str) -> bool {
     let name = name.as_bytes();
     // How far into the name what has been read of the pattern may reach.
     let mut reached = vec![false; name.len() + 1];
@@ -174,7 +176,7 @@ mod tests {
 
         #[test]
         fn nothing_makes_it_stumble(pattern in "[ -~]{0,40}", name in "[ -~]{0,40}") {
-            matches(&pattern, &name);
+            let _ = matches(&pattern, &name);
         }
     }
 }

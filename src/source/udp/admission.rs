@@ -93,6 +93,16 @@ impl Admission {
         self.boards = boards;
     }
 
+    /// Boards' packets come from these as well.
+    pub(super) fn add_boards(&mut self, boards: impl Iterator<Item = Network>) {
+        self.boards.extend(boards);
+    }
+
+    /// Requests come from these, on the sensors' port.
+    pub(super) fn set_apps_here(&mut self, apps: Vec<Network>) {
+        self.apps = apps;
+    }
+
     /// Requests come on a port of their own, from `apps`.
     pub(super) fn set_apps(&mut self, apps: Vec<Network>) {
         self.apps = apps;

@@ -1,6 +1,7 @@
 //! Packets and requests from a UDP socket.
 
 mod admission;
+mod forward;
 mod log;
 mod open;
 mod proc_net;
@@ -10,19 +11,21 @@ mod timed;
 
 use std::collections::VecDeque;
 use std::io::ErrorKind;
-use std::net::{SocketAddr, UdpSocket};
+use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::sync::Arc;
 use std::time::{Duration, Instant as HostInstant, SystemTime};
 
 use rosc::OscTime;
 
 use self::admission::Admission;
+pub use self::forward::ForwardCounters;
+use self::forward::Forwarder;
 use self::log::RefusalLog;
 use self::open::{BUFFER_BYTES, open};
 use self::stamped::{Received, Stamped};
 use self::timed::{Timed, delay};
 use super::{SensorSource, SourceError};
-use crate::floor::{Floor, Network};
+use crate::floor::{Floor, Forwarding, Network};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
 use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, WireError};
@@ -68,6 +71,7 @@ pub struct UdpSource {
     timed: Timed,
     answer: Vec<u8>,
     admission: Admission,
+    forwarder: Option<Forwarder>,
     boards: usize,
     counters: LinkCounters,
     drops_read: Instant,
@@ -108,6 +112,7 @@ impl UdpSource {
             timed: Timed::default(),
             answer: Vec::new(),
             admission: Admission::new(floor),
+            forwarder: None,
             boards: floor.boards.len(),
             counters: LinkCounters::default(),
             drops_read: Instant::START,
@@ -116,11 +121,48 @@ impl UdpSource {
         })
     }
 
+    /// Listens on `address` for requests alone, from these networks; port 0 takes any free one.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] as for [`UdpSource::bind`].
+    pub fn requests(
+        address: SocketAddr,
+        networks: impl IntoIterator<Item = Network>,
+    ) -> Result<Self, SourceError> {
+        // No packet fits a floor without boards.
+        let mut source = Self::bind(address, &Floor { boards: Vec::new(), ..Floor::default() })?;
+        source.admission.set_boards(Vec::new());
+        source.admission.set_apps_here(networks.into_iter().collect());
+        Ok(source)
+    }
+
     /// Takes sensor packets from these networks only, whatever the floor says; from nobody if there are none.
     #[must_use]
     pub fn allowing(mut self, networks: impl IntoIterator<Item = Network>) -> Self {
         self.admission.set_boards(networks.into_iter().collect());
         self
+    }
+
+    /// Takes sensor packets from these computers as well, which forward them.
+    #[must_use]
+    pub fn also_allowing(mut self, computers: impl IntoIterator<Item = IpAddr>) -> Self {
+        self.admission.add_boards(computers.into_iter().map(Network::from));
+        self
+    }
+
+    /// Forwards packets of some boards to other computers, from a port of its own; gives what will be counted.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] if the system gives no port.
+    pub fn forwarding(
+        mut self,
+        forwardings: &[Forwarding],
+    ) -> Result<(Self, Arc<ForwardCounters>), SourceError> {
+        let local = self.local_addr().map_err(failed)?;
+        let forwarder = Forwarder::new(local, forwardings).map_err(failed)?;
+        let counters = forwarder.counters();
+        self.forwarder = Some(forwarder);
+        Ok((self, counters))
     }
 
     /// Holds each board to the address from which it is first heard, until the program ends.
@@ -236,6 +278,9 @@ impl UdpSource {
         if let Err(refusal) = self.admission.batch(sender, on_own_port, &self.batch, now) {
             refusal.count(&mut self.counters);
             return self.log.not_admitted(now, sender, refusal);
+        }
+        if let Some(forwarder) = self.forwarder.as_ref().filter(|_| !self.batch.packets.is_empty()) {
+            forwarder.forward(datagram, now.since(self.received));
         }
         self.packets.extend(self.batch.packets.drain(..));
         let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());

@@ -25,8 +25,7 @@ impl Computer {
 #[test]
 fn feet_that_cross_a_border_are_where_the_whole_floor_s_computer_finds_them() {
     let tiles = |column, columns| TileBlock { first: TileId::new(column, 0), columns, rows: 6 };
-    let areas =
-        [("west", tiles(0, 6)), ("east", tiles(6, 6))].map(|(id, tiles)| Area { id: id.into(), tiles });
+    let areas = [("west", tiles(0, 6)), ("east", tiles(6, 6))].map(|(id, tiles)| Area::new(id, tiles));
     let whole = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap()).with_areas(areas.clone().into());
     let mut computers = areas.map(|area| Computer::new(&whole, &area));
     let mut sensing = Sensing::new(whole.geometry, Method::Tracker);

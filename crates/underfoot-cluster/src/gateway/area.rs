@@ -7,7 +7,7 @@ use underfoot::units::Instant;
 use super::claim::{Claims, Holder};
 use super::clock::NodeClock;
 use super::presses::Presses;
-use crate::message::{NodeMessage, Standing};
+use crate::message::{LayoutStanding, NodeMessage, Standing};
 
 /// How old the newest frame of an area may be. What feet hold there is cancelled then.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
@@ -30,6 +30,11 @@ pub(super) struct AreaState {
     pub(super) told: Instant,
     /// Whether its boards are silent, as its node says.
     pub(super) silent: bool,
+    /// How its node stands with layouts, and the page that it has told of.
+    pub(super) layout: LayoutStanding,
+    pub(super) page: Option<String>,
+    /// Whether its node has been told what apps have set.
+    pub(super) is_brought_up: bool,
     /// When it came to live: events before that are of no interest any more.
     since: Instant,
     /// The numbers of the last message and of the next event.
@@ -107,6 +112,7 @@ impl AreaState {
     /// Begins to believe what is told from `at` on.
     pub(super) fn begin(&mut self, at: Instant) {
         self.standing = Standing::Live;
+        self.is_brought_up = false;
         (self.since, self.told) = (at, at);
     }
 

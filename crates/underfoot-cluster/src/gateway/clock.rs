@@ -96,6 +96,13 @@ impl NodeClock {
         Some(Instant::from_micros(u64::try_from(here).unwrap_or(0)))
     }
 
+    /// What the node's clock shows at the moment `here` of the gateway's; `None` while nothing is known of it.
+    #[must_use]
+    pub fn there(&self, here: Instant) -> Option<u64> {
+        let there = signed(here.micros()).saturating_add(self.best?.offset);
+        Some(u64::try_from(there).unwrap_or(0))
+    }
+
     /// By how much [`NodeClock::here`] may be wrong at `now`.
     #[must_use]
     pub fn doubt(&self, now: Instant) -> Option<Duration> {

@@ -10,11 +10,15 @@
 //! ```
 
 mod area;
+mod ask;
 mod claim;
 mod clock;
 mod held;
 mod join;
+mod layouts;
 mod presses;
+mod requests;
+mod shared;
 #[cfg(test)]
 mod tests;
 mod told;
@@ -25,6 +29,8 @@ use std::time::Duration;
 use glam::Vec2;
 use thiserror::Error;
 use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::schema::write_layout;
 use underfoot::sink::AreaNews;
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
@@ -33,11 +39,16 @@ use underfoot::wire::LinkState;
 use self::area::{AreaState, Worth};
 use self::held::HeldReports;
 use self::join::Joiner;
+use self::layouts::{Layouts, Outcome};
+use self::requests::Requests;
+use self::shared::Shared;
 use crate::message::{
-    GatewayMessage, NodeContact, NodeEvent, NodeFrame, NodeMessage, NodeValue, Standing, VERSION, fingerprint,
+    GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent, NodeFrame,
+    NodeMessage, NodeValue, Standing, VERSION, fingerprint,
 };
 
 pub use area::LOST_AFTER;
+pub use ask::Answer;
 pub use clock::NodeClock;
 pub use told::{Counters, Told};
 
@@ -91,6 +102,11 @@ pub struct Gateway {
     link: LinkState,
     alive: (u32, Instant),
     complained: HashSet<u64>,
+    shared: Shared,
+    requests: Requests,
+    layouts: Layouts,
+    /// Whether nodes have to be told something before the next beat is due.
+    has_news: bool,
     counters: Counters,
     out: Vec<Told>,
 }
@@ -119,6 +135,10 @@ impl Gateway {
             link: LinkState::Waiting,
             alive: (0, Instant::START),
             complained: HashSet::new(),
+            shared: Shared::new(floor),
+            requests: Requests::default(),
+            layouts: Layouts::default(),
+            has_news: false,
             counters: Counters::default(),
             out: Vec::new(),
         })
@@ -141,12 +161,43 @@ impl Gateway {
     #[must_use]
     pub fn message(&self, now: Instant) -> GatewayMessage {
         let standings = self.areas.iter().map(|area| area.standing);
+        let current = self.layouts.current();
+        let from = |(name, area): (&String, &AreaState)| {
+            let (_, from) = current?;
+            Some((name.clone(), area.clock.there(from)?))
+        };
         GatewayMessage {
             version: VERSION,
             gateway: self.id,
             sent: now.micros(),
             areas: self.names.iter().cloned().zip(standings).collect(),
+            requests: self.requests.unanswered().cloned().collect(),
+            layout: LayoutOrder {
+                current: current.map(|(name, _)| name),
+                from: self.names.iter().zip(&self.areas).filter_map(from).collect(),
+            },
         }
+    }
+
+    /// Proposes a layout, checked for the whole floor, at `now`: it will be that of all nodes, or of none.
+    pub fn propose(&mut self, layout: Layout, now: Instant) {
+        let text = write_layout(&layout);
+        if self.layouts.is_known(&text) {
+            return;
+        }
+        self.layouts.propose(text, now);
+        self.shared.propose(layout);
+    }
+
+    /// The layout that nodes have to be sent at `now`, if any.
+    pub fn layout_message(&mut self, now: Instant) -> Option<LayoutMessage> {
+        let (name, text) = self.layouts.send(live(&self.names, &self.areas), now)?;
+        Some(LayoutMessage { version: VERSION, gateway: self.id, name, text: text.to_owned() })
+    }
+
+    /// Whether there is something that nodes should be told before the next beat is due.
+    pub fn take_news(&mut self) -> bool {
+        std::mem::take(&mut self.has_news) | self.requests.take_news()
     }
 
     /// Takes in what a node told, received at `now`, which must not be before any other time that was given.
@@ -159,6 +210,15 @@ impl Gateway {
         let Some(area) = self.areas.get_mut(number) else { return };
         let before = area.holder;
         let worth = area.note(&message, self.id, now);
+        if area.holder != before {
+            area.page = None;
+        }
+        if area.holder == Some(message.node) {
+            area.layout.clone_from(&message.layout);
+            for answer in message.answers.iter().filter(|answer| answer.gateway == self.id) {
+                self.requests.note(number, answer.clone());
+            }
+        }
         if area.holder != before && area.standing == Standing::Live {
             self.fall(number, Standing::Lost, "its node was started again", now);
         }
@@ -202,6 +262,9 @@ impl Gateway {
             self.tell(area, at, happened, item);
         }
         self.told_until = self.told_until.max(until);
+        self.tell_answers(now);
+        self.decide(now);
+        self.bring_up(now);
         self.tell_contacts(until, now);
         self.tell_state(now);
         std::mem::take(&mut self.out)
@@ -222,8 +285,8 @@ impl Gateway {
     /// The number of the area that a message is about, if it is one of this floor.
     fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
         let area = self.names.iter().position(|name| *name == message.area);
-        let NodeMessage { contacts, earlier, events, held, echoes, .. } = message;
-        let sizes = [contacts.len(), earlier.len(), events.len(), held.len(), echoes.len()];
+        let NodeMessage { contacts, earlier, events, held, echoes, answers, .. } = message;
+        let sizes = [contacts.len(), earlier.len(), events.len(), held.len(), echoes.len(), answers.len()];
         let mut all = contacts.iter().chain(earlier.iter().flat_map(|frame| &frame.contacts));
         let why = if message.version != VERSION {
             format!("speaks version {} of the messages, this gateway {VERSION}", message.version)
@@ -255,13 +318,20 @@ impl Gateway {
             let doubt = area.clock.doubt(now).unwrap_or_default();
             let news = AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), doubt };
             self.out.push(Told::Area(news));
+            area.page.clone_from(&message.page);
+            self.tell_mutes(number, now);
         } else if is_torn {
             // What was pressed may have been let go and pressed again in what is missing.
             let cancelled = area.presses.cancel(now);
             area.presses.shut(&message.held);
             self.out.extend(cancelled.into_iter().map(Told::Event));
         }
-        let NodeMessage { events, contacts, earlier, held, values, .. } = message;
+        let Some(area) = self.areas.get_mut(number) else { return };
+        let NodeMessage { events, contacts, earlier, held, values, page, .. } = message;
+        let page = page.filter(|page| area.page.as_ref() != Some(page));
+        if page.is_some() {
+            area.page.clone_from(&page);
+        }
         let mut items = Vec::with_capacity(events.len() + earlier.len() + 1);
         let mut events = events.into_iter().peekable();
         for NodeFrame { at, contacts } in earlier {
@@ -279,6 +349,9 @@ impl Gateway {
             self.number += 1;
             self.queue.insert((area.in_order(at), number, self.number), (at, item));
         }
+        if let Some(page) = page {
+            self.note_page(number, page, now);
+        }
     }
 
     /// Gives an area up: what feet held there is cancelled, its contacts end.
@@ -289,6 +362,7 @@ impl Gateway {
         self.queue.retain(|(_, area, _), _| *area != number);
         self.joiner.lose(number, now);
         let name = self.names.get(number).cloned().unwrap_or_default();
+        self.requests.lose(number, &name);
         self.out.extend(cancelled.into_iter().map(Told::Event));
         let (why, doubt) = (why.to_owned(), Duration::ZERO);
         self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, doubt }));
@@ -318,6 +392,26 @@ impl Gateway {
                 self.out.extend(changed.into_iter().map(Told::Event));
             }
         }
+    }
+
+    /// Decides on a layout that is proposed.
+    fn decide(&mut self, now: Instant) {
+        let Some(outcome) = self.layouts.decide(live(&self.names, &self.areas), now) else { return };
+        let notice = match outcome {
+            Outcome::Current(name, _) => {
+                self.shared.adopt();
+                self.has_news = true;
+                format!("Layout {} goes to all areas.", name.revision)
+            }
+            Outcome::Dropped(name, why) => {
+                self.shared.drop_proposal();
+                format!("Layout {} goes to no area: {why}.", name.revision)
+            }
+            Outcome::Unfit(area, why) => {
+                format!("the node of area \"{area}\" does not take the layout of the others: {why}")
+            }
+        };
+        self.out.push(Told::Notice(notice));
     }
 
     fn tell_contacts(&mut self, until: Instant, now: Instant) {
@@ -361,6 +455,15 @@ impl Gateway {
             self.out.push(Told::Alive(now, *number));
         }
     }
+}
+
+/// The nodes that live, and how they stand with layouts.
+fn live<'a>(
+    names: &'a [String],
+    areas: &'a [AreaState],
+) -> impl Iterator<Item = (&'a str, &'a LayoutStanding)> + Clone {
+    let all = names.iter().zip(areas).filter(|(_, area)| area.standing == Standing::Live);
+    all.map(|(name, area)| (name.as_str(), &area.layout))
 }
 
 /// The events among what was told.

@@ -3,17 +3,16 @@
 use proptest::prelude::*;
 use underfoot::floor::{Area, Geometry, TileBlock, TileId};
 use underfoot::sink::AreaState;
-use underfoot::widget::EventKind;
+use underfoot::widget::{EventKind, WidgetId};
+use underfoot::wire::{ControlMessage, Request};
 
 use super::*;
-use crate::message::Echo;
+use crate::message::{Echo, NodeAnswer};
 
 /// Two areas side by side, of 6 x 6 tiles each; the border is at 6 x 0.304 m.
 fn hall() -> Floor {
-    let area = |id: &str, column| Area {
-        id: id.into(),
-        tiles: TileBlock { first: TileId::new(column, 0), columns: 6, rows: 6 },
-    };
+    let area =
+        |id: &str, column| Area::new(id, TileBlock { first: TileId::new(column, 0), columns: 6, rows: 6 });
     Floor::of(Geometry::of_paper_tiles(12, 6).unwrap()).with_areas(vec![area("west", 0), area("east", 6)])
 }
 
@@ -28,11 +27,13 @@ struct Node {
     sequence: u64,
     events: u64,
     held: Vec<String>,
+    layout: LayoutStanding,
 }
 
 impl Node {
     fn new(area: &'static str, id: u64) -> Self {
-        Self { area, id, ahead: 1_000_000_000 * id, sequence: 0, events: 0, held: Vec::new() }
+        let layout = LayoutStanding::default();
+        Self { area, id, ahead: 1_000_000_000 * id, sequence: 0, events: 0, held: Vec::new(), layout }
     }
 
     /// What it tells of the floor at `at` microseconds of the gateway's clock, 200 us before the gateway has it.
@@ -60,6 +61,7 @@ impl Node {
             first_event,
             events,
             held: self.held.clone(),
+            layout: self.layout.clone(),
             // It took the probe 200 us to come, too.
             echoes: vec![Echo { gateway: 9, sent: at - 200, received: there }],
             ..NodeMessage::default()
@@ -531,4 +533,151 @@ proptest! {
         prop_assert!(straight.is_sorted_by_key(|event| event.at));
         prop_assert_eq!(straight, mixed);
     }
+}
+
+/// A layout of one control in the west and one in the east, with two pages.
+fn controls() -> Layout {
+    let text = r#"Layout(version: 1, title: "Both",
+        regions: [(id: "west", at: (1, 1), size: (2, 2)), (id: "east", at: (8, 1), size: (2, 2))],
+        widgets: [
+            (id: "left", kind: "button", at: (1, 1), size: (1, 1)),
+            (id: "right", kind: "slider", at: (8, 1), size: (2, 1)),
+        ],
+        pages: [(id: "one", widgets: []), (id: "two", widgets: [])])"#;
+    let kinds = underfoot::schema::Kinds::builtin();
+    underfoot::schema::parse_layout(text, "both", &kinds, &hall().geometry).unwrap().layout
+}
+
+/// A stage with both areas live and a layout, at START.
+fn asked_stage() -> (Stage, Node, Node) {
+    let (mut stage, mut west, mut east) = (Stage::new(), Node::new("west", 1), Node::new("east", 2));
+    stage.gateway.propose(controls(), Instant::from_micros(START - 200_000));
+    stage.advance(START - 200_000);
+    let current = stage.gateway.message(Instant::from_micros(START)).layout.current;
+    (west.layout.running, east.layout.running) = (current, current);
+    stage.take(west.message(START, &[], vec![]), START);
+    stage.take(east.message(START, &[], vec![]), START);
+    stage.advance(START + 300);
+    // Both have what they are told at their start.
+    answer_all(&mut stage, &mut west, &mut east, START + 1000);
+    stage.told.clear();
+    (stage, west, east)
+}
+
+/// Lets both nodes do all that they are asked; which node was asked what.
+fn answer_all(stage: &mut Stage, west: &mut Node, east: &mut Node, at: u64) -> Vec<(String, String)> {
+    let beat = stage.gateway.message(Instant::from_micros(at));
+    for node in [west, east] {
+        let mut message = node.message(at, &[], vec![]);
+        let own = beat.requests.iter().filter(|request| request.area == node.area);
+        message.answers = own
+            .map(|request| NodeAnswer { gateway: 9, number: request.number, ..NodeAnswer::default() })
+            .collect();
+        stage.take(message, at);
+    }
+    stage.advance(at + 300);
+    beat.requests.into_iter().map(|request| (request.area, request.path)).collect()
+}
+
+fn ask(stage: &mut Stage, message: ControlMessage, at: u64) {
+    let sender = Some(([127, 0, 0, 1], 5000).into());
+    stage.gateway.ask(Request { message, sender }, Instant::from_micros(at));
+}
+
+fn refusals(stage: &Stage) -> Vec<&str> {
+    let refused = stage.told.iter().filter_map(|told| match told {
+        Told::Answer(_, Answer::Refused(_, why)) => Some(why.as_str()),
+        _ => None,
+    });
+    refused.collect()
+}
+
+#[test]
+fn a_request_goes_to_the_area_of_its_control_or_to_all() {
+    let (mut stage, mut west, mut east) = asked_stage();
+    let at = START + 2000;
+    for id in ["left", "right", "*"] {
+        ask(&mut stage, ControlMessage::Disable { id: WidgetId::new(id) }, at);
+    }
+    ask(&mut stage, ControlMessage::CancelAll, at);
+    ask(&mut stage, ControlMessage::MuteTile { tile: TileId::new(7, 0), on: true }, at);
+    let asked = answer_all(&mut stage, &mut west, &mut east, at);
+    let asked: Vec<_> = asked.iter().map(|(area, path)| (area.as_str(), path.as_str())).collect();
+    let [left, right] = [("west", "widget/left/disable"), ("east", "widget/right/disable")];
+    assert_eq!(
+        asked,
+        [left, right, left, right, ("west", "cancel"), ("east", "cancel"), ("east", "mute/tile")]
+    );
+    assert!(
+        answer_all(&mut stage, &mut west, &mut east, at + 1000).is_empty(),
+        "each is asked once answered"
+    );
+    ask(&mut stage, ControlMessage::Get { id: WidgetId::new("middle") }, at);
+    ask(&mut stage, ControlMessage::MuteTile { tile: TileId::new(12, 0), on: true }, at);
+    stage.advance(at + 2000);
+    assert_eq!(refusals(&stage).len(), 2, "{:?}", refusals(&stage));
+    assert_eq!(stage.gateway.counters().denied, 2);
+}
+
+#[test]
+fn a_node_that_comes_back_is_told_what_apps_have_set_and_one_that_is_lost_is_why_it_is_not_done() {
+    let (mut stage, mut west, mut east) = asked_stage();
+    let at = START + 2000;
+    ask(&mut stage, ControlMessage::Lock { id: WidgetId::new("left") }, at);
+    ask(&mut stage, ControlMessage::Mute { on: true }, at);
+    answer_all(&mut stage, &mut west, &mut east, at);
+    // Only the east goes on.
+    let lost = at + 150_000;
+    stage.take(east.message(lost, &[], vec![]), lost);
+    stage.advance(lost + 300);
+    ask(&mut stage, ControlMessage::Unlock { id: WidgetId::new("left") }, lost);
+    stage.advance(lost + 400);
+    assert_eq!(refusals(&stage), ["its area \"west\" is lost"]);
+    let layout = west.layout;
+    let mut west = Node::new("west", 3);
+    let back = lost + 10_000;
+    stage.take(west.message(back, &[], vec![]), back);
+    stage.advance(back + 300);
+    let asked = answer_all(&mut stage, &mut west, &mut east, back + 1000);
+    assert_eq!(asked, [("west".to_owned(), "mute/set".to_owned())], "it has no controls yet");
+    west.layout = layout;
+    let back = back + 2000;
+    stage.take(west.message(back, &[], vec![]), back);
+    stage.advance(back + 300);
+    let asked = answer_all(&mut stage, &mut west, &mut east, back + 1000);
+    let asked: Vec<_> = asked.iter().map(|(area, path)| (area.as_str(), path.as_str())).collect();
+    assert_eq!(asked, [("west", "widget/left/lock")]);
+}
+
+#[test]
+fn a_page_that_one_node_shows_is_that_of_all() {
+    let (mut stage, mut west, mut east) = asked_stage();
+    let at = START + 2000;
+    let mut message = west.message(at, &[], vec![]);
+    message.page = Some("two".into());
+    stage.take(message, at);
+    stage.advance(at + 300);
+    let shown = stage.told.iter().any(|told| matches!(told, Told::Page(shown) if shown.page == "two"));
+    assert!(shown, "{:?}", stage.told);
+    let asked = answer_all(&mut stage, &mut west, &mut east, at + 1000);
+    assert_eq!(asked, [("east".to_owned(), "page/set".to_owned())]);
+}
+
+#[test]
+fn a_layout_is_ordered_on_each_node_s_own_clock() {
+    let (mut stage, west, _) = asked_stage();
+    let at = Instant::from_micros(START + 3000);
+    let order = stage.gateway.message(at).layout;
+    let (current, from) = (order.current.unwrap(), &order.from[0]);
+    assert_eq!((current.revision, from.0.as_str()), (1, "west"));
+    // Nobody was there to ask when it became current, 200 ms before.
+    let here = i128::from(from.1) - i128::from(west.ahead) - i128::from(START);
+    assert_eq!(here, -100_000);
+    // Another one waits for both.
+    let mut other = controls();
+    other.title = "Other".into();
+    stage.gateway.propose(other, at);
+    assert!(stage.gateway.layout_message(at).is_some());
+    stage.advance(START + 4000);
+    assert_eq!(stage.gateway.message(at).layout.current.unwrap().revision, 1);
 }

@@ -1,10 +1,16 @@
 //! What the gateway tells, and what it counts.
 
+use std::net::SocketAddr;
+
+use underfoot::engine::{ControlState, PageShown};
+use underfoot::feel::Muted;
 use underfoot::sense::Contact;
 use underfoot::sink::{AreaNews, HeldReport, Report};
 use underfoot::units::Instant;
 use underfoot::widget::WidgetEvent;
 use underfoot::wire::LinkState;
+
+use super::ask::Answer;
 
 /// One thing that the gateway tells; times are on its clock.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,12 +28,20 @@ pub enum Told {
     Area(AreaNews),
     /// A sign of life, numbered from 1; ten times a second.
     Alive(Instant, u32),
+    /// An app has changed a control or asked for it: how it is now.
+    Control(Instant, Box<ControlState>),
+    /// A page has taken the place of another, or somebody has asked which one is shown.
+    Page(PageShown),
+    /// What is muted has changed, or somebody has asked.
+    Muted(Instant, Muted),
+    /// What the app that asked is answered.
+    Answer(SocketAddr, Answer),
     /// Something that a person has to look after.
     Notice(String),
 }
 
 impl Told {
-    /// The same for the outputs of a single floor; `None` for what only a person is told.
+    /// The same for the outputs of a single floor; `None` for what only a person or one app is told.
     #[must_use]
     pub fn report(&self) -> Option<Report<'_>> {
         match self {
@@ -37,7 +51,10 @@ impl Told {
             Self::Link(at, state) => Some(Report::Link(*at, *state)),
             Self::Alive(at, sequence) => Some(Report::Alive(*at, *sequence)),
             Self::Area(news) => Some(Report::Area(news)),
-            Self::Notice(_) => None,
+            Self::Control(at, state) => Some(Report::Control(*at, state)),
+            Self::Page(page) => Some(Report::Page(page)),
+            Self::Muted(at, muted) => Some(Report::Muted(*at, muted)),
+            Self::Answer(..) | Self::Notice(_) => None,
         }
     }
 }
@@ -57,4 +74,6 @@ pub struct Counters {
     pub late: u64,
     /// Events that never came.
     pub lost: u64,
+    /// Requests of apps that were not done.
+    pub denied: u64,
 }

@@ -5,6 +5,8 @@
 
 mod contact;
 mod event;
+mod layout;
+mod request;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -14,12 +16,14 @@ use underfoot::sink::AreaState;
 
 pub use contact::NodeContact;
 pub use event::{NodeEvent, NodeValue};
+pub use layout::{LayoutMessage, LayoutName, LayoutOrder, LayoutStanding};
+pub use request::{NodeAnswer, NodeRequest, NodeState};
 
 /// The version of the messages; others are refused.
-pub const VERSION: u32 = 1;
+pub const VERSION: u32 = 2;
 
-/// Longest message, in bytes: a thousand contacts and as many events.
-pub const MAX_BYTES: usize = 1 << 20;
+/// Longest message, in bytes: a layout as long as files may be, each character of it escaped.
+pub const MAX_BYTES: usize = 1 << 23;
 
 /// What a node tells, some hundred times a second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -56,6 +60,12 @@ pub struct NodeMessage {
     pub values: Option<Vec<(String, NodeValue)>>,
     /// What the node has heard last of each gateway.
     pub echoes: Vec<Echo>,
+    /// The page that was shown last, if that was told.
+    pub page: Option<String>,
+    /// What became of requests.
+    pub answers: Vec<NodeAnswer>,
+    /// How the node stands with layouts.
+    pub layout: LayoutStanding,
 }
 
 /// The contacts of one frame.
@@ -78,6 +88,16 @@ pub struct Echo {
     pub received: u64,
 }
 
+/// What a gateway sends to all nodes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum ToNodes {
+    /// How things stand, twenty times a second, and at once when there is something new.
+    Beat(GatewayMessage),
+    /// A layout to be checked.
+    Layout(LayoutMessage),
+}
+
 /// What a gateway tells all nodes, twenty times a second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatewayMessage {
@@ -89,6 +109,10 @@ pub struct GatewayMessage {
     pub sent: u64,
     /// How each area stands with the gateway.
     pub areas: Vec<(String, Standing)>,
+    /// Requests of apps that have not been answered, in their order; each again and again until it is.
+    pub requests: Vec<NodeRequest>,
+    /// Which layout nodes are to have.
+    pub layout: LayoutOrder,
 }
 
 /// How an area stands with a gateway.
@@ -154,9 +178,13 @@ pub fn fingerprint(floor: &Floor) -> u64 {
     let geometry = &floor.geometry;
     let areas: Vec<_> = floor.areas.iter().map(|area| (&area.id, area.tiles)).collect();
     let text = format!("{:?} {} {areas:?}", geometry.block(), geometry.pitch_m());
-    // FNV-1a.
-    text.bytes()
-        .fold(0xcbf2_9ce4_8422_2325, |hash, byte| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
+    fnv(text.as_bytes())
+}
+
+/// FNV-1a of 64 bits.
+fn fnv(bytes: &[u8]) -> u64 {
+    let step = |hash: u64, byte: &u8| (hash ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
+    bytes.iter().fold(0xcbf2_9ce4_8422_2325, step)
 }
 
 #[cfg(test)]
@@ -184,9 +212,8 @@ mod tests {
     fn another_cut_of_the_floor_has_another_fingerprint() {
         let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap());
         let cut = |columns: u16| {
-            let area = |id: &str, column, columns| Area {
-                id: id.into(),
-                tiles: TileBlock { first: TileId::new(column, 0), columns, rows: 6 },
+            let area = |id: &str, column, columns| {
+                Area::new(id, TileBlock { first: TileId::new(column, 0), columns, rows: 6 })
             };
             fingerprint(
                 &floor

@@ -23,6 +23,7 @@ pub struct Draft {
     first_event: u64,
     events: Vec<NodeEvent>,
     held: Vec<String>,
+    page: Option<String>,
 }
 
 impl Draft {
@@ -55,6 +56,7 @@ impl Draft {
                 self.held.clear();
                 self.held.extend(report.held.iter().map(|id| id.as_str().to_owned()));
             }
+            Report::Page(shown) => self.page = Some(shown.page.as_str().to_owned()),
             Report::Link(_, state) => self.silent = matches!(state, LinkState::Lost | LinkState::Waiting),
             _ => {}
         }
@@ -78,8 +80,18 @@ impl Draft {
     /// The message.
     #[must_use]
     pub fn message(self) -> NodeMessage {
-        let Self { frame, silent, contacts, earlier, first_event, events, held, .. } = self;
-        NodeMessage { frame, silent, contacts, earlier, first_event, events, held, ..NodeMessage::default() }
+        let Self { frame, silent, contacts, earlier, first_event, events, held, page, .. } = self;
+        NodeMessage {
+            frame,
+            silent,
+            contacts,
+            earlier,
+            first_event,
+            events,
+            held,
+            page,
+            ..NodeMessage::default()
+        }
     }
 }
 

@@ -130,7 +130,13 @@ mod tests {
     use super::*;
 
     fn said(standing: Standing, sent: u64) -> GatewayMessage {
-        GatewayMessage { version: VERSION, gateway: 9, sent, areas: vec![("west".into(), standing)] }
+        GatewayMessage {
+            version: VERSION,
+            gateway: 9,
+            sent,
+            areas: vec![("west".into(), standing)],
+            ..GatewayMessage::default()
+        }
     }
 
     #[test]

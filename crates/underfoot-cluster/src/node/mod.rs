@@ -5,10 +5,14 @@
 //! gateway -> Guard: lost, disputed or silent -> what feet hold here is cancelled here too
 //! ```
 
+mod asked;
 mod draft;
 mod guard;
+mod layouts;
 mod sink;
 
+pub use asked::AskedRequests;
 pub use draft::Draft;
 pub use guard::{Action, Guard, Reason};
+pub use layouts::NodeLayouts;
 pub use sink::NodeSink;

@@ -8,29 +8,43 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::outgoing::TuioProfiles;
+use underfoot::floor::Network;
+use underfoot::outgoing::{TuioProfiles, write_control, write_error, write_mute, write_page};
 use underfoot::schema;
 use underfoot::sink::{
     AreaNews, AreaState, EventSink, Fanout, JsonSink, OscSink, Rank, TuioSink, TuioVersion, claim_priority,
 };
+use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
-use underfoot::wire::Prefix;
-use underfoot_cluster::gateway::{Counters, Gateway, Told};
-use underfoot_cluster::message::{NodeMessage, decode, encode};
-use underfoot_cluster::transport::{ENDPOINT, Transport};
+use underfoot::wire::{Prefix, Request};
+use underfoot_cluster::gateway::{Answer, Counters, Gateway, Told};
+use underfoot_cluster::message::{NodeMessage, ToNodes, decode, encode};
+use underfoot_cluster::transport::Transport;
 
 use super::notices::Notices;
-use super::{Failure, drawn, stop_flag};
+use super::slowed::slow;
+use super::{Failure, drawn, endpoints, layout, stop_flag};
 
 /// What the gateway is asked to do.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
+    /// Layout file, or the name of a built-in one, for all nodes; each change of the file goes to all of them or to
+    /// none. Without it, nodes have their own and requests are refused.
+    #[arg(value_name = "LAYOUT")]
+    layout: Option<PathBuf>,
     /// Floor file with `areas`; the same on all nodes.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
-    /// Where nodes connect; may be given several times, for several network cards.
-    #[arg(long, value_name = "ENDPOINT", default_value = ENDPOINT)]
+    /// Where nodes connect; may be given several times, for several network cards. Without it, as the floor file says,
+    /// and else tcp/127.0.0.1:7447.
+    #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
+    /// Where apps' requests arrive as OSC; without it, none are taken.
+    #[arg(long, value_name = "ADDR", requires = "layout")]
+    commands: Option<SocketAddr>,
+    /// Take requests from this address or range; several may be given. Without it, from this machine only.
+    #[arg(long, value_name = "CIDR", requires = "commands")]
+    allow_commands: Vec<Network>,
     /// Where events and contacts are sent as OSC; may be given several times.
     #[arg(long, value_name = "HOST:PORT")]
     osc: Vec<SocketAddr>,
@@ -52,6 +66,9 @@ pub(crate) struct Args {
     /// Stop after so many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
+    /// For measurements: the gateway's clock goes so many times slower.
+    #[arg(long, hide = true, default_value_t = 1)]
+    slow: u32,
 }
 
 /// Messages that may wait: half a second of sixteen nodes.
@@ -68,6 +85,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
     let mut gateway = Gateway::new(&floor, drawn())?;
     let stop = stop_flag(args.seconds)?;
+    let listen = endpoints(args.listen.clone(), &floor);
     let mut sinks = Fanout::new();
     for &target in &args.osc {
         sinks.push(OscSink::under(target, args.osc_prefix.clone())?);
@@ -83,26 +101,33 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let lines = JsonSink::new(io::stdout())?;
         sinks.push(if args.json_contacts { lines.with_contacts() } else { lines });
     }
+    let mut door = args.commands.map(|address| Door::open(address, args)).transpose()?;
+    let changes = match &args.layout {
+        Some(path) => {
+            gateway.propose(layout::load(path, &floor.geometry)?, Instant::START);
+            // A built-in layout has no file.
+            path.exists().then(|| layout::watch(path.clone(), floor.geometry))
+        }
+        None => None,
+    };
     let notices = Notices::start();
     // What joins, and Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let started = HostInstant::now();
-    let now = move || Instant::START + started.elapsed();
+    let times = args.slow;
+    let now = move || slow(Instant::START + started.elapsed(), times);
     let (messages, received) = sync_channel(WAITING);
     let dropped = Arc::<AtomicU64>::default();
     let transport = {
         let dropped = Arc::clone(&dropped);
-        Transport::gateway(&args.listen, move |bytes| {
+        Transport::gateway(&listen, move |bytes| {
             if messages.try_send((now(), decode::<NodeMessage>(bytes).ok())).is_err() {
                 dropped.fetch_add(1, Ordering::Relaxed);
             }
         })?
     };
     let areas = floor.areas.len();
-    notices.say(format!(
-        "Waiting for the nodes of {areas} areas on {}. Ctrl-C ends it.",
-        args.listen.join(", ")
-    ));
+    notices.say(format!("Waiting for the nodes of {areas} areas on {}. Ctrl-C ends it.", listen.join(", ")));
     let mut latest = Instant::START;
     let mut due = Instant::START;
     let mut garbled = 0;
@@ -117,17 +142,69 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             }
         }
         latest = latest.max(now());
-        tell(&gateway.advance(latest), &mut sinks, &notices);
+        if let Some(door) = &mut door {
+            door.requests()?.into_iter().for_each(|request| gateway.ask(request, latest));
+        }
+        match changes.as_ref().and_then(|changes| changes.try_recv().ok()) {
+            Some(Ok(layout)) => gateway.propose(layout, latest),
+            Some(Err(failure)) => notices.say(format!("{failure}The last good layout stays on the floor.")),
+            None => {}
+        }
+        let told = gateway.advance(latest);
+        tell(&told, &mut sinks, &notices);
+        if let Some(door) = &mut door {
+            told.iter().for_each(|told| door.answer(told));
+        }
         sinks.poll(latest);
-        if latest >= due {
+        if let Some(layout) = gateway.layout_message(latest) {
+            transport.send(encode(&ToNodes::Layout(layout)));
+        }
+        if gateway.take_news() || latest >= due {
             due = latest + TELL_EVERY;
-            transport.send(encode(&gateway.message(now())));
+            transport.send(encode(&ToNodes::Beat(gateway.message(now()))));
         }
     }
     tell(&gateway.end(latest), &mut sinks, &notices);
     let dropped = dropped.load(Ordering::Relaxed);
     report(gateway.counters(), garbled, dropped, sinks.dropped());
     Ok(())
+}
+
+/// Where apps ask, and are answered.
+struct Door {
+    source: UdpSource,
+    prefix: Prefix,
+    bytes: Vec<u8>,
+}
+
+impl Door {
+    fn open(address: SocketAddr, args: &Args) -> Result<Self, Failure> {
+        let apps = if args.allow_commands.is_empty() { &Network::LOOPBACK[..] } else { &args.allow_commands };
+        let prefix = args.osc_prefix.clone();
+        let source = UdpSource::requests(address, apps.iter().copied())?.with_prefix(prefix.clone());
+        Ok(Self { source, prefix, bytes: Vec::new() })
+    }
+
+    /// What apps have asked.
+    fn requests(&mut self) -> Result<Vec<Request>, Failure> {
+        // There are no boards, whose packets this would give.
+        while self.source.next(Duration::ZERO)?.is_some() {}
+        Ok(std::iter::from_fn(|| self.source.take_request()).collect())
+    }
+
+    /// Answers whoever asked.
+    fn answer(&mut self, told: &Told) {
+        let Told::Answer(to, answer) = told else { return };
+        match answer {
+            Answer::Control(state) => write_control(&self.prefix, state, &mut self.bytes),
+            Answer::Page(page) => write_page(&self.prefix, page, &mut self.bytes),
+            Answer::Muted(muted) => write_mute(&self.prefix, muted, &mut self.bytes),
+            Answer::Refused(path, why) => {
+                write_error(&self.prefix, &self.prefix.address(path), why, &mut self.bytes);
+            }
+        }
+        self.source.answer(*to, &self.bytes);
+    }
 }
 
 /// What has arrived, once something has or patience is over: all of it, so that what is late already is not taken for
@@ -163,7 +240,7 @@ fn tell(told: &[Told], sinks: &mut Fanout, notices: &Notices) {
 }
 
 fn report(counters: Counters, garbled: u64, dropped: u64, unsent: u64) {
-    let Counters { messages, refused, stale, withheld, late, lost } = counters;
+    let Counters { messages, refused, stale, withheld, late, lost, denied } = counters;
     let all = [
         (refused + garbled, "messages refused"),
         (dropped, "messages dropped, since they came faster than they could be joined"),
@@ -171,6 +248,7 @@ fn report(counters: Counters, garbled: u64, dropped: u64, unsent: u64) {
         (withheld, "events of areas or presses that had been given up"),
         (late, "events told out of order"),
         (lost, "events that never came"),
+        (denied, "requests not met"),
         (unsent, "reports that nobody took"),
     ];
     let told: Vec<String> =

@@ -1,10 +1,13 @@
 //! What the program's commands share.
 
 pub(crate) mod gateway;
+mod layout;
 pub(crate) mod node;
 mod notices;
+mod slowed;
 mod sound;
 mod stepped;
+mod worker;
 
 use std::hash::{BuildHasher, Hasher, RandomState};
 use std::sync::Arc;
@@ -15,12 +18,13 @@ use std::time::Duration;
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::flag;
 use thiserror::Error;
+use underfoot::floor::Floor;
 use underfoot::runtime::StartError;
 use underfoot::schema::Diagnostics;
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
 use underfoot_cluster::gateway::NoGateway;
-use underfoot_cluster::transport::TransportError;
+use underfoot_cluster::transport::{ENDPOINT, TransportError};
 
 /// Why a command failed, in words for the person who gave it.
 #[derive(Debug, Error)]
@@ -46,6 +50,14 @@ pub(crate) enum Failure {
     /// Anything else, said in full.
     #[error("{0}")]
     Other(String),
+}
+
+/// Where the gateway listens: as was `asked`, else as the floor file says, else where it usually does.
+fn endpoints(asked: Vec<String>, floor: &Floor) -> Vec<String> {
+    if !asked.is_empty() {
+        return asked;
+    }
+    vec![floor.gateway.map_or_else(|| ENDPOINT.to_owned(), |gateway| format!("tcp/{gateway}"))]
 }
 
 /// A flag that Ctrl-C, a polite kill, a terminal that is closed, and the end of `span` set.

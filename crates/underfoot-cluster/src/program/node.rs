@@ -1,47 +1,53 @@
 //! `underfoot-cluster node`: one area is served, and told of.
 
-use std::net::SocketAddr;
-use std::path::{Path, PathBuf};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::floor::{Floor, Geometry};
-use underfoot::layout::Layout;
+use underfoot::floor::{Area, Floor};
 use underfoot::runtime::{EndReason, Kind, Session};
-use underfoot::schema::{self, Effects, Kinds};
+use underfoot::schema;
 use underfoot::serve::Command;
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::HostClock;
 use underfoot::wire::ControlMessage;
-use underfoot_cluster::message::{NodeMessage, NodeValue, VERSION, decode, encode, fingerprint};
+use underfoot_cluster::message::{
+    LayoutName, NodeMessage, NodeValue, ToNodes, VERSION, decode, encode, fingerprint,
+};
 use underfoot_cluster::node::{Action, Draft, Guard, NodeSink, Reason};
-use underfoot_cluster::transport::{ENDPOINT, Transport};
+use underfoot_cluster::transport::Transport;
 
 use super::notices::Notices;
+use super::slowed::{SlowedSource, slowed};
 use super::sound::SoundArgs;
 use super::stepped::SteppedSource;
-use super::{Failure, drawn, stop_flag};
+use super::worker::Worker;
+use super::{Failure, drawn, endpoints, layout, stop_flag};
 
 /// What a node is asked to do.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout file, or the name of a built-in one; the same on all nodes.
+    /// Layout file, or the name of a built-in one; the same on all nodes. Without it the node has no controls until the
+    /// gateway gives it a layout; a gateway that has one gives it in any case.
     #[arg(value_name = "LAYOUT")]
-    layout: PathBuf,
+    layout: Option<PathBuf>,
     /// Floor file with `areas`; the same on all nodes and the gateway, but for calibration.
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
     /// The area that this node serves.
     #[arg(long, value_name = "NAME")]
     area: String,
-    /// Where the boards' packets arrive: an address of this machine and a port.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
-    listen: SocketAddr,
-    /// Where the gateway listens; may be given several times, for a second gateway beside the first.
-    #[arg(long, value_name = "ENDPOINT", default_value = ENDPOINT)]
+    /// Where the boards' packets arrive: an address of this machine and a port. Without it, as the floor file says, and
+    /// else 127.0.0.1:9000.
+    #[arg(long, value_name = "ADDR")]
+    listen: Option<SocketAddr>,
+    /// Where the gateway listens; may be given several times, for a second gateway beside the first. Without it, as the
+    /// floor file says, and else tcp/127.0.0.1:7447.
+    #[arg(long, value_name = "ENDPOINT")]
     gateway: Vec<String>,
     #[command(flatten)]
     sound: SoundArgs,
@@ -51,7 +57,13 @@ pub(crate) struct Args {
     /// For tests: SIGUSR1 sets this node's clock forward by a second.
     #[arg(long, hide = true)]
     step_clock: bool,
+    /// For measurements: this node's clock goes so many times slower.
+    #[arg(long, hide = true, default_value_t = 1)]
+    slow: u32,
 }
+
+/// Where packets arrive unless anything says otherwise.
+const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
 /// Messages that may wait for the thread that sends them: a fifth of a second.
 const WAITING: usize = 100;
@@ -65,9 +77,18 @@ const PATIENCE: Duration = Duration::from_millis(20);
 /// Serves an area until told to stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
-    let (part, layout) = served(&floor, &args.area, &args.layout)?;
+    let area = area(&floor, &args.area)?;
+    let part = floor.part(area);
+    let part =
+        part.ok_or_else(|| Failure::Other(format!("the area \"{}\" has no tile on the floor", area.id)))?;
+    let layout = args.layout.map(|path| layout::load(&path, &floor.geometry)).transpose()?;
+    let own = layout.as_ref().map(|layout| LayoutName::of(0, &schema::write_layout(layout)));
+    let layout = layout.unwrap_or_default().part(area, &floor.geometry);
     let stop = stop_flag(args.seconds)?;
-    let source = UdpSource::bind(args.listen, &part)?;
+    let listen = args.listen.or(area.listen).unwrap_or(LISTEN);
+    let gateways = endpoints(args.gateway, &floor);
+    let source = UdpSource::bind(listen, &part)?.also_allowing(floor.forwarders(area));
+    let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
     let (source, clock): (Box<dyn SensorSource>, HostClock) = if args.step_clock {
         let source = SteppedSource::new(source)?;
         let clock = source.clock();
@@ -75,6 +96,10 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     } else {
         let clock = source.clock();
         (Box::new(source), clock)
+    };
+    let (source, clock): (Box<dyn SensorSource>, HostClock) = match args.slow {
+        0 | 1 => (source, clock),
+        times => (Box::new(SlowedSource::new(source, times)), slowed(clock, times)),
     };
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
@@ -93,15 +118,22 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     claim_priority(Rank::Telling);
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
+    let worker = Worker::start(session.clone(), area.clone(), floor.geometry, own, notices.clone());
     let transport = {
+        let worker = worker.clone();
         let commander = Commander { session: session.clone(), notices: notices.clone() };
         let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
-        Transport::node(&args.gateway, &args.area, move |bytes| {
+        Transport::node(&gateways, &args.area, move |bytes| {
             let now = clock();
-            let Ok(message) = decode(bytes) else {
-                refused.fetch_add(1, Ordering::Relaxed);
-                return;
+            let message = match decode(bytes) {
+                Ok(ToNodes::Beat(message)) => message,
+                Ok(ToNodes::Layout(layout)) => return worker.check(layout, now),
+                Err(_) => {
+                    refused.fetch_add(1, Ordering::Relaxed);
+                    return;
+                }
             };
+            worker.hear(&message, now);
             let actions = guard.lock().unwrap_or_else(PoisonError::into_inner).hear(&message, now);
             actions.into_iter().for_each(|action| commander.apply(action));
         })?
@@ -109,8 +141,8 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     notices.say(format!(
         "Serving area \"{}\" on {}, for the gateway at {}. Ctrl-C ends it.",
         args.area,
-        args.listen,
-        args.gateway.join(", ")
+        listen,
+        gateways.join(", ")
     ));
     let teller = Teller {
         head: NodeMessage {
@@ -118,17 +150,23 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
             floor: fingerprint(&floor),
             area: args.area,
             node: drawn(),
-            name: format!("{} (process {})", args.listen, std::process::id()),
+            name: format!("{listen} (process {})", std::process::id()),
             ..NodeMessage::default()
         },
         transport,
         guard,
         clock,
         commander: Commander { session: session.clone(), notices: notices.clone() },
+        worker,
         unsent: 0,
     };
     let unsent = teller.run(&drafted);
+    if forwarded.sent() > 0 {
+        eprintln!("{} packets forwarded to neighbours.", forwarded.sent());
+    }
     let lost = [
+        (forwarded.late(), "packets too old to be forwarded"),
+        (forwarded.unsent(), "packets not forwarded, since the system did not take them"),
         (held_up.load(Ordering::Relaxed), "messages held up"),
         (unsent, "messages not sent"),
         (refused.load(Ordering::Relaxed), "messages not understood"),
@@ -137,35 +175,12 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     ended(&session)
 }
 
-/// The part of the floor that `area` serves, and that of its layout.
-fn served(floor: &Floor, area: &str, layout: &Path) -> Result<(Floor, Layout), Failure> {
-    let found = floor.area(area).and_then(|area| Some((area, floor.part(area)?)));
-    let Some((area, part)) = found else {
+/// The area called `id`.
+fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
+    floor.area(id).ok_or_else(|| {
         let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
-        return Err(Failure::Other(format!(
-            "the floor has no area \"{area}\": there are {}",
-            ids.join(", ")
-        )));
-    };
-    Ok((part, load_layout(layout, &floor.geometry)?.part(area, &floor.geometry)))
-}
-
-/// The layout at `path`, or the built-in one of that name; its warnings are logged.
-fn load_layout(path: &Path, geometry: &Geometry) -> Result<Layout, Failure> {
-    let builtin = path.to_str().filter(|_| !path.exists()).and_then(schema::builtin_layout);
-    let loaded = match builtin {
-        Some(text) => schema::parse_layout(
-            text,
-            &path.to_string_lossy(),
-            &Kinds::shipped(Effects::builtin())?,
-            geometry,
-        )?,
-        None => schema::load_layout(path, &schema::kinds_beside(path)?, geometry)?,
-    };
-    if !loaded.warnings.is_empty() {
-        tracing::warn!("{}", loaded.warnings);
-    }
-    Ok(loaded.layout)
+        Failure::Other(format!("the floor has no area \"{id}\": there are {}", ids.join(", ")))
+    })
 }
 
 /// Does what the guard says.
@@ -208,6 +223,7 @@ struct Teller {
     guard: Arc<Mutex<Guard>>,
     clock: HostClock,
     commander: Commander,
+    worker: Worker,
     unsent: u64,
 }
 
@@ -229,6 +245,7 @@ impl Teller {
                 Err(RecvTimeoutError::Disconnected) => return self.unsent,
             }
             let now = (self.clock)();
+            self.worker.change(now);
             let actions = self.guard.lock().unwrap_or_else(PoisonError::into_inner).tick(now);
             actions.into_iter().for_each(|action| self.commander.apply(action));
         }
@@ -237,7 +254,9 @@ impl Teller {
     fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
         let echoes = self.guard.lock().unwrap_or_else(PoisonError::into_inner).echoes().collect();
         self.head.sequence += 1;
-        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, .. } = draft.message();
+        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
+            draft.message();
+        let (layout, answers) = self.worker.report();
         let mut message = NodeMessage {
             frame,
             silent,
@@ -248,6 +267,9 @@ impl Teller {
             held,
             values,
             echoes,
+            page,
+            answers,
+            layout,
             ..self.head.clone()
         };
         // Last, so that nothing but the way of the message follows.

@@ -23,15 +23,15 @@ use underfoot::wire::{SensorEncoder, SensorFormat};
 use crate::lines::Lines;
 use crate::link::Link;
 
-/// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Nine boards of 4 x 4 tiles, as large as boards can
-/// be, since one machine does the work of six here.
+/// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few, since
+/// one machine does the work of six here.
 fn floor_text() -> String {
     let board = |number: u16| {
-        let (west, south) = (number % 3 * 4, number / 3 * 4);
-        let tiles = (0..16).map(|tile| format!("({}, {})", west + tile % 4, south + tile / 4));
+        let (west, south) = (number % 2 * 6, number / 2 * 2);
+        let tiles = (0..12).map(|tile| format!("({}, {})", west + tile % 6, south + tile / 6));
         format!("(tiles: [{}])", tiles.collect::<Vec<_>>().join(", "))
     };
-    let boards: Vec<String> = (0..9).map(board).collect();
+    let boards: Vec<String> = (0..12).map(board).collect();
     let areas = r#"[
         (id: "sw", at: (0, 0), size: (6, 6)),
         (id: "se", at: (6, 0), size: (6, 6)),
@@ -42,7 +42,7 @@ fn floor_text() -> String {
 }
 
 /// Two controls over borders, of which `drive` is the south-east's, and one in each other area.
-const LAYOUT: &str = r#"Layout(
+pub(crate) const LAYOUT: &str = r#"Layout(
     version: 1,
     title: "Hall",
     regions: [
@@ -70,6 +70,9 @@ pub(crate) const AREAS: [&str; 4] = ["sw", "se", "nw", "ne"];
 /// A program that ends with the test.
 pub(crate) struct Program(pub(crate) Child);
 
+/// What programs say to a person.
+pub(crate) type Notices = Arc<Mutex<Vec<String>>>;
+
 impl Drop for Program {
     fn drop(&mut self) {
         let _ = self.0.kill();
@@ -78,7 +81,7 @@ impl Drop for Program {
 }
 
 impl Program {
-    fn start(folder: &Path, args: &[&str]) -> Self {
+    pub(crate) fn start(folder: &Path, args: &[&str], notices: &Notices) -> Self {
         let mut child = Command::new(env!("CARGO_BIN_EXE_underfoot-cluster"))
             .args(args)
             .current_dir(folder)
@@ -91,9 +94,13 @@ impl Program {
         chatter.read_line(&mut line).unwrap();
         assert!(line.contains("Ctrl-C ends it"), "{line}");
         let name = args[0].to_owned();
+        let said = Arc::clone(notices);
         // What it says goes where the test's own output goes.
         thread::spawn(move || {
-            chatter.lines().map_while(Result::ok).for_each(|line| println!("{name}: {line}"));
+            chatter.lines().map_while(Result::ok).for_each(|line| {
+                println!("{name}: {line}");
+                said.lock().unwrap().push(line);
+            });
         });
         Self(child)
     }
@@ -132,11 +139,11 @@ pub(crate) struct Hall {
     folder: TempDir,
     pub(crate) floor: Floor,
     pub(crate) layout: Layout,
-    pub(crate) ports: [u16; 4],
-    /// Where the gateway listens.
-    endpoint: String,
     /// Between it and the nodes.
     pub(crate) links: [Link; 4],
+    /// Where the gateway takes requests.
+    pub(crate) commands: SocketAddr,
+    notices: Notices,
     _gateway: Program,
     pub(crate) lines: Lines,
 }
@@ -145,33 +152,84 @@ impl Hall {
     pub(crate) fn open() -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
-        let floor = floor();
+        let ports = AREAS.map(|_| free_port());
+        let mut floor = floor();
+        for (area, port) in floor.areas.iter_mut().zip(ports) {
+            area.listen = Some(([127, 0, 0, 1], port).into());
+        }
+        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        floor.gateway = Some(address);
         std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
         let layout = layout(&floor);
-        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
-        let (endpoint, links) = (format!("tcp/{address}"), AREAS.map(|_| Link::to(address.port())));
-        let args = ["gateway", "--floor", "hall.ron", "--listen", &endpoint, "--json", "--json-contacts"];
-        let mut gateway = Program::start(folder.path(), &args);
+        let links = AREAS.map(|_| Link::to(address.port()));
+        let commands: SocketAddr = ([127, 0, 0, 1], free_port()).into();
+        let at = commands.to_string();
+        let args = [
+            "gateway",
+            "controls.ron",
+            "--floor",
+            "hall.ron",
+            "--json",
+            "--json-contacts",
+            "--commands",
+            &at,
+        ];
+        let notices = Notices::default();
+        let mut gateway = Program::start(folder.path(), &args, &notices);
         let lines = Lines::of(gateway.0.stdout.take().unwrap());
-        let ports = AREAS.map(|_| free_port());
-        Self { folder, floor, layout, ports, endpoint, links, _gateway: gateway, lines }
+        Self { folder, floor, layout, links, commands, notices, _gateway: gateway, lines }
     }
 
-    /// Starts the node of one area.
+    /// Starts the node of one area, with nothing but what the floor file says.
     pub(crate) fn node(&self, area: &str) -> Program {
-        self.start(area, &self.endpoint, &[])
+        self.start(area, &["controls.ron"])
+    }
+
+    /// Starts the node of one area without a layout of its own.
+    pub(crate) fn bare_node(&self, area: &str) -> Program {
+        self.start(area, &[])
+    }
+
+    /// Writes another layout for the gateway.
+    pub(crate) fn write_layout(&self, text: &str) {
+        std::fs::write(self.folder.path().join("controls.ron"), text).unwrap();
+    }
+
+    /// Waits until all nodes have the gateway's layout of that number.
+    pub(crate) fn await_layout(&self, revision: u64) {
+        self.await_node_layout(revision, AREAS.len());
+    }
+
+    /// Waits until so many nodes have said that they have the gateway's layout of that number.
+    pub(crate) fn await_node_layout(&self, revision: u64, times: usize) {
+        self.await_notices(&format!("Layout {revision} is on the floor"), times);
+    }
+
+    /// Waits until a program says so.
+    pub(crate) fn await_notice(&self, text: &str) {
+        self.await_notices(text, 1);
+    }
+
+    fn await_notices(&self, text: &str, times: usize) {
+        let end = std::time::Instant::now() + Duration::from_secs(20);
+        loop {
+            let count = self.notices.lock().unwrap().iter().filter(|line| line.contains(text)).count();
+            if count >= times {
+                return;
+            }
+            assert!(std::time::Instant::now() < end, "{text}: {count} times");
+            thread::sleep(Duration::from_millis(10));
+        }
     }
 
     /// Starts the node of one area at the end of a link that can be cut, with a clock that can be set.
     pub(crate) fn frail_node(&self, area: &str) -> Program {
-        self.start(area, &self.links[number(area)].endpoint(), &["--step-clock"])
+        self.start(area, &["controls.ron", "--gateway", &self.links[number(area)].endpoint(), "--step-clock"])
     }
 
-    fn start(&self, area: &str, gateway: &str, more: &[&str]) -> Program {
-        let listen = format!("127.0.0.1:{}", self.ports[number(area)]);
-        let node = ["node", "controls.ron", "--floor", "hall.ron", "--gateway", gateway];
-        let own = ["--area", area, "--listen", &listen];
-        Program::start(self.folder.path(), &[&node[..], &own, more].concat())
+    fn start(&self, area: &str, more: &[&str]) -> Program {
+        let node = ["node", "--floor", "hall.ron", "--area", area];
+        Program::start(self.folder.path(), &[&node[..], more].concat(), &self.notices)
     }
 
     /// Waits until an area is live, as told from line `from` on.
@@ -184,11 +242,13 @@ impl Hall {
         script(scenario, &self.floor, &self.layout)
     }
 
-    /// Lets boards send to the four nodes, and to `others`, what `script` makes them read.
+    /// Lets each board send to the node of its area, and to `others`, what `script` makes it read.
     pub(crate) fn boards(&self, script: Script, others: &[u16]) -> Boards {
-        let targets = self.ports.iter().chain(others);
-        let targets = targets.map(|port| SocketAddr::from(([127, 0, 0, 1], *port))).collect();
-        Boards::start(&self.floor, script, targets)
+        let others = others.iter().map(|port| SocketAddr::from(([127, 0, 0, 1], *port)));
+        let home = |board| self.floor.home(board).and_then(|area| area.listen);
+        let targets =
+            self.floor.boards.iter().map(|board| home(board).into_iter().chain(others.clone()).collect());
+        Boards::start(&self.floor, script, targets.collect())
     }
 
     /// One computer for the whole floor, in this process: where it listens, and what it tells.
@@ -237,7 +297,7 @@ fn number(area: &str) -> usize {
     AREAS.iter().position(|one| *one == area).unwrap()
 }
 
-fn free_port() -> u16 {
+pub(crate) fn free_port() -> u16 {
     UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
@@ -250,7 +310,8 @@ pub(crate) struct Boards {
 }
 
 impl Boards {
-    fn start(floor: &Floor, script: Script, targets: Vec<SocketAddr>) -> Self {
+    /// Lets each board of `floor` send what `script` makes it read to its `targets`.
+    pub(crate) fn start(floor: &Floor, script: Script, targets: Vec<Vec<SocketAddr>>) -> Self {
         let (stop, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let loss = Arc::clone(&lost);
         // Any sequence without a pattern.
@@ -266,7 +327,7 @@ impl Boards {
                 match source.next(Duration::from_millis(10)) {
                     Ok(Some(packet)) => {
                         let datagram = encoder.encode(&packet).unwrap();
-                        for target in &targets {
+                        for target in &targets[usize::from(packet.board)] {
                             random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
                             if (random >> 33) % 1000 < loss.load(Ordering::Relaxed) {
                                 continue;

@@ -1,10 +1,13 @@
 //! A hall of four areas, served by real processes over real loopback sockets, with people walking over all borders.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod commands;
 mod faults;
 mod hall;
+mod halo;
 mod lines;
 mod link;
+mod many;
 mod offline;
 mod same;
 mod soak;

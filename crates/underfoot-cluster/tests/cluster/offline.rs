@@ -3,14 +3,16 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::sync_channel;
+use std::time::Duration;
 
-use underfoot::floor::Floor;
+use underfoot::floor::{Board, Floor};
 use underfoot::layout::Layout;
 use underfoot::sense::Method;
 use underfoot::serve::Server;
 use underfoot::sink::EventSink;
-use underfoot::source::Pace;
+use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::units::Instant;
+use underfoot::wire::SensorPacket;
 use underfoot_cluster::gateway::{Gateway, Told};
 use underfoot_cluster::message::{Echo, NodeMessage, VERSION, fingerprint};
 use underfoot_cluster::node::NodeSink;
@@ -26,11 +28,38 @@ fn serve(
     sink: impl EventSink + 'static,
 ) {
     let people = script(&crowd(rounds), whole, controls);
-    let source = Box::new(source(whole, people, Pace::FreeRunning));
+    let numbers = whole.boards.iter().map(|board| {
+        let is_it = |own: &Board| own.address == board.address;
+        part.boards.iter().position(is_it).and_then(|number| u16::try_from(number).ok())
+    });
+    let source = source(whole, people, Pace::FreeRunning);
+    let source = Box::new(Part { source, numbers: numbers.collect() });
     Server::new(part, own, Method::default(), source)
         .with_events(Box::new(sink))
         .run(&AtomicBool::new(false))
         .unwrap();
+}
+
+/// What the boards of a part of the hall send, by that part's numbers.
+struct Part {
+    source: SimulatedSource,
+    /// By the hall's numbers.
+    numbers: Vec<Option<u16>>,
+}
+
+impl SensorSource for Part {
+    fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        loop {
+            let Some(packet) = self.source.next(patience)? else { return Ok(None) };
+            if let Some(board) = self.numbers[usize::from(packet.board)] {
+                return Ok(Some(SensorPacket { board, ..packet }));
+            }
+        }
+    }
+
+    fn now(&self) -> Instant {
+        self.source.now()
+    }
 }
 
 /// What the node of an area sends; its clock is the simulated one.

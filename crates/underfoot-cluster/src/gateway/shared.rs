@@ -1,0 +1,135 @@
+//! What the whole floor has in common: layout, page, what apps have set on it. Nodes that join are brought to it.
+
+use std::collections::BTreeMap;
+
+use underfoot::feel::Muted;
+use underfoot::floor::{Area, Floor, Geometry, TileId};
+use underfoot::layout::Layout;
+use underfoot::wire::ControlMessage;
+
+/// What all nodes share.
+#[derive(Clone, Debug)]
+pub(super) struct Shared {
+    geometry: Geometry,
+    areas: Vec<Area>,
+    /// The tiles that an actuator moves, by tile index.
+    moved: Vec<bool>,
+    /// Which area each control belongs to.
+    controls: BTreeMap<String, usize>,
+    pages: Vec<String>,
+    /// The layout that is proposed.
+    proposed: Option<Layout>,
+    /// The page that is shown, once one has been told of.
+    pub(super) page: Option<String>,
+    pub(super) muted: Muted,
+    /// What apps have set, by what it is about.
+    kept: BTreeMap<String, ControlMessage>,
+}
+
+impl Shared {
+    pub(super) fn new(floor: &Floor) -> Self {
+        Self {
+            geometry: floor.geometry,
+            areas: floor.areas.clone(),
+            moved: floor.actuators.iter().map(Option::is_some).collect(),
+            controls: BTreeMap::new(),
+            pages: Vec::new(),
+            proposed: None,
+            page: None,
+            muted: Muted::default(),
+            kept: BTreeMap::new(),
+        }
+    }
+
+    pub(super) fn propose(&mut self, layout: Layout) {
+        self.proposed = Some(layout);
+    }
+
+    pub(super) fn drop_proposal(&mut self) {
+        self.proposed = None;
+    }
+
+    /// Takes note that the layout that was proposed is the current one.
+    pub(super) fn adopt(&mut self) {
+        let Some(layout) = self.proposed.take() else { return };
+        let owner = |place| self.areas.iter().position(|area| area.holds(&self.geometry, place));
+        let controls = layout.widgets.iter();
+        self.controls = controls
+            .filter_map(|widget| Some((widget.id.as_str().to_owned(), owner(widget.area.centre())?)))
+            .collect();
+        self.pages = layout.pages.iter().map(|page| page.id.as_str().to_owned()).collect();
+        self.page = self.page.take().filter(|page| self.pages.contains(page));
+    }
+
+    /// The area of the control called `id`.
+    pub(super) fn owner(&self, id: &str) -> Option<usize> {
+        self.controls.get(id).copied()
+    }
+
+    /// All controls' names.
+    pub(super) fn ids(&self) -> impl Iterator<Item = &str> {
+        self.controls.keys().map(String::as_str)
+    }
+
+    /// The page that is shown; empty without pages.
+    pub(super) fn page(&self) -> &str {
+        self.page.as_ref().or(self.pages.first()).map_or("", String::as_str)
+    }
+
+    /// The area whose computer moves `tile`, or why none does.
+    pub(super) fn mover(&self, tile: TileId) -> Result<usize, &'static str> {
+        let index = self.geometry.index(tile).ok_or("the floor has no such tile")?;
+        let area = self.areas.iter().position(|area| area.tiles.contains(tile));
+        let is_moved = self.moved.get(index).copied().unwrap_or(false);
+        area.filter(|_| is_moved).ok_or("nothing moves that tile")
+    }
+
+    /// Takes note of what an app has set, for nodes that join later; whether what is muted has changed.
+    pub(super) fn keep(&mut self, message: &ControlMessage) -> bool {
+        let path = message.path();
+        let stem = || path.rsplit_once('/').map_or("", |(stem, _)| stem).to_owned();
+        match message {
+            ControlMessage::Enable { .. } | ControlMessage::Disable { .. } => {
+                self.kept.insert(format!("{}/enabled", stem()), message.clone());
+            }
+            ControlMessage::Lock { .. } | ControlMessage::Unlock { .. } => {
+                self.kept.insert(format!("{}/locked", stem()), message.clone());
+            }
+            ControlMessage::Label { .. }
+            | ControlMessage::Indicate { .. }
+            | ControlMessage::SetRange { .. } => {
+                self.kept.insert(path, message.clone());
+            }
+            ControlMessage::Mute { on } => return std::mem::replace(&mut self.muted.all, *on) != *on,
+            ControlMessage::MuteTile { tile, on } => {
+                let was = self.muted.tiles.contains(tile);
+                self.muted.tiles.retain(|other| other != tile);
+                if *on {
+                    self.muted.tiles.push(*tile);
+                    self.muted.tiles.sort_by_key(|tile| (tile.row, tile.column));
+                }
+                return was != *on;
+            }
+            _ => {}
+        }
+        false
+    }
+
+    /// What is muted, for the node of area number `number`.
+    pub(super) fn mutes_of(&self, number: usize) -> Vec<ControlMessage> {
+        let mut all = vec![ControlMessage::Mute { on: self.muted.all }];
+        let own = self.areas.get(number).map(|area| area.tiles);
+        let muted = self.muted.tiles.iter().filter(|tile| own.is_some_and(|own| own.contains(**tile)));
+        all.extend(muted.map(|&tile| ControlMessage::MuteTile { tile, on: true }));
+        all
+    }
+
+    /// What apps have set on the controls of area number `number`.
+    pub(super) fn settings_of(&self, number: usize) -> Vec<ControlMessage> {
+        let kept = self.kept.values().filter(|message| {
+            let id = (*message).clone().id_mut().map(|id| id.as_str().to_owned());
+            id.is_some_and(|id| self.controls.get(&id) == Some(&number))
+        });
+        kept.cloned().collect()
+    }
+}

@@ -1,0 +1,172 @@
+//! What a node does of what its gateway asks, on a thread of its own: the thread that hears must go on hearing.
+
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::thread;
+
+use underfoot::floor::{Area, Geometry};
+use underfoot::layout::Layout;
+use underfoot::runtime::Session;
+use underfoot::serve::Command;
+use underfoot::units::Instant;
+use underfoot::wire::ControlMessage;
+use underfoot_cluster::message::{
+    GatewayMessage, LayoutMessage, LayoutName, LayoutStanding, NodeAnswer, NodeRequest, NodeState, VERSION,
+};
+use underfoot_cluster::node::{AskedRequests, NodeLayouts};
+
+use super::layout;
+use super::notices::Notices;
+
+/// Requests and layouts that may wait; what does not fit comes again.
+const WAITING: usize = 1024;
+
+enum Work {
+    Request(u64, NodeRequest),
+    Check(LayoutMessage),
+}
+
+/// What is shared with the thread that works.
+struct State {
+    asked: Mutex<AskedRequests>,
+    layouts: Mutex<NodeLayouts<Layout>>,
+}
+
+/// The way to the worker, and to what it has done.
+#[derive(Clone)]
+pub(super) struct Worker {
+    state: Arc<State>,
+    work: SyncSender<Work>,
+    session: Session,
+    area: Area,
+    geometry: Geometry,
+    notices: Notices,
+}
+
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+impl Worker {
+    /// A worker for the node of `area`, whose own file has the layout `own`.
+    pub(super) fn start(
+        session: Session,
+        area: Area,
+        geometry: Geometry,
+        own: Option<LayoutName>,
+        notices: Notices,
+    ) -> Self {
+        let state = Arc::new(State { asked: Mutex::default(), layouts: Mutex::new(NodeLayouts::new(own)) });
+        let (work, to_do) = sync_channel(WAITING);
+        let worker = Self { state, work, session, area, geometry, notices };
+        let own = worker.state();
+        let session = worker.session.clone();
+        thread::spawn(move || run(&to_do, &own, &session, geometry));
+        worker
+    }
+
+    fn state(&self) -> Arc<State> {
+        Arc::clone(&self.state)
+    }
+
+    /// Takes up what a beat of a gateway asks, which came at `now`.
+    pub(super) fn hear(&self, message: &GatewayMessage, now: Instant) {
+        if message.version != VERSION {
+            return;
+        }
+        for request in message.requests.iter().filter(|request| request.area == self.area.id) {
+            let is_new = locked(&self.state.asked).is_new(message.gateway, request);
+            if is_new && !self.give(Work::Request(message.gateway, request.clone())) {
+                locked(&self.state.asked).forget(message.gateway, request.number);
+            }
+        }
+        let mut layouts = locked(&self.state.layouts);
+        if message.layout.current.is_some() && layouts.follows(message.gateway, now) {
+            layouts.order(&message.layout, &self.area.id);
+        }
+    }
+
+    /// Takes up a layout that a gateway has sent, which came at `now`.
+    pub(super) fn check(&self, message: LayoutMessage, now: Instant) {
+        let mut layouts = locked(&self.state.layouts);
+        let is_ours = message.version == VERSION && layouts.follows(message.gateway, now);
+        if is_ours && layouts.lacks(&message.name) {
+            drop(layouts);
+            // A layout that does not fit in the queue comes again.
+            self.give(Work::Check(message));
+        }
+    }
+
+    fn give(&self, work: Work) -> bool {
+        !matches!(self.work.try_send(work), Err(TrySendError::Full(_)))
+    }
+
+    /// Puts the layout on the floor that is due at `now`.
+    pub(super) fn change(&self, now: Instant) {
+        let due = locked(&self.state.layouts).take_due(now);
+        if let Some((name, layout)) = due {
+            self.session.set_layout(layout.part(&self.area, &self.geometry));
+            self.notices.say(format!(
+                "Layout {} is on the floor, as soon as no foot holds a control.",
+                name.revision
+            ));
+        }
+    }
+
+    /// How the node stands with layouts, and the answers to be sent.
+    pub(super) fn report(&self) -> (LayoutStanding, Vec<NodeAnswer>) {
+        (locked(&self.state.layouts).standing().clone(), locked(&self.state.asked).take_answers())
+    }
+}
+
+fn run(to_do: &Receiver<Work>, state: &State, session: &Session, geometry: Geometry) {
+    for work in to_do {
+        match work {
+            Work::Request(gateway, request) => {
+                let number = request.number;
+                let done = request.message().and_then(|message| apply(session, message));
+                let (states, refused) = match done {
+                    Ok(states) => (states, None),
+                    Err(why) => (Vec::new(), Some(why)),
+                };
+                locked(&state.asked).answer(NodeAnswer { gateway, number, refused, states });
+            }
+            Work::Check(LayoutMessage { name, text, .. }) => {
+                // Some of the same layout may wait.
+                if locked(&state.layouts).lacks(&name) {
+                    let checked = if LayoutName::of(name.revision, &text) == name {
+                        layout::parse(&text, &geometry).map_err(|error| error.to_string())
+                    } else {
+                        Err("it did not arrive whole".to_owned())
+                    };
+                    locked(&state.layouts).note(name, checked);
+                }
+            }
+        }
+    }
+}
+
+/// Does what an app asks; the states of the controls that it is about, or why it was not done.
+fn apply(session: &Session, message: ControlMessage) -> Result<Vec<NodeState>, String> {
+    let mut message = message;
+    let id = message.id_mut().map(|id| id.as_str().to_owned());
+    match &message {
+        // The answer to these says nothing; the gateway has looked whether they can be done.
+        ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. } => {
+            return match session.send(Command::Control(message)) {
+                true => Ok(Vec::new()),
+                false => Err("the floor has ended".to_owned()),
+            };
+        }
+        _ => session.ask(message.clone()).map_err(|refusal| refusal.to_string())?,
+    }
+    let snapshot = session.snapshot();
+    let ids: Vec<&str> = match (&id, &message) {
+        (Some(id), _) => vec![id],
+        (None, ControlMessage::GetAll) => {
+            snapshot.layout.widgets.iter().map(|widget| widget.id.as_str()).collect()
+        }
+        _ => Vec::new(),
+    };
+    Ok(ids.into_iter().filter_map(|id| Some(NodeState::from(&snapshot.control(id)?))).collect())
+}

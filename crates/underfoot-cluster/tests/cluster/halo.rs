@@ -1,0 +1,116 @@
+//! Boards send to one computer, which forwards what its neighbours need.
+
+use std::sync::Arc;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use underfoot::floor::{Floor, TileId};
+use underfoot::layout::Layout;
+use underfoot::runtime::{Session, Snapshot};
+use underfoot::sense::Quality;
+use underfoot::source::{ForwardCounters, UdpSource};
+use underfoot::wire::LinkState;
+
+use crate::hall::{AREAS, Boards, Hall, floor, free_port, layout, script};
+
+/// The hall, whose areas listen on free ports.
+fn listening() -> Floor {
+    let mut floor = floor();
+    floor.areas.iter_mut().for_each(|area| area.listen = Some(([127, 0, 0, 1], free_port()).into()));
+    floor
+}
+
+/// One computer of the hall, in this process.
+fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
+    let area = floor.area(id).unwrap();
+    let part = floor.part(area).unwrap();
+    let source = UdpSource::bind(area.listen.unwrap(), &part).unwrap();
+    let source = source.also_allowing(floor.forwarders(area));
+    let (source, forwarded) = source.forwarding(&floor.forwardings(area)).unwrap();
+    let clock = source.clock();
+    let session = Session::source(Box::new(source), clock).floor(part).layout(Layout::default());
+    (session.realtime().start().unwrap(), forwarded)
+}
+
+/// Waits until `session` shows what is `wanted`.
+fn await_state(session: &Session, what: &str, wanted: impl Fn(&Snapshot) -> bool) -> Snapshot {
+    let end = Instant::now() + Duration::from_secs(10);
+    loop {
+        let snapshot = session.snapshot();
+        if wanted(&snapshot) {
+            return snapshot;
+        }
+        assert!(Instant::now() < end, "not {what}: {:?}", snapshot.floor.counters);
+        thread::sleep(Duration::from_millis(20));
+    }
+}
+
+/// How far `tile` can be trusted.
+fn quality(floor: &Floor, id: &str, snapshot: &Snapshot, tile: (u16, u16)) -> Quality {
+    let part = floor.part(floor.area(id).unwrap()).unwrap();
+    let index = part.geometry.index(TileId::new(tile.0, tile.1)).unwrap();
+    snapshot.floor.tiles[index].quality[0]
+}
+
+const EMPTY: &str = r#"Scenario(title: "Empty", steps: [Wait(ms: 20000)])"#;
+
+#[test]
+fn what_a_neighbour_forwards_is_sensed_and_its_death_marks_those_tiles_alone() {
+    let floor = listening();
+    let (east, _) = serve(&floor, "se");
+    let (west, forwarded) = serve(&floor, "sw");
+    let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
+    let targets: Vec<_> = floor.boards.iter().map(homes).collect();
+    let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
+    // (4, 2) is the south-west's, near the border, on a board that nothing sends to the south-east but its home.
+    let live = |snapshot: &Snapshot| {
+        snapshot.floor.counters.frames > 200 && quality(&floor, "se", snapshot, (4, 2)) == Quality::Live
+    };
+    await_state(&east, "live beyond the border", live);
+    assert!(forwarded.sent() > 0);
+    assert_eq!(forwarded.unsent(), 0);
+    drop(west);
+    let gone = |snapshot: &Snapshot| quality(&floor, "se", snapshot, (4, 2)) == Quality::Stale;
+    let snapshot = await_state(&east, "stale beyond the border", gone);
+    assert_eq!(snapshot.floor.link, LinkState::Partial);
+    for own in [(6, 2), (9, 4)] {
+        assert_eq!(quality(&floor, "se", &snapshot, own), Quality::Live, "{own:?}");
+    }
+    // It comes back by itself.
+    let (_west, _) = serve(&floor, "sw");
+    await_state(&east, "live again", live);
+}
+
+#[test]
+fn a_board_that_sends_to_both_is_sensed_once() {
+    let floor = listening();
+    let (east, _) = serve(&floor, "se");
+    let (_west, _) = serve(&floor, "sw");
+    let both: Vec<_> = ["sw", "se"].iter().map(|id| floor.area(id).unwrap().listen.unwrap()).collect();
+    let targets = vec![both; floor.boards.len()];
+    let _boards = Boards::start(&floor, script(EMPTY, &floor, &layout(&floor)), targets);
+    let told = await_state(&east, "sent twice", |snapshot| snapshot.floor.counters.duplicate > 1000);
+    let counters = told.floor.counters;
+    assert_eq!(quality(&floor, "se", &told, (4, 2)), Quality::Live);
+    assert!(counters.restarts == 0 && counters.packets > counters.duplicate, "{counters:?}");
+}
+
+#[test]
+fn a_control_works_while_the_neighbour_that_senses_the_other_half_of_it_is_dead() {
+    let hall = Hall::open();
+    // Nobody serves the south-west, whose border is near.
+    let _nodes: Vec<_> = AREAS.iter().filter(|area| **area != "sw").map(|area| hall.node(area)).collect();
+    let press = r#"Scenario(title: "Drive", steps: [Wait(ms: 1500), Enter(from: East, at: (9.4, 8.2)),
+        Press(widget: "door", force_n: 140, hold_ms: 300), Leave(to: East)])"#;
+    let boards = hall.boards(hall.script(press), &[]);
+    hall.await_live("se", 0);
+    hall.await_live("ne", 0);
+    let done = |what: &'static str| {
+        move |line: &crate::lines::Line| {
+            line.done().is_some_and(|(id, done)| (&*id, &*done) == ("door", what))
+        }
+    };
+    hall.lines.find(0, "door pressed", done("pressed"));
+    hall.lines.find(0, "door released", done("released"));
+    boards.finish();
+}

@@ -1,0 +1,193 @@
+//! What a node costs does not depend on how many there are.
+
+use std::fs;
+use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::path::Path;
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use underfoot::floor::{Area, Board, Corner, Floor, Geometry, SensorId, TileBlock, TileId};
+use underfoot::plan::{AreaDemand, Crowd, Machine};
+use underfoot::schema;
+use underfoot::sim::{SimConfig, SimFloor, calibrated};
+use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
+use underfoot::wire::{SensorEncoder, SensorFormat};
+
+use crate::hall::{Program, free_port, say, script};
+
+/// Tiles along the side of an area.
+const SIDE: u16 = 6;
+
+/// People in each area.
+const PEOPLE: u16 = 2;
+
+/// How long is measured, in seconds of the floor.
+const SECONDS: u64 = 10;
+
+/// Before that, nodes find their levels.
+const WARM_UP: u64 = 4;
+
+/// A corridor of `count` areas, each with three boards of its own.
+fn corridor(count: u16) -> Floor {
+    let area = |number: u16| {
+        let tiles = TileBlock { first: TileId::new(SIDE * number, 0), columns: SIDE, rows: SIDE };
+        let listen = Some(([127, 0, 0, 1], free_port()).into());
+        Area { listen, ..Area::new(&format!("a{number}"), tiles) }
+    };
+    let board = |number: u16| {
+        let (west, south) = (number / 3 * SIDE, number % 3 * 2);
+        let tiles = (0..2 * SIDE).map(|tile| TileId::new(west + tile % SIDE, south + tile / SIDE));
+        let sensors = |tile| Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
+        Board { address: format!("/underfoot/board/{number}"), channels: tiles.flat_map(sensors).collect() }
+    };
+    let mut floor = Floor::of(Geometry::of_paper_tiles(SIDE * count, SIDE).unwrap())
+        .with_areas((0..count).map(area).collect());
+    floor.boards = (0..3 * count).map(board).collect();
+    let sim = SimFloor::new(&floor, SimConfig::default(), 1);
+    let mut floor = calibrated(&floor, &sim, 1).unwrap();
+    floor.gateway = Some(TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
+    floor
+}
+
+/// People who walk to and fro in each area, as long as it takes.
+fn crowd(count: u16) -> String {
+    let person = |number: u16| {
+        let (west, row) = (f32::from(number / PEOPLE * SIDE) + 1.0, 1.5 + 2.5 * f32::from(number % PEOPLE));
+        let round = format!("WalkTo(at: ({}, {row})), WalkTo(at: ({west}, {row})),", west + 4.0);
+        format!("steps: [Enter(from: South, at: ({west}, {row})), {}]", round.repeat(12))
+    };
+    let others: Vec<String> = (1..PEOPLE * count).map(|number| format!("({})", person(number))).collect();
+    format!("Scenario(title: \"Corridor\", {}, others: [{}])", person(0), others.join(", "))
+}
+
+/// Nanoseconds that the threads of a process have run, all of them and the one that senses.
+fn ran_ns(process: u32) -> (u64, u64) {
+    let (mut all, mut sensing) = (0, 0);
+    for task in fs::read_dir(format!("/proc/{process}/task")).unwrap() {
+        let task = task.unwrap().path();
+        let text = |name: &str| fs::read_to_string(task.join(name)).unwrap_or_default();
+        let ran = text("schedstat").split_whitespace().next().and_then(|ns| ns.parse().ok()).unwrap_or(0_u64);
+        all += ran;
+        if text("comm").trim() == "sensing" {
+            sensing += ran;
+        }
+    }
+    (all, sensing)
+}
+
+/// Lets boards send for as many seconds of the floor, each millisecond of which takes `slow`; calls `at` at each.
+fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
+    let layout = underfoot::layout::Layout::default();
+    let people = script(&crowd(count), floor, &layout);
+    let sim = SimFloor::new(floor, SimConfig::default(), 1);
+    let mut source = SimulatedSource::new(sim, Box::new(people), Pace::FreeRunning);
+    let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
+    let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+    let homes: Vec<SocketAddr> =
+        floor.boards.iter().map(|board| floor.home(board).unwrap().listen.unwrap()).collect();
+    let (begun, mut second, mut behind) = (Instant::now(), 0, Duration::ZERO);
+    loop {
+        let packet = match source.next(Duration::from_millis(1)) {
+            Ok(Some(packet)) => packet,
+            Ok(None) => continue,
+            Err(SourceError::Ended) => break,
+            Err(error) => panic!("{error}"),
+        };
+        let due = Duration::from_micros(packet.received.micros()) * slow;
+        let elapsed = begun.elapsed();
+        match due.checked_sub(elapsed) {
+            Some(early) if early > Duration::from_micros(100) => thread::sleep(early),
+            _ => behind = behind.max(elapsed.saturating_sub(due)),
+        }
+        socket.send_to(encoder.encode(&packet).unwrap(), homes[usize::from(packet.board)]).unwrap();
+        if packet.received.micros() / 1_000_000 > second {
+            second = packet.received.micros() / 1_000_000;
+            at(second);
+            if second > WARM_UP + SECONDS {
+                break;
+            }
+        }
+    }
+    say(&format!("  boards at most {:.0} ms behind", behind.as_secs_f64() * 1e3));
+}
+
+/// Starts `count` nodes and their gateway, and says what they cost each millisecond of the floor, in microseconds of a core.
+fn measure(folder: &Path, count: u16, slow: u32, machine: Option<&Machine>) -> (Vec<f64>, f64) {
+    let floor = corridor(count);
+    fs::write(folder.join("corridor.ron"), schema::write_floor(&floor)).unwrap();
+    let (slowness, notices) = (slow.to_string(), Arc::<Mutex<Vec<String>>>::default());
+    let gateway =
+        Program::start(folder, &["gateway", "--floor", "corridor.ron", "--slow", &slowness], &notices);
+    let nodes: Vec<Program> = floor
+        .areas
+        .iter()
+        .map(|area| {
+            let node = ["node", "--floor", "corridor.ron", "--area", &area.id, "--slow", &slowness];
+            Program::start(folder, &node, &notices)
+        })
+        .collect();
+    let all = || -> Vec<(u64, u64)> {
+        nodes.iter().chain([&gateway]).map(|program| ran_ns(program.0.id())).collect()
+    };
+    let (mut before, mut after) = (Vec::new(), Vec::new());
+    send(&floor, count, slow, |second| match second {
+        WARM_UP => before = all(),
+        _ if second == WARM_UP + SECONDS => after = all(),
+        _ => {}
+    });
+    let us = |ns: u64| ns as f64 / 1e6 / SECONDS as f64;
+    let costs: Vec<(f64, f64)> = before
+        .iter()
+        .zip(&after)
+        .map(|((all, sensing), (all_after, sensing_after))| {
+            (us(all_after - all), us(sensing_after - sensing))
+        })
+        .collect();
+    let (gateway_us, nodes_us) = (costs[usize::from(count)].0, &costs[..usize::from(count)]);
+    let live = notices.lock().unwrap().iter().filter(|line| line.contains("is live")).count();
+    let mean = |of: &dyn Fn(&(f64, f64)) -> f64, which: &[(f64, f64)]| {
+        which.iter().map(of).sum::<f64>() / which.len().max(1) as f64
+    };
+    let ends = [nodes_us[0], nodes_us[nodes_us.len() - 1]];
+    let inner = &nodes_us[1..nodes_us.len() - 1];
+    let crowd = Crowd { crowding: 1.0, format: SensorFormat::Blob, ..Crowd::of(u32::from(PEOPLE * count)) };
+    let forecast = |area: usize| {
+        let demand = AreaDemand::of(&floor, &floor.areas[area], &crowd);
+        machine.map_or("not asked for".to_owned(), |machine| {
+            format!("{:.0}", 1e3 * demand.sensing_cores(machine))
+        })
+    };
+    say(&format!(
+        "{count} nodes, {slow} times slower than real time, {live} times live. Us of a core for a ms of floor: node at an end {:.0} \
+         (sensing {:.0}, forecast {}), between {:.0} (sensing {:.0}, forecast {}), gateway {gateway_us:.0}",
+        mean(&|cost| cost.0, &ends),
+        mean(&|cost| cost.1, &ends),
+        forecast(0),
+        mean(&|cost| cost.0, inner),
+        mean(&|cost| cost.1, inner),
+        forecast(1),
+    ));
+    let counted = |text: &str| notices.lock().unwrap().iter().filter(|line| line.contains(text)).count();
+    assert_eq!((live, counted("is lost")), (usize::from(count), 0), "{:?}", notices.lock().unwrap());
+    let both = if inner.is_empty() { Vec::new() } else { vec![mean(&|cost| cost.0, inner)] };
+    (std::iter::once(mean(&|cost| cost.0, &ends)).chain(both).collect(), gateway_us)
+}
+
+/// `UNDERFOOT_MACHINE` names a file with what `underfoot plan --json` has measured of this machine; `UNDERFOOT_SLOW` how
+/// many times slower than real time the floors are.
+#[test]
+#[ignore = "five minutes in real time, on a machine that does nothing else"]
+fn a_node_of_sixteen_costs_what_one_of_two_costs() {
+    let machine = std::env::var("UNDERFOOT_MACHINE").ok().map(|path| {
+        let text = fs::read_to_string(path).unwrap();
+        let value: serde_json::Value = serde_json::from_str(&text).unwrap();
+        serde_json::from_value(value.get("machine").unwrap_or(&value).clone()).unwrap()
+    });
+    let slow = std::env::var("UNDERFOOT_SLOW").ok().and_then(|text| text.parse().ok()).unwrap_or(4);
+    let folder = tempfile::tempdir().unwrap();
+    let costs = [2, 4, 8, 16].map(|count| measure(folder.path(), count, slow, machine.as_ref()).0);
+    let (ends, inner) = (costs[3][0] / costs[0][0], costs[3][1] / costs[1][1]);
+    say(&format!("16 nodes against 2, at the ends: {ends:.2}; against 4, between: {inner:.2}"));
+    assert!(ends < 1.25 && inner < 1.25, "{costs:?}");
+}

@@ -1,0 +1,101 @@
+//! Which boards' packets the computers of a floor forward to each other.
+//!
+//! A computer senses somewhat more than its own area ([`Area::sensed`]). Each board sends to one computer, its home;
+//! where others sense tiles of that board too, its home forwards the packets to them.
+
+use std::net::{IpAddr, SocketAddr};
+
+use super::{Area, Board, Floor, SensorId, TileBlock};
+
+/// Who needs the packets of one board besides the board's home.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Forwarding {
+    /// The board's OSC address.
+    pub address: String,
+    /// Where the others take packets.
+    pub to: Vec<SocketAddr>,
+}
+
+impl Floor {
+    /// The area whose computer `board` sends to: the one that has most of its sensors, of several the one named first.
+    /// `None` for a floor without areas and for a board that measures nothing.
+    #[must_use]
+    pub fn home(&self, board: &Board) -> Option<&Area> {
+        let sensors = |area: &&Area| {
+            let own = |sensor: &&SensorId| area.tiles.contains(sensor.tile);
+            board.channels.iter().flatten().filter(own).count()
+        };
+        // Of equals, `max_by_key` gives the last.
+        self.areas.iter().rev().filter(|area| sensors(area) > 0).max_by_key(sensors)
+    }
+
+    /// What the computer of `area` forwards: the boards whose home it is and of which others sense tiles. Areas that
+    /// do not say where they listen get nothing.
+    #[must_use]
+    pub fn forwardings(&self, area: &Area) -> Vec<Forwarding> {
+        let others = self.areas.iter().filter(|other| other.id != area.id);
+        let others: Vec<_> =
+            others.filter_map(|other| Some((other.sensed(&self.geometry), other.listen?))).collect();
+        let own = self.boards.iter().filter(|board| self.home(board).is_some_and(|home| home.id == area.id));
+        let forwardings = own.map(|board| {
+            let sensors = || board.channels.iter().flatten();
+            let needs =
+                |(sensed, _): &&(TileBlock, SocketAddr)| sensors().any(|sensor| sensed.contains(sensor.tile));
+            let to = others.iter().filter(needs).map(|(_, listen)| *listen).collect();
+            Forwarding { address: board.address.clone(), to }
+        });
+        forwardings.filter(|forwarding| !forwarding.to.is_empty()).collect()
+    }
+
+    /// The computers that forward packets to that of `area`, as far as they are named; some perhaps several times.
+    pub fn forwarders(&self, area: &Area) -> impl Iterator<Item = IpAddr> + '_ {
+        let (sensed, id) = (area.sensed(&self.geometry), area.id.clone());
+        let is_sensed =
+            move |board: &&Board| board.channels.iter().flatten().any(|sensor| sensed.contains(sensor.tile));
+        let homes = self.boards.iter().filter(is_sensed).filter_map(|board| self.home(board));
+        homes.filter(move |home| home.id != id).filter_map(|home| Some(home.listen?.ip()))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::{Geometry, TileId};
+
+    /// Three areas of 8 x 2 tiles in a row, of which the last does not say where it listens.
+    fn hall() -> Floor {
+        let area = |id: &str, number: u16| Area {
+            listen: (number < 2).then(|| ([192, 168, 1, 10 + number as u8], 9000).into()),
+            ..Area::new(id, TileBlock { first: TileId::new(8 * number, 0), columns: 8, rows: 2 })
+        };
+        let areas = vec![area("west", 0), area("middle", 1), area("east", 2)];
+        Floor::of(Geometry::of_paper_tiles(24, 2).unwrap()).with_areas(areas)
+    }
+
+    #[test]
+    fn a_board_s_home_has_most_of_it_and_forwards_to_those_who_sense_some_of_it() {
+        let mut floor = hall();
+        let home = |floor: &Floor, board: usize| floor.home(&floor.boards[board]).map(|area| area.id.clone());
+        assert_eq!(home(&floor, 0).as_deref(), Some("west"));
+        assert_eq!(home(&floor, 4).as_deref(), Some("middle"));
+        let west = floor.forwardings(&floor.areas[0]);
+        let middle: SocketAddr = ([192, 168, 1, 11], 9000).into();
+        assert_eq!(
+            west,
+            [0, 3].map(|board| Forwarding { address: floor.boards[board].address.clone(), to: vec![middle] })
+        );
+        let from_east = floor.forwardings(&floor.areas[2]);
+        assert_eq!(from_east.len(), 2, "{from_east:?}");
+        // Middle is sensed by both, but nobody knows where the east is.
+        assert!(floor.forwardings(&floor.areas[1]).iter().all(|one| one.to.len() == 1));
+        assert_eq!(floor.forwarders(&floor.areas[0]).collect::<Vec<_>>(), [middle.ip(); 2]);
+        // Half of a board here, half there: the area named first has it.
+        let both = floor.boards[1].channels[..16].to_vec();
+        floor.boards[0].channels.splice(..16, both);
+        assert_eq!(home(&floor, 0).as_deref(), Some("west"));
+        floor.areas.swap(0, 1);
+        assert_eq!(home(&floor, 0).as_deref(), Some("middle"));
+        floor.boards[0].channels.fill(None);
+        assert_eq!(home(&floor, 0), None);
+    }
+}

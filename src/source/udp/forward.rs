@@ -1,0 +1,144 @@
+//! Packets of boards near the border of an area, forwarded to the computers of other areas that sense them.
+//!
+//! They go as they came, message by message, and at once: the neighbour takes a forwarded packet as one of the board
+//! itself, a little later. What has lain here for too long is not forwarded, or the neighbour could take an old state
+//! of the floor for a new one; it sees by the boards' numbers that something is missing.
+
+use std::collections::HashMap;
+use std::io;
+use std::net::{SocketAddr, UdpSocket};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+
+use crate::floor::Forwarding;
+use crate::wire::each_message;
+
+/// How long a packet may have waited and still be forwarded: frames of a neighbour wait for it no longer than two
+/// milliseconds, and the way takes its part of five.
+const WITHIN: Duration = Duration::from_millis(5);
+
+/// What was forwarded, and what was not; counted since the start.
+#[derive(Debug, Default)]
+pub struct ForwardCounters {
+    sent: AtomicU64,
+    late: AtomicU64,
+    unsent: AtomicU64,
+}
+
+impl ForwardCounters {
+    /// Packets forwarded, each once for each computer that it went to.
+    #[must_use]
+    pub fn sent(&self) -> u64 {
+        self.sent.load(Ordering::Relaxed)
+    }
+
+    /// Packets that had waited here for more than 5 ms and were not forwarded.
+    #[must_use]
+    pub fn late(&self) -> u64 {
+        self.late.load(Ordering::Relaxed)
+    }
+
+    /// Packets that the system did not take: its buffer was full, or there is no way.
+    #[must_use]
+    pub fn unsent(&self) -> u64 {
+        self.unsent.load(Ordering::Relaxed)
+    }
+}
+
+/// Forwards packets.
+#[derive(Debug)]
+pub(super) struct Forwarder {
+    socket: UdpSocket,
+    /// By the boards' addresses.
+    to: HashMap<Box<[u8]>, Vec<SocketAddr>>,
+    counters: Arc<ForwardCounters>,
+}
+
+impl Forwarder {
+    /// Forwards from a port of its own beside `local`.
+    pub(super) fn new(local: SocketAddr, forwardings: &[Forwarding]) -> io::Result<Self> {
+        let socket = UdpSocket::bind(SocketAddr::new(local.ip(), 0))?;
+        socket.set_nonblocking(true)?;
+        let entry = |one: &Forwarding| (one.address.as_bytes().into(), one.to.clone());
+        Ok(Self { socket, to: forwardings.iter().map(entry).collect(), counters: Arc::default() })
+    }
+
+    pub(super) fn counters(&self) -> Arc<ForwardCounters> {
+        Arc::clone(&self.counters)
+    }
+
+    /// Forwards what others need of `datagram`, which has been decoded and has `waited` here.
+    pub(super) fn forward(&self, datagram: &[u8], waited: Duration) {
+        each_message(datagram, &mut |address, message| {
+            let Some(to) = self.to.get(address) else { return };
+            for to in to {
+                let count = if waited > WITHIN {
+                    &self.counters.late
+                } else if self.reaches(message, *to) {
+                    &self.counters.sent
+                } else {
+                    &self.counters.unsent
+                };
+                count.fetch_add(1, Ordering::Relaxed);
+            }
+        });
+    }
+
+    fn reaches(&self, message: &[u8], to: SocketAddr) -> bool {
+        match self.socket.send_to(message, to) {
+            Ok(_) => true,
+            // The echo of an earlier packet to a neighbour that is not there; this one has not been sent.
+            Err(error) if error.kind() == io::ErrorKind::ConnectionRefused => {
+                self.socket.send_to(message, to).is_ok()
+            }
+            Err(_) => false,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+
+    use super::*;
+
+    fn message(board: u16) -> OscPacket {
+        OscPacket::Message(OscMessage {
+            addr: format!("/underfoot/board/{board}"),
+            args: vec![OscType::Int(7), OscType::Int(1000)],
+        })
+    }
+
+    fn received(socket: &UdpSocket) -> Option<Vec<u8>> {
+        let mut buffer = [0; 512];
+        let length = socket.recv(&mut buffer).ok()?;
+        Some(buffer[..length].to_vec())
+    }
+
+    #[test]
+    fn each_board_of_a_datagram_goes_to_those_who_need_it_and_what_is_old_to_nobody() {
+        let here: SocketAddr = ([127, 0, 0, 1], 0).into();
+        let [west, east] = [(); 2].map(|()| {
+            let socket = UdpSocket::bind(here).unwrap();
+            socket.set_read_timeout(Some(Duration::from_millis(200))).unwrap();
+            socket
+        });
+        let to = |sockets: &[&UdpSocket]| sockets.iter().map(|one| one.local_addr().unwrap()).collect();
+        let forwardings = [
+            Forwarding { address: "/underfoot/board/1".into(), to: to(&[&west]) },
+            Forwarding { address: "/underfoot/board/2".into(), to: to(&[&west, &east]) },
+        ];
+        let forwarder = Forwarder::new(here, &forwardings).unwrap();
+        let timetag = OscTime { seconds: 0, fractional: 1 };
+        let content = (0..3).map(message).collect();
+        let bundle = encoder::encode(&OscPacket::Bundle(OscBundle { timetag, content })).unwrap();
+        forwarder.forward(&bundle, Duration::ZERO);
+        let sent = |board| Some(encoder::encode(&message(board)).unwrap());
+        assert_eq!((received(&west), received(&west), received(&east)), (sent(1), sent(2), sent(2)));
+        forwarder.forward(&bundle, WITHIN + Duration::from_millis(1));
+        assert_eq!((received(&west), received(&east)), (None, None));
+        let counters = forwarder.counters();
+        assert_eq!((counters.sent(), counters.late(), counters.unsent()), (3, 3, 0));
+    }
+}
