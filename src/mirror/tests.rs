@@ -1,3 +1,5 @@
+//! Frames, the source, greetings and the follower.
+
 use std::time::Duration;
 
 use arrayvec::ArrayVec;

@@ -115,18 +115,32 @@ fn run_at(site: &Site, web: SocketAddr, more: &[&str]) -> Run {
     site.run(&OtherClient::new(), &[&["--web", &web.to_string()], more].concat())
 }
 
-/// What controls did: when, which, what, and with which value and force. A layout that is read again may differ from the
-/// server's by a rounding, and so may values.
-fn about_controls(lines: &[Value]) -> Vec<String> {
-    let events = lines.iter().filter(|line| line["force_n"].is_number() && line["id"].is_string());
-    let rounded = |line: &Value| {
-        let mut line = line.clone();
-        if let Some(value) = line["value"].as_f64() {
-            line["value"] = json!((value * 1e5).round());
-        }
-        line.to_string()
+/// What controls did: when, which, what, and with which value and force.
+fn about_controls(lines: Vec<Value>) -> Vec<Value> {
+    lines.into_iter().filter(|line| line["force_n"].is_number() && line["id"].is_string()).collect()
+}
+
+/// Whether both say that the same happened. A layout that is read again may differ by a rounding, and a busy server looks at
+/// its clock at other moments: so may numbers, and times by some microseconds.
+fn is_same(there: &Value, here: &Value) -> bool {
+    let same = |field: &str| there[field] == here[field];
+    let near = |field: &str, tolerance: f64| match (there[field].as_f64(), here[field].as_f64()) {
+        (Some(there), Some(here)) => (there - here).abs() <= tolerance,
+        _ => there[field] == here[field],
     };
-    events.map(rounded).collect()
+    same("event")
+        && same("id")
+        && same("contact")
+        && near("t_s", 1e-3)
+        && near("value", 1e-3)
+        && near("force_n", 0.1)
+        && near("x_m", 1e-3)
+        && near("y_m", 1e-3)
+}
+
+/// Whether the same happened here, as far as both tell of it.
+fn begin_alike(there: &[Value], here: &[Value]) -> bool {
+    there.iter().zip(here).all(|(there, here)| is_same(there, here))
 }
 
 /// A layout in which nothing has to be held.
@@ -158,14 +172,14 @@ fn a_window_that_joins_senses_what_the_server_tells_and_loses_it_with_the_server
     let told: Vec<Value> =
         told.join().unwrap().iter().filter_map(|line| serde_json::from_str(line).ok()).collect();
     assert_eq!((window.left_out)(), 0);
-    let (there, here) = (about_controls(&told), about_controls(&window.end()));
-    let pressed = there.iter().filter(|line| line.contains("pressed")).count();
+    let (there, here) = (about_controls(told), about_controls(window.end()));
+    let pressed = there.iter().filter(|line| line["event"] == "pressed").count();
     assert!(pressed == 2 && there.len() > 3, "{there:?}");
     // What was held when the server was gone is cancelled here.
     let same = there.len().min(here.len());
-    assert!(same > 3 && there[..same] == here[..same], "{there:#?}\n{here:#?}");
+    assert!(same > 3 && begin_alike(&there, &here), "{there:#?}\n{here:#?}");
     assert!(
-        here[same..].iter().all(|line| line.contains("cancelled") || line.contains("changed")),
+        here[same..].iter().all(|line| line["event"] == "cancelled" || line["event"] == "changed"),
         "{here:#?}"
     );
 
@@ -199,9 +213,9 @@ fn the_papers_floor_at_a_thousand_hertz_comes_over_whole() {
     terminate(&server.0);
     let told: Vec<Value> =
         told.join().unwrap().iter().filter_map(|line| serde_json::from_str(line).ok()).collect();
-    let (there, here) = (about_controls(&told), about_controls(&window.end()));
+    let (there, here) = (about_controls(told), about_controls(window.end()));
     assert!(there.len() > 10, "{there:?}");
-    assert_eq!(here, there);
+    assert!(here.len() == there.len() && begin_alike(&there, &here), "{there:#?}\n{here:#?}");
     assert!(counters.packets > 100_000 && left_out == 0, "{counters:?}");
     assert_eq!((counters.malformed, counters.lost), (0, 0), "{counters:?}");
 }
