@@ -84,6 +84,9 @@ fn a_request_reaches_the_node_of_its_control_and_is_answered_with_what_came_of_i
     app.ask("mute/get", vec![]);
     assert_eq!(app.answer("mute")[0], OscType::Int(1));
     app.ask("widget/ticket/disable", vec![]);
+    // What its node has not confirmed is not kept.
+    app.ask("widget/ticket/get", vec![]);
+    assert_eq!(app.answer("widget/ticket/state")[0], OscType::Int(0));
     // A node that starts anew is what it was; one that is lost is the reason.
     nodes[0].0.kill().unwrap();
     nodes[0].0.wait().unwrap();
