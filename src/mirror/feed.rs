@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use super::frame;
 use crate::floor::Geometry;
-use crate::recording::{Entries, Tape, TappedSource};
+use crate::recording::{Entries, EntrySink, TappedSource};
 use crate::sink::{SinkError, Worker};
 use crate::source::SensorSource;
 
@@ -58,7 +58,7 @@ impl MirrorFeed {
     }
 }
 
-impl Tape for MirrorFeed {
+impl EntrySink for MirrorFeed {
     fn is_wanted(&self) -> bool {
         self.joined.load(Ordering::Relaxed) > 0
     }

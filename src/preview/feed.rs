@@ -6,13 +6,14 @@ use std::sync::mpsc::{Receiver, Sender};
 
 use glam::Vec2;
 
+use super::channels::WindowChannels;
 use super::design::DesignInput;
 use super::playback::Playback;
 use crate::engine::Snapshot;
 use crate::feel::{Effect, Gesture};
 use crate::floor::{Floor, TileId};
 use crate::layout::Layout;
-use crate::recording::OverheardPackets;
+use crate::recording::TappedPackets;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
 use crate::sim::ArrivalHandle;
@@ -66,11 +67,48 @@ pub struct PreviewInput {
     /// The effects that can be tuned, by name; empty if there is no tuner.
     pub effects: Vec<NamedEffect>,
     /// What the boards send, for checks of the floor; `None` where it can't be checked, such as a recording.
-    pub packets: Option<OverheardPackets>,
+    pub packets: Option<TappedPackets>,
     /// The layout as text, to be designed in the window; `None` where that can't be done.
     pub design: Option<DesignInput>,
     /// What the person at the window wants.
     pub commands: Sender<PreviewCommand>,
+}
+
+impl PreviewInput {
+    /// A floor that is only looked at: nothing is rendered, nobody steps on it, nothing can be chosen or designed.
+    #[must_use]
+    pub fn new(
+        floor: Arc<Floor>,
+        layout: Arc<Layout>,
+        source: impl Into<String>,
+        snapshots: triple_buffer::Output<Snapshot>,
+        channels: WindowChannels,
+    ) -> Self {
+        let WindowChannels { events, layouts, notices, commands } = channels;
+        Self {
+            floor,
+            layout,
+            warnings: Warnings::default(),
+            source: source.into(),
+            server: None,
+            snapshots,
+            events,
+            layouts,
+            notices,
+            scopes: None,
+            latency: None,
+            feet: None,
+            playback: None,
+            faults: None,
+            people: None,
+            packets: None,
+            shoes: None,
+            choices: Vec::new(),
+            effects: Vec::new(),
+            design: None,
+            commands,
+        }
+    }
 }
 
 /// Puts the shoes on or above the floor, as they are now, in place of those of the last call.
@@ -221,7 +259,7 @@ pub enum PreviewCommand {
         tile: usize,
     },
     /// Switch all controls off that are on, or those on again.
-    RestControls(bool),
+    TurnControlsOff(bool),
     /// Keep the floor in a file; what that held before is kept beside it.
     SaveFloor {
         /// The floor.

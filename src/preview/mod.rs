@@ -7,6 +7,7 @@
 mod app;
 mod appearance;
 mod bars;
+mod channels;
 mod design;
 #[cfg(test)]
 mod drags;
@@ -39,6 +40,7 @@ mod walks;
 mod watch;
 mod zoom;
 
+pub use channels::{ProgramChannels, WindowChannels, channels};
 pub use design::{DesignInput, KindsOf, usual_state};
 pub use feed::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, ScopeFeed,

@@ -6,7 +6,7 @@
 
 mod entry;
 mod events;
-mod overheard;
+mod packets;
 mod reader;
 mod recorder;
 mod replay;
@@ -25,13 +25,13 @@ use thiserror::Error;
 use crate::schema::Diagnostics;
 
 pub(crate) use entry::{Entry, decoder};
-pub use overheard::{OverheardPackets, Overhearing};
+pub use packets::{PacketTap, TappedPackets};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
 pub use recorder::{Recorder, WhenBehind};
 pub use replay::{Progress, ReplaySource, Speed};
 pub use tap::TappedSource;
-pub(crate) use tap::{Entries, Tape};
+pub(crate) use tap::{Entries, EntrySink};
 pub use timeline::{Mark, MarkKind, Timeline};
 pub use transport::Transport;
 

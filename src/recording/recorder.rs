@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use super::RecordingError;
 use super::events::EventLines;
-use super::tap::{Entries, Tape, TappedSource};
+use super::tap::{Entries, EntrySink, TappedSource};
 use super::writer::{Job, RecordingFile};
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
@@ -119,7 +119,7 @@ impl Recorder {
 /// How much of the floor's time is handed to the writing thread at once: its queue has room for 20 s of it.
 const BATCH: Duration = Duration::from_millis(20);
 
-impl Tape for Recorder {
+impl EntrySink for Recorder {
     fn is_wanted(&self) -> bool {
         true
     }

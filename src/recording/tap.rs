@@ -16,7 +16,7 @@ use crate::wire::{LinkCounters, Request, SensorPacket};
 pub(crate) type Entries = Vec<(Instant, Entry)>;
 
 /// Takes what a source gives: a recording, or windows elsewhere that show the same floor.
-pub(crate) trait Tape: Send {
+pub(crate) trait EntrySink: Send {
     /// Whether anybody wants it now; without, nothing is put together.
     fn is_wanted(&self) -> bool;
 
@@ -37,7 +37,7 @@ pub(crate) trait Tape: Send {
 /// A source, with all that it gives handed on as well.
 pub struct TappedSource {
     inner: Box<dyn SensorSource>,
-    tape: Box<dyn Tape>,
+    entries_to: Box<dyn EntrySink>,
     geometry: Geometry,
     now: Instant,
     batch: Entries,
@@ -46,19 +46,23 @@ pub struct TappedSource {
 }
 
 impl TappedSource {
-    pub(crate) fn new(inner: Box<dyn SensorSource>, tape: Box<dyn Tape>, geometry: Geometry) -> Self {
+    pub(crate) fn new(
+        inner: Box<dyn SensorSource>,
+        entries_to: Box<dyn EntrySink>,
+        geometry: Geometry,
+    ) -> Self {
         let now = inner.now();
-        Self { inner, tape, geometry, now, batch: Vec::new(), left_out: 0 }
+        Self { inner, entries_to, geometry, now, batch: Vec::new(), left_out: 0 }
     }
 
     fn put(&mut self, entry: impl FnOnce() -> Entry) {
-        if !self.tape.is_wanted() {
+        if !self.entries_to.is_wanted() {
             self.batch.clear();
             self.left_out = 0;
             return;
         }
         self.batch.push((self.now, entry()));
-        if self.batch.first().is_some_and(|(first, _)| self.now.since(*first) >= self.tape.batch()) {
+        if self.batch.first().is_some_and(|(first, _)| self.now.since(*first) >= self.entries_to.batch()) {
             self.hand_on();
         }
     }
@@ -69,12 +73,12 @@ impl TappedSource {
             entries.insert(0, (*at, Entry::Gap(self.left_out)));
         }
         let room = entries.len();
-        match self.tape.hand(entries) {
+        match self.entries_to.hand(entries) {
             None => self.left_out = 0,
             Some(entries) => {
                 let kept_out = entries.iter().filter(|(_, entry)| !matches!(entry, Entry::Gap(_))).count();
                 self.left_out += kept_out as u64;
-                self.tape.count_lost(kept_out as u64);
+                self.entries_to.count_lost(kept_out as u64);
             }
         }
         self.batch.reserve(room);
@@ -95,7 +99,7 @@ impl SensorSource for TappedSource {
     }
 
     fn now(&self) -> Instant {
-        if self.tape.is_exact() { self.now } else { self.inner.now() }
+        if self.entries_to.is_exact() { self.now } else { self.inner.now() }
     }
 
     fn take_request(&mut self) -> Option<Request> {
@@ -118,18 +122,18 @@ impl SensorSource for TappedSource {
 
     fn note_layout(&mut self, layout: &mut Layout) {
         self.inner.note_layout(layout);
-        if !self.tape.is_wanted() {
+        if !self.entries_to.is_wanted() {
             return;
         }
         match as_kept(layout, &self.geometry) {
             Ok((text, kept)) => {
-                if self.tape.is_exact() {
+                if self.entries_to.is_exact() {
                     *layout = kept;
                 }
                 self.put(|| Entry::Layout(text));
             }
             Err(problems) => {
-                self.tape.count_lost(1);
+                self.entries_to.count_lost(1);
                 tracing::warn!("a layout could not be handed on, what is made of it will differ: {problems}");
             }
         }

@@ -30,21 +30,21 @@
 mod app_sink;
 mod builder;
 mod control;
+#[cfg(any(feature = "internals", test))]
+mod controls_off;
 mod event;
 mod held;
 mod queue;
-#[cfg(any(feature = "internals", test))]
-mod rest;
 mod session;
 mod snapshot;
 mod thread;
 
 pub use builder::{SessionBuilder, StartError};
 pub use control::{Control, Refusal};
+#[cfg(any(feature = "internals", test))]
+pub use controls_off::ControlsOff;
 pub use event::{EndReason, Event, Kind};
 pub use held::Held;
-#[cfg(any(feature = "internals", test))]
-pub use rest::ControlsOff;
 pub use session::Session;
 pub use snapshot::Snapshot;
 pub use thread::Actuators;

@@ -22,7 +22,7 @@ use super::super::watch::Watch;
 #[derive(Clone)]
 pub(super) struct Desk {
     pub(super) session: Session,
-    pub(super) news: Sender<LayoutNews>,
+    pub(super) layouts: Sender<LayoutNews>,
 }
 
 impl Desk {
@@ -31,7 +31,7 @@ impl Desk {
         match read {
             Ok((layout, warnings)) => self.put(name, cause, layout, Warnings::from(&warnings)),
             Err(diagnostics) => {
-                let _ = self.news.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
+                let _ = self.layouts.send(LayoutNews::Refused { name: name.to_owned(), diagnostics });
             }
         }
     }
@@ -40,14 +40,14 @@ impl Desk {
         let loaded = Arc::new(layout.clone());
         let revision = self.session.set_layout(layout);
         let name = name.to_owned();
-        let _ = self.news.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
+        let _ = self.layouts.send(LayoutNews::Loaded { layout: loaded, revision, name, cause, warnings });
     }
 
     /// Tells the window, which has the text, of each change of the files.
     pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
-        let news = self.news.clone();
+        let layouts = self.layouts.clone();
         Watch::on_change(files, move || {
-            let _ = news.send(LayoutNews::Changed);
+            let _ = layouts.send(LayoutNews::Changed);
         })
     }
 }
@@ -61,15 +61,15 @@ pub(super) struct CommandHandler {
     pub(super) floor: Floor,
     pub(super) desk: Desk,
     /// While the floor is checked.
-    pub(super) rest: Option<ControlsOff>,
+    pub(super) controls_off: Option<ControlsOff>,
 }
 
 impl CommandHandler {
     /// Does what the person at the window wants, on a thread that ends with the window.
-    pub(super) fn process_commands(mut self, wished: Receiver<PreviewCommand>, notices: Sender<String>) {
+    pub(super) fn process_commands(mut self, commands: Receiver<PreviewCommand>, notices: Sender<String>) {
         thread::spawn(move || {
-            for wish in wished {
-                let command = match wish {
+            for wanted in commands {
+                let command = match wanted {
                     PreviewCommand::Open(choice) => {
                         self.open(choice);
                         continue;
@@ -86,8 +86,8 @@ impl CommandHandler {
                         self.desk.put(&name, cause, Arc::unwrap_or_clone(layout), warnings);
                         continue;
                     }
-                    PreviewCommand::RestControls(rest) => {
-                        self.rest = rest.then(|| self.desk.session.controls_off());
+                    PreviewCommand::TurnControlsOff(off) => {
+                        self.controls_off = off.then(|| self.desk.session.controls_off());
                         continue;
                     }
                     PreviewCommand::SaveFloor { floor, path } => {
@@ -144,7 +144,7 @@ impl CommandHandler {
         let text = edit::refit(&old, text);
         match schema::save_text(&text, &path) {
             Ok(_) => {
-                let _ = self.desk.news.send(LayoutNews::Changed);
+                let _ = self.desk.layouts.send(LayoutNews::Changed);
                 format!("Saved in {}: write \"{name}\" where it shall be felt.", path.display())
             }
             Err(error) => error.to_string(),

@@ -1,10 +1,13 @@
 //! What goes to and fro between the window and its floor: events, feet, what the actuators did.
 
 use std::sync::mpsc::{SyncSender, TrySendError};
+use std::thread;
+use std::time::Duration;
 
 use underfoot::feel::ScopeReader;
 use underfoot::glam::Vec2;
 use underfoot::preview::{EventNews, FootSink, PreviewFoot, ScopeFeed};
+use underfoot::runtime::Session;
 use underfoot::sim::{Foot, FootHandle};
 use underfoot::sink::{EventSink, Report};
 
@@ -25,6 +28,14 @@ impl EventSink for ToWindow {
 
     fn dropped(&self) -> u64 {
         self.missed
+    }
+}
+
+/// Ends a floor, and with it what is told of it.
+pub(super) fn stop_and_wait(session: &Session) {
+    session.stop();
+    while !session.has_ended() {
+        thread::sleep(Duration::from_millis(1));
     }
 }
 

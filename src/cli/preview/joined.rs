@@ -1,7 +1,7 @@
 //! A server's floor behind the window: sensed here again from what its boards send there. Nothing is put out from here.
 
 use std::net::SocketAddr;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, SyncSender, TryRecvError};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, TryRecvError};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Builder};
 use std::time::{Duration, Instant as HostInstant};
@@ -12,9 +12,9 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
 use underfoot::preview::{
-    EventNews, LayoutCause, LayoutNews, PreviewCommand, ServerFeed, ServerLink, ServerState,
+    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
 };
-use underfoot::recording::{OverheardPackets, Overhearing};
+use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
@@ -23,9 +23,9 @@ use underfoot::widget;
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
 use super::super::watch::Watch;
-use super::ToWindow;
+use super::announced::AnnouncingSource;
 use super::commands::keep_floor;
-use super::watched::Watched;
+use super::feeds::{ToWindow, stop_and_wait};
 
 /// Time between looks at the floor that is sensed: half of a picture's.
 const LOOK: Duration = Duration::from_millis(8);
@@ -36,14 +36,6 @@ const COMPARE_EVERY: Duration = Duration::from_millis(100);
 /// How long the server may take to greet before there is no window.
 const PATIENCE: Duration = Duration::from_secs(3);
 
-/// Where the window hears of the floor, and asks of it.
-pub(super) struct Window {
-    pub(super) events: SyncSender<EventNews>,
-    pub(super) layouts: Sender<LayoutNews>,
-    pub(super) notices: Sender<String>,
-    pub(super) commands: Receiver<PreviewCommand>,
-}
-
 /// A server's floor that is being shown; ends when the window hangs up.
 pub(super) struct Joined {
     pub(super) floor: Floor,
@@ -51,7 +43,7 @@ pub(super) struct Joined {
     pub(super) layout_text: String,
     pub(super) snapshots: triple_buffer::Output<Snapshot>,
     /// What the boards send.
-    pub(super) packets: OverheardPackets,
+    pub(super) packets: TappedPackets,
     shared: Shared,
 }
 
@@ -67,12 +59,16 @@ impl Shared {
 
 impl Joined {
     /// Joins the server whose door for web pages is at `address`; `files` are those of the layout that is designed here.
-    pub(super) fn start(address: SocketAddr, window: Window, files: LayoutArgs) -> Result<Self, Failure> {
+    pub(super) fn start(
+        address: SocketAddr,
+        window: ProgramChannels,
+        files: LayoutArgs,
+    ) -> Result<Self, Failure> {
         let failed = |error: std::io::Error| Failure::Other(format!("can't join {address}: {error}"));
         let (link, news) = MirrorLink::start(address).map_err(failed)?;
         let (greeting, source) = first(&news, address)?;
-        let (overhearing, packets) = OverheardPackets::new();
-        let run = Run::begin(&greeting, source, &window, &overhearing)?;
+        let (tap, packets) = TappedPackets::new();
+        let run = Run::begin(&greeting, source, &window, &tap)?;
         let state = ServerState {
             address: address.to_string(),
             link: ServerLink::Joined,
@@ -83,16 +79,16 @@ impl Joined {
         let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
         let (floor, layout_text) = (greeting.floor.clone(), greeting.layout_text.clone());
         let layout = Arc::new(greeting.layout.clone());
-        let mut playing = Playing {
+        let mut served = ServedFloor {
             link,
             news,
             run,
-            overhearing,
+            tap,
             window,
             floor: floor.clone(),
             served: layout_text.clone(),
             tried: None,
-            rests: false,
+            controls_off: false,
             snapshots: input,
             follower: Follower::default(),
             begun: HostInstant::now(),
@@ -101,9 +97,9 @@ impl Joined {
             watch: None,
             files,
         };
-        playing.follower.begin(&greeting, Duration::ZERO);
-        playing.watch = playing.watched();
-        Builder::new().name("joined".into()).spawn(move || playing.play()).map_err(failed)?;
+        served.follower.begin(&greeting, Duration::ZERO);
+        served.watch = served.watch();
+        Builder::new().name("joined".into()).spawn(move || served.run()).map_err(failed)?;
         Ok(Self { floor, layout, layout_text, snapshots, packets, shared })
     }
 
@@ -143,12 +139,12 @@ impl Run {
     fn begin(
         greeting: &Greeting,
         source: MirrorSource,
-        window: &Window,
-        overhearing: &Overhearing,
+        window: &ProgramChannels,
+        tap: &PacketTap,
     ) -> Result<Self, Failure> {
         let (clock, left_out) = (source.clock(), Box::new(source.left_out()));
-        let source = Watched::new(source, window.layouts.clone(), LayoutCause::Served);
-        let source = overhearing.source(Box::new(source), greeting.floor.geometry);
+        let source = AnnouncingSource::new(source, window.layouts.clone(), LayoutCause::Served);
+        let source = tap.source(Box::new(source), greeting.floor.geometry);
         let session = Session::source(Box::new(source), clock)
             .floor(greeting.floor.clone())
             .layout(greeting.layout.clone())
@@ -158,22 +154,14 @@ impl Run {
         let snapshots = session.take_snapshots();
         Ok(Self { session, snapshots, left_out })
     }
-
-    /// Ends it, and with it what is told of it.
-    fn end(&self) {
-        self.session.stop();
-        while !self.session.has_ended() {
-            thread::sleep(Duration::from_millis(1));
-        }
-    }
 }
 
-struct Playing {
+struct ServedFloor {
     link: MirrorLink,
     news: Receiver<MirrorNews>,
     run: Run,
-    overhearing: Overhearing,
-    window: Window,
+    tap: PacketTap,
+    window: ProgramChannels,
     /// The floor that the window shows.
     floor: Floor,
     /// The layout that the server has, as text.
@@ -181,7 +169,7 @@ struct Playing {
     /// The name of the layout that was last sent to it.
     tried: Option<String>,
     /// Whether its controls are to be off while the floor is checked.
-    rests: bool,
+    controls_off: bool,
     snapshots: triple_buffer::Input<Snapshot>,
     follower: Follower,
     begun: HostInstant,
@@ -192,9 +180,9 @@ struct Playing {
     files: LayoutArgs,
 }
 
-impl Playing {
+impl ServedFloor {
     /// Shows the floor until the window hangs up.
-    fn play(mut self) {
+    fn run(mut self) {
         loop {
             match self.news.recv_timeout(LOOK) {
                 Ok(news) => self.hear(news),
@@ -205,7 +193,7 @@ impl Playing {
                 match self.window.commands.try_recv() {
                     Ok(command) => self.apply(command),
                     Err(TryRecvError::Empty) => break,
-                    Err(TryRecvError::Disconnected) => return self.run.end(),
+                    Err(TryRecvError::Disconnected) => return stop_and_wait(&self.run.session),
                 }
             }
             self.look();
@@ -233,16 +221,16 @@ impl Playing {
             self.shared.state().link = ServerLink::Lost(why.into());
             return;
         }
-        self.run.end();
+        stop_and_wait(&self.run.session);
         let layout = Arc::new(greeting.layout.clone());
         let _ = self.window.events.send(EventNews::Restarted(layout));
-        match Run::begin(greeting, source, &self.window, &self.overhearing) {
+        match Run::begin(greeting, source, &self.window, &self.tap) {
             Ok(run) => self.run = run,
             Err(failure) => return self.say(failure.to_string()),
         }
         self.shared.state().link = ServerLink::Joined;
         self.take(greeting);
-        if self.rests {
+        if self.controls_off {
             self.link.ask(CONTROLS_OFF, &[json!(true)]);
         }
     }
@@ -308,11 +296,11 @@ impl Playing {
             PreviewCommand::Try { layout, name, .. } => self.try_layout(&layout, name),
             PreviewCommand::Watch(path) => {
                 self.files.layout = path;
-                self.watch = self.watched();
+                self.watch = self.watch();
             }
-            PreviewCommand::RestControls(rest) => {
-                self.rests = rest;
-                self.link.ask(CONTROLS_OFF, &[json!(rest)]);
+            PreviewCommand::TurnControlsOff(off) => {
+                self.controls_off = off;
+                self.link.ask(CONTROLS_OFF, &[json!(off)]);
             }
             PreviewCommand::SaveFloor { floor, path } => self.say(keep_floor(&floor, &path)),
             PreviewCommand::Open(_) | PreviewCommand::Feel { .. } | PreviewCommand::SaveEffect { .. } => {
@@ -335,7 +323,7 @@ impl Playing {
     }
 
     /// Tells the window of each change of the layout's files.
-    fn watched(&self) -> Option<Watch> {
+    fn watch(&self) -> Option<Watch> {
         let news = self.window.layouts.clone();
         let watch = Watch::on_change(&self.files, move || {
             let _ = news.send(LayoutNews::Changed);

@@ -1,10 +1,10 @@
 //! `underfoot preview`: the window, with its floor served on a thread of its own.
 
+mod announced;
 mod commands;
 mod feeds;
 mod joined;
 mod player;
-mod watched;
 
 use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
@@ -17,10 +17,10 @@ use underfoot::feel::Renderer;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProjectionOptions, ScopeFeed,
-    ShoeFeed, Warnings,
+    self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
+    ProjectionOptions, ScopeFeed, ShoeFeed, Warnings, channels,
 };
-use underfoot::recording::{OverheardPackets, Recording};
+use underfoot::recording::{Recording, TappedPackets};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::sense::Method;
@@ -32,7 +32,7 @@ use underfoot::units::HostClock;
 use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, Scopes, ToWindow, shoe};
 use self::joined::Joined;
-use self::player::{Player, Window};
+use self::player::Player;
 use super::actuate::ActuateArgs;
 use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
@@ -101,9 +101,6 @@ pub(crate) fn has_display() -> bool {
     !cfg!(target_os = "linux") || is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")
 }
 
-/// Events that may wait for the window; it takes them 60 times a second.
-const EVENTS_WAITING: usize = 4096;
-
 /// Which packets the faults of a scenario hit.
 const FAULT_SEED: u64 = 1;
 
@@ -125,26 +122,22 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let stage = args.stage(&floor, &layout)?;
 
-    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
-    let (news, layouts) = mpsc::channel();
-    let (notice_sender, notices) = mpsc::channel();
+    let (window, ProgramChannels { events, layouts, notices, commands }) = channels();
     let (scope_sender, scopes) = mpsc::channel();
-    let (wishes, wished) = mpsc::channel();
 
     // Of several sound cards that are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
     let latency = LatencyStages::default();
-    let actuators =
-        args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice_sender.clone());
-    let (overhearing, packets) = OverheardPackets::new();
-    let source = overhearing.source(stage.source, floor.geometry);
+    let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notices.clone());
+    let (tap, packets) = TappedPackets::new();
+    let source = tap.source(stage.source, floor.geometry);
     let mut session = Session::source(Box::new(source), stage.clock)
         .floor(stage.floor.clone())
         .layout(layout.clone())
         .method(if args.eq4 { Method::Eq4 } else { Method::default() })
         .prefix(args.outputs.prefix.osc_prefix.clone())
         .sink(args.outputs.open(&floor.geometry)?)
-        .sink(ToWindow { events: event_sender, missed: 0 })
+        .sink(ToWindow { events, missed: 0 })
         .actuators(actuators)
         .latency(latency.clone());
     if let Some(path) = &args.record {
@@ -152,7 +145,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     let session = session.start()?;
 
-    let desk = Desk { session: session.clone(), news };
+    let desk = Desk { session: session.clone(), layouts };
     let watch = desk.watch(&args.layout)?;
     let choices = args.choices();
     let handler = CommandHandler {
@@ -161,26 +154,18 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         choices: choices.clone(),
         floor,
         desk,
-        rest: None,
+        controls_off: None,
     };
-    handler.process_commands(wished, notice_sender);
+    handler.process_commands(commands, notices);
 
     let scopes = scopes.try_iter().last().flatten();
     let scopes = scopes.map(|reader| Box::new(Scopes::new(reader)) as Box<dyn ScopeFeed>);
+    let (floor, layout) = (Arc::new(stage.floor), Arc::new(layout));
     let input = PreviewInput {
-        floor: Arc::new(stage.floor),
-        layout: Arc::new(layout),
         warnings: Warnings::from(&warnings),
-        source: stage.name,
-        server: None,
-        snapshots: session.take_snapshots(),
-        events,
-        layouts,
-        notices,
         scopes,
         latency: Some(latency),
         feet: stage.feet,
-        playback: None,
         faults: stage.faults,
         people: stage.people,
         packets: Some(packets),
@@ -188,7 +173,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         choices,
         effects: args.layout.kinds()?.effects().iter().cloned().collect(),
         design: args.design()?,
-        commands: wishes,
+        ..PreviewInput::new(floor, layout, stage.name, session.take_snapshots(), window)
     };
     // Also when the window fails, the floor ends in order first.
     let options = args.window();
@@ -209,75 +194,31 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// Shows a recording; nobody else is told of what happens in it.
 fn replayed(args: &Args, path: &Path) -> Result<(), Failure> {
-    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
-    let (news, layouts) = mpsc::channel();
-    let (_, notices) = mpsc::channel();
-    let (commands, _) = mpsc::channel();
-    let window = Window { events: event_sender, layouts: news };
-    let (player, floor, layout, snapshots) = Player::start(path, window)?;
+    let (window, program) = channels();
+    let (player, floor, layout, snapshots) = Player::start(path, program)?;
     let name = path.file_name().unwrap_or(path.as_os_str()).display().to_string();
     let input = PreviewInput {
-        floor: Arc::new(floor),
-        layout,
-        warnings: Warnings::default(),
-        source: name,
-        server: None,
-        snapshots,
-        events,
-        layouts,
-        notices,
-        scopes: None,
-        latency: None,
-        feet: None,
         playback: Some(Box::new(player)),
-        faults: None,
-        people: None,
-        packets: None,
-        shoes: None,
-        choices: Vec::new(),
-        effects: Vec::new(),
-        design: None,
-        commands,
+        ..PreviewInput::new(Arc::new(floor), layout, name, snapshots, window)
     };
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }
 
 /// Shows a server's floor.
 fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
-    let (event_sender, events) = mpsc::sync_channel(EVENTS_WAITING);
-    let (news, layouts) = mpsc::channel();
-    let (notice_sender, notices) = mpsc::channel();
-    let (commands, wished) = mpsc::channel();
-    let window =
-        joined::Window { events: event_sender, layouts: news, notices: notice_sender, commands: wished };
-    let joined = Joined::start(address, window, args.layout.clone())?;
+    let (window, program) = channels();
+    let joined = Joined::start(address, program, args.layout.clone())?;
     let server = Some(joined.feed());
     let design = match args.layout.layout {
         Some(_) => args.design()?,
         None => Some(args.design_of("the server’s layout", joined.layout_text, None)),
     };
+    let floor = Arc::new(joined.floor);
     let input = PreviewInput {
-        floor: Arc::new(joined.floor),
-        layout: joined.layout,
-        warnings: Warnings::default(),
-        source: address.to_string(),
         server,
-        snapshots: joined.snapshots,
-        events,
-        layouts,
-        notices,
-        scopes: None,
-        latency: None,
-        feet: None,
-        playback: None,
-        faults: None,
-        people: None,
         packets: Some(joined.packets),
-        shoes: None,
-        choices: Vec::new(),
-        effects: Vec::new(),
         design,
-        commands,
+        ..PreviewInput::new(floor, joined.layout, address.to_string(), joined.snapshots, window)
     };
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }

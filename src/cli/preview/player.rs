@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender, SyncSender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -11,7 +11,7 @@ use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::preview::{
-    EventNews, LayoutCause, LayoutNews, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState,
+    EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
 };
 use underfoot::recording::{Mark, MarkKind, Progress, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
@@ -20,17 +20,11 @@ use underfoot::units::Instant;
 
 use super::super::failure::Failure;
 use super::super::replay;
-use super::ToWindow;
-use super::watched::Watched;
+use super::announced::AnnouncingSource;
+use super::feeds::{ToWindow, stop_and_wait};
 
 /// Time between looks at the floor that is sensed: half of a picture's.
 const LOOK: Duration = Duration::from_millis(8);
-
-/// Where the window hears of the recording.
-pub(super) struct Window {
-    pub(super) events: SyncSender<EventNews>,
-    pub(super) layouts: Sender<LayoutNews>,
-}
 
 /// A recording that is being shown; ends with this.
 pub(super) struct Player {
@@ -55,7 +49,7 @@ impl Player {
     /// Plays the recording at `path` from its beginning; gives its floor, its first layout and what is to be seen.
     pub(super) fn start(
         path: &Path,
-        window: Window,
+        window: ProgramChannels,
     ) -> Result<(Self, Floor, Arc<Layout>, triple_buffer::Output<Snapshot>), Failure> {
         let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
         let speed = Speed::Times(PlaybackState::default().speed);
@@ -142,7 +136,7 @@ struct Run {
 }
 
 impl Run {
-    fn begin(path: &Path, speed: Speed, window: &Window) -> Result<Self, Failure> {
+    fn begin(path: &Path, speed: Speed, window: &ProgramChannels) -> Result<Self, Failure> {
         let recording = replay::open(path)?;
         let (floor, layout, method) =
             (recording.floor().clone(), recording.layout().clone(), recording.method());
@@ -150,7 +144,7 @@ impl Run {
         source.transport().stay_at_the_end();
         let (transport, progress, first) = (source.transport(), source.progress(), source.now());
         let clock = source.clock();
-        let source = Watched::new(source, window.layouts.clone(), LayoutCause::Recorded);
+        let source = AnnouncingSource::new(source, window.layouts.clone(), LayoutCause::Recorded);
         let session = Session::source(Box::new(source), clock)
             .floor(floor.clone())
             .layout(layout.clone())
@@ -159,14 +153,6 @@ impl Run {
             .start()?;
         let snapshots = session.take_snapshots();
         Ok(Self { session, floor, layout: Arc::new(layout), transport, progress, snapshots, first })
-    }
-
-    /// Ends it, and with it what is told of it.
-    fn end(&self) {
-        self.session.stop();
-        while !self.session.has_ended() {
-            thread::sleep(Duration::from_millis(1));
-        }
     }
 
     fn at_s(&self) -> f64 {
@@ -178,7 +164,7 @@ impl Run {
 struct Playing {
     path: PathBuf,
     run: Run,
-    window: Window,
+    window: ProgramChannels,
     snapshots: triple_buffer::Input<Snapshot>,
     /// What was shown before the way to another moment began.
     last: Snapshot,
@@ -232,7 +218,7 @@ impl Playing {
         let at_s = at_s.max(0.0).min(length_s);
         if at_s < self.run.at_s() {
             let speed = self.run.transport.speed();
-            self.run.end();
+            stop_and_wait(&self.run.session);
             let _ = self.window.events.send(EventNews::Restarted(Arc::clone(&self.run.layout)));
             match Run::begin(&self.path, speed, &self.window) {
                 Ok(run) => self.run = run,
@@ -313,9 +299,9 @@ mod tests {
         session::run(&Line::parse_from(arguments.into_iter().chain([file.as_os_str()])).session).unwrap();
 
         let (events, told) = mpsc::sync_channel(100_000);
-        let (layouts, _news) = mpsc::channel();
+        let (_window, program) = underfoot::preview::channels();
         let (mut player, _, layout, mut snapshots) =
-            Player::start(&file, Window { events, layouts }).unwrap();
+            Player::start(&file, ProgramChannels { events, ..program }).unwrap();
         assert!(layout.widget_index("home").is_some());
         player.lead(PlaybackOrder::Speed(f64::INFINITY));
         let end = until(&mut player, |state| state.is_paused);

@@ -13,12 +13,12 @@ use eframe::egui::{Key, Ui};
 use super::app::App;
 use super::feed::PreviewCommand;
 use crate::floor::{Floor, TileId};
-use crate::recording::OverheardPackets;
+use crate::recording::TappedPackets;
 use crate::serve::{FeltLoad, SensorVerdict, WalkTest, Wiring, WiringTask, WiringWalk};
 
 /// Checks a floor while the window shows it.
 pub(super) struct FloorCheck {
-    packets: OverheardPackets,
+    packets: TappedPackets,
     /// `None` while nothing is checked.
     walk: Option<Walk>,
     /// What was found of the boards by the last walk that came to its end.
@@ -68,7 +68,7 @@ impl TileMark {
 }
 
 impl FloorCheck {
-    pub(super) fn new(packets: OverheardPackets) -> Self {
+    pub(super) fn new(packets: TappedPackets) -> Self {
         Self { packets, walk: None, found: None, path: KEPT.into() }
     }
 
@@ -164,7 +164,7 @@ impl App {
         check.begin(walk);
         let is = self.is_checking();
         if is != was {
-            self.command(PreviewCommand::RestControls(is));
+            self.command(PreviewCommand::TurnControlsOff(is));
         }
     }
 

@@ -6,7 +6,7 @@ use egui_kittest::kittest::Queryable;
 
 use super::*;
 use crate::preview::floor_check::FloorCheck;
-use crate::recording::{OverheardPackets, TappedSource};
+use crate::recording::{TappedPackets, TappedSource};
 use crate::sim::{SensorFault, SimConfig, SimFloor};
 use crate::source::{SensorSource, SourceError};
 use crate::wire::SensorPacket;
@@ -57,11 +57,11 @@ impl Site {
         if let Some(sensor) = broken {
             sim.set_fault(sensor, Some(SensorFault::Open));
         }
-        let (overhearing, packets) = OverheardPackets::new();
+        let (tap, packets) = TappedPackets::new();
         let feet = Arc::<Mutex<Vec<crate::sim::Foot>>>::default();
         let (waiting, ms) = (std::collections::VecDeque::new(), 0);
         let boards = Boards { sim, feet: Arc::clone(&feet), swapped, waiting, ms };
-        let source = overhearing.source(Box::new(boards), floor.geometry);
+        let source = tap.source(Box::new(boards), floor.geometry);
         let mut room = Room::of(false, 1280.0, 800.0);
         room.window.state_mut().floor_check = Some(FloorCheck::new(packets));
         room.run(2);
@@ -110,7 +110,7 @@ fn boards_that_have_changed_places_are_found_step_by_step_and_the_floor_is_saved
     site.begin("Wiring");
     assert_eq!(
         site.commands(),
-        [PreviewCommand::RestControls(true)],
+        [PreviewCommand::TurnControlsOff(true)],
         "no control acts meanwhile, asked once"
     );
     for row in 0..6 {
@@ -131,7 +131,7 @@ fn boards_that_have_changed_places_are_found_step_by_step_and_the_floor_is_saved
     assert_eq!(floor.boards[3].address, Floor::default().boards[5].address);
     site.room.window.key_press(Key::Escape);
     site.room.run(2);
-    assert_eq!(site.commands(), [PreviewCommand::RestControls(false)]);
+    assert_eq!(site.commands(), [PreviewCommand::TurnControlsOff(false)]);
     assert!(site.room.says("Check the floor…"));
 }
 

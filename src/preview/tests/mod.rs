@@ -12,7 +12,7 @@ mod status;
 mod time_line;
 mod walks;
 
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, SyncSender};
 use std::sync::{Arc, Mutex};
 
 use eframe::egui::{self, Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, vec2};
@@ -26,7 +26,7 @@ use super::playback::Playback;
 use super::time_line::TimeLine;
 use super::{
     EventNews, FootSink, LayoutCause, LayoutNews, PreviewCommand, PreviewFoot, PreviewInput, PreviewOptions,
-    ScopeFeed, Warnings,
+    ProgramChannels, ScopeFeed, Warnings, channels,
 };
 use crate::engine::Snapshot;
 use crate::feel::{DeviceState, DeviceStatus};
@@ -56,7 +56,7 @@ pub(super) fn event(at_ms: u64, id: &str) -> WidgetEvent {
 struct Room {
     window: Harness<'static, App>,
     snapshots: triple_buffer::Input<Snapshot>,
-    events: Sender<EventNews>,
+    events: SyncSender<EventNews>,
     layouts: Sender<LayoutNews>,
     notices: Sender<String>,
     commands: Receiver<PreviewCommand>,
@@ -102,30 +102,12 @@ impl Room {
     fn of(simulated: bool, width: f32, height: f32) -> Self {
         let layout = Arc::new(map());
         let (snapshots, output) = triple_buffer::triple_buffer(&at_rest(&layout));
-        let (events, event_list) = channel();
-        let (layouts, news) = channel();
-        let (notices, notes) = channel();
-        let (sender, commands) = channel();
+        let (channels, ProgramChannels { events, layouts, notices, commands }) = channels();
         let feet = Arc::<Mutex<Vec<PreviewFoot>>>::default();
         let sink: Box<dyn FootSink> = Box::new(Feet(Arc::clone(&feet)));
         let input = PreviewInput {
-            floor: Arc::new(Floor::default()),
-            layout,
-            warnings: Warnings::default(),
-            source: "simulated floor".into(),
-            server: None,
-            snapshots: output,
-            events: event_list,
-            layouts: news,
-            notices: notes,
             scopes: Some(Box::new(Silence)),
-            latency: None,
             feet: simulated.then_some(sink),
-            playback: None,
-            faults: None,
-            people: None,
-            packets: None,
-            shoes: None,
             choices: vec!["Map navigation".into(), "Surgery".into()],
             effects: crate::schema::Effects::builtin().iter().cloned().collect(),
             design: Some(super::DesignInput {
@@ -136,7 +118,7 @@ impl Room {
                 // Where no folder can be.
                 state: "/dev/null/underfoot".into(),
             }),
-            commands: sender,
+            ..PreviewInput::new(Arc::new(Floor::default()), layout, "simulated floor", output, channels)
         };
         // Nobody's own corners, and no other test's.
         let folder = tempfile::tempdir().unwrap();

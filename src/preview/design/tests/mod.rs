@@ -4,7 +4,7 @@ mod files;
 mod keyboard;
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, Sender};
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
@@ -17,7 +17,7 @@ use crate::edit::Template;
 use crate::engine::Snapshot;
 use crate::floor::Rect;
 use crate::preview::app::App;
-use crate::preview::{LayoutNews, PreviewInput, PreviewOptions, Warnings};
+use crate::preview::{LayoutNews, PreviewInput, PreviewOptions, ProgramChannels, channels};
 use crate::schema::{builtin_layout, parse_layout};
 
 struct Desk {
@@ -37,28 +37,9 @@ impl Desk {
         let kinds = Arc::new(Kinds::builtin());
         let layout = Arc::new(parse_layout(text, "it", &kinds, &floor.geometry).unwrap().layout);
         let (_, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
-        let (sender, commands) = channel();
-        let (news, layouts) = channel();
+        let (channels, ProgramChannels { layouts: news, commands, .. }) = channels();
         let input = PreviewInput {
-            floor,
-            layout,
-            warnings: Warnings::default(),
-            source: "simulated floor".into(),
-            server: None,
-            snapshots,
-            events: channel().1,
-            layouts,
-            notices: channel().1,
-            scopes: None,
-            latency: None,
-            feet: None,
-            playback: None,
-            faults: None,
-            people: None,
-            packets: None,
-            shoes: None,
             choices: vec!["map".into()],
-            effects: Vec::new(),
             design: Some(DesignInput {
                 name: "it.ron".into(),
                 text: text.into(),
@@ -66,7 +47,7 @@ impl Desk {
                 kinds_of: Box::new(move |_| Ok(Arc::clone(&kinds))),
                 state: state.path().into(),
             }),
-            commands: sender,
+            ..PreviewInput::new(floor, layout, "simulated floor", snapshots, channels)
         };
         let app = App::new(input, &PreviewOptions::default());
         let window = Harness::builder()

@@ -12,14 +12,14 @@ use underfoot::units::Instant;
 use underfoot::wire::{LinkCounters, Request, SensorPacket};
 
 /// A recording or a server's floor, that tells the window of layouts that came later.
-pub(super) struct Watched<S> {
+pub(super) struct AnnouncingSource<S> {
     source: S,
     layouts: Sender<LayoutNews>,
     cause: LayoutCause,
     given: u64,
 }
 
-impl<S> Watched<S> {
+impl<S> AnnouncingSource<S> {
     pub(super) const fn new(source: S, layouts: Sender<LayoutNews>, cause: LayoutCause) -> Self {
         Self { source, layouts, cause, given: 0 }
     }
@@ -33,7 +33,7 @@ impl<S> Watched<S> {
     }
 }
 
-impl<S: SensorSource> SensorSource for Watched<S> {
+impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         self.source.next(patience)
     }

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::time::Duration;
 
 use super::entry::Entry;
-use super::tap::{Entries, Tape, TappedSource};
+use super::tap::{Entries, EntrySink, TappedSource};
 use crate::floor::Geometry;
 use crate::source::SensorSource;
 use crate::wire::SensorPacket;
@@ -17,28 +17,28 @@ const WAITING: usize = 256;
 
 /// The packets of a floor at work, while somebody wants them.
 #[derive(Debug)]
-pub struct OverheardPackets {
+pub struct TappedPackets {
     wanted: Arc<AtomicBool>,
     batches: Receiver<Entries>,
     lost: Arc<AtomicU64>,
 }
 
-/// Lets packets of sources be overheard, one source after the other.
+/// Copies packets of sources, one source after the other.
 #[derive(Clone, Debug)]
-pub struct Overhearing {
+pub struct PacketTap {
     wanted: Arc<AtomicBool>,
     batches: SyncSender<Entries>,
     lost: Arc<AtomicU64>,
 }
 
-impl OverheardPackets {
-    /// What is overheard, and what lets it be; nothing is until it is wanted.
+impl TappedPackets {
+    /// The packets, and the tap that copies them; nothing is copied until it is wanted.
     #[must_use]
-    pub fn new() -> (Overhearing, Self) {
+    pub fn new() -> (PacketTap, Self) {
         let (wanted, lost) = (Arc::<AtomicBool>::default(), Arc::<AtomicU64>::default());
         let (sender, batches) = sync_channel(WAITING);
-        let tape = Overhearing { wanted: Arc::clone(&wanted), batches: sender, lost: Arc::clone(&lost) };
-        (tape, Self { wanted, batches, lost })
+        let tap = PacketTap { wanted: Arc::clone(&wanted), batches: sender, lost: Arc::clone(&lost) };
+        (tap, Self { wanted, batches, lost })
     }
 
     /// Whether packets are wanted from now on.
@@ -62,15 +62,15 @@ impl OverheardPackets {
     }
 }
 
-impl Overhearing {
-    /// `inner`, on a floor of this geometry, overheard.
+impl PacketTap {
+    /// `inner`, on a floor of this geometry, with its packets copied.
     #[must_use]
     pub fn source(&self, inner: Box<dyn SensorSource>, geometry: Geometry) -> TappedSource {
         TappedSource::new(inner, Box::new(self.clone()), geometry)
     }
 }
 
-impl Tape for Overhearing {
+impl EntrySink for PacketTap {
     fn is_wanted(&self) -> bool {
         self.wanted.load(Ordering::Relaxed)
     }
