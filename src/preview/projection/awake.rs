@@ -17,21 +17,9 @@ impl Awake {
         let (held, until) = channel::<()>();
         let (failure, failed) = channel();
         let keep = move || {
-            let asked = keepawake::Builder::default()
-                .display(true)
-                .reason("The floor is projected")
-                .app_name("underfoot")
-                .app_reverse_domain("org.underfoot")
-                .create();
-            match asked {
-                Ok(_awake) => {
-                    // Ends when the other side goes.
-                    let _ = until.recv();
-                }
-                Err(error) => {
-                    // A window that is closed already need not know.
-                    let _ = failure.send(error.to_string());
-                }
+            if let Err(why) = keep_awake_until(&until) {
+                // A window that is closed already need not know.
+                let _ = failure.send(why);
             }
         };
         if let Err(error) = thread::Builder::new().name("awake".into()).spawn(keep) {
@@ -44,4 +32,23 @@ impl Awake {
     pub(super) fn failure(&self) -> Option<String> {
         self.failed.try_recv().ok()
     }
+}
+
+/// Keeps the screen awake until the other side hangs up, or says why it can't be.
+#[cfg(feature = "desktop")]
+fn keep_awake_until(until: &Receiver<()>) -> Result<(), String> {
+    let _awake = keepawake::Builder::default()
+        .display(true)
+        .reason("The floor is projected")
+        .app_name("underfoot")
+        .app_reverse_domain("org.underfoot")
+        .create()
+        .map_err(|error| error.to_string())?;
+    let _ = until.recv();
+    Ok(())
+}
+
+#[cfg(not(feature = "desktop"))]
+fn keep_awake_until(_: &Receiver<()>) -> Result<(), String> {
+    Err("this underfoot was built without the feature `desktop`".into())
 }
