@@ -175,10 +175,10 @@ impl Maker<'_> {
 
     fn control(&mut self, widget: &Widget, layout: &Layout, floor: &Floor) {
         let id = widget.id.as_str();
-        let control = Control::new(&widget.behaviour, widget.area.size());
+        let mut control = Control::new(&widget.behaviour, widget.area.size());
+        // What only a foot can hold, no app can set.
+        let settable = control.value().is_some_and(|value| control.set_value(value).is_ok());
         for command in COMMANDS.iter().filter(|command| command.is_of_a_control()) {
-            // What only a foot can hold, no app can set.
-            let settable = control.value().is_some_and(|value| control.clone().set_value(value).is_ok());
             let suits = match command.argument {
                 ArgumentKind::Value => settable,
                 ArgumentKind::Range => widget.behaviour.scale().is_some(),
@@ -294,11 +294,8 @@ fn values(behaviour: &Behaviour, held: Value) -> Vec<Argument> {
             vec![argument("choice", "i", &options.join(", "))]
         }
         (Value::Choice(_), _) => vec![argument("choice", "i", "0 or more")],
-        (Value::Number(_), Behaviour::Slider(slider)) => vec![number("value", Some(&slider.scale))],
         (Value::Number(_), Behaviour::Pedal(pedal)) => vec![number("value", Some(&pedal.scale))],
-        (Value::Number(_), Behaviour::Dial(dial)) => vec![number("value", Some(&dial.scale))],
-        (Value::Number(_), Behaviour::Stepper(stepper)) => vec![number("value", Some(&stepper.scale))],
-        (Value::Number(_), _) => vec![number("value", None)],
+        (Value::Number(_), _) => vec![number("value", behaviour.scale())],
         (Value::Pair(_), Behaviour::Pad(pad)) => {
             vec![number("x_value", Some(&pad.x())), number("y_value", Some(&pad.y()))]
         }

@@ -20,12 +20,12 @@ use super::switch::Switch;
 use super::{Behaviour, Emitted, EventKind, Indicator, Input, SetError, Value};
 use crate::units::Instant;
 
-/// One control at work: its press, its guard and its behaviour's state.
-#[derive(Clone, Debug)]
+/// One control at work: its press, its guard and the state of its behaviour.
+#[derive(Debug)]
 pub struct Control {
     press: Press,
     guard: Guarding,
-    state: State,
+    machine: Box<dyn Machine>,
     /// Width and depth, in metres.
     size: Vec2,
     /// Time of the last step.
@@ -36,20 +36,6 @@ pub struct Control {
     indicator: Indicator,
 }
 
-#[derive(Clone, Debug)]
-enum State {
-    Button(Button),
-    Hold(Hold),
-    Switch(Switch),
-    Selector(Selector),
-    Slider(Slider),
-    Pedal(Pedal),
-    Pad(Pad),
-    Dial(Dial),
-    Stepper(Stepper),
-    Lean(Lean),
-}
-
 impl Control {
     /// A control of `size` metres at rest with its initial value; a foot already on it must lift before it works.
     #[must_use]
@@ -58,7 +44,7 @@ impl Control {
         Self {
             press: Press::new(thresholds),
             guard: Guarding::new(thresholds.guard),
-            state: State::new(behaviour),
+            machine: machine(behaviour),
             size,
             now: Instant::START,
             disabled: false,
@@ -100,8 +86,8 @@ impl Control {
     fn react(&mut self, elapsed: Duration, input: Input, outcome: Option<Outcome>, emitted: &mut Emitted) {
         let moment = Moment::new(self.now, elapsed, input, &self.press, outcome, self.size);
         if self.guard.passes(self.now, outcome, moment.broken, emitted) {
-            self.state.machine_mut().act(&moment, emitted);
-            self.guard.after(self.press.is_engaged(), !self.state.machine().is_at_rest(), emitted);
+            self.machine.act(&moment, emitted);
+            self.guard.after(self.press.is_engaged(), !self.machine.is_at_rest(), emitted);
         }
     }
 
@@ -162,13 +148,13 @@ impl Control {
     /// What it holds; `None` for a button.
     #[must_use]
     pub fn value(&self) -> Option<Value> {
-        self.state.machine().value()
+        self.machine.value()
     }
 
     /// What its value would become if the foot let go now, where that is another one.
     #[must_use]
     pub fn pending(&self) -> Option<Value> {
-        if self.is_engaged() { self.state.machine().pending() } else { None }
+        if self.is_engaged() { self.machine.pending() } else { None }
     }
 
     /// Gives it a value, without an event; a number is brought to the control's range and steps.
@@ -182,7 +168,7 @@ impl Control {
         if self.locked {
             return Err(SetError::Locked);
         }
-        self.state.machine_mut().set(value)
+        self.machine.set(value)
     }
 
     /// Goes on as a control of this behaviour, of the same kind with another range; its number is brought into it.
@@ -197,8 +183,8 @@ impl Control {
             return Err(SetError::Locked);
         }
         let value = self.value();
-        self.state = State::new(behaviour);
-        value.map_or(Ok(()), |value| self.state.machine_mut().set(value))
+        self.machine = machine(behaviour);
+        value.map_or(Ok(()), |value| self.machine.set(value))
     }
 
     /// Whether a foot has it pressed.
@@ -222,7 +208,7 @@ impl Control {
     /// Whether it keeps its foot wherever that slides.
     #[must_use]
     pub fn captures(&self) -> bool {
-        self.state.machine().captures() && !self.guard.is_arming()
+        self.machine.captures() && !self.guard.is_arming()
     }
 
     /// Whether a step with [`Input::Clear`] would change nothing.
@@ -230,7 +216,7 @@ impl Control {
     pub fn is_at_rest(&self) -> bool {
         self.disabled
             || self.inhibited
-            || (self.press.is_at_rest() && self.guard.is_at_rest() && self.state.machine().is_at_rest())
+            || (self.press.is_at_rest() && self.guard.is_at_rest() && self.machine.is_at_rest())
     }
 
     /// Whether a foot on it must lift before it works.
@@ -251,50 +237,18 @@ fn refusal(outcome: Option<Outcome>) -> Emitted {
     pressed.then_some(EventKind::Refused).into_iter().collect()
 }
 
-impl State {
-    /// As a control of this behaviour begins.
-    fn new(behaviour: &Behaviour) -> Self {
-        match behaviour {
-            Behaviour::Button(spec) => Self::Button(Button::new(*spec)),
-            Behaviour::Hold(_) => Self::Hold(Hold::default()),
-            Behaviour::Switch(spec) => Self::Switch(Switch::new(*spec)),
-            Behaviour::Selector(spec) => Self::Selector(Selector::new(spec)),
-            Behaviour::Slider(spec) => Self::Slider(Slider::new(*spec)),
-            Behaviour::Pedal(spec) => Self::Pedal(Pedal::new(*spec)),
-            Behaviour::Pad(spec) => Self::Pad(Pad::new(*spec)),
-            Behaviour::Dial(spec) => Self::Dial(Dial::new(*spec)),
-            Behaviour::Stepper(spec) => Self::Stepper(Stepper::new(*spec)),
-            Behaviour::Lean(spec) => Self::Lean(Lean::new(*spec)),
-        }
-    }
-
-    fn machine(&self) -> &dyn Machine {
-        match self {
-            Self::Button(button) => button,
-            Self::Hold(hold) => hold,
-            Self::Switch(switch) => switch,
-            Self::Selector(selector) => selector,
-            Self::Slider(slider) => slider,
-            Self::Pedal(pedal) => pedal,
-            Self::Pad(pad) => pad,
-            Self::Dial(dial) => dial,
-            Self::Stepper(stepper) => stepper,
-            Self::Lean(lean) => lean,
-        }
-    }
-
-    fn machine_mut(&mut self) -> &mut dyn Machine {
-        match self {
-            Self::Button(button) => button,
-            Self::Hold(hold) => hold,
-            Self::Switch(switch) => switch,
-            Self::Selector(selector) => selector,
-            Self::Slider(slider) => slider,
-            Self::Pedal(pedal) => pedal,
-            Self::Pad(pad) => pad,
-            Self::Dial(dial) => dial,
-            Self::Stepper(stepper) => stepper,
-            Self::Lean(lean) => lean,
-        }
+/// As a control of this behaviour begins.
+fn machine(behaviour: &Behaviour) -> Box<dyn Machine> {
+    match behaviour {
+        Behaviour::Button(spec) => Box::new(Button::new(*spec)),
+        Behaviour::Hold(_) => Box::new(Hold::default()),
+        Behaviour::Switch(spec) => Box::new(Switch::new(*spec)),
+        Behaviour::Selector(spec) => Box::new(Selector::new(spec)),
+        Behaviour::Slider(spec) => Box::new(Slider::new(*spec)),
+        Behaviour::Pedal(spec) => Box::new(Pedal::new(*spec)),
+        Behaviour::Pad(spec) => Box::new(Pad::new(*spec)),
+        Behaviour::Dial(spec) => Box::new(Dial::new(*spec)),
+        Behaviour::Stepper(spec) => Box::new(Stepper::new(*spec)),
+        Behaviour::Lean(spec) => Box::new(Lean::new(*spec)),
     }
 }

@@ -72,7 +72,7 @@ impl Moment {
 }
 
 /// What a behaviour does with the press that it is given.
-pub(super) trait Machine {
+pub(super) trait Machine: std::fmt::Debug + Send {
     /// Takes in one frame and appends what happened.
     fn act(&mut self, moment: &Moment, emitted: &mut Emitted);
 
