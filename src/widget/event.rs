@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
+use serde::{Serialize, Serializer};
 
 use crate::floor::ContactId;
 use crate::units::{Instant, Newtons};
@@ -45,8 +46,9 @@ impl PartialEq<&str> for WidgetId {
     }
 }
 
-/// What a control holds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What a control holds; as JSON true or false, a number, or two numbers in a list.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Value {
     /// Something that is on or off: a switch, or a control that acts while it is held.
     Switch(bool),
@@ -55,7 +57,11 @@ pub enum Value {
     /// Which of a selector's options, from 0.
     Choice(u16),
     /// Two finite numbers, eastwards and northwards.
-    Pair(Vec2),
+    Pair(#[serde(serialize_with = "as_list")] Vec2),
+}
+
+fn as_list<S: Serializer>(pair: &Vec2, serializer: S) -> Result<S::Ok, S::Error> {
+    pair.to_array().serialize(serializer)
 }
 
 impl From<bool> for Value {
@@ -89,7 +95,8 @@ impl From<Vec2> for Value {
 }
 
 /// Where a foot went.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
 pub enum Direction {
     /// Away from the user.
     North,
@@ -183,7 +190,8 @@ impl EventKind {
 }
 
 /// What an event says besides its name.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(untagged)]
 pub enum Detail {
     /// The value that the control now holds.
     Value(Value),

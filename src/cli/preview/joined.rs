@@ -18,7 +18,6 @@ use underfoot::recording::{PacketTap, TappedPackets};
 use underfoot::runtime::Session;
 use underfoot::schema;
 use underfoot::serve::Command;
-use underfoot::widget;
 
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
@@ -281,11 +280,9 @@ impl ServedFloor {
                 self.link.ask(&format!("widget/{id}/{}", if enabled { "enable" } else { "disable" }), &[]);
             }
             PreviewCommand::Set { id, value } => {
-                let arguments = match value {
-                    widget::Value::Switch(on) => vec![json!(on)],
-                    widget::Value::Number(number) => vec![json!(number)],
-                    widget::Value::Choice(choice) => vec![json!(choice)],
-                    widget::Value::Pair(pair) => vec![json!(pair.x), json!(pair.y)],
+                let arguments = match json!(value) {
+                    serde_json::Value::Array(pair) => pair,
+                    one => vec![one],
                 };
                 self.link.ask(&format!("widget/{id}/set"), &arguments);
             }

@@ -7,7 +7,6 @@ use serde_json::{Value, json};
 use underfoot::mirror::Greeting;
 use underfoot::runtime::Snapshot;
 use underfoot::serve::Command;
-use underfoot::widget;
 
 use super::House;
 
@@ -43,7 +42,7 @@ pub(super) fn greeting(seen: &Snapshot, house: &House) -> String {
                 "label": state.as_ref().map(|state| &*state.label),
                 "page": widget.page.and_then(|page| pages.get(page)).map(|page| page.id.as_str()),
                 "x_m": at.x, "y_m": at.y, "width_m": size.x, "depth_m": size.y,
-                "value": state.and_then(|state| state.value).map(value),
+                "value": state.and_then(|state| state.value),
             })
         })
         .collect();
@@ -58,14 +57,4 @@ pub(super) fn greeting(seen: &Snapshot, house: &House) -> String {
         "controls": controls,
     })
     .to_string()
-}
-
-/// As in JSON lines.
-fn value(value: widget::Value) -> Value {
-    match value {
-        widget::Value::Switch(on) => json!(on),
-        widget::Value::Number(number) => json!(number),
-        widget::Value::Choice(choice) => json!(choice),
-        widget::Value::Pair(pair) => json!([pair.x, pair.y]),
-    }
 }

@@ -74,7 +74,7 @@ enum Body<'a> {
     },
     State {
         id: &'a str,
-        value: Option<JsonValue>,
+        value: Option<Value>,
         range: Option<JsonRange<'a>>,
         enabled: bool,
         locked: bool,
@@ -95,7 +95,7 @@ enum Body<'a> {
     Control {
         event: &'static str,
         id: &'a str,
-        value: Option<JsonValue>,
+        value: Option<Detail>,
         force_n: f32,
         x_m: f32,
         y_m: f32,
@@ -210,7 +210,7 @@ impl<'a> Body<'a> {
         });
         Self::State {
             id: id.as_str(),
-            value: value.map(JsonValue::from),
+            value: *value,
             range,
             enabled: *enabled,
             locked: *locked,
@@ -223,14 +223,10 @@ impl<'a> Body<'a> {
     }
 
     fn control(event: &'a WidgetEvent) -> Self {
-        let value = event.kind.detail().map(|detail| match detail {
-            Detail::Value(value) => value.into(),
-            Detail::Direction(direction) => JsonValue::Word(direction.name()),
-        });
         Self::Control {
             event: event.kind.name(),
             id: event.id.as_str(),
-            value,
+            value: event.kind.detail(),
             force_n: event.force.0,
             x_m: event.position.x,
             y_m: event.position.y,
@@ -244,26 +240,5 @@ impl ContactEntry {
         let ([x_m, y_m], [x_velocity_m_s, y_velocity_m_s]) =
             (contact.centroid.to_array(), contact.velocity.to_array());
         Self { id: contact.id, x_m, y_m, force_n: contact.force.0, x_velocity_m_s, y_velocity_m_s }
-    }
-}
-
-#[derive(Serialize)]
-#[serde(untagged)]
-enum JsonValue {
-    Switch(bool),
-    Number(f32),
-    Choice(u16),
-    Pair([f32; 2]),
-    Word(&'static str),
-}
-
-impl From<Value> for JsonValue {
-    fn from(value: Value) -> Self {
-        match value {
-            Value::Switch(on) => Self::Switch(on),
-            Value::Number(number) => Self::Number(number),
-            Value::Choice(choice) => Self::Choice(choice),
-            Value::Pair(pair) => Self::Pair(pair.into()),
-        }
     }
 }
