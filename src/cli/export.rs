@@ -7,14 +7,14 @@ use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
 use serde_json::Value;
-use underfoot::recording::Speed;
+use underfoot::recording::{Recording, Speed};
 use underfoot::sense::{Assembler, Tare};
 use underfoot::serve::{Ended, Server};
 use underfoot::sink::{EventSink, Report};
 use underfoot::source::{SensorSource, SourceError};
 
 use super::failure::Failure;
-use super::replay::{open, whole};
+use super::replay::whole;
 
 /// What `underfoot export` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -43,7 +43,7 @@ fn create(path: &Path) -> Result<BufWriter<File>, Failure> {
 /// Each frame, with every tile that carries anything; a frame without any has a line of its first tile.
 fn forces(file: &Path, to: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::File(to.into(), error);
-    let recording = open(file)?;
+    let recording = Recording::open(file)?;
     let floor = recording.floor().clone();
     let mut source = recording.source(Speed::Max);
     let mut assembler = Assembler::with_tare(&floor, Tare::suited_to(&floor));
@@ -79,7 +79,7 @@ fn events(file: &Path, to: &Path) -> Result<(), Failure> {
     let mut out = create(to)?;
     writeln!(out, "{}", FIELDS.join(",")).map_err(failed)?;
     // Where it breaks off the replay of the contacts says.
-    for line in open(file)?.events().map_while(Result::ok) {
+    for line in Recording::open(file)?.events().map_while(Result::ok) {
         let Ok(event) = serde_json::from_slice::<Value>(&line) else { continue };
         if event.get("id").is_none() {
             continue;
@@ -98,7 +98,7 @@ fn events(file: &Path, to: &Path) -> Result<(), Failure> {
 /// The contacts of each frame.
 fn contacts(file: &Path, to: &Path) -> Result<(), Failure> {
     let failed = |error| Failure::File(to.into(), error);
-    let recording = open(file)?;
+    let recording = Recording::open(file)?;
     let floor = recording.floor().clone();
     let (layout, method) = (recording.layout().clone(), recording.method());
     let source = recording.source(Speed::Max);

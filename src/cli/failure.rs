@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use thiserror::Error;
 use underfoot::picture::PictureError;
+use underfoot::recording::RecordingError;
 use underfoot::runtime::StartError;
 use underfoot::schema::{Diagnostics, SaveError};
 use underfoot::sink::SinkError;
@@ -34,6 +35,9 @@ pub(crate) enum Failure {
     /// A picture can't be made.
     #[error("error: {0}")]
     Picture(#[from] PictureError),
+    /// A recording can't be begun.
+    #[error("error: {0}")]
+    Recording(#[from] RecordingError),
     /// Anything else, said in full.
     #[error("error: {0}")]
     Other(String),

@@ -27,7 +27,7 @@ pub(crate) struct Args {
 /// Replays a recording; fails, after all of it, if it breaks off.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let stop = stop_flag()?;
-    let recording = open(&args.file)?;
+    let recording = Recording::open(&args.file)?;
     let floor = recording.floor().clone();
     let (layout, method) = (recording.layout().clone(), recording.method());
     let source = recording.source(args.speed);
@@ -47,11 +47,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// Samples a second of a renderer that nobody asks for any.
 const RATE: u32 = 48_000;
-
-/// Opens a recording.
-pub(crate) fn open(file: &std::path::Path) -> Result<Recording, Failure> {
-    Recording::open(file).map_err(|error| Failure::Other(error.to_string()))
-}
 
 /// Fails if the recording broke off; says where it is not whole.
 pub(crate) fn whole(progress: &Progress) -> Result<(), Failure> {

@@ -1,7 +1,7 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
 use std::thread;
@@ -9,14 +9,13 @@ use std::time::Duration;
 
 use tracing::info;
 use underfoot::feel::FeelCounters;
-use underfoot::floor::Floor;
 use underfoot::ground::{GroundCounters, GroundState, Material};
 use underfoot::layout::Layout;
-use underfoot::recording::{Recorder, WhenBehind};
+use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
-use underfoot::source::{Faults, SensorSource};
+use underfoot::source::Faults;
 use underfoot::wire::LinkCounters;
 
 use super::actuate::ActuateArgs;
@@ -100,14 +99,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (address, granted, clock) = (source.local_addr(), source.granted_buffer(), source.clock());
     let source = args.faults.wrap(source, Faults::default());
     let method = if args.eq4 { Method::Eq4 } else { Method::default() };
-    let (source, floor, layout, recorder) = match &args.record {
-        Some(file) => {
-            let recorder = record(file, &floor, &layout, method, WhenBehind::LeaveOut)?;
-            let source: Box<dyn SensorSource> = Box::new(recorder.source(source));
-            (source, recorder.floor().clone(), recorder.layout().clone(), Some(recorder))
-        }
-        None => (source, floor, layout, None),
-    };
+    let path = args.record.as_deref();
+    let Recorded { recorder, source, floor, layout } =
+        Recorder::around(path, source, floor, layout, method, WhenBehind::LeaveOut)?;
     let door = args.web.open()?;
     let source = match &door {
         Some(door) => door.source(source, floor.geometry),
@@ -182,17 +176,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     drop(session);
     whole(&lost, "frames")?;
     unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))
-}
-
-/// Begins a recording.
-pub(crate) fn record(
-    file: &Path,
-    floor: &Floor,
-    layout: &Layout,
-    method: Method,
-    behind: WhenBehind,
-) -> Result<Recorder, Failure> {
-    Recorder::create(file, floor, layout, method, behind).map_err(|error| Failure::Other(error.to_string()))
 }
 
 /// Waits for the last event; what else happens the sinks tell.

@@ -11,14 +11,14 @@ use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
 use underfoot::layout::Layout;
 use underfoot::picture;
-use underfoot::recording::WhenBehind;
+use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
 use underfoot::sim::{Script, SimFloor};
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
-use underfoot::source::{Pace, SensorSource, SimulatedSource};
+use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
 use underfoot::widget::Value;
 
@@ -29,7 +29,7 @@ use super::layout_args::LayoutArgs;
 use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
-use super::run::{record, whole};
+use super::run::whole;
 
 /// What `underfoot session` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -113,14 +113,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);
     let source = args.faults.wrap(source, rehearsed);
-    let (source, floor, layout, recorder) = match &args.record {
-        Some(file) => {
-            let recorder = record(file, &floor, &layout, Method::default(), WhenBehind::Wait)?;
-            let source: Box<dyn SensorSource> = Box::new(recorder.source(source));
-            (source, recorder.floor().clone(), recorder.layout().clone(), Some(recorder))
-        }
-        None => (source, floor, layout, None),
-    };
+    let path = args.record.as_deref();
+    let Recorded { recorder, source, floor, layout } =
+        Recorder::around(path, source, floor, layout, Method::default(), WhenBehind::Wait)?;
     let (feel, renderer) = renderer(RendererConfig::of(&floor, args.rate));
     let lost = Arc::<AtomicU64>::default();
     let options = WavOptions::default().with_when_full(WhenFull::Wait).with_lost(Arc::clone(&lost));

@@ -28,7 +28,7 @@ pub(crate) use entry::{Entry, decoder};
 pub use packets::{PacketTap, TappedPackets};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
-pub use recorder::{Recorder, WhenBehind};
+pub use recorder::{Recorded, Recorder, WhenBehind};
 pub use replay::{Progress, ReplaySource, Speed};
 pub use tap::TappedSource;
 pub(crate) use tap::{Entries, EntrySink};

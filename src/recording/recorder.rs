@@ -33,29 +33,43 @@ pub struct Recorder {
     worker: Arc<Worker<Job>>,
     lost: Arc<AtomicU64>,
     behind: WhenBehind,
-    floor: Floor,
-    layout: Layout,
+}
+
+/// A floor whose source is recorded, or as it was given.
+pub struct Recorded {
+    /// What records it, if anything does.
+    pub recorder: Option<Recorder>,
+    /// The source to go on with.
+    pub source: Box<dyn SensorSource>,
+    /// The floor as the recording has it.
+    pub floor: Floor,
+    /// The layout as the recording has it.
+    pub layout: Layout,
 }
 
 impl Recorder {
-    /// Begins a recording in a new file at `path`, in place of what was there.
+    /// Records all that `source` gives into a new file at `path`, in place of what was there. Without a `path` nothing is
+    /// recorded or changed.
     ///
-    /// Floor and layout are kept as text. What was read back from it, [`Recorder::floor`] and [`Recorder::layout`],
-    /// is what the floor must work with: its numbers may differ by a rounding from what was given.
+    /// Floor and layout are kept as text, and what is read back from it is what the floor must work with: its numbers may
+    /// differ by a rounding from what was given. The source's time stands still from one packet to the next, so that a
+    /// replay can tell the same time whenever it is asked.
     ///
     /// # Errors
     /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be kept.
-    pub fn create(
-        path: &Path,
-        floor: &Floor,
-        layout: &Layout,
+    pub fn around(
+        path: Option<&Path>,
+        source: Box<dyn SensorSource>,
+        floor: Floor,
+        layout: Layout,
         method: Method,
         behind: WhenBehind,
-    ) -> Result<Self, RecordingError> {
+    ) -> Result<Recorded, RecordingError> {
+        let Some(path) = path else { return Ok(Recorded { recorder: None, source, floor, layout }) };
         let failed = |source| RecordingError::File { path: path.into(), source };
-        let floor_text = schema::write_floor(floor);
+        let floor_text = schema::write_floor(&floor);
         let floor = schema::parse_floor(&floor_text, super::FLOOR)?;
-        let (layout_text, layout) = as_kept(layout, &floor.geometry)?;
+        let (layout_text, layout) = as_kept(&layout, &floor.geometry)?;
         let file = File::create(path).map_err(failed)?;
         let file = RecordingFile::begin(file, path, &floor_text, &layout_text, method)
             .map_err(|error| failed(std::io::Error::other(error)))?;
@@ -63,26 +77,9 @@ impl Recorder {
         let counter = Arc::clone(&lost);
         let worker =
             Worker::spawn("recording", move |jobs| file.write_all(jobs, &counter)).map_err(failed)?;
-        Ok(Self { worker: Arc::new(worker), lost, behind, floor, layout })
-    }
-
-    /// The floor as the recording has it.
-    #[must_use]
-    pub const fn floor(&self) -> &Floor {
-        &self.floor
-    }
-
-    /// The layout as the recording has it.
-    #[must_use]
-    pub const fn layout(&self) -> &Layout {
-        &self.layout
-    }
-
-    /// `inner`, with all that it gives recorded. Its time stands still from one packet to the next, so that a replay can
-    /// tell the same time whenever it is asked.
-    #[must_use]
-    pub fn source(&self, inner: Box<dyn SensorSource>) -> TappedSource {
-        TappedSource::new(inner, Box::new(self.clone()), self.floor.geometry)
+        let recorder = Self { worker: Arc::new(worker), lost, behind };
+        let source = Box::new(TappedSource::new(source, Box::new(recorder.clone()), floor.geometry));
+        Ok(Recorded { recorder: Some(recorder), source, floor, layout })
     }
 
     /// Records events: the lines of [`JsonSink`].

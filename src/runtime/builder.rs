@@ -20,7 +20,7 @@ use crate::engine;
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
 #[cfg(feature = "record")]
-use crate::recording::{Recorder, WhenBehind};
+use crate::recording::{Recorded, Recorder, WhenBehind};
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
 use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
@@ -247,15 +247,14 @@ impl SessionBuilder {
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
         let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
         #[cfg(feature = "record")]
-        let (source, floor, layout) = match &self.record {
-            Some(path) => {
-                let recorder = Recorder::create(path, &floor, &layout, self.method, WhenBehind::LeaveOut)?;
-                self.sinks.push(recorder.events()?);
-                let (floor, layout) = (recorder.floor().clone(), recorder.layout().clone());
-                (Box::new(recorder.source(source)) as Box<dyn SensorSource>, floor, layout)
-            }
-            None => (source, floor, layout),
+        let Recorded { recorder, source, floor, layout } = {
+            let path = self.record.as_deref();
+            Recorder::around(path, source, floor, layout, self.method, WhenBehind::LeaveOut)?
         };
+        #[cfg(feature = "record")]
+        if let Some(recorder) = recorder {
+            self.sinks.push(recorder.events()?);
+        }
         let queue = Arc::new(Queue::new(self.every_change));
         let (held_input, held) = triple_buffer(&HeldNow::default());
         let held = Arc::new(HeldWatch::new(held));

@@ -13,13 +13,12 @@ use underfoot::layout::Layout;
 use underfoot::preview::{
     EventNews, LayoutCause, MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState, ProgramChannels,
 };
-use underfoot::recording::{Mark, MarkKind, Progress, Speed, Timeline, Transport};
+use underfoot::recording::{Mark, MarkKind, Progress, Recording, Speed, Timeline, Transport};
 use underfoot::runtime::Session;
 use underfoot::source::SensorSource;
 use underfoot::units::Instant;
 
 use super::super::failure::Failure;
-use super::super::replay;
 use super::announced::AnnouncingSource;
 use super::feeds::{ToWindow, stop_and_wait};
 
@@ -98,7 +97,7 @@ impl Drop for Player {
 
 /// Reads all of the recording for its length and its marks, on a thread of its own.
 fn read_marks(path: &Path, first: Instant, shown: Arc<Shown>) -> Result<(), Failure> {
-    let recording = replay::open(path)?;
+    let recording = Recording::open(path)?;
     let tell = move |timeline: &Timeline| {
         let mut state = shown.state();
         state.length_s = timeline.span.map_or(0.0, |(_, last)| last.since(first).as_secs_f64());
@@ -137,7 +136,7 @@ struct Run {
 
 impl Run {
     fn begin(path: &Path, speed: Speed, window: &ProgramChannels) -> Result<Self, Failure> {
-        let recording = replay::open(path)?;
+        let recording = Recording::open(path)?;
         let (floor, layout, method) =
             (recording.floor().clone(), recording.layout().clone(), recording.method());
         let source = recording.source(speed);
