@@ -5,6 +5,7 @@ use underfoot::serve::{Direction, Entry, Reference};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
+use super::output::print_json;
 use super::outputs::PrefixArg;
 
 /// What `underfoot addresses` is asked to do.
@@ -27,9 +28,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let layout = args.layout.load(&floor.geometry)?;
     let reference = Reference::of(&layout, &floor, &args.prefix.osc_prefix);
     if args.json {
-        let json = serde_json::to_string(&reference).map_err(|error| Failure::Other(error.to_string()))?;
-        outln!("{json}");
-        return Ok(());
+        return print_json(&reference);
     }
     for entry in &reference.entries {
         outln!("{}", line(entry));

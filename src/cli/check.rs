@@ -9,7 +9,7 @@ use underfoot::schema::{self, Diagnostics};
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
-use super::output::colours;
+use super::output::{colours, print_json};
 
 /// What `underfoot check` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -121,12 +121,6 @@ fn list_rules(json: bool) -> Result<(), Failure> {
     for rule in RULES {
         outln!("{}  {}: {}", rule.code, rule.title, rule.limits);
     }
-    Ok(())
-}
-
-fn print_json(value: &impl serde::Serialize) -> Result<(), Failure> {
-    let json = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
-    outln!("{json}");
     Ok(())
 }
 

@@ -15,6 +15,7 @@ use underfoot::picture;
 use underfoot::sim::FloorQuality;
 
 use super::failure::Failure;
+use super::output::print_json;
 use super::progress::Progress;
 
 /// What `underfoot experiment` is asked to do.
@@ -380,12 +381,6 @@ fn counted(
         act(step)?;
         progress.advance();
     }
-    Ok(())
-}
-
-fn print_json(value: &impl Serialize) -> Result<(), Failure> {
-    let text = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
-    outln!("{text}");
     Ok(())
 }
 

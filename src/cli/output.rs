@@ -12,8 +12,11 @@ use std::sync::{OnceLock, mpsc};
 use std::thread;
 use std::time::{Duration, Instant};
 
+use serde::Serialize;
 use tracing::{Level, Metadata};
 use tracing_subscriber::fmt::MakeWriter;
+
+use super::failure::Failure;
 
 /// Prints a line on standard output.
 macro_rules! outln {
@@ -70,6 +73,13 @@ pub(crate) fn print(text: fmt::Arguments<'_>) {
     if let Err(error) = out.write_all(text.to_string().as_bytes()) {
         note_failure(error);
     }
+}
+
+/// Prints `value` as a line of JSON.
+pub(crate) fn print_json(value: &impl Serialize) -> Result<(), Failure> {
+    let json = serde_json::to_string(value).map_err(|error| Failure::Other(error.to_string()))?;
+    outln!("{json}");
+    Ok(())
 }
 
 /// Notes that standard output takes no more.
