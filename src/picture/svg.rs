@@ -293,14 +293,7 @@ mod tests {
     #[test]
     fn letters_that_mean_something_in_xml_are_escaped() {
         let mut scene = scene();
-        let lettering = Lettering {
-            at: Vec2::ZERO,
-            anchor: Anchor::Start,
-            size_m: 0.05,
-            strong: false,
-            turn_rad: 0.0,
-            ink: Ink::solid(Colour::rgb(0, 0, 0)),
-        };
+        let lettering = Lettering::new(Vec2::ZERO, Anchor::Start, 0.05, Ink::solid(Colour::rgb(0, 0, 0)));
         scene.add_text(lettering, format_args!("<Salt & \"Pepper\">"));
         assert!(svg(&scene).contains(">&lt;Salt &amp; \"Pepper\"&gt;</text>"));
     }

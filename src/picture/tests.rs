@@ -58,14 +58,12 @@ fn letters_are_as_wide_as_the_scene_takes_them_for() {
         let tree = Tree::from_str(&page, &options).unwrap();
         let seen = tree.root().bounding_box().width();
         let mut scene = Scene::new();
-        let lettering = crate::scene::Lettering {
-            at: glam::Vec2::ZERO,
-            anchor: crate::scene::Anchor::Start,
-            size_m: 100.0,
-            strong: false,
-            turn_rad: 0.0,
-            ink: crate::scene::Ink::solid(Theme::LIGHT.ink),
-        };
+        let lettering = crate::scene::Lettering::new(
+            glam::Vec2::ZERO,
+            crate::scene::Anchor::Start,
+            100.0,
+            crate::scene::Ink::solid(Theme::LIGHT.ink),
+        );
         let taken = scene.add_text(lettering, format_args!("{text}"));
         // The box around the ink is a little narrower than the letters with their side bearings.
         assert!((0.94..=1.01).contains(&(seen / taken)), "{text}: {seen} seen, {taken} taken");

@@ -225,7 +225,7 @@ impl Scene {
         let place = self.marks.len();
         self.add_box(Rect::default(), 0.0, plate);
         let at = middle - Vec2::new(0.0, 0.5 * widths::CAP_HEIGHT * size_m);
-        let lettering = Lettering { at, anchor: Anchor::Middle, size_m, strong: true, turn_rad: 0.0, ink };
+        let lettering = Lettering::new(at, Anchor::Middle, size_m, ink).strong();
         let width = self.add_text(lettering, text);
         let area = Rect::from_centre_size(middle, Vec2::new(width + 0.9 * size_m, 1.5 * size_m));
         if let Some(Mark::Box { area: plate, radius_m, .. }) = self.marks.get_mut(place) {

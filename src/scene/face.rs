@@ -340,14 +340,13 @@ fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, f
     let top = room.centre().y + 0.5 * fitted.height_m();
     for (line, bytes) in fitted.lines.iter().enumerate() {
         let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
-        let lettering = Lettering {
-            at: Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
+        let lettering = Lettering::new(
+            Vec2::new(x, middle - 0.5 * CAP_HEIGHT * fitted.size_m),
             anchor,
-            size_m: fitted.size_m,
-            strong: true,
-            turn_rad: 0.0,
-            ink: Ink::solid(ink),
-        };
+            fitted.size_m,
+            Ink::solid(ink),
+        )
+        .strong();
         let last = line + 1 == fitted.lines.len();
         let end = if fitted.shortened && last { "…" } else { "" };
         scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));

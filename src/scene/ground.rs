@@ -91,14 +91,7 @@ fn seams(scene: &mut Scene, view: &View<'_>, gap: f32) {
 pub(super) fn ruler(scene: &mut Scene, view: &View<'_>) {
     let by = super::magnification(view.geometry);
     let size_m = 0.030 * by;
-    let mut lettering = Lettering {
-        at: Vec2::ZERO,
-        anchor: Anchor::Middle,
-        size_m,
-        strong: false,
-        turn_rad: 0.0,
-        ink: Ink::solid(view.theme.quiet),
-    };
+    let mut lettering = Lettering::new(Vec2::ZERO, Anchor::Middle, size_m, Ink::solid(view.theme.quiet));
     // Where tiles are smaller than their numbers, only every so many get one.
     let every = (2.0 * size_m / view.geometry.pitch_m()).ceil().max(1.0) as usize;
     let (block, corner) = (view.geometry.block(), view.geometry.bounds().min);
@@ -129,14 +122,12 @@ pub(super) fn regions(scene: &mut Scene, view: &View<'_>) {
             if is_tinted { stroke } else { Paint { fill: Some(Ink::faint(theme.accent, TINT)), ..stroke } };
         scene.add_box(area, 0.012, paint);
         let size_m = 0.024;
-        let lettering = Lettering {
-            at: Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
-            anchor: Anchor::Start,
+        let lettering = Lettering::new(
+            Vec2::new(area.min.x + 0.018, area.max.y - 0.012 - CAP_HEIGHT * size_m),
+            Anchor::Start,
             size_m,
-            strong: false,
-            turn_rad: 0.0,
-            ink: Ink::faint(theme.accent, 0.9),
-        };
+            Ink::faint(theme.accent, 0.9),
+        );
         scene.add_line_of(lettering, &region.id, area.size().x - 0.04, size_m);
     }
 }
@@ -167,14 +158,12 @@ pub(super) fn stances(scene: &mut Scene, view: &View<'_>) {
                 scene.add_path(outline::sole(middle, 0.0, length_m, true), true, paint);
             }
         }
-        let lettering = Lettering {
-            at: Vec2::new(area.centre().x, area.min.y + 0.022),
-            anchor: Anchor::Middle,
-            size_m: 0.032,
-            strong: false,
-            turn_rad: 0.0,
-            ink: Ink::solid(theme.quiet),
-        };
+        let lettering = Lettering::new(
+            Vec2::new(area.centre().x, area.min.y + 0.022),
+            Anchor::Middle,
+            0.032,
+            Ink::solid(theme.quiet),
+        );
         scene.add_line_of(lettering, &stance.label, size.x - 0.03, 0.02);
     }
 }

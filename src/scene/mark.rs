@@ -127,6 +127,20 @@ pub struct Lettering {
     pub ink: Ink,
 }
 
+impl Lettering {
+    /// A level line, set no heavier than usual.
+    #[must_use]
+    pub const fn new(at: Vec2, anchor: Anchor, size_m: f32, ink: Ink) -> Self {
+        Self { at, anchor, size_m, strong: false, turn_rad: 0.0, ink }
+    }
+
+    /// The same, set heavier.
+    #[must_use]
+    pub const fn strong(self) -> Self {
+        Self { strong: true, ..self }
+    }
+}
+
 /// A stretch of a scene's points, inks or letters; only meaningful to the scene that gave it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Span {

@@ -20,14 +20,8 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     let theme = view.theme;
     let time_m = if view.show.contacts { 0.42 } else { 0.0 };
     let top = strip.max.y - 0.095;
-    let mut lettering = Lettering {
-        at: Vec2::new(strip.min.x, top),
-        anchor: Anchor::Start,
-        size_m: 0.066,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(theme.ink),
-    };
+    let mut lettering =
+        Lettering::new(Vec2::new(strip.min.x, top), Anchor::Start, 0.066, Ink::solid(theme.ink)).strong();
     scene.add_line_of(lettering, &view.layout.title, strip.size().x - time_m, 0.036);
     let size = view.geometry.bounds().size();
     let (columns, rows) = (view.geometry.columns(), view.geometry.rows());
@@ -137,14 +131,12 @@ impl Pen<'_> {
             return;
         }
         sample(scene, Vec2::new(self.x + radius, self.y));
-        let lettering = Lettering {
-            at: Vec2::new(text_x, self.y - 0.5 * CAP_HEIGHT * size_m),
-            anchor: Anchor::Start,
+        let lettering = Lettering::new(
+            Vec2::new(text_x, self.y - 0.5 * CAP_HEIGHT * size_m),
+            Anchor::Start,
             size_m,
-            strong: false,
-            turn_rad: 0.0,
-            ink: Ink::solid(self.view.theme.quiet),
-        };
+            Ink::solid(self.view.theme.quiet),
+        );
         self.x = text_x + scene.add_text(lettering, format_args!("{name}")) + 0.045;
     }
 }

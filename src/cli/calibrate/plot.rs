@@ -70,7 +70,7 @@ pub(super) fn draw(judged: &[(&SensorLoads, Judgement)]) -> Scene {
 }
 
 fn text(scene: &mut Scene, at: Vec2, anchor: Anchor, size_m: f32, colour: Colour, text: &str) -> f32 {
-    let lettering = Lettering { at, anchor, size_m, strong: false, turn_rad: 0.0, ink: Ink::solid(colour) };
+    let lettering = Lettering::new(at, anchor, size_m, Ink::solid(colour));
     scene.add_text(lettering, format_args!("{text}"))
 }
 

@@ -76,14 +76,7 @@ fn words(track: Track, area: Rect, broad: f32) -> (Vec2, f32) {
 /// The value with the label beneath it, both within `room` metres.
 fn write(scene: &mut Scene, face: &Face<'_>, middle: Vec2, room: f32, reading: &Reading) {
     let size_m = (room / reading.widest).min(0.036);
-    let mut lettering = Lettering {
-        at: middle,
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
+    let mut lettering = Lettering::new(middle, Anchor::Middle, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     let below = middle.y - 0.006 - CAP_HEIGHT * SMALL_M - 0.25 * SMALL_M;
     // A badge needs the strip.

@@ -53,14 +53,8 @@ fn words(scene: &mut Scene, face: &Face<'_>, centre: Vec2, reach: f32, reading: 
     let small = (room / width(label).max(1e-3)).clamp(SMALL_M, 0.032);
     let labelled = !label.is_empty() && reach > 0.035;
     let lift = if labelled { 0.006 } else { -0.5 * CAP_HEIGHT * size_m };
-    let mut lettering = Lettering {
-        at: centre + Vec2::new(0.0, lift),
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
+    let mut lettering =
+        Lettering::new(centre + Vec2::new(0.0, lift), Anchor::Middle, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     if labelled {
         lettering.at = centre - Vec2::new(0.0, 0.006 + CAP_HEIGHT * small);

@@ -156,14 +156,7 @@ fn caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Reading) {
     let size_m = (0.60 * strip.size().y).min(0.036).min(part * room / reading.widest);
     let wide = reading.widest * size_m;
     let value = Vec2::new(strip.max.x - inset, strip.centre().y - 0.5 * CAP_HEIGHT * size_m);
-    let lettering = Lettering {
-        at: value,
-        anchor: Anchor::End,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
+    let lettering = Lettering::new(value, Anchor::End, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     let end = strip.max.x - inset - wide - 0.02;
     let start = strip.min.x + inset;

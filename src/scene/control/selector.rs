@@ -20,7 +20,7 @@ pub(super) fn draw(scene: &mut Scene, face: &Face<'_>, spec: &SelectorSpec, choi
         let size_m = (0.60 * strip).min(0.036);
         let at = Vec2::new(area.min.x + 0.022, area.max.y - 0.5 * strip - 0.5 * CAP_HEIGHT * size_m);
         let ink = Ink::solid(face.ink);
-        let lettering = Lettering { at, anchor: Anchor::Start, size_m, strong: true, turn_rad: 0.0, ink };
+        let lettering = Lettering::new(at, Anchor::Start, size_m, ink).strong();
         scene.add_line_of(lettering, face.label(), area.size().x - 0.044, SMALL_M.min(size_m));
     }
     let inset = 0.010;

@@ -101,14 +101,8 @@ fn upright_caption(scene: &mut Scene, face: &Face<'_>, strip: Rect, reading: &Re
     let size_m = ((strip.size().x - inset) / reading.widest).min(0.034);
     let centre = strip.centre().x - 0.5 * inset;
     let top = strip.max.y - 0.016 - CAP_HEIGHT * size_m;
-    let mut lettering = Lettering {
-        at: Vec2::new(centre, top),
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
+    let mut lettering =
+        Lettering::new(Vec2::new(centre, top), Anchor::Middle, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     let south = strip.min.y + if face.badge().is_some() { BADGE_STRIP_M + 0.014 } else { 0.018 };
     lettering.at = Vec2::new(centre, south);

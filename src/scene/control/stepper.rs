@@ -58,14 +58,8 @@ fn words(scene: &mut Scene, face: &Face<'_>, room: Rect, reading: &Reading) {
     let size_m = (size.x / reading.widest).min(0.050).min(tall / CAP_HEIGHT);
     let middle = room.centre();
     let lift = if labelled { 0.006 } else { -0.5 * CAP_HEIGHT * size_m };
-    let mut lettering = Lettering {
-        at: middle + Vec2::new(0.0, lift),
-        anchor: Anchor::Middle,
-        size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(face.ink),
-    };
+    let mut lettering =
+        Lettering::new(middle + Vec2::new(0.0, lift), Anchor::Middle, size_m, Ink::solid(face.ink)).strong();
     scene.add_text(lettering, format_args!("{}", reading.text));
     if labelled {
         let small = 0.030_f32.min(0.4 * size.y / CAP_HEIGHT).max(SMALL_M);

@@ -34,14 +34,13 @@ fn pill(scene: &mut Scene, face: &Face<'_>, area: Rect, on: bool) {
     scene.add_circle(centre + Vec2::new(side, 0.0), radius - 0.009, Paint::fill(Ink::solid(knob)));
     let size_m = (1.05 * radius).min(0.032);
     let ink = if on { readable(face.colour, face.ink) } else { face.ink };
-    let lettering = Lettering {
-        at: centre - Vec2::new(0.85 * side, 0.5 * CAP_HEIGHT * size_m),
-        anchor: Anchor::Middle,
+    let lettering = Lettering::new(
+        centre - Vec2::new(0.85 * side, 0.5 * CAP_HEIGHT * size_m),
+        Anchor::Middle,
         size_m,
-        strong: true,
-        turn_rad: 0.0,
-        ink: Ink::solid(ink),
-    };
+        Ink::solid(ink),
+    )
+    .strong();
     if size_m >= 0.018 {
         scene.add_text(lettering, format_args!("{}", if on { "on" } else { "off" }));
     }
