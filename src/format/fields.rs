@@ -110,6 +110,11 @@ impl<'r> Fields<'r> {
         found.map(|field| Node { reader: self.reader, expr: &field.value, name }.inside())
     }
 
+    /// Takes the field `name` for one that is not written, after what is wrong with it has been reported.
+    pub(crate) fn refuse(&mut self, name: &str) {
+        self.written.retain(|written| written.field.name.name != name);
+    }
+
     /// Notes that the field `name` is missing.
     pub(crate) fn lack(&mut self, name: &'static str) {
         self.missing.push(name);

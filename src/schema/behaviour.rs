@@ -1,14 +1,10 @@
-//! What a control does, as its kind and its widget write it: the settings of its behaviour among their fields.
+//! What a control does, as its widget writes it: the settings of its behaviour among the fields.
 
 use std::time::Duration;
 
 use super::fields::Fields;
-use super::node::Node;
 use super::problem::Problem;
-use crate::format::codec::Beside;
-use crate::format::describe::FieldType;
-use crate::format::text::{Entry, Text};
-use crate::format::{Codec, Variants};
+use crate::format::Variants;
 use crate::widget::{Behaviour, Guard};
 
 /// A foot that walks across a control is on it for less than this.
@@ -21,59 +17,8 @@ pub(super) fn read_over(fields: &mut Fields<'_>, base: &Behaviour) -> Option<Beh
     fields.are_read().then_some(behaviour)
 }
 
-/// What a kind does: the name of its behaviour, or its parent's, with the settings beside it.
-pub(super) struct KindBehaviour;
-
-impl Codec<Behaviour> for KindBehaviour {
-    fn read(&self, node: Node<'_>, base: Option<&Behaviour>) -> Option<Behaviour> {
-        Beside.read(node, base)
-    }
-
-    fn write(&self, behaviour: &Behaviour) -> Text {
-        Beside.write(behaviour)
-    }
-
-    fn shape(&self) -> FieldType {
-        Codec::<Behaviour>::shape(&Beside)
-    }
-
-    fn stand_in(&self) -> Behaviour {
-        Behaviour::stand_in()
-    }
-
-    fn read_field(
-        &self,
-        fields: &mut Fields<'_>,
-        name: &'static str,
-        base: Option<&Behaviour>,
-        _: Option<Behaviour>,
-    ) -> Behaviour {
-        let behaviour = match base {
-            Some(base) => {
-                // One that is written has been refused.
-                fields.take(name);
-                Behaviour::read_fields(base.variant(), fields, Some(base)).unwrap_or_else(|| base.clone())
-            }
-            None => Beside.read_field(fields, name, None, None),
-        };
-        if !fields.have_failed(&[name]) {
-            check_guard(fields, &behaviour);
-        }
-        behaviour
-    }
-
-    fn write_field(
-        &self,
-        behaviour: &Behaviour,
-        name: &'static str,
-        default: Option<Behaviour>,
-        entries: &mut Vec<Entry>,
-    ) {
-        Beside.write_field(behaviour, name, default, entries);
-    }
-}
-
-fn check_guard(fields: &Fields<'_>, behaviour: &Behaviour) {
+/// Reports a guard that does not suit what it guards.
+pub(super) fn check_guard(fields: &Fields<'_>, behaviour: &Behaviour) {
     let at = behaviour.thresholds();
     let Guard::HoldToRun(_) = at.guard else { return };
     if !matches!(behaviour, Behaviour::Hold(_) | Behaviour::Pedal(_) | Behaviour::Lean(_)) {

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::Arc;
 
-use super::behaviour::KindBehaviour;
+use super::behaviour::check_guard;
 use super::builtin;
 use super::diagnostic::{Diagnostic, Diagnostics};
 use super::inherit;
@@ -12,7 +12,7 @@ use super::node::Node;
 use super::problem::Problem;
 use super::version::{FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, Feel};
-use crate::format::codec::Required;
+use crate::format::codec::{Beside, Required};
 use crate::format::{Flat, Id, Opt, Rec, Record, Text, record};
 use crate::layout::Look;
 use crate::widget::Behaviour;
@@ -23,7 +23,7 @@ record! {
     /// What layouts call it.
     pub name: String = "name", Required(Id);
     /// What it does, with all settings.
-    pub behaviour: Behaviour = "behaviour", KindBehaviour;
+    pub behaviour: Behaviour = "behaviour", Beside;
     /// What it feels like.
     pub feel: Feel = "feel", Rec => Feel::default();
     /// What it looks like.
@@ -139,8 +139,12 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
         let expected = format!("that one is a {}", parent.behaviour.name());
         let help = "leave out `behaviour`, or `from`";
         fields.report(Problem::error(span, message).expected(expected).help(help));
+        fields.refuse("behaviour");
     }
     let read = KindFile::read_fields(&mut fields, base.as_ref());
+    if !fields.have_failed(&["behaviour"]) {
+        check_guard(&fields, &read.kind.behaviour);
+    }
     let good = fields.are_read();
     fields.finish();
     good.then_some(read.kind)
