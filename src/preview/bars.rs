@@ -10,7 +10,7 @@ use eframe::egui::{
 use super::app::App;
 use super::feed::{LayoutCause, PreviewCommand};
 use super::rehearsal::Rehearsal;
-use super::style::{panel_colour, panel_frame, pill, quiet};
+use super::style::{panel_colour, panel_frame, pill, quiet, selectable, toggle};
 use crate::egui_painter::color;
 use crate::scene::{Show, Theme};
 use crate::wire::LinkState;
@@ -80,11 +80,7 @@ impl App {
         if count > 0 && !self.is_designing() {
             let text = if count == 1 { "1 warning".to_owned() } else { format!("{count} warnings") };
             let text = RichText::new(text).color(color(self.theme.warning));
-            let button =
-                ui.add(egui::Button::selectable(self.lists_warnings, text).frame_when_inactive(true));
-            if button.on_hover_text("What feet and eyes will have trouble with").clicked() {
-                self.lists_warnings = !self.lists_warnings;
-            }
+            toggle(ui, &mut self.lists_warnings, text, "What feet and eyes will have trouble with");
         }
         match &self.messages.file {
             Some(file) if file.diagnostics.is_some() => {
@@ -136,8 +132,7 @@ impl App {
         self.mode_button(ui);
         let width = ui.ctx().content_rect().width();
         let shown = self.shows_panel(width);
-        let panel = ui.add(egui::Button::selectable(shown, "Panel").frame_when_inactive(true));
-        if panel.on_hover_text("Figures, events and actuators at the side").clicked() {
+        if selectable(ui, shown, "Panel", "Figures, events and actuators at the side") {
             self.panel_wanted = Some(!shown);
         }
         let (tries, plots) = (!self.is_designing(), &mut self.plots.is_open);
@@ -149,29 +144,23 @@ impl App {
         self.layers_menu(ui);
         if self.scopes.is_fed() {
             let muted = self.snapshots.output_buffer().muted.all;
-            let button = ui.add(egui::Button::selectable(muted, "Mute").frame_when_inactive(true));
-            if button.on_hover_text("Let nothing be felt or heard; M does the same").clicked() {
+            if selectable(ui, muted, "Mute", "Let nothing be felt or heard; M does the same") {
                 self.command(PreviewCommand::Mute(!muted));
             }
         }
         if let Some(tuner) = &mut self.tuner {
-            let button = ui.add(egui::Button::selectable(tuner.is_open, "Effects").frame_when_inactive(true));
-            if button.on_hover_text("Tune what controls feel like: see, hear and save").clicked() {
-                tuner.is_open = !tuner.is_open;
-            }
+            toggle(ui, &mut tuner.is_open, "Effects", "Tune what controls feel like: see, hear and save");
         }
         let projects = self.projection.is_open();
-        let button = ui.add(egui::Button::selectable(projects, "Project").frame_when_inactive(true));
         let hint =
             "The floor alone, in a window of its own for a projector; F11 does the same, C there adjusts it";
-        if button.on_hover_text(hint).clicked() {
+        if selectable(ui, projects, "Project", hint) {
             self.projection.toggle();
         }
         let Some((feet, _)) = &mut self.feet else { return };
         let stands = feet.standing().is_some();
-        let button = ui.add(egui::Button::selectable(stands, "Stance foot").frame_when_inactive(true));
         let hint = "A second foot that stays where it is left; Space puts it under the mouse";
-        if button.on_hover_text(hint).clicked() {
+        if selectable(ui, stands, "Stance foot", hint) {
             if stands {
                 feet.lift_standing();
             } else {

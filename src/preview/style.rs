@@ -113,6 +113,17 @@ pub(super) fn plot_button(ui: &mut Ui, name: &str) -> bool {
     button.on_hover_text("Plot it over time").clicked()
 }
 
+/// A button that stays down while `is_on`; whether it was clicked.
+pub(super) fn selectable<'a>(ui: &mut Ui, is_on: bool, text: impl egui::IntoAtoms<'a>, hint: &str) -> bool {
+    let button = egui::Button::selectable(is_on, text).frame_when_inactive(true);
+    ui.add(button).on_hover_text(hint).clicked()
+}
+
+/// A button that switches something on and off.
+pub(super) fn toggle<'a>(ui: &mut Ui, is_on: &mut bool, text: impl egui::IntoAtoms<'a>, hint: &str) {
+    *is_on ^= selectable(ui, *is_on, text, hint);
+}
+
 /// Text that need not be read at once.
 pub(super) fn quiet(theme: &Theme, text: impl Into<String>) -> RichText {
     RichText::new(text).color(color(theme.quiet))

@@ -11,7 +11,7 @@ use eframe::egui::{
 
 use super::app::App;
 use super::playback::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
-use super::style::{panel_frame, quiet};
+use super::style::{panel_frame, quiet, selectable};
 use crate::egui_painter::color;
 use crate::layout::Colour;
 use crate::scene::Theme;
@@ -131,9 +131,8 @@ impl TimeLine {
 
     fn repeat_button(&mut self, ui: &mut Ui) {
         let repeats = self.state.repeats.is_some();
-        let button = ui.add(egui::Button::selectable(repeats, "Repeat").frame_when_inactive(true));
         let hint = "Again and again; drag with Shift on the time line for a part of it";
-        if button.on_hover_text(hint).clicked() {
+        if selectable(ui, repeats, "Repeat", hint) {
             let all = (0.0, self.state.length_s);
             self.playback.lead(PlaybackOrder::Repeat((!repeats).then_some(all)));
         }

@@ -10,7 +10,7 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::egui_painter::color;
 use crate::floor::Rect;
-use crate::preview::style::{panel_colour, panel_frame, pill, quiet};
+use crate::preview::style::{panel_colour, panel_frame, pill, quiet, toggle};
 use crate::scene::Theme;
 use crate::schema;
 
@@ -55,10 +55,7 @@ impl Designer {
                 if button(ui, true, "Fit", "See the whole floor; the wheel zooms, Space and drag moves") {
                     self.fit();
                 }
-                let text = egui::Button::selectable(self.text.is_open, "Text").frame_when_inactive(true);
-                if ui.add(text).on_hover_text("The layout as text, beside the floor").clicked() {
-                    self.text.is_open = !self.text.is_open;
-                }
+                toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
                 self.count(ui, theme);
                 if let Some(message) = &self.message {
                     let colour = if message.is_bad { theme.fault } else { theme.good };

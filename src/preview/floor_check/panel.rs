@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 
 use super::super::app::App;
-use super::super::style::{panel_frame, quiet, section};
+use super::super::style::{panel_frame, quiet, section, selectable};
 use super::{Walk, felt_words};
 use crate::egui_painter::color;
 use crate::layout::Colour;
@@ -52,8 +52,7 @@ impl App {
                     ("Wiring", is_wiring, "One step for each board: which is where", Wish::Wiring),
                     ("Walk test", !is_wiring, "Every tile, in any order: which sensors answer", Wish::Test),
                 ] {
-                    let button = Button::selectable(shown, name).frame_when_inactive(true);
-                    if ui.add(button).on_hover_text(hint).clicked() {
+                    if selectable(ui, shown, name, hint) {
                         wish = Some(does);
                     }
                 }

@@ -3,7 +3,7 @@
 use eframe::egui::{Button, Label, Ui};
 
 use super::super::app::App;
-use super::super::style::{quiet, section};
+use super::super::style::{quiet, section, toggle};
 
 /// Room for what is said below: as high whatever it is.
 const WORDS: f32 = 32.0;
@@ -22,11 +22,8 @@ impl App {
             ui.label(quiet(&theme, text).size(12.5));
         });
         ui.horizontal(|ui| {
-            let draws = Button::selectable(walks.are_drawn, "Draw a walk").frame_when_inactive(true);
             let hint = "The mouse draws a way over the floor, and somebody walks it; W does the same";
-            if ui.add(draws).on_hover_text(hint).clicked() {
-                walks.are_drawn = !walks.are_drawn;
-            }
+            toggle(ui, &mut walks.are_drawn, "Draw a walk", hint);
             let some = remembered > 0;
             if ui
                 .add_enabled(some, Button::new("Again"))

@@ -15,7 +15,7 @@ use super::{MOST, SPANS};
 use crate::egui_painter::color;
 use crate::preview::app::App;
 use crate::preview::design::Threshold;
-use crate::preview::style::{panel_frame, quiet};
+use crate::preview::style::{panel_frame, quiet, toggle};
 use crate::scene::Theme;
 use crate::units::Newtons;
 use crate::widget::WidgetId;
@@ -65,11 +65,7 @@ impl App {
                 if close.on_hover_text("Close the plots; P does the same").clicked() {
                     wish = Some(Wish::Close);
                 }
-                let held = &mut self.plots.is_held;
-                let button = ui.add(Button::selectable(*held, "Freeze").frame_when_inactive(true));
-                if button.on_hover_text("Let what is seen stay").clicked() {
-                    *held = !*held;
-                }
+                toggle(ui, &mut self.plots.is_held, "Freeze", "Let what is seen stay");
                 let span = &mut self.plots.span_s;
                 let text = |span: f64| format!("{span:.0} s");
                 let menu = ComboBox::from_id_salt("span").selected_text(text(*span)).width(56.0);
