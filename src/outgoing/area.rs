@@ -56,7 +56,6 @@ pub fn write_area(prefix: &Prefix, news: &AreaNews, bytes: &mut Vec<u8>) {
     let texts = [news.area.as_str(), news.state.name(), news.why.as_str()];
     let mut args: Vec<OscType> = texts.map(|text| OscType::String(text.into())).into();
     args.push(OscType::Float(news.doubt.as_secs_f32()));
-    bytes.clear();
     write(&message(prefix.address("area"), args), bytes);
 }
 

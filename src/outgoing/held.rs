@@ -32,7 +32,6 @@ pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut
     let ended = report.ended.iter().map(|id| (id, 0));
     for (id, on) in ended.chain(held) {
         let args = [on, report.sequence.cast_signed()].map(OscType::Int).into();
-        bytes.clear();
         write(&message(of_widget(prefix, id, "held"), args), bytes);
         send(bytes);
     }
@@ -40,7 +39,6 @@ pub fn write_held(prefix: &Prefix, report: &HeldReport, bytes: &mut Vec<u8>, mut
 
 /// Writes that the server lives as the OSC message `/underfoot/alive <sequence>`, an int.
 pub fn write_alive(prefix: &Prefix, sequence: u32, bytes: &mut Vec<u8>) {
-    bytes.clear();
     write(&message(prefix.address("alive"), vec![OscType::Int(sequence.cast_signed())]), bytes);
 }
 

@@ -28,7 +28,6 @@ pub fn write_event(prefix: &Prefix, event: &WidgetEvent, bytes: &mut Vec<u8>) {
     }
     args.extend([event.force.0, event.position.x, event.position.y].map(OscType::Float));
     let address = of_widget(prefix, &event.id, event.kind.name());
-    bytes.clear();
     write(&message(address, args), bytes);
 }
 
@@ -60,10 +59,7 @@ pub fn write_contacts(
         let (now, later) = rest.split_at(rest.len().min(CONTACTS_PER_DATAGRAM));
         let mut content = vec![message(prefix.address("contacts"), vec![OscType::Int(count)])];
         content.extend(now.iter().map(|each| contact(prefix, each)));
-        // The time tag that means "at once".
-        let timetag = OscTime { seconds: 0, fractional: 1 };
-        bytes.clear();
-        write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);
+        write(&at_once(content), bytes);
         send(bytes);
         rest = later;
         if rest.is_empty() {
@@ -89,7 +85,6 @@ pub fn write_health(prefix: &Prefix, state: LinkState, health: &SensorHealth, by
     args.extend([degraded, stale, faulty, uncalibrated].map(|&count| OscType::Int(count.cast_signed())));
     let named = troubles.iter().take(NAMED_SENSORS);
     args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
-    bytes.clear();
     write(&message(prefix.address("health"), args), bytes);
 }
 
@@ -108,7 +103,6 @@ pub fn write_device(prefix: &Prefix, status: &DeviceStatus, bytes: &mut Vec<u8>)
     let numbers = [status.channels.into(), status.sample_rate.into(), status.block.into()];
     args.extend(numbers.into_iter().chain([status.underruns, status.reopened]).map(int));
     args.push(OscType::String(status.priority.name().into()));
-    bytes.clear();
     write(&message(prefix.address("device"), args), bytes);
 }
 
@@ -128,13 +122,11 @@ pub fn write_crack(
     let mut args = vec![int(seed)];
     args.extend(energy_and_place.map(OscType::Float));
     args.push(int(skipped));
-    bytes.clear();
     write(&message(prefix.address("crack"), args), bytes);
 }
 
 /// Writes which page is shown as the OSC message `/underfoot/page` with one string; empty in a layout without pages.
 pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
-    bytes.clear();
     write(&message(prefix.address("page"), vec![OscType::String(page.into())]), bytes);
 }
 
@@ -145,13 +137,11 @@ pub fn write_page(prefix: &Prefix, page: &str, bytes: &mut Vec<u8>) {
 pub fn write_mute(prefix: &Prefix, muted: &Muted, bytes: &mut Vec<u8>) {
     let places = muted.tiles.iter().take(NAMED_TILES).flat_map(|tile| [tile.column, tile.row]);
     let args = std::iter::once(u16::from(muted.all)).chain(places).map(|number| OscType::Int(number.into()));
-    bytes.clear();
     write(&message(prefix.address("mute"), args.collect()), bytes);
 }
 
 /// Writes why a request was refused as the OSC message `/underfoot/error`: the address it came to, and a sentence.
 pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8>) {
-    bytes.clear();
     let args = vec![OscType::String(address.into()), OscType::String(why.into())];
     write(&message(prefix.address("error"), args), bytes);
 }
@@ -184,13 +174,17 @@ pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>)
     }
     let page = page.as_ref().map_or("", WidgetId::as_str);
     content.push(message(of_widget(prefix, id, "page"), vec![OscType::String(page.into())]));
-    let timetag = OscTime { seconds: 0, fractional: 1 };
-    bytes.clear();
-    write(&OscPacket::Bundle(OscBundle { timetag, content }), bytes);
+    write(&at_once(content), bytes);
 }
 
 pub(super) fn of_widget(prefix: &Prefix, id: &WidgetId, what: &str) -> String {
     prefix.address(&format!("widget/{}/{what}", address_part(id)))
+}
+
+/// These messages in one datagram.
+pub(super) fn at_once(content: Vec<OscPacket>) -> OscPacket {
+    // The time tag that means "at once".
+    OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content })
 }
 
 pub(super) fn message(addr: String, args: Vec<OscType>) -> OscPacket {

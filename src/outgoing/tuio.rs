@@ -3,8 +3,9 @@
 use std::collections::HashMap;
 
 use glam::Vec2;
-use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+use rosc::{OscMessage, OscPacket, OscTime, OscType, encoder};
 
+use super::osc::at_once;
 use crate::floor::Geometry;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
@@ -210,9 +211,7 @@ pub(super) fn send_frame(
         let alive = contacts.iter().filter(|contact| !unset.contains(&contact.id));
         let content = bundle(*next, alive.map(|contact| session(contact.id)).collect(), sets);
         *next = following(*next);
-        let timetag = OscTime { seconds: 0, fractional: 1 };
-        bytes.clear();
-        write(&OscPacket::Bundle(OscBundle { timetag, content }), &mut bytes);
+        write(&at_once(content), &mut bytes);
         send(&bytes);
         if news.peek().is_none() {
             return;

@@ -119,14 +119,14 @@ impl SensorEncoder {
             }
         }
         let message = OscMessage { addr: board.address.clone(), args };
-        self.bytes.clear();
         write(&OscPacket::Message(message), &mut self.bytes);
         Ok(&self.bytes)
     }
 }
 
-/// Appends `packet` to `bytes`.
+/// Writes `packet` in place of what `bytes` held.
 pub(crate) fn write(packet: &OscPacket, bytes: &mut Vec<u8>) {
+    bytes.clear();
     let Ok(_) = encoder::encode_into(packet, bytes);
 }
 
