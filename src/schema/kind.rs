@@ -12,7 +12,7 @@ use super::node::Node;
 use super::problem::Problem;
 use super::version::{FORMAT_VERSION, VERSION};
 use crate::feel::{Effects, Feel};
-use crate::format::codec::{Beside, Required};
+use crate::format::codec::Beside;
 use crate::format::{Flat, Id, Opt, Rec, Record, Text, record};
 use crate::layout::Look;
 use crate::widget::Behaviour;
@@ -21,7 +21,7 @@ record! {
     /// One kind of control: what its widgets do, feel and look like unless they say otherwise.
     pub struct Kind = "Kind";
     /// What layouts call it.
-    pub name: String = "name", Required(Id);
+    pub name: String = "name", Id;
     /// What it does, with all settings.
     pub behaviour: Behaviour = "behaviour", Beside;
     /// What it feels like.
@@ -140,6 +140,11 @@ pub(super) fn read(node: Node<'_>, parent: Option<&Kind>) -> Option<Kind> {
         let help = "leave out `behaviour`, or `from`";
         fields.report(Problem::error(span, message).expected(expected).help(help));
         fields.refuse("behaviour");
+    }
+    // The one thing that is not taken from a parent.
+    if parent.is_some() && fields.value_span("name").is_none() {
+        fields.lack("name");
+        fields.fail("name");
     }
     let read = KindFile::read_fields(&mut fields, base.as_ref());
     if !fields.have_failed(&["behaviour"]) {

@@ -10,7 +10,7 @@ pub(crate) use self::distinct::{Distinct, Seen};
 pub(crate) use self::list::{List, list};
 pub(crate) use self::nested::{Beside, Flat, OneOf, Rec};
 pub(crate) use self::num::{Num, Scalar, num};
-pub(crate) use self::written::{At, By, Required, Spelled, Written};
+pub(crate) use self::written::{At, By, Spelled, Written};
 use super::describe::{FieldDescription, FieldType, first_paragraph};
 use super::fields::Fields;
 use super::hand::Hand;

@@ -5,7 +5,6 @@ use std::ops::Range;
 
 use super::Codec;
 use crate::format::describe::FieldType;
-use crate::format::fields::Fields;
 use crate::format::node::Node;
 use crate::format::problem::Problem;
 use crate::format::text::Text as RonText;
@@ -49,34 +48,6 @@ impl<T, C: Codec<T>> Codec<Written<T>> for At<C> {
 
     fn stand_in(&self) -> Written<T> {
         self.0.stand_in().into()
-    }
-}
-
-/// What must be written even over a base.
-pub(crate) struct Required<C>(pub(crate) C);
-
-impl<T, C: Codec<T>> Codec<T> for Required<C> {
-    fn read(&self, node: Node<'_>, _: Option<&T>) -> Option<T> {
-        self.0.read(node, None)
-    }
-
-    fn write(&self, value: &T) -> RonText {
-        self.0.write(value)
-    }
-
-    fn shape(&self) -> FieldType {
-        self.0.shape()
-    }
-
-    fn stand_in(&self) -> T {
-        self.0.stand_in()
-    }
-
-    fn read_field(&self, fields: &mut Fields<'_>, name: &'static str, _: Option<&T>, _: Option<T>) -> T
-    where
-        T: Clone,
-    {
-        self.0.read_field(fields, name, None, None)
     }
 }
 
