@@ -27,13 +27,6 @@ impl Script {
         Self { cast, bounds }
     }
 
-    /// Both scripts at the same time, on the first one's floor.
-    #[must_use]
-    pub fn together_with(mut self, other: Self) -> Self {
-        self.cast.extend(other.cast);
-        self
-    }
-
     /// From the clock's start to the end of the longest performance.
     #[must_use]
     pub fn duration(&self) -> Duration {
@@ -370,11 +363,11 @@ mod tests {
     }
 
     #[test]
-    fn two_scripts_play_together() {
-        let one = Script::new(vec![standing_at(0.4, 0.4, 0.0)], Geometry::default().bounds());
+    fn two_people_perform_together() {
         let mut other = standing_at(1.4, 1.4, 0.0);
         other.wait(Duration::from_secs(2));
-        let both = one.together_with(Script::new(vec![other], Geometry::default().bounds()));
+        let cast = vec![standing_at(0.4, 0.4, 0.0), other];
+        let both = Script::new(cast, Geometry::default().bounds());
         assert_eq!(both.duration(), Duration::from_secs(2));
         let mut feet = Vec::new();
         both.feet_at(Instant::from_millis(1000), &mut feet);

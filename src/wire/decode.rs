@@ -84,7 +84,6 @@ pub struct Decoder {
     /// By the bytes of their addresses.
     boards: HashMap<Box<[u8]>, BoardShape>,
     prefix: Prefix,
-    limits: Limits,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -102,14 +101,7 @@ impl Decoder {
             let shape = BoardShape { number, channels: board.channels.len() };
             boards.entry(board.address.as_bytes().into()).or_insert(shape);
         }
-        Self { boards, prefix: Prefix::default(), limits: Limits::SENSORS }
-    }
-
-    /// The same decoder with other limits.
-    #[must_use]
-    pub fn with_limits(mut self, limits: Limits) -> Self {
-        self.limits = limits;
-        self
+        Self { boards, prefix: Prefix::default() }
     }
 
     /// The same decoder for requests whose addresses begin otherwise.
@@ -123,12 +115,6 @@ impl Decoder {
     #[must_use]
     pub const fn prefix(&self) -> &Prefix {
         &self.prefix
-    }
-
-    /// What a datagram may hold.
-    #[must_use]
-    pub const fn limits(&self) -> Limits {
-        self.limits
     }
 
     /// Reads `datagram`, which arrived at `received`, into `batch`, replacing what was in it.
@@ -150,13 +136,13 @@ impl Decoder {
 
     fn fill(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
         // Nearly all that comes are single messages of boards, which are checked while they are read.
-        if datagram.len() <= self.limits.bytes
+        if datagram.len() <= Limits::SENSORS.bytes
             && let Some(packet) = RawMessage::split(datagram).and_then(|raw| self.sensors(&raw, received))
         {
             batch.packets.push(packet);
             return Ok(());
         }
-        guard::check(datagram, &self.limits)?;
+        guard::check(datagram, &Limits::SENSORS)?;
         self.element(datagram, received, batch)
     }
 
@@ -194,7 +180,7 @@ impl Decoder {
     /// The packet, if this is one of a board of this floor.
     fn sensors(&self, raw: &RawMessage<'_>, received: Instant) -> Option<SensorPacket> {
         let shape = self.boards.get(raw.address)?;
-        let (sequence, readings) = raw.read(&self.limits)?;
+        let (sequence, readings) = raw.read(&Limits::SENSORS)?;
         let packet = SensorPacket { board: shape.number, sequence, received, readings };
         (packet.readings.len() == shape.channels).then_some(packet)
     }

@@ -28,7 +28,7 @@ use super::{SensorSource, SourceError};
 use crate::floor::{Floor, Forwarding, Network};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, Decoder, LinkCounters, Prefix, Request, SensorPacket, WireError};
+use crate::wire::{Batch, Decoder, Limits, LinkCounters, Prefix, Request, SensorPacket, WireError};
 
 /// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
@@ -104,7 +104,7 @@ impl UdpSource {
             started: HostInstant::now(),
             patience: None,
             // One byte more than may come tells what was cut off from what just fits.
-            buffer: vec![0; decoder.limits().bytes + 1],
+            buffer: vec![0; Limits::SENSORS.bytes + 1],
             decoder,
             batch: Batch::default(),
             packets: VecDeque::new(),
@@ -201,12 +201,6 @@ impl UdpSource {
     /// What the system says; it should not happen on a bound socket.
     pub fn local_addr(&self) -> std::io::Result<SocketAddr> {
         self.socket.local_addr()
-    }
-
-    /// Where requests come, if they have a port of their own.
-    #[must_use]
-    pub fn commands_addr(&self) -> Option<SocketAddr> {
-        self.commands.as_ref().and_then(|(socket, _)| socket.local_addr().ok())
     }
 
     /// The receive buffer granted, in bytes as the system counts them (Linux
