@@ -5,13 +5,14 @@ use std::ops::Range;
 use super::area::Placed;
 use super::behaviour;
 use super::fields::Fields;
-use super::goto::Goto;
 use super::inherit::Choice;
 use super::kind::Kind;
 use super::node::{Node, is_id};
 use super::place::Placing;
 use super::problem::Problem;
 use super::repeat::{self, Cell, Repeat};
+use crate::format::codec::{At, Written};
+use crate::format::{Codec, Id};
 use crate::layout::Icon;
 
 /// One control. What could not be read is `None` and has been reported.
@@ -22,7 +23,8 @@ pub(super) struct Control {
     pub(super) label: Option<String>,
     /// The number of its page; `None` if it is on all of them.
     pub(super) page: Option<usize>,
-    pub(super) goto: Option<Goto>,
+    /// The id of the page that it switches to.
+    pub(super) goto: Option<Written<String>>,
     /// Its kind with everything that it overrides.
     pub(super) kind: Option<Kind>,
     pub(super) written: ControlSpans,
@@ -72,7 +74,7 @@ impl<'r> Grid<'r> {
         let base = fields.read("kind", None, |node| kinds.named(node));
         let placing = Placing::read(&mut fields);
         let size = size(&mut fields, placing.is_relative);
-        let goto = Goto::read(&mut fields);
+        let goto: Option<Written<String>> = fields.take("goto").and_then(|node| At(Id).read(node, None));
         let repeat_at = fields.value_span("repeat");
         // A grid that can't be read says nothing of its ids, which may well be patterns.
         let names = match &repeat {

@@ -23,7 +23,6 @@ mod floor_areas;
 mod floor_codecs;
 mod floor_parts;
 mod floor_text;
-mod goto;
 mod ground;
 mod inherit;
 mod kind;

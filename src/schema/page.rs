@@ -231,7 +231,7 @@ impl Page {
                 kind: kind.name,
                 region: self.region_of(area)?,
                 page: control.page,
-                goto: control.goto.as_ref().and_then(|goto| pages::number_of(goto, &self.pages)),
+                goto: control.goto.as_ref().and_then(|goto| pages::number_of(&goto.value, &self.pages)),
                 area: area.in_metres(geometry, units),
                 label: control.label.clone()?,
                 behaviour: kind.behaviour,

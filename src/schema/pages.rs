@@ -10,7 +10,6 @@
 
 use super::arrange::WIDGETS;
 use super::control::Control;
-use super::goto::Goto;
 use super::ground::{GROUNDS, GroundDefinition};
 use super::lists::MAX_WIDGETS;
 use super::problem::Problem;
@@ -55,11 +54,12 @@ pub(super) fn check(reader: &Reader<'_>, pages: &[PageRecord], controls: &[Contr
     }
     for control in controls {
         let Some(goto) = &control.goto else { continue };
-        if number_of(goto, pages).is_none() && pages.iter().all(|definition| definition.id().is_some()) {
+        if number_of(&goto.value, pages).is_none() && pages.iter().all(|definition| definition.id().is_some())
+        {
             let ids: Vec<&str> = pages.iter().filter_map(PageRecord::id).collect();
-            let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.id));
-            let help = did_you_mean(&goto.id, &ids, '"');
-            let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.id));
+            let problem = Problem::error(goto.at.clone(), format!("there is no page \"{}\"", goto.value));
+            let help = did_you_mean(&goto.value, &ids, '"');
+            let help = help.unwrap_or_else(|| format!("add pages: [(id: \"{}\", widgets: [])]", goto.value));
             reader.report(problem.expected("no page is called so").help(help));
         }
         let clicks = control.kind.as_ref().is_none_or(|kind| matches!(kind.behaviour, Behaviour::Button(_)));
@@ -82,7 +82,7 @@ impl PageRecord {
     }
 }
 
-/// The number of the page that `goto` names among `pages`.
-pub(super) fn number_of(goto: &Goto, pages: &[PageRecord]) -> Option<usize> {
-    pages.iter().position(|definition| definition.id() == Some(&goto.id))
+/// The number of the page among `pages` that has this `id`.
+pub(super) fn number_of(id: &str, pages: &[PageRecord]) -> Option<usize> {
+    pages.iter().position(|definition| definition.id() == Some(id))
 }
