@@ -27,18 +27,7 @@ import time
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-VISIT = """Scenario(
-    title: "Home, then zoom",
-    person: (mass_kg: 70, foot_m: 0.27),
-    steps: [
-        Wait(ms: 1200),
-        Enter(from: South, at: (2.2, 0.5)),
-        Press(widget: "home", force_n: 140, hold_ms: 350),
-        Sidestep(at: (4.0, 0.5)),
-        Drag(widget: "zoom", from: 0.3, to: 0.75, speed_m_s: 0.3, force_n: 110),
-        Wait(ms: 300),
-    ],
-)"""
+VISIT = (Path(__file__).parent.parent / "tests/program/visit.ron").read_text()
 PAGE = """Layout(
     version: 1,
     regions: [(id: "floor", at: (0, 2), size: (6, 4))],

@@ -10,18 +10,7 @@ use super::end_to_end::{free_port, underfoot};
 #[path = "../../examples/runtime.rs"]
 mod runtime;
 
-const VISIT: &str = r#"Scenario(
-    title: "Home, then zoom",
-    person: (mass_kg: 70, foot_m: 0.27),
-    steps: [
-        Wait(ms: 1200),
-        Enter(from: South, at: (2.2, 0.5)),
-        Press(widget: "home", force_n: 140, hold_ms: 350),
-        Sidestep(at: (4.0, 0.5)),
-        Drag(widget: "zoom", from: 0.3, to: 0.75, speed_m_s: 0.3, force_n: 110),
-        Wait(ms: 300),
-    ],
-)"#;
+const VISIT: &str = include_str!("visit.ron");
 
 #[test]
 fn a_floor_in_another_process_drives_an_app_of_25_lines() {
