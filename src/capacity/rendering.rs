@@ -105,7 +105,7 @@ impl RenderLoad {
         }
     }
 
-    /// What could not be rendered: nothing, or the measure is none.
+    /// What could not be rendered: if there is anything, the measurement does not count.
     #[must_use]
     pub fn counters(&self) -> FeelCounters {
         self.renderer.counters()

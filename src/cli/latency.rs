@@ -111,7 +111,7 @@ fn histogram(meter: &LatencyMeter) -> Option<String> {
     Some(text)
 }
 
-/// The least of 1, 2, 5, 10, 20, ... microseconds that is no less.
+/// The least of 1, 2, 5, 10, 20, ... microseconds that is not less.
 fn step(least: u64) -> u64 {
     let mut unit = 1;
     loop {

@@ -14,7 +14,7 @@ use crate::format::outline::Outline;
 use crate::layout::Layout;
 use crate::schema::{Diagnostics, Kinds, Loaded, parse_layout};
 
-/// What a file may begin with that is no part of its text.
+/// What a file may begin with that is not part of its text.
 const MARK: &str = "\u{feff}";
 
 /// A layout that is being edited: its text, which alone counts, and what the reader makes of it.

@@ -16,7 +16,7 @@ impl Document {
     /// south-west corner.
     ///
     /// # Errors
-    /// [`Refusal::Apart`] for records of several lists, or that are no controls; [`Refusal::PlacedByGroup`] as
+    /// [`Refusal::Apart`] for records of several lists, or that are not controls; [`Refusal::PlacedByGroup`] as
     /// [`Document::placing`].
     pub fn grouping(&self, items: &[&Item]) -> Result<(Vec<Edit>, Address), Refusal> {
         let mut items: Vec<&Item> = items.to_vec();

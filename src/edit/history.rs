@@ -111,7 +111,7 @@ mod tests {
         assert_eq!(history.last().unwrap().undone("4"), "3");
         history.go_back();
         assert_eq!(history.last().unwrap().undone("3"), "0");
-        // A drag that comes back to where it began is no step at all.
+        // A drag that comes back to where it began is not a step.
         history.note("3", "0", Some(7));
         assert!(history.last().is_none() && history.next().is_none());
     }

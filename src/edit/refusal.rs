@@ -14,7 +14,7 @@ pub enum Refusal {
     /// There is no such record.
     #[error("there is no {0} in this layout")]
     Missing(Address),
-    /// What was to be put in is no record.
+    /// What was to be put in is not a record.
     #[error("this is not a record such as (id: \"home\", kind: \"button\", at: (1, 1), size: (1, 1))")]
     NotARecord,
     /// What is to be one group stands in several lists, such as those of two pages.

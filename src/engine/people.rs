@@ -68,7 +68,7 @@ impl Person {
         self.scale.weight()
     }
 
-    /// How far somebody of these `feet` would have stepped to `place`; `None` if it is none of theirs.
+    /// How far somebody of these `feet` would have stepped to `place`; `None` if none of them can have.
     pub(super) fn reach_to(&self, place: Vec2, feet: &[FootHistory], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
         let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);

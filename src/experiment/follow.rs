@@ -103,7 +103,7 @@ impl Followed {
         self.swaps += swaps;
     }
 
-    /// Share (0 to 1) of the feet that were found within 5 cm while two were down; a missed foot is none.
+    /// Share (0 to 1) of the feet that were found within 5 cm while two were down; a missed foot counts as not found.
     #[must_use]
     pub fn share_within_5cm(&self) -> f32 {
         share(self.of_two_within_5cm, self.of_two)

@@ -7,7 +7,7 @@ use crate::floor::Actuator;
 /// Channels that the output stage works on side by side.
 pub(super) const LANES: usize = 16;
 
-/// A share of a sound below this (-100 dB) is none.
+/// A share of a sound below this (-100 dB) counts as zero.
 pub(super) const FAINT: f32 = 1e-5;
 
 /// Where a tile's share of a cue goes.

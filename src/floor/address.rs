@@ -14,7 +14,7 @@ pub(crate) const ADDRESS: Spelled<SocketAddr> = Spelled {
     stand_in: SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000)),
 };
 
-/// Whether others can send there: `0.0.0.0` is each computer to itself, and port 0 is none.
+/// Whether others can send there: `0.0.0.0` is each computer to itself, and nothing can be sent to port 0.
 fn is_definite(address: &SocketAddr) -> bool {
     !address.ip().is_unspecified() && address.port() != 0
 }

@@ -115,7 +115,7 @@ impl<'r> Node<'r> {
 
     /// Reports that this is not the `expected` thing, and gives `None`.
     pub(crate) fn mismatch<T>(&self, expected: &str) -> Option<T> {
-        // The parser has said already why an error node is none.
+        // The parser has reported already what is wrong with an error node.
         if !matches!(self.expr, Expr::Error(_)) {
             let message = format!("`{}` must be {expected}", self.name);
             let found = format!("expected {expected}, found {}", describe(self.expr));
@@ -264,7 +264,7 @@ impl<'r> Node<'r> {
         Some(list.items.iter().map(|item| Node { expr: &item.expr, name: entry, ..*self }.inside()).collect())
     }
 
-    /// The values of a tuple of `N`, shown as `pattern` if it is none.
+    /// The values of a tuple of `N`, shown as `pattern` if it is not such a tuple.
     pub(crate) fn tuple<const N: usize>(&self, pattern: &str) -> Option<[Node<'r>; N]> {
         let elements = match self.expr {
             Expr::Tuple(tuple) => &tuple.elements,

@@ -11,7 +11,7 @@ pub(crate) struct Number {
     pub(crate) whole: bool,
 }
 
-/// Why something written like a number is none that can be used.
+/// Why something written like a number can't be used as one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NotANumber {
     /// `NaN` or `inf`, which no quantity of a floor ever is.

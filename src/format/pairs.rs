@@ -190,7 +190,7 @@ mod tests {
         let nested = |depth| format!("{}{}", "[".repeat(depth), "]".repeat(depth));
         assert_eq!(problems(&nested(64)), []);
         assert_eq!(problems(&nested(65)), [("brackets nest deeper than 64".into(), 64..65)]);
-        // A million brackets are no deeper problem.
+        // A million brackets take no deeper stack.
         let bottomless = "(".repeat(1_000_000);
         let marks = scan(&bottomless, 2_000_000).marks;
         assert_eq!(check(&bottomless, &marks, Limits::LAYOUT).len(), 1);

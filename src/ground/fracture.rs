@@ -189,7 +189,7 @@ impl Fracture {
             .filter(|(_, squared)| *squared <= self.rules.apart_m * self.rules.apart_m);
         let (index, is_new) = match nearest {
             Some((index, _)) => (index, false),
-            None => (self.sow(at, now, rng), true),
+            None => (self.place_seed(at, now, rng), true),
         };
         let Some(seed) = self.seeds.get_mut(index) else { return Growth::default() };
         seed.latest = now;
@@ -220,7 +220,7 @@ impl Fracture {
     }
 
     /// A new seed's place in `seeds`.
-    fn sow(&mut self, at: Vec2, now: Instant, rng: &mut Pcg64Mcg) -> usize {
+    fn place_seed(&mut self, at: Vec2, now: Instant, rng: &mut Pcg64Mcg) -> usize {
         if self.seeds.len() == MOST_SEEDS
             && let Some((idlest, _)) = self.seeds.iter().enumerate().min_by_key(|(_, seed)| seed.latest)
         {
@@ -253,7 +253,7 @@ impl Fracture {
         let rules = self.rules;
         let tips = self.seeds.get(seed)?.fronts.get(front)?.tips.len();
         if tips == 0 {
-            self.sprout(seed, front, rng);
+            self.branch(seed, front, rng);
         }
         let found = self.seeds.get(seed)?.fronts.get(front)?;
         if found.tips.is_empty() {
@@ -332,7 +332,7 @@ impl Fracture {
     }
 
     /// Lets a front of which nothing grows any more begin anew from the end of one of its seed's cracks.
-    fn sprout(&mut self, seed: usize, front: usize, rng: &mut Pcg64Mcg) {
+    fn branch(&mut self, seed: usize, front: usize, rng: &mut Pcg64Mcg) {
         if self.cracks.is_empty() || rng.random::<f32>() >= self.rules.branch.max(0.25) {
             return;
         }
@@ -400,7 +400,7 @@ mod tests {
     }
 
     #[test]
-    fn a_first_event_sows_a_seed_with_two_cracks_and_later_ones_stay_with_it() {
+    fn a_first_event_places_a_seed_with_two_cracks_and_later_ones_stay_with_it() {
         let mut rng = Pcg64Mcg::seed_from_u64(1);
         let mut fracture = Fracture::new(RULES, pond());
         let middle = Vec2::splat(0.9);

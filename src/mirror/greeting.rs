@@ -104,7 +104,7 @@ impl Greeting {
     /// Reads what [`Greeting::line`] wrote.
     ///
     /// # Errors
-    /// [`MirrorError`] if it is none, of another version, or if its floor or layout can't be read.
+    /// [`MirrorError`] if it is not a greeting, is of another version, or if its floor or layout can't be read.
     pub fn read(line: Value) -> Result<Self, MirrorError> {
         // Of another version nothing else need be as it is here.
         if let Some(version) = line.get("version").and_then(Value::as_u64)

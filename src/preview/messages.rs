@@ -28,7 +28,7 @@ pub(super) enum Happened {
     /// A control did not answer a press.
     Ignored(IgnoredPress),
     /// Ice cracked, or other ground gave way.
-    GaveWay {
+    GroundEvent {
         /// Which of the layout's grounds.
         ground: usize,
         /// What it is made of.
@@ -177,7 +177,7 @@ impl Messages {
             let count = now.saturating_sub(before);
             let Some(ground) = self.layout.grounds.get(index).filter(|_| count > 0) else { continue };
             match self.recent.front_mut() {
-                Some(Happened::GaveWay { ground: last, count: so_far, at, .. })
+                Some(Happened::GroundEvent { ground: last, count: so_far, at, .. })
                     if *last == index && snapshot.at.since(*at) < SAME_WALK =>
                 {
                     (*so_far, *at) = (*so_far + count, snapshot.at);
@@ -185,7 +185,7 @@ impl Messages {
                 _ => {
                     let material = ground.spec.material.name();
                     self.recent.truncate(KEPT - 1);
-                    self.recent.push_front(Happened::GaveWay {
+                    self.recent.push_front(Happened::GroundEvent {
                         ground: index,
                         material,
                         count,
@@ -254,7 +254,7 @@ mod tests {
             .recent
             .iter()
             .map(|line| match line {
-                Happened::GaveWay { count, material, .. } => (*count, *material),
+                Happened::GroundEvent { count, material, .. } => (*count, *material),
                 other => panic!("{other:?}"),
             })
             .collect();

@@ -163,7 +163,7 @@ mod tests {
         let (mut forces, people) = presses.counted(&id("home"));
         forces.sort_by(|a, b| a.0.total_cmp(&b.0));
         assert_eq!((forces, people), (vec![Newtons(40.0), Newtons(90.0), Newtons(120.0)], 2));
-        // The same press again at another time is another one, and lists that are cut at their old end are no news.
+        // The same press again at another time is another one, and lists that are cut at their old end say nothing new.
         snapshot.answered = vec![answered(200, 2, 90.0), answered(300, 2, 90.0)];
         presses.update(&snapshot);
         assert_eq!(presses.of(&id("home")).count(), 5);

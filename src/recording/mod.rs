@@ -64,7 +64,7 @@ pub enum RecordingError {
         /// What the system said.
         source: io::Error,
     },
-    /// The file is no recording of a floor, or ends before one begins.
+    /// The file is not a recording of a floor, or ends before one begins.
     #[error("{}: {why}", path.display())]
     Unreadable {
         /// Which file.

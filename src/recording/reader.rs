@@ -43,7 +43,7 @@ impl Recording {
     /// Opens the recording at `path` and reads the floor and the layout that it was made with.
     ///
     /// # Errors
-    /// [`RecordingError`] if the file can't be read, is no recording of a floor, or was cut off before one begins.
+    /// [`RecordingError`] if the file can't be read, is not a recording of a floor, or was cut off before one begins.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
         let unreadable = |why: String| RecordingError::Unreadable { path: path.into(), why };
         let file = File::open(path).map_err(|source| RecordingError::File { path: path.into(), source })?;
@@ -62,7 +62,7 @@ impl Recording {
                 Part::Attachment(..) => {}
                 Part::Entry(..) | Part::Event(_) | Part::Whole => {
                     return Err(unreadable(
-                        "it has no floor and layout: it is no recording of a floor".into(),
+                        "it has no floor and layout: it is not a recording of a floor".into(),
                     ));
                 }
                 Part::Broken(why) => {

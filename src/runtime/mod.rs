@@ -22,7 +22,7 @@
 //! | an app | with |
 //! |---|---|
 //! | hears what happens | [`Session::next_event`], which never blocks; [`SessionBuilder::wake`] says when to look |
-//! | acts while a control is held | [`Session::held`]: false as soon as nobody can vouch for it any more |
+//! | acts while a control is held | [`Session::held`]: false as soon as it can't be confirmed any more |
 //! | shows the floor | [`Session::snapshot`] |
 //! | changes a control | [`Session::control`] |
 //! | is felt, and tells others | [`SessionBuilder::actuators`], [`SessionBuilder::sink`] |

@@ -97,8 +97,8 @@ pub(super) fn legend(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     }
     let cracks: usize = view.snapshot.grounds.iter().map(|ground| ground.cracks.len()).sum();
     if cracks > 0 {
-        let crowded: u64 = view.snapshot.grounds.iter().map(|ground| ground.counters.evicted).sum();
-        let early = if crowded > 0 { format!(", {crowded} healed early") } else { String::new() };
+        let evicted: u64 = view.snapshot.grounds.iter().map(|ground| ground.counters.evicted).sum();
+        let early = if evicted > 0 { format!(", {evicted} healed early") } else { String::new() };
         pen.entry(scene, &format!("{cracks} pieces of crack{early}"), 0.012, |scene, at| {
             let stroke = Paint::stroke(Stroke::new(0.003, Ink::solid(theme.quiet)));
             let zigzag = [(-0.012, -0.006), (-0.003, 0.006), (0.003, -0.004), (0.012, 0.007)];

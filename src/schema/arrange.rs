@@ -173,7 +173,7 @@ fn arrange(mut entries: Vec<Entry<'_>>) -> Vec<Control> {
             entry.move_by(by, neighbour.as_ref());
         } else if let Some(Entry { body: EntryContent::Group(controls, bounds), .. }) = entries.get_mut(index)
         {
-            // Places within a group that is nowhere are none.
+            // Without the group's place those within it are unknown.
             controls.iter_mut().for_each(|control| control.place = None);
             *bounds = None;
         }

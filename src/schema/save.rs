@@ -195,7 +195,7 @@ fn copied(target: &Path, backup: &Path) -> io::Result<()> {
     match copied.and_then(|_| copy.sync_all()) {
         Ok(()) => Ok(()),
         Err(error) => {
-            // Half a backup is none.
+            // Half a backup is not a backup.
             let _ = fs::remove_file(backup);
             Err(error)
         }

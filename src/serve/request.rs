@@ -33,7 +33,7 @@ pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(),
     }
 }
 
-/// The controls that `id` means as a pattern; none if it is none, or the name of a control.
+/// The controls that `id` means as a pattern; empty if it is not a pattern, or is the name of a control.
 pub(super) fn meant(engine: &Engine, id: &WidgetId) -> Vec<WidgetId> {
     if !is_pattern(id.as_str()) || engine.control(id.as_str()).is_some() {
         return Vec::new();

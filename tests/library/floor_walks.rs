@@ -87,7 +87,7 @@ fn nothing_is_asked_before_every_board_has_been_heard_and_silent_ones_are_named(
         walk.take(packet);
     });
     assert_eq!(walk.task(), WiringTask::Step(TileId::new(0, 0)));
-    // A light touch is no step, but is shown.
+    // A light touch is not a step, but is shown.
     let mut light = standing(middle(&floor, TileId::new(2, 1)));
     light.force.0 = 90.0;
     pass(&mut sim, 400, &[light], |packet| {

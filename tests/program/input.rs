@@ -1,4 +1,4 @@
-//! What the program is given: files that are none, numbers that are none.
+//! What the program is given: files and numbers that are not valid.
 
 use std::path::Path;
 use std::process::{Child, Output, Stdio};
@@ -85,7 +85,7 @@ fn files_that_are_too_large_are_refused() {
     }
 }
 
-/// No option takes a number that is none, or one that no floor needs.
+/// No option takes what is not a finite number, or one that no floor needs.
 #[test]
 fn numbers_are_finite_and_in_range() {
     let folder = tempfile::tempdir().unwrap();

@@ -19,7 +19,7 @@ const RELEASE: Newtons = Newtons(40.0);
 /// How long a foot must press before it touches, in seconds: one that walks across is mostly known for a step by then.
 const DWELL_S: f64 = 0.06;
 
-/// How old a snapshot may be, in seconds: beyond it, nobody vouches for the feet in it.
+/// How old a snapshot may be, in seconds: beyond it, its feet may have moved or left.
 const STALE_S: f64 = 0.15;
 
 /// How far a press may roll and still click, in points; how long it may last, in seconds. egui's own are for
@@ -69,7 +69,7 @@ impl FootInput {
         self.target = Some(target);
     }
 
-    /// Lets presses of `context` roll and last as those of feet do, before they are no click: by 40 points, for 5 s.
+    /// Lets presses of `context` roll and last as those of feet do, before they no longer count as clicks: by 40 points, for 5 s.
     ///
     /// The same holds for the mouse of this app then; egui has one limit for all pointers.
     pub fn tune(context: &Context) {

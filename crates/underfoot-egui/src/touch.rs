@@ -10,7 +10,7 @@ pub(crate) const DEVICE: TouchDeviceId = TouchDeviceId(0x6665_6574);
 /// What is told to egui as a force of 1: a person who stands on one foot.
 const FULL: Newtons = Newtons(800.0);
 
-/// How far away a pointer goes for a moment so that its release is no click, in points.
+/// How far away a pointer goes for a moment so that its release is not a click, in points.
 const AWAY: f32 = 100_000.0;
 
 /// A foot that touches.

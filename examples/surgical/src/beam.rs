@@ -69,7 +69,7 @@ impl Beam {
         }
     }
 
-    /// Lets time pass; `is_held` is what the floor vouches for at this moment.
+    /// Lets time pass; `is_held` is what the floor confirms at this moment.
     pub fn pass(&mut self, dt_s: f64, is_held: bool) {
         self.is_on = is_held && self.since.is_some();
         if self.is_on {
@@ -99,7 +99,7 @@ mod tests {
     }
 
     #[test]
-    fn it_shines_only_while_the_floor_vouches_for_the_foot() {
+    fn it_shines_only_while_the_floor_confirms_the_foot() {
         let mut beam = pressed();
         beam.pass(0.1, false);
         assert!(!beam.is_on, "no event has come, and it is dark");

@@ -35,7 +35,7 @@ pub struct Hold {
     pub window: [f64; 2],
     /// How far feet dragged the picture since the last time, to the right and downwards, in [units](View::middle).
     pub drag: [f64; 2],
-    /// Whether the floor vouches for a foot on the beam's control.
+    /// Whether the floor confirms a foot on the beam's control.
     pub beam: bool,
 }
 

@@ -22,7 +22,7 @@ pub(super) fn put(arguments: &[Value], house: &House) -> Result<(), String> {
     let geometry = &house.floor.geometry;
     let read = schema::parse_layout(text, "the layout", &Kinds::builtin(), geometry)
         .map_err(|diagnostics| diagnostics.to_string())?;
-    // What acts while it is held is nothing that somebody elsewhere may bring, move or take away.
+    // What acts while it is held may not be brought, moved or taken away from elsewhere.
     for (layout, whose) in [(&*house.session.snapshot().layout, "on the floor"), (&read.layout, "sent")] {
         if let Some(id) = held_to_run(layout) {
             return Err(format!(

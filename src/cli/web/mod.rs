@@ -187,7 +187,7 @@ fn receive(stream: TcpStream, peer: SocketAddr, house: &House) {
         .and_then(|()| stream.set_read_timeout(Some(PATIENCE)))
         .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
         .and_then(|()| stream.set_nodelay(true));
-    // Who has gone meanwhile is no news.
+    // A client that has left meanwhile is not an error.
     let Some(head) = set.ok().and_then(|()| head(&stream)) else { return };
     if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
         client::serve(stream, peer, house, head.starts_with("GET /mirror "));

@@ -18,7 +18,7 @@ impl FromStr for Origin {
 
 /// Whether a page from `origin` may connect to `own`: if it was allowed, if it comes from this machine, or if it comes
 /// from the very address it connects to, in figures. A name counts only if it was allowed, since anybody's name may
-/// lead to this machine (DNS rebinding). A client without an origin is no web page.
+/// lead to this machine (DNS rebinding). A client without an origin is not a web page.
 pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Origin]) -> bool {
     let Some(origin) = origin else { return true };
     let origin = origin.to_ascii_lowercase();

@@ -17,7 +17,7 @@ pub(super) struct Shares(Vec<Share>);
 /// One control's number.
 #[derive(Clone, Copy, Debug)]
 struct Share {
-    /// 0 to 1, both numbers of a pad; NaN for what is none.
+    /// 0 to 1, both numbers of a pad; NaN for other values.
     at: Vec2,
     /// The detent of an effect's own that was felt last, and how far the number has been from it since.
     detent: f32,

@@ -297,7 +297,7 @@ fn felt(level: f32) -> f32 {
     if level > 1e-6 { level } else { 0.0 }
 }
 
-/// `value` as a share of `full`, 0 to 1; 0 if there is no sense in it.
+/// `value` as a share of `full`, 0 to 1; 0 where that is not a number.
 fn share(value: f32, full: f32) -> f32 {
     let share = value / full;
     if share > 0.0 { share.min(1.0) } else { 0.0 }

@@ -23,7 +23,7 @@ const DAMPING: f32 = 0.08;
 /// Damping of the bristles, of the same kind (our choice: so that a sole that sticks does not ring on).
 const BRISTLE_DAMPING: f32 = 0.3;
 
-/// Forces, stretches and bends beyond this many static frictions are none that this model makes; they are cut off.
+/// Forces, stretches and bends beyond this many static frictions do not come from this model; they are cut off.
 const BOUND: f32 = 4.0;
 
 /// Soles of eight voices that stick to the plate and slip.

@@ -58,7 +58,7 @@ impl Designer {
         let kinds = (self.kinds_of)(self.file.path()).map_err(|problems| problems.to_string())?;
         self.document.make_of(&kinds).map_err(|problems| problems.to_string())?;
         let Some(theirs) = self.file.outside().map_err(|error| error.to_string())? else { return Ok(()) };
-        // What can't be read is no change that could be put together with mine.
+        // Only what can be read can be merged with the edits made here.
         let document = &self.document;
         Document::read(document.name(), &theirs, document.kinds(), document.floor())
             .map_err(|problems| problems.to_string())?;

@@ -79,7 +79,7 @@ impl FloorCheck {
                 walk.take(packet);
             }),
             Some(Walk::Test(walk)) => self.packets.take(|packet| walk.take(packet)),
-            // What came before a walk began is none of its.
+            // What came before a walk began is not part of it.
             None => self.packets.take(|_| {}),
         }
     }

@@ -42,7 +42,7 @@ impl App {
                 match happened {
                     Happened::Event(event) => show(ui, theme, event),
                     Happened::Ignored(press) => show_ignored(ui, theme, press),
-                    Happened::GaveWay { material, count, at, .. } => {
+                    Happened::GroundEvent { material, count, at, .. } => {
                         gave_way(ui, theme, material, *count, *at);
                     }
                 }
@@ -75,7 +75,7 @@ fn is_wanted(happened: &Happened, wanted: &str) -> bool {
     let words = match happened {
         Happened::Event(event) => format!("{} {} {}", event.id, event.kind.name(), value(event.kind)),
         Happened::Ignored(press) => format!("{} ignored: {}", press.id, press.why),
-        Happened::GaveWay { material, .. } => format!("{material} gave way"),
+        Happened::GroundEvent { material, .. } => format!("{material} gave way"),
     };
     wanted.split_whitespace().all(|word| words.to_lowercase().contains(word))
 }
@@ -98,7 +98,7 @@ fn exported(recent: &VecDeque<Happened>, wanted: &str) -> String {
             });
             Some(line.to_string() + "\n")
         }
-        Happened::GaveWay { .. } => None,
+        Happened::GroundEvent { .. } => None,
     });
     lines.collect()
 }
@@ -177,7 +177,7 @@ mod tests {
     fn listed() -> VecDeque<Happened> {
         let event = |at, id| Happened::Event(crate::preview::tests::event(at, id));
         let at = Instant::from_millis(150);
-        let ground = Happened::GaveWay { ground: 0, material: "Ice", count: 3, at };
+        let ground = Happened::GroundEvent { ground: 0, material: "Ice", count: 3, at };
         let (id, contact, why) = (WidgetId::new("zoom"), ContactId(4), Ignored::TooLight);
         let ignored = Happened::Ignored(IgnoredPress { at, id, contact, force: Newtons(24.0), why });
         [event(200, "zoom"), ground, ignored, event(100, "home")].into()

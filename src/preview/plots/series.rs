@@ -137,7 +137,7 @@ impl Series {
                         .max_by(|a, b| a.leads.cmp(&b.leads).then(a.force.total_cmp(&b.force))),
                 };
                 match (part, foot) {
-                    // Nobody there is no force, but no place.
+                    // Without a foot the force is zero, and there is no place.
                     (Part::Force, None) => 0.0,
                     (Part::Force, Some(foot)) => foot.force,
                     (Part::East, foot) => foot?.at.x,

@@ -162,7 +162,7 @@ impl Server {
         self
     }
 
-    /// Obeys `commands`.
+    /// Carries out `commands`.
     #[must_use]
     pub fn with_commands(mut self, commands: Receiver<Command>) -> Self {
         self.commands = Some(commands);

@@ -1,4 +1,4 @@
-//! S6 loads that are none, S9 a floor nobody calibrated, S11 feet that one tile cannot tell apart.
+//! S6 loads out of nowhere, S9 a floor nobody calibrated, S11 feet that one tile cannot tell apart.
 
 use underfoot::floor::{Corner, Floor, Geometry, SensorId, TileId};
 use underfoot::glam::Vec2;
