@@ -32,7 +32,6 @@
 mod chart;
 mod effect;
 mod errors;
-mod fault_hook;
 mod figure;
 mod follow;
 mod goodness;
@@ -55,7 +54,6 @@ mod wilson;
 
 pub use effect::EffectSheet;
 pub use errors::{Errors, Summary};
-pub use fault_hook::FaultHook;
 pub use figure::Figure;
 pub use follow::{DOWN_N, Followed};
 pub use goodness::Goodness;
@@ -66,7 +64,7 @@ pub use people::{Activity, PeopleLine, PeopleTable, Visit};
 pub use place::{PlaceLine, PlaceTable};
 pub use pond::{PondLaw, PondLaws};
 pub use pond_walk::{Manner, MannerLine, PondWalk};
-pub use rig::{ExperimentError, OFFSET_N, Rig};
+pub use rig::{ExperimentError, FaultHook, OFFSET_N, Rig};
 pub use scan::{Scan, ScanPoint, TileScan};
 pub use scenes::{SceneLine, SceneTable};
 pub use seam_object::{SeamObject, SeamObjectRow};

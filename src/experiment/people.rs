@@ -1,6 +1,5 @@
 //! How well both feet of people are found while they walk, turn and stand.
 
-use std::cell::RefCell;
 use std::f32::consts::{PI, TAU};
 use std::fmt;
 use std::time::Duration;
@@ -12,13 +11,11 @@ use serde::Serialize;
 
 use super::METHODS;
 use super::errors::Summary;
-use super::fault_hook::FaultHook;
 use super::follow::{Followed, Follower, Truth};
-use super::rig::{ExperimentError, Rig};
+use super::rig::{ExperimentError, FaultHook, Rig};
 use crate::floor::Geometry;
 use crate::sim::{FloorQuality, Load, MoveError, Performance, Person, Script};
 use crate::units::Instant;
-use crate::wire::Readings;
 
 /// What somebody does at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -212,12 +209,7 @@ impl PeopleTable {
             truth.clear();
             truth.extend(loads.iter().filter_map(|load| Truth::of(load, rig)));
             let activity = visit.activity(at) as usize;
-            fault.before(milli, rig);
-            let shared = RefCell::new(&mut *fault);
-            let disturb =
-                |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(milli, board, readings);
-            rig.step_disturbed(loads.iter().copied(), disturb, |frame| {
-                shared.borrow_mut().sensed(milli, frame);
+            rig.step_with(fault, milli, loads.iter().copied(), |frame| {
                 for ((sensing, follower), scores) in methods.iter_mut().zip(scores.iter_mut()) {
                     let contacts = sensing.update(frame);
                     follower.compare(

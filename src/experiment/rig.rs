@@ -9,6 +9,7 @@ use smallvec::SmallVec;
 use thiserror::Error;
 
 use crate::engine::Engine;
+use crate::feel::Cue;
 use crate::floor::{Floor, Geometry, PositionMap, SensorId};
 use crate::layout::Layout;
 use crate::sense::{Assembler, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty, TileLoad};
@@ -160,25 +161,28 @@ impl Rig {
 
     /// Lets a millisecond pass under `loads` and hands over what was sensed in it, as every frame once.
     pub fn step(&mut self, loads: impl IntoIterator<Item = Load>, sensed: impl FnMut(&ForceFrame)) {
-        self.step_disturbed(loads, |_, _| {}, sensed);
+        self.step_with(&mut (), 0, loads, sensed);
     }
 
-    /// As [`Rig::step`]; `disturb` may change what each board (by number) sends.
-    pub fn step_disturbed(
+    /// As [`Rig::step`], with what `fault` does in this millisecond of its scene.
+    pub fn step_with(
         &mut self,
+        fault: &mut impl FaultHook,
+        milli: u64,
         loads: impl IntoIterator<Item = Load>,
-        mut disturb: impl FnMut(usize, &mut Readings),
         mut sensed: impl FnMut(&ForceFrame),
     ) {
+        fault.before(milli, self);
         self.now = self.now + Duration::from_millis(1);
         self.sequence = self.sequence.wrapping_add(1);
         let (sequence, received) = (self.sequence, self.now);
         for (board, readings) in (0..).zip(self.sim.step_under(loads)) {
             let mut readings = readings.clone();
-            disturb(usize::from(board), &mut readings);
+            fault.disturb(milli, usize::from(board), &mut readings);
             self.assembler.take(&SensorPacket { board, sequence, received, readings });
         }
         while let Some(frame) = self.assembler.ready() {
+            fault.sensed(milli, frame);
             sensed(frame);
         }
     }
@@ -207,6 +211,34 @@ impl Rig {
         }
     }
 }
+
+/// What goes wrong while people are on an experiment's floor; every method does nothing unless it is written.
+///
+/// Milliseconds are those of the experiment's scene, from 1.
+pub trait FaultHook {
+    /// Called before each millisecond; may break sensors.
+    fn before(&mut self, milli: u64, rig: &mut Rig) {
+        let _ = (milli, rig);
+    }
+
+    /// Called with what each board is about to send in each millisecond.
+    fn disturb(&mut self, milli: u64, board: usize, readings: &mut Readings) {
+        let _ = (milli, board, readings);
+    }
+
+    /// Called with each frame before contacts are made of it.
+    fn sensed(&mut self, milli: u64, frame: &ForceFrame) {
+        let _ = (milli, frame);
+    }
+
+    /// Called with what the tracker's engine makes the floor do, where there is one.
+    fn felt(&mut self, milli: u64, cues: &[Cue]) {
+        let _ = (milli, cues);
+    }
+}
+
+/// Nothing goes wrong.
+impl FaultHook for () {}
 
 /// Moves each sensor's zero by some `offset_n` newtons.
 fn drift(floor: &mut Floor, offset_n: f32, seed: u64) {

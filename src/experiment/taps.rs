@@ -1,6 +1,5 @@
 //! Whether a heavy foot beside a region disturbs the light one that works in it.
 
-use std::cell::RefCell;
 use std::f32::consts::{FRAC_PI_2, TAU};
 use std::fmt;
 use std::ops::Range;
@@ -13,10 +12,9 @@ use smallvec::SmallVec;
 
 use super::METHODS;
 use super::errors::{Errors, Summary};
-use super::fault_hook::FaultHook;
 use super::follow::DOWN_N;
 use super::people::quality_note;
-use super::rig::{ExperimentError, Rig};
+use super::rig::{ExperimentError, FaultHook, Rig};
 use crate::engine::{Engine, Snapshot};
 use crate::feel::Cue;
 use crate::floor::{Geometry, Rect};
@@ -26,7 +24,6 @@ use crate::sense::{ContactId, ForceFrame};
 use crate::sim::{FloorQuality, Foot, shoe_size};
 use crate::units::Newtons;
 use crate::widget::EventKind;
-use crate::wire::Readings;
 
 /// How the heavy foot stands.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -286,14 +283,9 @@ impl TapTable {
         });
         for milli in 1..=scene.length_ms() {
             let (feet, time) = (scene.feet(milli), u64::from(milli));
-            fault.before(time, rig);
             let mut cues: SmallVec<[Cue; 4]> = SmallVec::new();
             let loads = feet.iter().map(Foot::as_load);
-            let shared = RefCell::new(&mut *fault);
-            let disturb =
-                |board: usize, readings: &mut Readings| shared.borrow_mut().disturb(time, board, readings);
-            rig.step_disturbed(loads, disturb, |frame| {
-                shared.borrow_mut().sensed(time, frame);
+            rig.step_with(fault, time, loads, |frame| {
                 for (watched, scores) in engines.iter_mut().zip(scores.iter_mut()) {
                     cues = watched.step(frame, scene, milli, &feet[1], &mut scores[which]);
                 }
