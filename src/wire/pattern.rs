@@ -25,7 +25,7 @@ pub fn matches(pattern: &str, name: &str) -> bool {
     reached[0] = true;
     let mut rest = pattern.as_bytes();
     while let Some((&first, after)) = rest.split_first() {
-        let step = match first {
+        let (step, after) = match first {
             b'*' => {
                 if let Some(start) = reached.iter().position(|reached| *reached) {
                     reached.iter_mut().skip(start).for_each(|reached| *reached = true);
@@ -33,24 +33,19 @@ pub fn matches(pattern: &str, name: &str) -> bool {
                 rest = after;
                 continue;
             }
-            b'?' => Step::AnyOne,
-            b'[' => {
-                let Some((set, behind)) = split_at(after, b']') else { return false };
-                rest = behind;
-                reached = advance(&reached, name, &Step::OneOf(set));
-                continue;
-            }
-            b'{' => {
-                let Some((words, behind)) = split_at(after, b'}') else { return false };
-                rest = behind;
-                reached = advance(&reached, name, &Step::Words(words));
-                continue;
-            }
+            b'?' => (Step::AnyOne, after),
+            b'[' => match split_at(after, b']') {
+                Some((set, behind)) => (Step::OneOf(set), behind),
+                None => return false,
+            },
+            b'{' => match split_at(after, b'}') {
+                Some((words, behind)) => (Step::Words(words), behind),
+                None => return false,
+            },
             b']' | b'}' => return false,
-            character => Step::This(character),
+            character => (Step::This(character), after),
         };
-        rest = after;
-        reached = advance(&reached, name, &step);
+        (reached, rest) = (advance(&reached, name, &step), after);
     }
     reached.last() == Some(&true)
 }
