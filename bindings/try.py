@@ -4,7 +4,7 @@ r"""Programs in other languages hear what JSON lines say, and believe no hold fo
         --own NAME COMMAND... [--web NAME COMMAND...]
 
 UNDERFOOT is the program. A COMMAND after `--own` has a floor of its own: it gets the address of packets, the layout and
-the name of a control. One after `--web` gets the address of the web door of `underfoot run`, and the name. Each prints
+the name of a control. One after `--web` gets the address of the web server of `underfoot run`, and the name. Each prints
 {"listening":...}, then events as JSON lines, and when that control begins and ends to be held. It is sent the same
 packets as `underfoot run --json`. Then, while the control is held, each thing fails that may, `--rounds` times: the one
 who sends, what lies between, the floor, the program. After `--same` stands a program that only needs to hear the events.

@@ -13,11 +13,11 @@ use underfoot::serve::{ForceRange, ForceWatch, TileRange};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
 
-use super::doors::BoardArgs;
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
 use super::number::patience;
+use super::senders::BoardArgs;
 use super::stop::stop_flag;
 
 /// What `underfoot measure` is asked to do.

@@ -14,7 +14,6 @@ mod calibrate;
 mod capacity;
 mod check;
 mod console;
-mod doors;
 #[cfg(feature = "lab")]
 mod experiment;
 mod export;
@@ -41,6 +40,7 @@ mod reference;
 mod render;
 mod replay;
 mod run;
+mod senders;
 mod sense;
 mod session;
 mod simulate;

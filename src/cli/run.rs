@@ -21,7 +21,6 @@ use underfoot::wire::LinkCounters;
 use super::actuate::ActuateArgs;
 use super::area_args::AreaArgs;
 use super::console::Console;
-use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
@@ -29,6 +28,7 @@ use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
 use super::number::lifetime;
 use super::outputs::OutputArgs;
+use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
 #[cfg(unix)]
@@ -102,9 +102,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let path = args.record.as_deref();
     let Recorded { recorder, source, floor, layout } =
         Recorder::around(path, source, floor, layout, method, WhenBehind::LeaveOut)?;
-    let door = args.web.open()?;
-    let source = match &door {
-        Some(door) => door.source(source, floor.geometry),
+    let web = args.web.open()?;
+    let source = match &web {
+        Some(web) => web.source(source, floor.geometry),
         None => source,
     };
     let latency = LatencyStages::default();
@@ -112,8 +112,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (notice, noticed) = mpsc::channel();
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
-    if let Some(door) = &door {
-        outputs.push(door.sink()?);
+    if let Some(web) = &web {
+        outputs.push(web.sink()?);
     }
     if let Some(recorder) = &recorder {
         outputs.push(recorder.events()?);
@@ -153,7 +153,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         );
     }
     let apps = args.commands.apps().to_vec();
-    let web = door.map(|door| door.serve(session.clone(), floor, method, apps)).transpose()?;
+    let web = web.map(|web| web.serve(session.clone(), floor, method, apps)).transpose()?;
     if let Some(seconds) = args.seconds {
         stop_after(seconds, stop);
     }

@@ -9,10 +9,10 @@ use underfoot::floor::Floor;
 use underfoot::serve::{WiringStep, WiringTask, WiringWalk};
 use underfoot::source::SensorSource;
 
-use super::doors::BoardArgs;
 use super::failure::Failure;
 use super::floor_args::{FloorArgs, FloorOut};
 use super::number::patience;
+use super::senders::BoardArgs;
 use super::stop::stop_flag;
 
 /// What `underfoot wiring` is asked to do.

@@ -54,7 +54,7 @@ pub struct MirrorLink {
 }
 
 impl MirrorLink {
-    /// Joins the server whose door for web pages is at `address`, and does so again whenever it is lost.
+    /// Joins the server that serves web pages at `address`, and does so again whenever it is lost.
     ///
     /// # Errors
     /// The system gives no thread.

@@ -1,4 +1,4 @@
-//! The door for web pages, over real sockets: what is told, who is let in, and what becomes of who does not read.
+//! The server for web pages, over real sockets: what is told, who is let in, and what becomes of who does not read.
 
 use std::io::{BufRead, BufReader, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};

@@ -9,10 +9,10 @@ use underfoot::schema;
 use underfoot::serve::{TareFailure, take_tare};
 
 use super::today;
-use crate::cli::doors::BoardArgs;
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorOut, saved_json};
 use crate::cli::number::patience;
+use crate::cli::senders::BoardArgs;
 
 /// What `underfoot calibrate tare` is asked to do.
 ///

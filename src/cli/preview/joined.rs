@@ -57,7 +57,7 @@ impl Shared {
 }
 
 impl Joined {
-    /// Joins the server whose door for web pages is at `address`; `files` are those of the layout that is designed here.
+    /// Joins the server that serves web pages at `address`; `files` are those of the layout that is designed here.
     pub(super) fn start(
         address: SocketAddr,
         window: ProgramChannels,

@@ -34,7 +34,6 @@ use self::feeds::{Mouse, Scopes, ToWindow, shoe};
 use self::joined::Joined;
 use self::player::Player;
 use super::actuate::ActuateArgs;
-use super::doors::{BoardArgs, CommandArgs};
 use super::failure::Failure;
 use super::fault_args::say_what_is_rehearsed;
 use super::floor_args::FloorArgs;
@@ -42,6 +41,7 @@ use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
 use super::run::end;
+use super::senders::{BoardArgs, CommandArgs};
 
 /// What `underfoot preview` is asked to do.
 #[derive(clap::Args, Debug, Default)]

@@ -15,7 +15,7 @@ use tungstenite::{Bytes, Error, Message, WebSocket, accept_hdr_with_config};
 
 use underfoot::runtime::ControlsOff;
 
-use super::House;
+use super::Shared;
 use super::broadcast::Lines;
 use super::greeting::{greeting, mirror_greeting};
 use super::layout;
@@ -52,22 +52,22 @@ enum End {
 
 /// Serves one client until it goes.
 #[allow(clippy::result_large_err, reason = "what refuses a client is as tungstenite has it")]
-pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House, joins: bool) {
+pub(super) fn serve(stream: TcpStream, peer: SocketAddr, shared: &Shared, joins: bool) {
     let Ok(own) = stream.local_addr() else { return };
     // With more room at the system's a client is only dropped later.
     let _ = SockRef::from(&stream).set_send_buffer_size(WAITING_BYTES);
     let check = |request: &Request, response: Response| -> Result<Response, ErrorResponse> {
         let origin = request.headers().get(header::ORIGIN).map(|origin| origin.to_str().unwrap_or("null"));
-        if may_connect(origin, own, &house.origins) {
+        if may_connect(origin, own, &shared.origins) {
             return Ok(response);
         }
         let origin = origin.unwrap_or_default().escape_debug().to_string();
-        house.clients.refuse(&origin);
+        shared.clients.refuse(&origin);
         let mut refused = ErrorResponse::new(Some(format!("pages from {origin} are not let in\n")));
         *refused.status_mut() = StatusCode::FORBIDDEN;
         Err(refused)
     };
-    let most = if joins && house.takes_layouts { layout::MOST_BYTES } else { MOST_BYTES };
+    let most = if joins && shared.takes_layouts { layout::MOST_BYTES } else { MOST_BYTES };
     let config = WebSocketConfig::default()
         .max_message_size(Some(most))
         .max_frame_size(Some(most))
@@ -79,17 +79,17 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, house: &House, joins: b
     if socket.get_ref().set_nonblocking(true).is_err() {
         return;
     }
-    let lines = house.clients.join(peer, joins);
+    let lines = shared.clients.join(peer, joins);
     let mut client =
-        Client { socket, peer, house, joins, off: None, waits_since: None, heard: Instant::now() };
+        Client { socket, peer, shared, joins, off: None, waits_since: None, heard: Instant::now() };
     let end = client.talk(&lines);
-    house.clients.leave(peer, end == End::Slow);
+    shared.clients.leave(peer, end == End::Slow);
 }
 
 struct Client<'a> {
     socket: WebSocket<TcpStream>,
     peer: SocketAddr,
-    house: &'a House,
+    shared: &'a Shared,
     /// Whether it is a window that shows the floor as well.
     joins: bool,
     /// While it keeps the controls off.
@@ -111,10 +111,10 @@ impl Client<'_> {
         let mut shown = None;
         let mut pinged = Instant::now();
         loop {
-            let seen_layout = self.house.session.snapshot();
+            let seen_layout = self.shared.session.snapshot();
             if shown.replace(seen_layout.floor.layout_revision) != Some(seen_layout.floor.layout_revision) {
                 let greeting = if self.joins { mirror_greeting } else { greeting };
-                self.send(Message::text(greeting(&seen_layout, self.house)))?;
+                self.send(Message::text(greeting(&seen_layout, self.shared)))?;
             }
             // Until the next look at the layout.
             let look = Instant::now() + PING_EVERY;
@@ -192,7 +192,7 @@ impl Client<'_> {
             self.heard = Instant::now();
             match message {
                 Message::Text(text) => {
-                    if let Err(refusal) = process(&text, self.peer, self.house, &mut self.off) {
+                    if let Err(refusal) = process(&text, self.peer, self.shared, &mut self.off) {
                         self.send(Message::text(refusal))?;
                     }
                 }

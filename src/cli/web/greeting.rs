@@ -8,26 +8,26 @@ use underfoot::mirror::Greeting;
 use underfoot::runtime::Snapshot;
 use underfoot::serve::Command;
 
-use super::House;
+use super::Shared;
 
 /// How long the tare is waited for; without it, whoever joins measures its own.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// What a window is told that joins: the floor as it is measured now, the layout, and how its controls are.
-pub(super) fn mirror_greeting(seen: &Snapshot, house: &House) -> String {
-    let mut floor = house.floor.clone();
+pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
+    let mut floor = shared.floor.clone();
     let (answer, answered) = sync_channel(1);
-    if house.session.send(Command::GiveTare(answer))
+    if shared.session.send(Command::GiveTare(answer))
         && let Ok(Some(tare)) = answered.recv_timeout(PATIENCE)
     {
         floor.tare = tare;
     }
-    Greeting::line(&floor, &seen.layout, &seen.floor, house.method, house.takes_layouts)
+    Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.takes_layouts)
 }
 
 /// The floor and its controls as a line.
-pub(super) fn greeting(seen: &Snapshot, house: &House) -> String {
-    let geometry = &house.floor.geometry;
+pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
+    let geometry = &shared.floor.geometry;
     let pages = &seen.layout.pages;
     let controls: Vec<Value> = seen
         .layout

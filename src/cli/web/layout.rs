@@ -5,7 +5,7 @@ use underfoot::layout::Layout;
 use underfoot::schema::{self, Kinds};
 use underfoot::widget::Guard;
 
-use super::House;
+use super::Shared;
 
 /// The request: its argument is the layout as text, made of shipped kinds.
 pub(super) const REQUEST: &str = "layout";
@@ -14,16 +14,16 @@ pub(super) const REQUEST: &str = "layout";
 pub(super) const MOST_BYTES: usize = 1 << 20;
 
 /// Puts it on the floor once no foot is engaged, or says why not.
-pub(super) fn put(arguments: &[Value], house: &House) -> Result<(), String> {
-    if !house.takes_layouts {
+pub(super) fn put(arguments: &[Value], shared: &Shared) -> Result<(), String> {
+    if !shared.takes_layouts {
         return Err("the server keeps its layout: it takes others if it is started with --web-layouts".into());
     }
     let [Value::String(text)] = arguments else { return Err("expected a layout as text".into()) };
-    let geometry = &house.floor.geometry;
+    let geometry = &shared.floor.geometry;
     let read = schema::parse_layout(text, "the layout", &Kinds::builtin(), geometry)
         .map_err(|diagnostics| diagnostics.to_string())?;
     // What acts while it is held may not be brought, moved or taken away from elsewhere.
-    for (layout, whose) in [(&*house.session.snapshot().layout, "on the floor"), (&read.layout, "sent")] {
+    for (layout, whose) in [(&*shared.session.snapshot().layout, "on the floor"), (&read.layout, "sent")] {
         if let Some(id) = held_to_run(layout) {
             return Err(format!(
                 "the layout {whose} has the control {id:?} with the guard HoldToRun: such layouts are changed \
@@ -32,7 +32,7 @@ pub(super) fn put(arguments: &[Value], house: &House) -> Result<(), String> {
         }
     }
     tracing::info!("a layout from elsewhere is on the floor");
-    house.session.set_layout(read.layout);
+    shared.session.set_layout(read.layout);
     Ok(())
 }
 

@@ -1,4 +1,4 @@
-//! The door for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
+//! The server for web pages: events as JSON lines over WebSocket, requests the other way, and one page of ours. Windows
 //! that show the same floor join here, at `/mirror`.
 
 mod broadcast;
@@ -56,8 +56,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(20);
 
 const PAGE: &str = include_str!("page.html");
 
-/// The door before the floor is there: bound, but closed.
-pub(crate) struct Door {
+/// The server before the floor is there: bound, and nobody is let in yet.
+pub(crate) struct WebListener {
     listener: TcpListener,
     origins: Vec<Origin>,
     takes_layouts: bool,
@@ -66,7 +66,7 @@ pub(crate) struct Door {
 }
 
 /// What every connection knows.
-struct House {
+struct Shared {
     session: Session,
     floor: Floor,
     method: Method,
@@ -78,16 +78,16 @@ struct House {
     over: AtomicBool,
 }
 
-/// The door at work; closes when dropped.
-pub(crate) struct Web {
-    house: Arc<House>,
+/// The server at work; ends when dropped.
+pub(crate) struct WebServer {
+    shared: Arc<Shared>,
     feed: MirrorFeed,
     thread: Option<JoinHandle<()>>,
 }
 
 impl WebArgs {
-    /// Takes the address, if there is to be a door.
-    pub(crate) fn open(&self) -> Result<Option<Door>, Failure> {
+    /// Takes the address, if web pages are to be served.
+    pub(crate) fn open(&self) -> Result<Option<WebListener>, Failure> {
         let Some(address) = self.web else { return Ok(None) };
         let failed = |error| Failure::Other(format!("can't listen on {address} for web pages: {error}"));
         let listener = TcpListener::bind(address).map_err(failed)?;
@@ -96,11 +96,11 @@ impl WebArgs {
         let told = Arc::clone(&clients);
         let feed = MirrorFeed::start(clients.windows(), move |frame| told.tell_frame(frame))?;
         let (origins, takes_layouts) = (self.web_origin.clone(), self.web_layouts);
-        Ok(Some(Door { listener, origins, takes_layouts, clients, feed }))
+        Ok(Some(WebListener { listener, origins, takes_layouts, clients, feed }))
     }
 }
 
-impl Door {
+impl WebListener {
     /// What tells the clients.
     pub(crate) fn sink(&self) -> Result<impl EventSink + 'static, Failure> {
         Ok(JsonSink::new(Broadcast::new(Arc::clone(&self.clients)))?.with_contacts())
@@ -111,18 +111,18 @@ impl Door {
         Box::new(self.feed.source(source, geometry))
     }
 
-    /// Opens it.
+    /// Lets clients in.
     pub(crate) fn serve(
         self,
         session: Session,
         floor: Floor,
         method: Method,
         apps: Vec<Network>,
-    ) -> Result<Web, Failure> {
+    ) -> Result<WebServer, Failure> {
         let Self { listener, origins, takes_layouts, clients, feed } = self;
-        let failed = |error| Failure::Other(format!("the door for web pages can't be opened: {error}"));
+        let failed = |error| Failure::Other(format!("web pages can't be served: {error}"));
         errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
-        let house = Arc::new(House {
+        let shared = Arc::new(Shared {
             session,
             floor,
             method,
@@ -132,19 +132,19 @@ impl Door {
             clients,
             over: AtomicBool::new(false),
         });
-        let own = Arc::clone(&house);
+        let own = Arc::clone(&shared);
         let serve = move || accept(&listener, &own);
-        let thread = Some(Builder::new().name("web door".into()).spawn(serve).map_err(failed)?);
-        Ok(Web { house, feed, thread })
+        let thread = Some(Builder::new().name("web server".into()).spawn(serve).map_err(failed)?);
+        Ok(WebServer { shared, feed, thread })
     }
 }
 
-impl Drop for Web {
+impl Drop for WebServer {
     fn drop(&mut self) {
-        self.house.over.store(true, Ordering::Relaxed);
+        self.shared.over.store(true, Ordering::Relaxed);
         // What panicked in it has been said.
         let _ = self.thread.take().map(JoinHandle::join);
-        let (served, dropped) = self.house.clients.counts();
+        let (served, dropped) = self.shared.clients.counts();
         errln!("Web: clients served {served}, dropped because they did not read {dropped}.");
         if self.feed.lost() > 0 {
             errln!("Web: {} packets could not be shown to windows.", self.feed.lost());
@@ -152,10 +152,10 @@ impl Drop for Web {
     }
 }
 
-/// Lets clients in until the house closes, and waits for those that are in.
-fn accept(listener: &TcpListener, house: &Arc<House>) {
+/// Lets clients in until the server ends, and waits for those that are in.
+fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     let mut rooms: Vec<JoinHandle<()>> = Vec::new();
-    while !house.over.load(Ordering::Relaxed) {
+    while !shared.over.load(Ordering::Relaxed) {
         match listener.accept() {
             Ok((stream, peer)) => {
                 rooms.retain(|room| !room.is_finished());
@@ -163,7 +163,7 @@ fn accept(listener: &TcpListener, house: &Arc<House>) {
                     turn_away(stream, "503 Service Unavailable", "too many clients");
                     continue;
                 }
-                let own = Arc::clone(house);
+                let own = Arc::clone(shared);
                 match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
                     Ok(room) => rooms.push(room),
                     Err(error) => warn!("a web client can't be served: {error}"),
@@ -181,7 +181,7 @@ fn accept(listener: &TcpListener, house: &Arc<House>) {
 }
 
 /// Answers one connection: a page, or events for as long as it lasts.
-fn receive(stream: TcpStream, peer: SocketAddr, house: &House) {
+fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
     let set = stream
         .set_nonblocking(false)
         .and_then(|()| stream.set_read_timeout(Some(PATIENCE)))
@@ -190,7 +190,7 @@ fn receive(stream: TcpStream, peer: SocketAddr, house: &House) {
     // A client that has left meanwhile is not an error.
     let Some(head) = set.ok().and_then(|()| head(&stream)) else { return };
     if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
-        client::serve(stream, peer, house, head.starts_with("GET /mirror "));
+        client::serve(stream, peer, shared, head.starts_with("GET /mirror "));
     } else if head.starts_with("GET / ") {
         show_page(stream);
     } else {

@@ -10,7 +10,7 @@ use underfoot::runtime::{ControlsOff, Session};
 use underfoot::serve::Command;
 use underfoot::wire::{ControlMessage, read_json};
 
-use super::{House, layout};
+use super::{Shared, layout};
 
 /// How long an answer of the floor is waited for.
 const PATIENCE: Duration = Duration::from_millis(200);
@@ -31,26 +31,26 @@ const CONTROLS_OFF: &str = "controls_off";
 pub(super) fn process(
     text: &str,
     peer: SocketAddr,
-    house: &House,
+    shared: &Shared,
     off: &mut Option<ControlsOff>,
 ) -> Result<(), String> {
     let refused =
         |request: &str, why: &str| json!({"event": "error", "request": request, "why": why}).to_string();
     let asked: Asked = serde_json::from_str(text).map_err(|error| refused("", &error.to_string()))?;
     let why = |why: String| refused(&asked.request, &why);
-    if !house.apps.iter().any(|network| network.contains(peer.ip())) {
+    if !shared.apps.iter().any(|network| network.contains(peer.ip())) {
         return Err(why("requests from this address are not taken".into()));
     }
     if asked.request == layout::REQUEST {
-        return layout::put(&asked.args, house).map_err(why);
+        return layout::put(&asked.args, shared).map_err(why);
     }
     if asked.request == CONTROLS_OFF {
         let [Value::Bool(is_off)] = asked.args[..] else { return Err(why("expected true or false".into())) };
-        *off = is_off.then(|| house.session.controls_off());
+        *off = is_off.then(|| shared.session.controls_off());
         return Ok(());
     }
     let message = read_json(&asked.request, &asked.args).map_err(why)?;
-    ask(&house.session, message).map_err(why)
+    ask(&shared.session, message).map_err(why)
 }
 
 fn ask(session: &Session, message: ControlMessage) -> Result<(), String> {
