@@ -7,13 +7,13 @@ use std::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 use std::sync::Arc;
 use std::time::Duration;
 
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// A force along the floor's normal, in newtons; positive presses the floor down.
 ///
 /// Any `f32` is representable, NaN included: the places that accept outside
 /// numbers check them with [`Newtons::is_finite`].
-#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, PartialOrd, Serialize, Deserialize)]
 #[serde(transparent)]
 pub struct Newtons(pub f32);
 

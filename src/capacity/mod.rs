@@ -13,5 +13,7 @@ mod socket;
 pub use receiving::{AssemblyLoad, PacketLoad};
 pub use rendering::{BankLoad, RenderLoad, RenderWork, modal_error_db};
 pub use sensing::SensingLoad;
-pub use serving::ServeLoad;
+pub use serving::{BoardsLoad, ServeLoad};
 pub use socket::SocketLoad;
+
+pub(crate) use receiving::square;

@@ -85,7 +85,7 @@ impl AssemblyLoad {
     }
 }
 
-pub(super) fn square(side: u16) -> Floor {
+pub(crate) fn square(side: u16) -> Floor {
     let side = side.clamp(1, Geometry::MAX_SIDE);
     Floor::of(Geometry::of_paper_tiles(side, side).unwrap_or_default())
 }

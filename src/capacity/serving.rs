@@ -1,6 +1,7 @@
 //! How fast a whole floor is served, but for its network and its sound: packets in memory, contacts and events out.
 
 use std::collections::VecDeque;
+use std::net::{Ipv4Addr, SocketAddr, UdpSocket};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;
 
@@ -11,19 +12,66 @@ use crate::floor::{Calibration, Corner, Floor, SensorId};
 use crate::schema::{self, Kinds};
 use crate::sense::Method;
 use crate::serve::Server;
-use crate::source::{SensorSource, SourceError};
+use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::{Instant, Newtons};
-use crate::wire::{Readings, SensorPacket};
+use crate::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 
 /// A square floor at work, with the built-in layout `first_steps` in its south-west and people who walk on it.
 pub struct ServeLoad {
     server: Server,
     queue: Arc<Mutex<Queue>>,
-    /// What the boards of the empty floor send, over and over.
+    boards: Boards,
+}
+
+/// What the boards of a floor read.
+#[derive(Debug)]
+struct Boards {
+    /// What they send while it is empty, over and over.
     empty: Vec<Vec<SensorPacket>>,
     /// What is loaded at each millisecond, over and over, as counts of a board's channel.
     moments: Vec<Vec<(usize, usize, u16)>>,
     millis: u32,
+}
+
+/// The boards of a floor that is served over this machine's own network.
+#[derive(Debug)]
+pub struct BoardsLoad {
+    boards: Boards,
+    encoder: SensorEncoder,
+    socket: UdpSocket,
+    to: SocketAddr,
+}
+
+impl BoardsLoad {
+    /// Such a floor as [`ServeLoad`] has, what takes its packets, and what sends them.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] if there is no port.
+    pub fn new(side: u16, walkers: u16) -> Result<(Floor, UdpSource, Self), SourceError> {
+        let (floor, boards) = Boards::of(side, walkers);
+        let here = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
+        let failed = |source: std::io::Error| SourceError::Socket {
+            message: format!("packets can't be sent to this machine itself: {source}"),
+            source,
+        };
+        let source = UdpSource::bind(here, &floor)?;
+        let to = source.local_addr().map_err(failed)?;
+        let socket = UdpSocket::bind(here).map_err(failed)?;
+        let encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
+        Ok((floor, source, Self { boards, encoder, socket, to }))
+    }
+
+    /// Sends the packets of the next millisecond.
+    pub fn send(&mut self) {
+        let mut packets = VecDeque::new();
+        self.boards.next(&mut packets);
+        for packet in &packets {
+            if let Ok(datagram) = self.encoder.encode(packet) {
+                // What is lost here is missing there.
+                let _ = self.socket.send_to(datagram, self.to);
+            }
+        }
+    }
 }
 
 /// Packets that wait, and the time.
@@ -53,23 +101,16 @@ impl ServeLoad {
     /// no more walkers than stretches have room for.
     #[must_use]
     pub fn new(side: u16, walkers: u16) -> Self {
-        let (geometry, loads) = walkers_on(side, walkers);
-        let floor = tared(Floor::of(geometry));
-        let text = schema::builtin_layout("first_steps").unwrap_or_default();
-        let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &geometry);
+        let (floor, boards) = Boards::of(side, walkers);
         let queue = Arc::<Mutex<Queue>>::default();
         let source = Box::new(Memory(Arc::clone(&queue)));
-        // It is shipped, and fits on 6 x 6 tiles.
-        let layout = layout.map(|read| read.layout).unwrap_or_default();
-        let (snapshots, _) = triple_buffer::triple_buffer(&Snapshot::default());
-        let places = places(&floor);
-        Self {
-            server: Server::new(&floor, layout, Method::Tracker, source).with_snapshots(snapshots),
-            queue,
-            empty: (0..MILLIS).map(|seed| millisecond(&floor, seed as u64)).collect(),
-            moments: loads.iter().map(|loads| as_counts(loads, &places)).collect(),
-            millis: 0,
-        }
+        Self { server: server(&floor, source), queue, boards }
+    }
+
+    /// What serves such a floor from `source`.
+    #[must_use]
+    pub fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
+        server(floor, source)
     }
 
     /// Serves one second of floor, 1000 frames; the answer is the number of contacts in the last.
@@ -77,7 +118,7 @@ impl ServeLoad {
         for _ in 0..1000 {
             self.send();
             // One turn for each packet, and one that finds none.
-            for _ in 0..=self.empty.first().map_or(0, Vec::len) {
+            for _ in 0..=self.boards.empty.first().map_or(0, Vec::len) {
                 // Memory does not fail.
                 let _ = self.server.turn();
             }
@@ -89,27 +130,57 @@ impl ServeLoad {
 
     /// Puts one millisecond's packets into the queue.
     fn send(&mut self) {
+        let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
+        let Queue { packets, now } = &mut *queue;
+        packets.clear();
+        *now = self.boards.next(packets);
+    }
+}
+
+/// What serves a floor with a layout on it.
+fn server(floor: &Floor, source: Box<dyn SensorSource>) -> Server {
+    let text = schema::builtin_layout("first_steps").unwrap_or_default();
+    let layout = schema::parse_layout(text, "first_steps", &Kinds::builtin(), &floor.geometry);
+    // It is shipped, and fits on 6 x 6 tiles.
+    let layout = layout.map(|read| read.layout).unwrap_or_default();
+    let (snapshots, _) = triple_buffer::triple_buffer(&Snapshot::default());
+    Server::new(floor, layout, Method::Tracker, source).with_snapshots(snapshots)
+}
+
+impl Boards {
+    /// A floor and its boards.
+    fn of(side: u16, walkers: u16) -> (Floor, Self) {
+        let (geometry, loads) = walkers_on(side, walkers);
+        let floor = tared(Floor::of(geometry));
+        let places = places(&floor);
+        let boards = Self {
+            empty: (0..MILLIS).map(|seed| millisecond(&floor, seed as u64)).collect(),
+            moments: loads.iter().map(|loads| as_counts(loads, &places)).collect(),
+            millis: 0,
+        };
+        (floor, boards)
+    }
+
+    /// Adds the packets of the next millisecond to `packets`, and says which that is.
+    fn next(&mut self, packets: &mut VecDeque<SensorPacket>) -> Instant {
         self.millis = self.millis.wrapping_add(1);
         let at = Instant::from_millis(self.millis.into());
-        let mut queue = self.queue.lock().unwrap_or_else(PoisonError::into_inner);
-        queue.now = at;
-        queue.packets.clear();
         let now = self.millis as usize;
         if let Some(empty) = self.empty.get(now % MILLIS) {
-            queue.packets.extend(empty.iter().cloned());
+            packets.extend(empty.iter().cloned());
         }
-        for packet in &mut queue.packets {
+        for packet in packets.iter_mut() {
             (packet.sequence, packet.received) = (self.millis, at);
         }
         let loads = self.moments.get(now % self.moments.len().max(1)).into_iter().flatten();
         for &(board, channel, counts) in loads {
-            if let Some(SensorPacket { readings: Readings::Counts(readings), .. }) =
-                queue.packets.get_mut(board)
+            if let Some(SensorPacket { readings: Readings::Counts(readings), .. }) = packets.get_mut(board)
                 && let Some(reading) = readings.get_mut(channel)
             {
                 *reading = Some(counts);
             }
         }
+        at
     }
 }
 

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::datagram::{CONTACT_HZ, contacts, on_wire, sensor_packet};
 use super::{Crowd, Machine};
-use crate::floor::{Area, Board, Floor, TileBlock};
+use crate::floor::{Area, Board, Floor, Forwarding, TileBlock};
 
 /// Packets that a board sends in a second.
 pub(super) const BOARD_HZ: f64 = 1000.0;
@@ -35,9 +35,11 @@ pub struct AreaDemand {
     pub packets_per_s: f64,
     /// What they and their headers take on its wire.
     pub in_mbit: f64,
+    /// Packets of boards that it forwards, one for each computer that each goes to, per second.
+    pub forwards_per_s: f64,
     /// Datagrams with contacts that go out, per second.
     pub out_packets_per_s: f64,
-    /// What they and their headers take on its wire.
+    /// What they, the forwarded packets and their headers take on its wire.
     pub out_mbit: f64,
     /// Channels of its sound card.
     pub channels: u32,
@@ -58,13 +60,16 @@ pub(super) struct Extent {
     pub(super) boards: u32,
     /// Bytes on the wire that they send each millisecond.
     pub(super) bytes: f64,
+    /// Packets that it forwards each millisecond, and their bytes on the wire.
+    pub(super) forwards: u32,
+    pub(super) forwarded_bytes: f64,
     pub(super) channels: u32,
 }
 
 impl AreaDemand {
     /// Of an area of `extent` on a floor of so many `tiles`.
     pub(super) fn new(id: &str, extent: &Extent, tiles: f64, crowd: &Crowd) -> Self {
-        let Extent { columns, rows, sensed_columns, sensed_rows, boards, bytes, channels } = *extent;
+        let Extent { columns, rows, sensed_columns, sensed_rows, boards, bytes, channels, .. } = *extent;
         let share = |columns, rows| f64::from(columns) * f64::from(rows) / tiles.max(1.0);
         let people = people_on(share(columns, rows), crowd);
         let (datagrams, out_bytes) = contacts((FEET * people).ceil() as u32);
@@ -76,8 +81,9 @@ impl AreaDemand {
             sensed_rows,
             packets_per_s: f64::from(boards) * BOARD_HZ,
             in_mbit: mbit(bytes * BOARD_HZ),
+            forwards_per_s: f64::from(extent.forwards) * BOARD_HZ,
             out_packets_per_s: f64::from(datagrams) * CONTACT_HZ,
-            out_mbit: mbit(out_bytes * CONTACT_HZ),
+            out_mbit: mbit(out_bytes * CONTACT_HZ + extent.forwarded_bytes * BOARD_HZ),
             channels,
             people,
             sensed_people: people_on(share(sensed_columns, sensed_rows), crowd),
@@ -90,7 +96,8 @@ impl AreaDemand {
         Self::of(floor, &area, crowd)
     }
 
-    /// Of an area of a floor file; nothing of one that has no tile on the floor.
+    /// Of an area of a floor file; nothing of one that has no tile on the floor. Areas that do not say where they listen
+    /// are forwarded nothing.
     #[must_use]
     pub fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
         let Some(part) = floor.part(area) else { return Self { id: area.id.clone(), ..Self::default() } };
@@ -101,6 +108,11 @@ impl AreaDemand {
             f64::from(on_wire(sensor_packet(letters, channels, crowd.format)))
         };
         let count = |number: usize| u32::try_from(number).unwrap_or(u32::MAX);
+        let forwardings = floor.forwardings(area);
+        let forwarded = |forwarding: &Forwarding| {
+            let board = floor.boards.iter().find(|board| board.address == forwarding.address);
+            board.map_or(0.0, bytes) * forwarding.to.len() as f64
+        };
         let extent = Extent {
             columns: columns.into(),
             rows: rows.into(),
@@ -108,6 +120,8 @@ impl AreaDemand {
             sensed_rows: part.geometry.rows().into(),
             boards: count(part.boards.len()),
             bytes: part.boards.iter().map(bytes).sum(),
+            forwards: count(forwardings.iter().map(|forwarding| forwarding.to.len()).sum()),
+            forwarded_bytes: forwardings.iter().map(forwarded).sum(),
             channels: count(part.channel_count()),
         };
         Self::new(&area.id, &extent, floor.geometry.tile_count() as f64, crowd)
@@ -119,11 +133,12 @@ impl AreaDemand {
         f64::from(self.sensed_columns) * f64::from(self.sensed_rows)
     }
 
-    /// What its sensing thread takes of a core: packets, frames, contacts, controls.
+    /// What its sensing thread takes of a core: packets, those it forwards, frames, contacts, controls.
     #[must_use]
     pub fn sensing_cores(&self, machine: &Machine) -> f64 {
         let us = machine.base_us
             + self.packets_per_s / BOARD_HZ * machine.packet_us
+            + self.forwards_per_s / BOARD_HZ * machine.forward_us
             + self.sensed_tiles() * (machine.assemble_tile_us + machine.sense_tile_us)
             + self.sensed_people * machine.person_us;
         us / 1000.0
@@ -190,6 +205,33 @@ mod tests {
         assert_eq!((demand.sensed_columns, demand.sensed_rows, demand.channels), (9, 6, 36));
         assert!(near(demand.packets_per_s, 12_000.0));
         assert!(near(demand.people, 4.0) && near(demand.sensed_people, 6.0), "{demand:?}");
+        assert!(near(demand.forwards_per_s, 0.0), "nobody says where it listens");
+    }
+
+    #[test]
+    fn an_area_forwards_the_packets_of_its_boards_that_others_sense() {
+        let area = |id: &str, number: u16| Area {
+            listen: Some(([127, 0, 0, 1], 9000 + number).into()),
+            ..Area::new(id, TileBlock { first: TileId::new(8 * number, 0), columns: 8, rows: 2 })
+        };
+        let floor = Floor::of(Geometry::of_paper_tiles(24, 2).unwrap()).with_areas(vec![
+            area("west", 0),
+            area("middle", 1),
+            area("east", 2),
+        ]);
+        let crowd = Crowd { crowding: 1.0, ..Crowd::of(0) };
+        let [west, middle, east] = [0, 1, 2].map(|at| AreaDemand::of(&floor, &floor.areas[at], &crowd));
+        // A board in each of two rows, which the middle forwards to both.
+        assert!(near(west.forwards_per_s, 2000.0) && near(east.forwards_per_s, 2000.0), "{west:?} {east:?}");
+        assert!(near(middle.forwards_per_s, 4000.0), "{middle:?}");
+        // 254 bytes each, and 114 of the empty contacts' datagram 100 times a second.
+        assert!(
+            near(middle.out_mbit, (4.0 * 254.0 * 1000.0 + 114.0 * 100.0) * 8.0 / 1e6),
+            "{}",
+            middle.out_mbit
+        );
+        // 20 + 6 boards x 1 + 4 x 0.5 + 28 tiles x 0.2 us.
+        assert!(near(middle.sensing_cores(&ROUND), 0.0336), "{}", middle.sensing_cores(&ROUND));
     }
 
     #[test]

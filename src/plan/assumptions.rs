@@ -19,7 +19,7 @@ pub(super) fn of(crowd: &Crowd, machine: &Machine, densest: f64) -> Vec<String> 
         format!("Each board sends {format} 1000 times a second, one datagram each time, to one computer, which forwards it to the others that need it."),
         "On the wire a datagram is 66 bytes longer: 8 of UDP, 20 of IPv4, 38 of Ethernet with preamble and gap.".to_owned(),
         "Without a floor file, each row of tiles has boards of 32 channels for eight tiles, and tiles are 0.304 m apart.".to_owned(),
-        format!("A computer senses {SENSED_BEYOND_M} m beyond its area, in whole tiles; what forwarding the packets for that takes of a core is not in the plan."),
+        format!("A computer senses {SENSED_BEYOND_M} m beyond its area, in whole tiles."),
         format!("A person has {FEET} feet on the floor and moves {CHANNELS_PER_PERSON} channels; contacts are told 100 times a second, 20 to a datagram."),
         format!(
             "People are {:.1} times as dense in the fullest area as on average, or three standard deviations above it.",

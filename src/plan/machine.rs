@@ -15,6 +15,8 @@ pub struct Machine {
     pub base_us: f64,
     /// Receiving one board's packet and reading it.
     pub packet_us: f64,
+    /// Forwarding one board's packet to one other computer.
+    pub forward_us: f64,
     /// Putting one tile's readings into a frame, and looking after its sensors.
     pub assemble_tile_us: f64,
     /// Sensing a tile that carries nothing.
@@ -50,6 +52,7 @@ impl Machine {
         let times = [
             ("base_us", self.base_us),
             ("packet_us", self.packet_us),
+            ("forward_us", self.forward_us),
             ("assemble_tile_us", self.assemble_tile_us),
             ("sense_tile_us", self.sense_tile_us),
             ("person_us", self.person_us),
@@ -82,6 +85,7 @@ pub(super) mod tests {
         cores: 2,
         base_us: 20.0,
         packet_us: 1.0,
+        forward_us: 0.5,
         assemble_tile_us: 0.1,
         sense_tile_us: 0.1,
         person_us: 10.0,

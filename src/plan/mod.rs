@@ -1,4 +1,4 @@
-//! How many computers a floor takes: from its size, its crowd and what one machine does, without measuring anything here.
+//! How many computers a floor takes: from its size, its crowd and what one machine does, which [`measure`] finds out.
 //!
 //! A floor too large for one computer is cut into areas ([`crate::floor::Area`]). Each computer receives the packets of its
 //! area and of 0.9 m around it, assembles and senses those tiles, and moves its own. What that costs is linear in packets,
@@ -10,6 +10,7 @@ mod assumptions;
 mod datagram;
 mod limit;
 mod machine;
+mod measure;
 mod split;
 mod whole;
 
@@ -22,6 +23,7 @@ use crate::wire::SensorFormat;
 pub use self::area_demand::AreaDemand;
 pub use self::limit::{Limit, Resource};
 pub use self::machine::{Machine, MachineError};
+pub use self::measure::{LOADS, measure};
 pub use self::split::Split;
 pub use self::whole::Total;
 

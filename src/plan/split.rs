@@ -37,8 +37,8 @@ impl Split {
     /// What each area asks, row by row from the south-west.
     pub(super) fn areas(&self, size: Size, crowd: &Crowd) -> Vec<AreaDemand> {
         let boards = Boards::of(size, crowd.format);
-        let columns: Vec<_> = spans(size.columns, self.across).map(|span| boards.span(span)).collect();
-        let rows: Vec<_> = spans(size.rows, self.up).map(along).collect();
+        let columns = boards.along(size.columns, self.across);
+        let rows = rows(size.rows, self.up);
         rows.iter().flat_map(|row| columns.iter().map(|column| demand(column, row, size, crowd))).collect()
     }
 }
@@ -56,18 +56,29 @@ pub(super) fn boards(size: Size) -> u32 {
     size.columns.div_ceil(BOARD_TILES).saturating_mul(size.rows)
 }
 
+/// Which boards of a row measure something in a span, from and up to.
+fn sensing(span: Span) -> (u32, u32) {
+    (span.sensed.0 / BOARD_TILES, span.sensed.1.div_ceil(BOARD_TILES))
+}
+
 /// What a span takes along its axis.
 #[derive(Clone, Copy, Debug, Default)]
 struct Along {
     own: u32,
     sensed: u32,
-    /// Of each row.
+    /// Boards of each row that measure something in it; their packets' bytes.
     boards: u32,
     bytes: f64,
+    /// Boards of each row whose home it is, or rows of its own; their packets' bytes.
+    home: u32,
+    home_bytes: f64,
+    /// The same, each once for each span that senses it.
+    copies: u32,
+    copied_bytes: f64,
 }
 
 /// `length` tiles in `parts` spans of nearly equal length.
-fn spans(length: u32, parts: u32) -> impl Iterator<Item = Span> {
+fn spans(length: u32, parts: u32) -> impl DoubleEndedIterator<Item = Span> + ExactSizeIterator {
     let beyond = (SENSED_BEYOND_M / PITCH_M).ceil() as u32;
     let cut = move |part: u32| (u64::from(part) * u64::from(length) / u64::from(parts.max(1))) as u32;
     (0..parts).map(move |part| {
@@ -78,6 +89,31 @@ fn spans(length: u32, parts: u32) -> impl Iterator<Item = Span> {
 
 fn along(span: Span) -> Along {
     Along { own: span.end - span.first, sensed: span.sensed.1 - span.sensed.0, ..Along::default() }
+}
+
+/// By how many of these spans each of `count` is covered.
+fn covers(count: u32, spans: impl Iterator<Item = (u32, u32)>) -> Vec<u32> {
+    let mut changes = vec![0_i64; count as usize + 1];
+    for (from, to) in spans {
+        changes[from as usize] += 1;
+        changes[to as usize] -= 1;
+    }
+    let mut sum = 0;
+    let sums = changes.iter().take(count as usize).map(|change| {
+        sum += change;
+        sum as u32
+    });
+    sums.collect()
+}
+
+/// What each of `up` spans takes of so many rows.
+fn rows(length: u32, up: u32) -> Vec<Along> {
+    let sensed = covers(length, spans(length, up).map(|span| span.sensed));
+    let row = |span: Span| {
+        let copies = sensed[span.first as usize..span.end as usize].iter().sum();
+        Along { home: span.end - span.first, copies, ..along(span) }
+    };
+    spans(length, up).map(row).collect()
 }
 
 /// Boards of a floor of which each row has its own, eight tiles each.
@@ -104,11 +140,33 @@ impl Boards {
 
     /// The boards of one row that measure something in a span.
     fn span(&self, span: Span) -> Along {
-        let (from, to) = (span.sensed.0 / BOARD_TILES, span.sensed.1.div_ceil(BOARD_TILES));
-        let has_last = span.sensed.1 > (self.columns.div_ceil(BOARD_TILES) - 1) * BOARD_TILES;
-        let bytes =
-            f64::from(to - from - u32::from(has_last)) * self.full + if has_last { self.last } else { 0.0 };
+        let (from, to) = sensing(span);
+        let bytes = (from..to).map(|board| self.bytes(board)).sum();
         Along { boards: to - from, bytes, ..along(span) }
+    }
+
+    /// Bytes on the wire of a packet of a row's board.
+    fn bytes(&self, board: u32) -> f64 {
+        if board + 1 == self.columns.div_ceil(BOARD_TILES) { self.last } else { self.full }
+    }
+
+    /// What each of `across` spans takes of a row.
+    fn along(&self, length: u32, across: u32) -> Vec<Along> {
+        let mut all: Vec<Along> = spans(length, across).map(|span| self.span(span)).collect();
+        let sensed = covers(length.div_ceil(BOARD_TILES), spans(length, across).map(sensing));
+        for (board, copies) in (0..).zip(sensed) {
+            let (west, east) = (board * BOARD_TILES, (board + 1) * BOARD_TILES);
+            let tiles = |span: Span| span.end.min(east).saturating_sub(span.first.max(west));
+            // Of spans that have as many of its tiles, the first is its home; of equals, `max_by_key` gives the last.
+            let spans = spans(length, across).zip(&mut all);
+            let Some((_, home)) = spans.rev().max_by_key(|(span, _)| tiles(*span)) else { continue };
+            let bytes = self.bytes(board);
+            home.home += 1;
+            home.home_bytes += bytes;
+            home.copies += copies;
+            home.copied_bytes += f64::from(copies) * bytes;
+        }
+        all
     }
 }
 
@@ -120,19 +178,29 @@ fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand 
         sensed_rows: row.sensed,
         boards: column.boards * row.sensed,
         bytes: column.bytes * f64::from(row.sensed),
+        // Its home has a packet anyway.
+        forwards: (column.copies * row.copies).saturating_sub(column.home * row.home),
+        forwarded_bytes: (column.copied_bytes * f64::from(row.copies)
+            - column.home_bytes * f64::from(row.home))
+        .max(0.0),
         channels: if size.actuators { column.own * row.own } else { 0 },
     };
     AreaDemand::new("", &extent, f64::from(size.columns) * f64::from(size.rows), crowd)
 }
 
-/// The most that any of some spans takes, each number by itself.
-fn most(all: impl Iterator<Item = Along>) -> Along {
-    all.fold(Along::default(), |most, one| Along {
+/// The most that any of some spans takes, each number by itself; what its home has anyway is taken off, so that the least.
+fn most(all: &[Along]) -> Along {
+    let all = all.iter().copied().reduce(|most, one| Along {
         own: most.own.max(one.own),
         sensed: most.sensed.max(one.sensed),
         boards: most.boards.max(one.boards),
         bytes: most.bytes.max(one.bytes),
-    })
+        home: most.home.min(one.home),
+        home_bytes: most.home_bytes.min(one.home_bytes),
+        copies: most.copies.max(one.copies),
+        copied_bytes: most.copied_bytes.max(one.copied_bytes),
+    });
+    all.unwrap_or_default()
 }
 
 /// The fewest areas that fit; of as many areas, those that are nearest to squares.
@@ -141,14 +209,14 @@ fn most(all: impl Iterator<Item = Along>) -> Along {
 /// [`PlanError::TooMuch`] if single tiles do not fit.
 pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Split, PlanError> {
     let boards = Boards::of(size, crowd.format);
-    let rows: Vec<Along> = (1..=size.rows).map(|up| most(spans(size.rows, up).map(along))).collect();
+    let rows: Vec<Along> = (1..=size.rows).map(|up| most(&rows(size.rows, up))).collect();
     let mut best: Option<(u32, u32, Split)> = None;
     let mut runs_out = "sensing";
     for across in 1..=size.columns {
         if best.is_some_and(|(count, ..)| across > count) {
             break;
         }
-        let column = most(spans(size.columns, across).map(|span| boards.span(span)));
+        let column = most(&boards.along(size.columns, across));
         let fits = |row: &Along| first(&limits(&demand(&column, row, size, crowd), machine, crowd.usable));
         // More areas are smaller areas: they fit from some number on.
         let up = rows.partition_point(|row| fits(row).share > 1.0);
@@ -193,13 +261,16 @@ mod tests {
                         columns: (east - west) as u16,
                         rows: (north - south) as u16,
                     };
-                    Area::new("", tiles)
+                    let listen = Some(([127, 0, 0, 1], (row * across + column) as u16 + 9000).into());
+                    Area { listen, ..Area::new(&format!("{column} {row}"), tiles) }
                 })
                 .collect();
             let geometry = Geometry::of_paper_tiles(columns as u16, rows as u16).unwrap();
             let floor = Floor::of(geometry).with_areas(areas);
             let by_file: Vec<_> =
                 floor.areas.iter().map(|area| AreaDemand::of(&floor, area, &crowd)).collect();
+            let name = |area: AreaDemand| AreaDemand { id: String::new(), ..area };
+            let by_file: Vec<_> = by_file.into_iter().map(name).collect();
             let by_size = split.areas(size, &crowd);
             // A floor's boards have addresses of one or two digits, and of so many letters all are taken here: the
             // text is as long in words of four bytes.

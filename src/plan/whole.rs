@@ -17,9 +17,11 @@ pub struct Total {
     pub boards: u32,
     /// Links of boards and computers.
     pub links: u32,
-    /// Packets that the computers receive, per second: a board near a border sends to several.
+    /// Packets that the computers receive, per second: those of a board near a border come to several.
     pub packets_per_s: f64,
-    /// How many computers a board sends to, on average.
+    /// How many of them another computer forwards.
+    pub forwards_per_s: f64,
+    /// How many computers a board's packets reach, on average.
     pub copies: f64,
     /// What those packets take on the wires to the computers.
     pub sensor_mbit: f64,
@@ -50,6 +52,7 @@ impl Total {
             boards,
             links: boards.saturating_add(computers),
             packets_per_s,
+            forwards_per_s: sum(&|area| area.forwards_per_s),
             copies: packets_per_s / (f64::from(boards.max(1)) * BOARD_HZ),
             sensor_mbit: sum(&|area| area.in_mbit),
             contacts_per_s: FEET * f64::from(crowd.people) * CONTACT_HZ,

@@ -23,6 +23,7 @@ use crate::layout::Layout;
 use crate::recording::{Recorded, Recorder, WhenBehind};
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
+use crate::serve::Neighbours;
 use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError};
 use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::{HostClock, Instant};
@@ -37,6 +38,7 @@ pub struct SessionBuilder {
     prefix: Prefix,
     sinks: Fanout,
     actuators: Option<OpenActuators>,
+    neighbours: Option<Box<dyn Neighbours>>,
     latency: Option<LatencyStages>,
     wake: Option<Box<dyn FnMut() + Send>>,
     every_change: bool,
@@ -97,6 +99,7 @@ impl SessionBuilder {
             prefix: Prefix::default(),
             sinks: Fanout::new(),
             actuators: None,
+            neighbours: None,
             latency: None,
             wake: None,
             every_change: false,
@@ -185,6 +188,14 @@ impl SessionBuilder {
         open: impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static,
     ) -> Self {
         self.actuators = Some(Box::new(open));
+        self
+    }
+
+    /// Hands on cues that are felt on tiles of other computers, and plays theirs; without actuators nothing of it.
+    #[cfg(feature = "internals")]
+    #[must_use]
+    pub fn neighbours(mut self, neighbours: impl Neighbours + 'static) -> Self {
+        self.neighbours = Some(Box::new(neighbours));
         self
     }
 
@@ -280,6 +291,7 @@ impl SessionBuilder {
             prefix: self.prefix,
             sinks,
             actuators: self.actuators,
+            neighbours: self.neighbours,
             latency: self.latency,
             realtime: self.realtime,
             commands: received,

@@ -16,7 +16,7 @@ use crate::feel::CueSender;
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::sense::Method;
-use crate::serve::{Command, Server};
+use crate::serve::{Command, Neighbours, Server};
 use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
 use crate::source::SensorSource;
 use crate::units::{HostClock, Instant};
@@ -45,6 +45,7 @@ pub(super) struct Plan {
     pub(super) prefix: Prefix,
     pub(super) sinks: Fanout,
     pub(super) actuators: Option<OpenActuators>,
+    pub(super) neighbours: Option<Box<dyn Neighbours>>,
     pub(super) latency: Option<LatencyStages>,
     pub(super) realtime: bool,
     pub(super) commands: Receiver<Command>,
@@ -102,7 +103,8 @@ fn serve(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) ->
 }
 
 fn server(plan: Plan) -> Result<Server, SinkError> {
-    let Plan { floor, layout, method, source, clock, prefix, sinks, actuators, latency, .. } = plan;
+    let Plan { floor, layout, method, source, clock, prefix, sinks, actuators, neighbours, latency, .. } =
+        plan;
     let actuators = actuators.map(|open| open(&floor, source.now(), &clock)).transpose()?;
     let mut server = Server::new(&floor, layout, method, source)
         .with_events(Box::new(sinks))
@@ -111,6 +113,9 @@ fn server(plan: Plan) -> Result<Server, SinkError> {
         .with_commands(plan.commands);
     if let Some(Actuators { feel, sink }) = actuators {
         server = server.with_feel(feel, sink);
+    }
+    if let Some(neighbours) = neighbours {
+        server = server.with_neighbours(neighbours);
     }
     if let Some(latency) = latency {
         server = server.with_latency(latency);

@@ -8,6 +8,7 @@
 mod changes;
 #[cfg(any(feature = "internals", test))]
 mod measure;
+mod neighbours;
 #[cfg(any(feature = "internals", test))]
 mod reference;
 mod request;
@@ -22,6 +23,7 @@ mod wiring;
 
 #[cfg(any(feature = "internals", test))]
 pub use measure::{ForceRange, ForceWatch, TileRange};
+pub use neighbours::Neighbours;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Argument, Direction, Entry, Reference};
 pub use server::{Command, Ended, Server};

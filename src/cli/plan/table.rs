@@ -20,7 +20,8 @@ fn lines(plan: &Plan) -> Vec<String> {
         row("boards", total.boards.to_string()),
         row("links of boards and computers", total.links.to_string()),
         row("sensor packets received per second", count(total.packets_per_s)),
-        row("computers that a board sends to", format!("{:.2}", total.copies)),
+        row("of them forwarded by another computer", count(total.forwards_per_s)),
+        row("computers that a board's packets reach", format!("{:.2}", total.copies)),
         row("sensor packets, Mb/s", count(total.sensor_mbit)),
         row("contacts told per second", count(total.contacts_per_s)),
         row("to an app that hears all of them, Mb/s", count(total.app_mbit)),
@@ -33,6 +34,7 @@ fn lines(plan: &Plan) -> Vec<String> {
         fullest.columns, fullest.rows, fullest.sensed_columns, fullest.sensed_rows, fullest.sensed_people
     ));
     lines.push(row("sensor packets received per second", count(fullest.packets_per_s)));
+    lines.push(row("sensor packets forwarded per second", count(fullest.forwards_per_s)));
     lines.extend(limits.iter().map(used));
     lines.push("What more computers do not change:".to_owned());
     lines.extend(whole.iter().map(used));
@@ -48,6 +50,7 @@ fn constants(machine: &Machine) -> Vec<String> {
     let times = [
         ("a floor at work, whatever its size", machine.base_us),
         ("a packet", machine.packet_us),
+        ("forwarding a packet", machine.forward_us),
         ("assembling a tile", machine.assemble_tile_us),
         ("sensing a tile that carries nothing", machine.sense_tile_us),
         ("a person who walks", machine.person_us),

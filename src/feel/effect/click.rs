@@ -1,6 +1,7 @@
 //! Clicks and their modes, as effects describe them.
 
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 
 use crate::format::{List, Num, Rec, list, num, record};
 use crate::units::Newtons;
@@ -22,7 +23,7 @@ pub(crate) const SHARE: Num = num(0.0..=1.0);
 
 record! {
     /// One decaying resonance: `amplitude * exp(-t / decay_s) * sin(2 pi frequency_hz t)`.
-    pub struct Mode = "Mode", Copy;
+    pub struct Mode = "Mode", Copy, Serialize, Deserialize;
     /// Frequency, in hertz; 20 to 1000.
     pub frequency_hz: f32 = "hz", HZ;
     /// Time after which a factor 1/e is left, in seconds; 0.001 to 2.
@@ -36,7 +37,7 @@ record! {
     ///
     /// # Source
     /// `s(t) = sum a_i exp(-b_i t) sin(2 pi f_i t)` (paper, section 4.1.1).
-    pub struct Click = "Click", Default;
+    pub struct Click = "Click", Default, Serialize, Deserialize;
     /// Force at the plate for a mode of amplitude 1, before the spots' weights.
     pub level: Newtons = "level_n", LEVEL;
     /// What they are struck with.
@@ -74,7 +75,7 @@ record! {
     /// An ideal one lasts no time. One with a width is a soft hammer: what swings
     /// faster than it lasts is hardly struck, so that the click gets rounder. The
     /// strongest mode keeps its level.
-    pub struct Impulse = "Impulse", Copy, Default;
+    pub struct Impulse = "Impulse", Copy, Default, Serialize, Deserialize;
     /// How long the push lasts, in seconds; 0 (ideal) to 0.01.
     pub width_s: f32 = "width_ms", num(0.0..=10.0).milli() => 0.0;
     /// Its shape, from an even push (0) to a bell (1).

@@ -1,6 +1,7 @@
 //! Effects that a sliding foot drives: friction, stick-slip, texture, grains; and held tones.
 
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 
 use super::click::{HZ, LEVEL, SHARE};
 use crate::format::describe::FieldType;
@@ -31,7 +32,7 @@ const FULL_FORCE: Newtons = Newtons(200.0);
 /// The level of each is a root mean square at full slip speed and normal
 /// force (of a sole that sticks and slips, at the speed where it is loudest):
 /// one of 2 N is as strong as a sine of 2 N.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Lasting {
     /// Noise whose band follows the slip speed.
     Friction(Friction),
@@ -59,7 +60,7 @@ impl From<Friction> for Lasting {
 
 record! {
     /// A rubbing texture: noise whose band follows the slip speed and whose level follows speed and force.
-    pub struct Friction = "Friction", Copy => |it, faults| {
+    pub struct Friction = "Friction", Copy, Serialize, Deserialize => |it, faults| {
         faults.not_below(&["high_hz", "low_hz"], [it.high_hz, it.low_hz]);
     };
     /// Force at the plate at full slip speed and full normal force.
@@ -76,7 +77,7 @@ record! {
 
 record! {
     /// A tone or noise that goes on.
-    pub struct Hum = "Hum", Copy, Default;
+    pub struct Hum = "Hum", Copy, Default, Serialize, Deserialize;
     /// Force at the plate.
     pub level: Newtons = "level_n", LEVEL;
     /// Its pitch, or the centre of its noise, in hertz; 20 to 1000.
@@ -87,7 +88,7 @@ record! {
 
 record! {
     /// One resonance of what is rubbed.
-    pub struct Resonance = "Resonance", Copy;
+    pub struct Resonance = "Resonance", Copy, Serialize, Deserialize;
     /// Frequency, in hertz; 20 to 1000.
     pub hz: f32 = "hz", HZ;
     /// Time after which a factor 1/e is left, in seconds; 0.001 to 0.2.
@@ -103,7 +104,7 @@ impl Resonance {
 
 record! {
     /// What every rubbed material has: how strong it is, and how its plate rings.
-    pub struct Material = "Material", Copy;
+    pub struct Material = "Material", Copy, Serialize, Deserialize;
     /// Force at the plate at full slip speed and full normal force.
     pub level: Newtons = "level_n", LEVEL;
     /// The two resonances that it excites.
@@ -154,7 +155,7 @@ impl Codec<[Resonance; 2]> for Resonances {
 
 record! {
     /// Ridges: the foot strikes one after another, so that the pitch is the speed over their distance.
-    pub struct Texture = "Texture", Copy;
+    pub struct Texture = "Texture", Copy, Serialize, Deserialize;
     /// How strong it is and how it rings.
     pub material: Material = "", Flat;
     /// Distance between two ridges, in metres; 0.0003 to 0.2.
@@ -167,7 +168,7 @@ record! {
 
 record! {
     /// Grains: the foot crunches them by chance, so many to the metre.
-    pub struct Grains = "Grains", Copy;
+    pub struct Grains = "Grains", Copy, Serialize, Deserialize;
     /// How strong it is and how it rings.
     pub material: Material = "", Flat;
     /// Mean distance between two grains, in metres; 0.0003 to 0.2.
@@ -186,7 +187,7 @@ record! {
     /// B. Armstrong, F. Altpeter, "Single state elastoplastic friction models", IEEE Trans. Automatic Control 47(5),
     /// 2002. With no elastic part it is the LuGre model: C. Canudas de Wit, H. Olsson, K. J. Åström, P. Lischinsky,
     /// "A new model for control of systems with friction", IEEE Trans. Automatic Control 40(3), 1995.
-    pub struct StickSlip = "StickSlip", Copy => |it, faults| {
+    pub struct StickSlip = "StickSlip", Copy, Serialize, Deserialize => |it, faults| {
         faults.not_above(&["glide", "grip"], [it.glide, it.grip]);
     };
     /// How strong it is and how it rings.

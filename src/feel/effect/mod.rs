@@ -16,6 +16,8 @@ mod sequence;
 mod stops;
 mod tone;
 
+use serde::{Deserialize, Serialize};
+
 pub use click::{Click, Impulse, MAX_MODES, MODE_HZ, Mode};
 pub use feel::Feel;
 pub use lasting::{Friction, Grains, Hum, Lasting, Material, Resonance, StickSlip, Texture};
@@ -132,7 +134,7 @@ impl EffectKind {
 
 record! {
     /// How an effect gets along with what else is felt on the same tiles.
-    pub struct Manner = "Manner", Copy;
+    pub struct Manner = "Manner", Copy, Serialize, Deserialize;
     /// What it may move, in hertz.
     pub band: Band = "band_hz", BandFields => Band::USEFUL;
     /// How far everything that lasts and is no more important goes down while it plays, in decibels; 0 to 60.
@@ -153,7 +155,7 @@ impl Default for Manner {
 }
 
 /// The frequencies that an effect keeps to.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Band {
     /// The lowest, in hertz; 20 to 1000.
     pub low_hz: f32,

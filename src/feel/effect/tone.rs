@@ -1,6 +1,7 @@
 //! A tone or a band of noise under an envelope.
 
 use arrayvec::ArrayVec;
+use serde::{Deserialize, Serialize};
 
 use super::click::{HZ, LEVEL, SHARE};
 use crate::format::{Faults, Num, Opt, Rec, list, num, record};
@@ -21,7 +22,7 @@ record! {
     /// Its level rises to full in `attack_s`, falls to `sustain` in `decay_s`,
     /// stays there until `length_s`, and is gone `release_s` later; all of it times
     /// the curve, which also says the pitch.
-    pub struct Tone = "Continuous", Default => Tone::rules;
+    pub struct Tone = "Continuous", Default, Serialize, Deserialize => Tone::rules;
     /// Force at the plate of its tone; a noise is as strong as a tone of this amplitude.
     pub level: Newtons = "level_n", LEVEL;
     /// Its pitch, or the centre of its noise, where the curve doesn't say, in hertz; 20 to 1000.
@@ -44,7 +45,7 @@ record! {
 
 record! {
     /// Level and pitch of a tone at one moment.
-    pub struct TonePoint = "Point", Copy, Default;
+    pub struct TonePoint = "Point", Copy, Default, Serialize, Deserialize;
     /// How long after the tone's start, in seconds.
     pub at_s: f32 = "at_ms", TIME;
     /// Share of the tone's level.

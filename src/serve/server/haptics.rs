@@ -6,8 +6,9 @@ use thiserror::Error;
 use tracing::warn;
 
 use crate::engine::Step;
-use crate::feel::{CueSender, DeviceStatus, FeelCounters, Muted};
+use crate::feel::{Cue, CueSender, DeviceStatus, FeelCounters, Muted};
 use crate::floor::{Geometry, TileId};
+use crate::serve::Neighbours;
 use crate::serve::trial::Trial;
 use crate::sink::{ActuatorSink, LatencyStages};
 use crate::units::Instant;
@@ -37,6 +38,10 @@ pub(super) enum MuteError {
 pub(super) struct Haptics {
     pub(super) feel: Option<CueSender>,
     pub(super) actuators: Option<Box<dyn ActuatorSink>>,
+    /// Who moves the tiles beside this computer's.
+    pub(super) neighbours: Option<Box<dyn Neighbours>>,
+    /// What they handed on last.
+    handed: Vec<Cue>,
     /// An effect that somebody tries.
     pub(super) trial: Option<Trial>,
     /// Measures latency, if wanted, and when the last packet was taken.
@@ -69,13 +74,23 @@ impl Haptics {
             // What could not be sent is counted by the sender.
             feel.send(cue);
         }
+        let mut both = None;
+        if let Some(neighbours) = &mut self.neighbours {
+            if !feel.is_silenced() {
+                neighbours.give(step.cues, step.sustained, now);
+            }
+            self.handed.clear();
+            neighbours.take(at, now, &mut self.handed, both.insert(step.sustained.clone()));
+            self.handed.iter().for_each(|cue| _ = feel.send(cue));
+        }
+        let sustained = both.as_ref().unwrap_or(step.sustained);
         match &mut self.trial {
             Some(trial) => {
-                if !trial.step(at, step.sustained, feel) {
+                if !trial.step(at, sustained, feel) {
                     self.trial = None;
                 }
             }
-            None => feel.sustain(step.sustained),
+            None => feel.sustain(sustained),
         }
     }
 

@@ -28,6 +28,7 @@ use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, Tare, TareOutcome};
+use crate::serve::Neighbours;
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{SensorSource, SourceError};
 use crate::units::{Instant, Newtons};
@@ -130,6 +131,13 @@ impl Server {
     #[must_use]
     pub fn with_prefix(mut self, prefix: Prefix) -> Self {
         self.answers.prefix = prefix;
+        self
+    }
+
+    /// Hands on cues that are felt on tiles of other computers, and plays theirs.
+    #[must_use]
+    pub fn with_neighbours(mut self, neighbours: Box<dyn Neighbours>) -> Self {
+        self.haptics.neighbours = Some(neighbours);
         self
     }
 

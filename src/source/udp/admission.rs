@@ -118,7 +118,7 @@ impl Admission {
         self.apps.iter().any(|network| network.contains(ip))
     }
 
-    fn is_board(&self, ip: IpAddr) -> bool {
+    pub(super) fn is_board(&self, ip: IpAddr) -> bool {
         self.boards.iter().any(|network| network.contains(ip))
     }
 

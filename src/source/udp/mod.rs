@@ -13,11 +13,12 @@ use std::collections::VecDeque;
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
 use std::sync::Arc;
+use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant as HostInstant, SystemTime};
 
 use rosc::OscTime;
 
-use self::admission::Admission;
+use self::admission::{Admission, Refusal};
 pub use self::forward::ForwardCounters;
 use self::forward::Forwarder;
 use self::log::RefusalLog;
@@ -72,6 +73,8 @@ pub struct UdpSource {
     answer: Vec<u8>,
     admission: Admission,
     forwarder: Option<Forwarder>,
+    /// Where notes of other computers go.
+    notes: Option<SyncSender<Vec<u8>>>,
     boards: usize,
     counters: LinkCounters,
     drops_read: Instant,
@@ -113,6 +116,7 @@ impl UdpSource {
             answer: Vec::new(),
             admission: Admission::new(floor),
             forwarder: None,
+            notes: None,
             boards: floor.boards.len(),
             counters: LinkCounters::default(),
             drops_read: Instant::START,
@@ -163,6 +167,14 @@ impl UdpSource {
         let counters = forwarder.counters();
         self.forwarder = Some(forwarder);
         Ok((self, counters))
+    }
+
+    /// Hands notes of other computers that arrive among the packets to `notes`: datagrams of JSON, from where packets are
+    /// taken. What `notes` has no room for is dropped.
+    #[must_use]
+    pub fn handing_notes_to(mut self, notes: SyncSender<Vec<u8>>) -> Self {
+        self.notes = Some(notes);
+        self
     }
 
     /// Holds each board to the address from which it is first heard, until the program ends.
@@ -260,6 +272,17 @@ impl UdpSource {
             return self.log.not_admitted(now, sender, refusal);
         }
         let datagram = self.buffer.get(..length).unwrap_or_default();
+        // OSC begins with a slash or a hash.
+        if let Some(notes) = self.notes.as_ref().filter(|_| datagram.starts_with(b"{")) {
+            if on_own_port || !self.admission.is_board(sender.ip()) {
+                Refusal::Foreign.count(&mut self.counters);
+                return self.log.not_admitted(now, sender, Refusal::Foreign);
+            }
+            if notes.try_send(datagram.to_vec()).is_err() {
+                self.counters.overflowed += 1;
+            }
+            return;
+        }
         let decoded = self.decoder.decode(datagram, self.received, &mut self.batch);
         let wait = match decoded.and_then(|()| self.wait()) {
             Ok(wait) => wait,

@@ -6,6 +6,7 @@
 mod contact;
 mod event;
 mod layout;
+mod note;
 mod request;
 
 use serde::de::DeserializeOwned;
@@ -17,6 +18,7 @@ use underfoot::sink::AreaState;
 pub use contact::NodeContact;
 pub use event::{NodeEvent, NodeValue};
 pub use layout::{LayoutMessage, LayoutName, LayoutOrder, LayoutStanding};
+pub use note::{Note, NoteCue, NoteLasting, NoteSpot};
 pub use request::{NodeAnswer, NodeRequest, NodeState};
 
 /// The version of the messages; others are refused.

@@ -2,16 +2,19 @@
 //!
 //! ```text
 //! sensing thread: Report -NodeSink-> Draft ==bounded==> sending thread: NodeMessage -> gateway
+//! sensing thread: cues -Border-> note ==UDP==> the neighbour's sensing thread: Border -> its actuators
 //! gateway -> Guard: lost, disputed or silent -> what feet hold here is cancelled here too
 //! ```
 
 mod asked;
+mod border;
 mod draft;
 mod guard;
 mod layouts;
 mod sink;
 
 pub use asked::AskedRequests;
+pub use border::{Border, BorderCounters, SendNote};
 pub use draft::Draft;
 pub use guard::{Action, Guard, Reason};
 pub use layouts::NodeLayouts;

@@ -1,6 +1,6 @@
 //! `underfoot-cluster node`: one area is served, and told of.
 
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -18,7 +18,7 @@ use underfoot::wire::ControlMessage;
 use underfoot_cluster::message::{
     LayoutName, NodeMessage, NodeValue, ToNodes, VERSION, decode, encode, fingerprint,
 };
-use underfoot_cluster::node::{Action, Draft, Guard, NodeSink, Reason};
+use underfoot_cluster::node::{Action, Border, Draft, Guard, NodeSink, Reason, SendNote};
 use underfoot_cluster::transport::Transport;
 
 use super::notices::Notices;
@@ -65,6 +65,9 @@ pub(crate) struct Args {
 /// Where packets arrive unless anything says otherwise.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
+/// Notes of neighbours that may wait for the next frame.
+const NOTES: usize = 1024;
+
 /// Messages that may wait for the thread that sends them: a fifth of a second.
 const WAITING: usize = 100;
 
@@ -87,7 +90,14 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let stop = stop_flag(args.seconds)?;
     let listen = args.listen.or(area.listen).unwrap_or(LISTEN);
     let gateways = endpoints(args.gateway, &floor);
-    let source = UdpSource::bind(listen, &part)?.also_allowing(floor.forwarders(area));
+    let (notes, noted) = sync_channel(NOTES);
+    let neighbours = Border::neighbours(&floor, area).filter_map(|area| Some(area.listen?.ip()));
+    let source = UdpSource::bind(listen, &part)?
+        .also_allowing(floor.forwarders(area).chain(neighbours))
+        .handing_notes_to(notes);
+    let node = drawn();
+    let border = Border::new(&floor, area, node, sender(&floor, area, listen)?, noted);
+    let crossed = border.counters();
     let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
     let (source, clock): (Box<dyn SensorSource>, HostClock) = if args.step_clock {
         let source = SteppedSource::new(source)?;
@@ -109,6 +119,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .floor(part)
         .layout(layout)
         .sink(sink)
+        .neighbours(border)
         .actuators(move |floor, start, _| sound.open(floor, start))
         .realtime()
         .stop_flag(stop)
@@ -149,7 +160,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
             version: VERSION,
             floor: fingerprint(&floor),
             area: args.area,
-            node: drawn(),
+            node,
             name: format!("{listen} (process {})", std::process::id()),
             ..NodeMessage::default()
         },
@@ -164,7 +175,15 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     if forwarded.sent() > 0 {
         eprintln!("{} packets forwarded to neighbours.", forwarded.sent());
     }
+    if crossed.given() + crossed.felt() > 0 {
+        eprintln!("{} cues handed to neighbours, {} of theirs felt here.", crossed.given(), crossed.felt());
+    }
     let lost = [
+        (crossed.late(), "cues of neighbours older than 50 ms, not played"),
+        (crossed.lost(), "cues of neighbours that never came"),
+        (crossed.untimed(), "cues of neighbours whose clock was not known yet, not played"),
+        (crossed.unsent(), "cues that could not be handed to a neighbour"),
+        (crossed.refused(), "notes of neighbours not understood"),
         (forwarded.late(), "packets too old to be forwarded"),
         (forwarded.unsent(), "packets not forwarded, since the system did not take them"),
         (held_up.load(Ordering::Relaxed), "messages held up"),
@@ -173,6 +192,19 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     ];
     lost.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| eprintln!("{count} {what}."));
     ended(&session)
+}
+
+/// Sends notes to the neighbours of `area`, from a port of its own beside `listen`.
+fn sender(floor: &Floor, area: &Area, listen: SocketAddr) -> Result<SendNote, Failure> {
+    let to: Vec<SocketAddr> = Border::neighbours(floor, area).filter_map(|area| area.listen).collect();
+    let socket = UdpSocket::bind(SocketAddr::new(listen.ip(), 0))
+        .and_then(|socket| socket.set_nonblocking(true).map(|()| socket))
+        .map_err(|error| Failure::Other(format!("cues can't be handed to neighbours: {error}")))?;
+    Ok(Box::new(move |number, note| match to.get(number) {
+        // An error may be the echo of an earlier note to a neighbour that is not there.
+        Some(to) => socket.send_to(note, to).or_else(|_| socket.send_to(note, to)).is_ok(),
+        None => false,
+    }))
 }
 
 /// The area called `id`.

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
-use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -22,6 +22,7 @@ use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use crate::lines::Lines;
 use crate::link::Link;
+use crate::netns::Namespaces;
 
 /// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few, since
 /// one machine does the work of six here.
@@ -82,7 +83,18 @@ impl Drop for Program {
 
 impl Program {
     pub(crate) fn start(folder: &Path, args: &[&str], notices: &Notices) -> Self {
-        let mut child = Command::new(env!("CARGO_BIN_EXE_underfoot-cluster"))
+        Self::start_by(Command::new(env!("CARGO_BIN_EXE_underfoot-cluster")), folder, args, notices)
+    }
+
+    /// Starts it in a network namespace; `ip` makes way for it, so that it has the process of its own that signals reach.
+    fn start_in(namespace: &str, folder: &Path, args: &[&str], notices: &Notices) -> Self {
+        let mut ip = Command::new("ip");
+        ip.args(["netns", "exec", namespace, env!("CARGO_BIN_EXE_underfoot-cluster")]);
+        Self::start_by(ip, folder, args, notices)
+    }
+
+    fn start_by(mut command: Command, folder: &Path, args: &[&str], notices: &Notices) -> Self {
+        let mut child = command
             .args(args)
             .current_dir(folder)
             .stdout(Stdio::piped())
@@ -119,6 +131,13 @@ pub(crate) fn floor() -> Floor {
     calibrated(&bare, &sim, SEED).unwrap()
 }
 
+/// The same, whose areas listen on free ports.
+pub(crate) fn listening() -> Floor {
+    let mut floor = floor();
+    floor.areas.iter_mut().for_each(|area| area.listen = Some(([127, 0, 0, 1], free_port()).into()));
+    floor
+}
+
 /// The hall's controls.
 pub(crate) fn layout(floor: &Floor) -> Layout {
     schema::parse_layout(LAYOUT, "controls", &Kinds::builtin(), &floor.geometry).unwrap().layout
@@ -146,18 +165,26 @@ pub(crate) struct Hall {
     notices: Notices,
     _gateway: Program,
     pub(crate) lines: Lines,
+    /// Where nodes run, if each has a network of its own.
+    namespaces: Option<Namespaces>,
 }
 
 impl Hall {
     pub(crate) fn open() -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
-        let ports = AREAS.map(|_| free_port());
+        let namespaces = Namespaces::asked_for();
         let mut floor = floor();
-        for (area, port) in floor.areas.iter_mut().zip(ports) {
-            area.listen = Some(([127, 0, 0, 1], port).into());
+        for area in &mut floor.areas {
+            let address = namespaces.as_ref().map_or(Ipv4Addr::LOCALHOST, |all| all.address(&area.id));
+            area.listen = Some((address, free_port()).into());
         }
-        let address = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap();
+        let here = namespaces.as_ref().map_or(Ipv4Addr::LOCALHOST, Namespaces::here);
+        if namespaces.is_some() {
+            // Boards are on the bridge, and those of the one computer on this machine.
+            floor.allow = [here, Ipv4Addr::LOCALHOST].map(|address| IpAddr::from(address).into()).into();
+        }
+        let address = TcpListener::bind((here, 0)).unwrap().local_addr().unwrap();
         floor.gateway = Some(address);
         std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
         let layout = layout(&floor);
@@ -177,7 +204,7 @@ impl Hall {
         let notices = Notices::default();
         let mut gateway = Program::start(folder.path(), &args, &notices);
         let lines = Lines::of(gateway.0.stdout.take().unwrap());
-        Self { folder, floor, layout, links, commands, notices, _gateway: gateway, lines }
+        Self { folder, floor, layout, links, commands, notices, _gateway: gateway, lines, namespaces }
     }
 
     /// Starts the node of one area, with nothing but what the floor file says.
@@ -229,7 +256,11 @@ impl Hall {
 
     fn start(&self, area: &str, more: &[&str]) -> Program {
         let node = ["node", "--floor", "hall.ron", "--area", area];
-        Program::start(self.folder.path(), &[&node[..], more].concat(), &self.notices)
+        let (folder, args) = (self.folder.path(), [&node[..], more].concat());
+        match &self.namespaces {
+            Some(all) => Program::start_in(&all.name(area), folder, &args, &self.notices),
+            None => Program::start(folder, &args, &self.notices),
+        }
     }
 
     /// Waits until an area is live, as told from line `from` on.
@@ -316,7 +347,8 @@ impl Boards {
         let loss = Arc::clone(&lost);
         // Any sequence without a pattern.
         let mut random = 1_u64;
-        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        // As boards, from whatever address leads to whom they send.
+        let socket = UdpSocket::bind("0.0.0.0:0").unwrap();
         let mut encoder = SensorEncoder::new(floor, SensorFormat::Blob);
         let mut source = source(floor, script, Pace::RealTime);
         let until = Arc::clone(&stop);

@@ -11,14 +11,7 @@ use underfoot::sense::Quality;
 use underfoot::source::{ForwardCounters, UdpSource};
 use underfoot::wire::LinkState;
 
-use crate::hall::{AREAS, Boards, Hall, floor, free_port, layout, script};
-
-/// The hall, whose areas listen on free ports.
-fn listening() -> Floor {
-    let mut floor = floor();
-    floor.areas.iter_mut().for_each(|area| area.listen = Some(([127, 0, 0, 1], free_port()).into()));
-    floor
-}
+use crate::hall::{AREAS, Boards, Hall, layout, listening, script};
 
 /// One computer of the hall, in this process.
 fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {

@@ -1,6 +1,7 @@
 //! A hall of four areas, served by real processes over real loopback sockets, with people walking over all borders.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+mod border;
 mod commands;
 mod faults;
 mod hall;
@@ -8,6 +9,7 @@ mod halo;
 mod lines;
 mod link;
 mod many;
+mod netns;
 mod offline;
 mod same;
 mod soak;

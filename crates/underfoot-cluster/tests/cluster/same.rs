@@ -218,6 +218,7 @@ fn events_of_four_people_who_cross_all_borders_are_those_of_one_computer() {
     walk_about(1, false);
 }
 
+/// With `UNDERFOOT_NETNS`, each node runs in a network namespace of its own.
 #[test]
 #[ignore = "two minutes in real time"]
 fn the_same_for_two_minutes_with_names_places_and_times() {

@@ -1,0 +1,106 @@
+//! A control over a border is felt on the tiles of both computers.
+
+use std::net::{SocketAddr, UdpSocket};
+use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Mutex};
+use std::thread;
+use std::time::Duration;
+
+use underfoot::feel::{RendererConfig, renderer};
+use underfoot::floor::{Floor, TileId};
+use underfoot::layout::Layout;
+use underfoot::runtime::{Actuators, Session};
+use underfoot::sink::{ActuatorSink, ManualSink, SinkError};
+use underfoot::source::UdpSource;
+use underfoot::units::Instant;
+use underfoot_cluster::node::{Border, BorderCounters};
+
+use crate::hall::{Boards, layout, listening, script};
+
+const RATE: u32 = 48_000;
+
+/// Actuators whose samples a test can look at.
+#[derive(Clone)]
+struct Seen(Arc<Mutex<Option<ManualSink>>>);
+
+impl ActuatorSink for Seen {
+    fn advance(&mut self, now: Instant) -> Result<(), SinkError> {
+        self.0.lock().unwrap().as_mut().unwrap().advance(now)
+    }
+}
+
+/// One computer of the hall, in this process.
+struct Computer {
+    session: Session,
+    seen: Seen,
+    counters: Arc<BorderCounters>,
+    part: Floor,
+}
+
+impl Computer {
+    fn serve(floor: &Floor, layout: &Layout, id: &str, number: u64) -> Self {
+        let area = floor.area(id).unwrap();
+        let part = floor.part(area).unwrap();
+        let (notes, noted) = sync_channel(1024);
+        let source = UdpSource::bind(area.listen.unwrap(), &part).unwrap().handing_notes_to(notes);
+        let (source, _) = source.forwarding(&floor.forwardings(area)).unwrap();
+        let clock = source.clock();
+        let to: Vec<SocketAddr> = Border::neighbours(floor, area).filter_map(|area| area.listen).collect();
+        let socket = UdpSocket::bind("127.0.0.1:0").unwrap();
+        let send = move |number: usize, note: &[u8]| socket.send_to(note, to[number]).is_ok();
+        let border = Border::new(floor, area, number, Box::new(send), noted);
+        let counters = border.counters();
+        let seen = Seen(Arc::default());
+        let sink = seen.clone();
+        let session = Session::source(Box::new(source), clock)
+            .floor(part.clone())
+            .layout(layout.clone().part(area, &floor.geometry))
+            .neighbours(border)
+            .actuators(move |floor, start, _| {
+                let (feel, renderer) = renderer(RendererConfig::of(floor, RATE));
+                *sink.0.lock().unwrap() = Some(ManualSink::new(renderer, start));
+                Ok(Actuators { feel, sink: Box::new(sink) })
+            })
+            .realtime()
+            .start()
+            .unwrap();
+        Self { session, seen, counters, part }
+    }
+
+    /// The largest sample that the actuator of a tile has played.
+    fn peak(&self, tile: TileId) -> f32 {
+        let index = self.part.geometry.index(tile).unwrap();
+        let channel = self.part.actuators[index].unwrap().channel;
+        let seen = self.seen.0.lock().unwrap();
+        seen.as_ref().unwrap().channel(channel.into()).iter().fold(0.0, |peak, sample| peak.max(sample.abs()))
+    }
+}
+
+#[test]
+fn what_belongs_to_one_computer_is_felt_on_the_tiles_of_both() {
+    let floor = listening();
+    let layout = layout(&floor);
+    let [west, east] =
+        [("sw", 1), ("se", 2)].map(|(id, number)| Computer::serve(&floor, &layout, id, number));
+    let homes = |board| vec![floor.home(board).unwrap().listen.unwrap()];
+    let targets: Vec<_> = floor.boards.iter().map(homes).collect();
+    let press = r#"Press(widget: "drive", force_n: 110, hold_ms: 300),"#;
+    let steps =
+        format!(r#"Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)), {press} {press} Leave(to: South)"#);
+    let people = format!("Scenario(title: \"Drive\", steps: [{steps}])");
+    Boards::start(&floor, script(&people, &floor, &layout), targets).finish();
+    thread::sleep(Duration::from_millis(200));
+    let given = east.counters.given();
+    let west_tile = TileId::new(5, 3);
+    let (felt, late) = (west.counters.felt(), west.counters.late());
+    let other =
+        (west.counters.lost(), west.counters.untimed(), west.counters.refused(), east.counters.unsent());
+    assert!(given > 0 && felt > 0, "{given} given, {felt} felt, {late} late, {other:?}");
+    // What comes later than 50 ms on a busy machine is counted.
+    assert_eq!((felt + late, other), (given, (0, 0, 0, 0)));
+    assert_eq!(west.counters.given(), 0, "the west's own controls have rested");
+    let peaks = [west.peak(west_tile), east.peak(TileId::new(6, 3)), west.peak(TileId::new(0, 0))];
+    assert!(peaks[0] > 0.0 && peaks[1] > 0.0 && peaks[2] == 0.0, "{peaks:?}");
+    west.session.stop();
+    east.session.stop();
+}

@@ -1,0 +1,73 @@
+//! Network namespaces: each node with interfaces, addresses and routes of its own, as on a computer of its own.
+
+use std::net::Ipv4Addr;
+use std::process::Command;
+
+use crate::hall::AREAS;
+
+/// A namespace for each area, all on one bridge; they are gone when this is dropped.
+#[derive(Debug)]
+pub(crate) struct Namespaces {
+    tag: String,
+    net: u8,
+}
+
+/// Runs `ip` with these words.
+fn ip(words: &str) -> Result<(), String> {
+    let done =
+        Command::new("ip").args(words.split_whitespace()).output().map_err(|error| error.to_string())?;
+    let why = || format!("ip {words}: {}", String::from_utf8_lossy(&done.stderr));
+    done.status.success().then_some(()).ok_or_else(why)
+}
+
+impl Namespaces {
+    /// Namespaces, if `UNDERFOOT_NETNS` asks for them; that takes root and Linux's `ip`.
+    pub(crate) fn asked_for() -> Option<Self> {
+        std::env::var_os("UNDERFOOT_NETNS").map(|_| Self::open())
+    }
+
+    fn open() -> Self {
+        let number = std::process::id();
+        let all = Self { tag: format!("uf{number}"), net: (number % 250) as u8 };
+        let (bridge, here) = (format!("{}b", all.tag), all.here());
+        ip(&format!("link add {bridge} type bridge")).unwrap();
+        ip(&format!("addr add {here}/24 dev {bridge}")).unwrap();
+        ip(&format!("link set {bridge} up")).unwrap();
+        for area in AREAS {
+            let (name, outside, address) = (all.name(area), all.name(area), all.address(area));
+            ip(&format!("netns add {name}")).unwrap();
+            ip(&format!("link add {outside} type veth peer name eth0 netns {name}")).unwrap();
+            ip(&format!("link set {outside} master {bridge} up")).unwrap();
+            ip(&format!("-n {name} addr add {address}/24 dev eth0")).unwrap();
+            ip(&format!("-n {name} link set eth0 up")).unwrap();
+            ip(&format!("-n {name} link set lo up")).unwrap();
+        }
+        all
+    }
+
+    /// The namespace of an area's node, which is also the name of its interface on this side.
+    pub(crate) fn name(&self, area: &str) -> String {
+        format!("{}{area}", self.tag)
+    }
+
+    /// Where the gateway and the boards are.
+    pub(crate) fn here(&self) -> Ipv4Addr {
+        Ipv4Addr::new(10, 213, self.net, 1)
+    }
+
+    /// Where an area's node is.
+    pub(crate) fn address(&self, area: &str) -> Ipv4Addr {
+        let number = AREAS.iter().position(|one| *one == area).unwrap();
+        Ipv4Addr::new(10, 213, self.net, 10 + number as u8)
+    }
+}
+
+impl Drop for Namespaces {
+    fn drop(&mut self) {
+        for area in AREAS {
+            // Its interfaces, on both sides, go with it.
+            let _ = ip(&format!("netns del {}", self.name(area)));
+        }
+        let _ = ip(&format!("link del {}b", self.tag));
+    }
+}
