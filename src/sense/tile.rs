@@ -179,7 +179,9 @@ impl LoadedTile {
 
     /// Standard deviation of the noise of each of its sensors under this load, in newtons.
     pub(super) fn loaded_noise_n(&self) -> f64 {
-        f64::from(self.noise_n).hypot(LOADED_NOISE * 0.25 * f64::from(self.wrench.force))
+        let under_load = LOADED_NOISE * 0.25 * f64::from(self.wrench.force);
+        // As on most floors: not worth a square root.
+        if self.noise_n == 0.0 { under_load.abs() } else { f64::from(self.noise_n).hypot(under_load) }
     }
 
     pub(super) fn strayed_m2(&self) -> f32 {

@@ -6,7 +6,7 @@ use super::params::delete::{
 };
 use super::params::state::{LANDS_S, SHOE_M};
 use super::state::{FORCE, Track};
-use super::{Tracker, first_of_least};
+use super::{Tracker, cell_of, first_of_least};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -54,7 +54,7 @@ impl Tracker {
 
     /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.
     pub(super) fn stands_on_nothing(&self, foot: &Track, tiles: &LoadedTiles, all: f64) -> bool {
-        let at = (foot.centre() / self.cells.pitch).floor().as_ivec2();
+        let at = cell_of(foot.centre(), self.cells.pitch);
         let around = (at.y - 2..=at.y + 2)
             .flat_map(|row| (at.x - 2..=at.x + 2).filter_map(move |column| tiles.find(column, row)));
         let near = around

@@ -22,7 +22,7 @@ use super::params::stillness::STANDS_S;
 use glam::DVec2;
 
 use super::state::Track;
-use super::strips::Whole;
+use super::strips::{Whole, centroid_sigma};
 use crate::sense::tile::LoadedTile;
 
 /// How the loads of some tiles lie about their centroid.
@@ -31,8 +31,10 @@ pub(super) struct Spread {
     /// Standard deviation along the widest direction, and across it, in metres.
     pub along: f64,
     pub across: f64,
-    /// The widest direction.
-    pub axis: DVec2,
+    /// Half the difference between the variances eastwards and northwards, and the covariance of the two: what tells the
+    /// widest direction.
+    difference: f64,
+    mixed: f64,
 }
 
 impl Spread {
@@ -52,12 +54,17 @@ impl Spread {
         }
         let (mean, difference, mixed) = (0.5 * (xx + yy) / force, 0.5 * (xx - yy) / force, xy / force);
         let swing = difference.hypot(mixed);
-        let angle = 0.5 * mixed.atan2(difference);
         Self {
             along: (mean + swing).max(0.0).sqrt(),
             across: (mean - swing).max(0.0).sqrt(),
-            axis: DVec2::from_angle(angle),
+            difference,
+            mixed,
         }
+    }
+
+    /// The widest direction.
+    pub(super) fn axis(&self) -> DVec2 {
+        DVec2::from_angle(0.5 * self.mixed.atan2(self.difference))
     }
 
     /// Log odds for two feet.
@@ -96,7 +103,7 @@ impl Explanation {
         Self { log_odds: ACCOMPANIED }
     }
 
-    /// Takes in what the track's tiles carry now; `alone`: no other foot is within a stride.
+    /// Takes in what the track's tiles carry now, `pitch` from tile to tile; `alone`: no other foot is within a stride.
     ///
     /// Gives where the second foot is once it is worth a track.
     pub(super) fn update(
@@ -104,6 +111,7 @@ impl Explanation {
         foot: &Track,
         seen: &Whole,
         list: &[LoadedTile],
+        pitch: f64,
         alone: bool,
         dt: f64,
     ) -> Option<Second> {
@@ -122,7 +130,8 @@ impl Explanation {
                     if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
                 evidence += standing * ((foot.anchored_s - STANDS_S) / after_s).min(1.0);
                 shift = seen.middle - foot.anchor;
-                let deviation = SWAY_M.hypot(0.5 * seen.doubt);
+                let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
+                let deviation = SWAY_M.hypot(0.5 * centroid_sigma(tiles, seen.force, pitch));
                 evidence += (0.5 * (shift.length() / deviation).powi(2)).min(MOST);
             } else {
                 evidence -= (ROLL * (foot.travel / ROLL_M).powi(2)).min(ROLL);
@@ -181,7 +190,7 @@ mod tests {
     fn the_spread_of_two_equal_loads_is_half_their_distance() {
         let apart = spread(&[(100.0, 0.0, 0.0), (100.0, 0.3, 0.0)]);
         assert!((apart.along - 0.15).abs() < 1e-12 && apart.across < 1e-9);
-        assert!(apart.axis.y.abs() < 1e-12);
+        assert!(apart.axis().y.abs() < 1e-12);
     }
 
     #[test]

@@ -157,10 +157,10 @@ impl Tracker {
     /// A second foot that one track's load tells of: where it would be.
     fn second(&mut self, which: usize, list: &[LoadedTile], dt: f64) -> Option<Candidate> {
         let foot = &self.tracks[which];
-        let seen = Whole::of(foot.tiles.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        let seen = Whole::of(foot.tiles.iter().map(|&position| &list[position as usize]));
         let alone = self.is_far_from_all(which);
         let mut explanation = foot.explanation;
-        let second = explanation.update(foot, &seen, list, alone, dt);
+        let second = explanation.update(foot, &seen, list, self.cells.pitch, alone, dt);
         self.tracks[which].explanation = explanation;
         let foot = &self.tracks[which];
         if foot.suppressed_s > 0.0 {
@@ -174,13 +174,14 @@ impl Tracker {
                 ..Candidate::default()
             }),
             Second::Apart(spread) => {
+                let axis = spread.axis();
                 // The lighter side is the new one.
                 let mut sides = [(0.0, DVec2::ZERO); 2];
                 for &position in &foot.tiles {
                     let tile = &list[position as usize];
                     let force = f64::from(tile.wrench.force);
                     let at = tile.centroid.as_dvec2();
-                    let side = &mut sides[usize::from((at - seen.middle).dot(spread.axis) > 0.0)];
+                    let side = &mut sides[usize::from((at - seen.middle).dot(axis) > 0.0)];
                     side.0 += force;
                     side.1 += at * force;
                 }

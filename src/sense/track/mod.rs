@@ -44,13 +44,14 @@ mod touchdown;
 use self::params::tracker::{
     FIRST_STEP_M, LANDING_S, MOST_MORE_N, MOST_SHARE, NIS_S, SEEN_S, STRIDE_M, THROWN_M,
 };
-use glam::DVec2;
+use glam::{DVec2, IVec2};
 
 use self::joint::{Joint, MOST_FEET};
 use self::model::{observe, predict};
 use self::neighbours::{Groups, Near};
+use self::smoothed::kept;
 use self::state::{EAST, NORTH, STATES, Track};
-use self::strips::{Axis, Strips};
+use self::strips::{Axis, Strips, centroid_sigma};
 use super::contact::ContactId;
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
@@ -119,6 +120,19 @@ impl Cells {
         let low = DVec2::new(tile.tile.column.into(), tile.tile.row.into()) * self.pitch;
         (low, low + self.pitch)
     }
+}
+
+/// Which of the cells of width `pitch` the place `along` is in, along one axis.
+fn number_of(along: f64, pitch: f64) -> i32 {
+    let number = along / pitch;
+    // The floor of it, as every processor can round: a call for each would cost more than all else here.
+    let towards_zero = number as i32;
+    towards_zero.saturating_sub(i32::from(f64::from(towards_zero) > number))
+}
+
+/// The same, along both axes.
+fn cell_of(place: DVec2, pitch: f64) -> IVec2 {
+    IVec2::new(number_of(place.x, pitch), number_of(place.y, pitch))
 }
 
 /// Orders by the first number, and what is equal by who came first.
@@ -294,14 +308,19 @@ impl Tracker {
         let Some(touchdown) = stepping.touchdown else { return false };
         let both = existing.tiles_with(stepping);
         let strips = Strips::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
+        let doubt = centroid_sigma(
+            both.iter().map(|&position| &list[position as usize]),
+            strips.force,
+            self.cells.pitch,
+        );
         // Where what the filter says of both has not fitted for some time, they are looked for anew.
         if !existing.ambiguous
-            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, list, &self.cells)
+            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, doubt, list, &self.cells)
         {
             existing.hold_at(touchdown.from);
             return false;
         }
-        touchdown::place(existing, stepping, touchdown.from, strips, &self.cells)
+        touchdown::place(existing, stepping, touchdown.from, strips, doubt, &self.cells)
     }
 
     /// One step of the joint filter over the feet in `members`.
@@ -363,8 +382,9 @@ impl Tracker {
     /// Lets each foot's slow past learn from this frame.
     fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
+        let keep = kept(dt);
         for foot in &mut self.tracks {
-            foot.smooth(dt);
+            foot.smooth(dt, keep);
             foot.roll(dt);
             foot.note_outline(list, dt);
             if !foot.shared {
@@ -372,6 +392,7 @@ impl Tracker {
             }
             // A foot that has just come to stand alone starts from what is measured.
             let fresh = !foot.shared && foot.smoothed.loads.is_empty();
+            let weight = if fresh && foot.age > 0.0 { 1.0 } else { 1.0 - keep };
             for at in 0..foot.tiles.len() {
                 let tile = &list[foot.tiles[at] as usize];
                 let (force, moment) = if foot.shared {
@@ -381,7 +402,7 @@ impl Tracker {
                     let force = f64::from(tile.wrench.force);
                     (force, (tile.centroid - tile.centre).as_dvec2() * force)
                 };
-                foot.learn_load(tile.index, force, moment, dt, fresh && foot.age > 0.0);
+                foot.learn_load(tile.index, force, moment, weight);
             }
             foot.forget_loads();
         }

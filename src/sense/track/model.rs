@@ -8,10 +8,10 @@ use super::params::state::{FLAT_S, HALF_REST};
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-use super::Cells;
 use super::joint::{Derivative, Joint, MOST_FEET};
 use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 use super::strips::{Axis, Strips};
+use super::{Cells, number_of};
 use crate::sense::tile::LoadedTile;
 
 /// Lets `dt` seconds pass for the feet in `members`.
@@ -73,7 +73,7 @@ pub(super) fn observe(
         for axis in Axis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
-            for number in ((c - h) / cells.pitch).floor() as i32..=((c + h) / cells.pitch).floor() as i32 {
+            for number in number_of(c - h, cells.pitch)..=number_of(c + h, cells.pitch) {
                 if cells.have(axis, number) {
                     strips.strip(axis, number);
                 }

@@ -3,7 +3,7 @@
 use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 
-use super::{Cells, UNASSIGNED};
+use super::{Cells, UNASSIGNED, cell_of};
 
 /// The feet by where they are, in squares of a stride.
 ///
@@ -100,7 +100,7 @@ impl Near {
     }
 
     fn column_and_row(&self, place: DVec2) -> (i32, i32) {
-        let at = ((place - self.corner) / STRIDE_M).floor().as_ivec2();
+        let at = cell_of(place - self.corner, STRIDE_M);
         (at.x.clamp(0, self.columns - 1), at.y.clamp(0, self.rows - 1))
     }
 }

@@ -383,8 +383,11 @@ pub(super) mod touchdown {
     /// Share of all weight from which on the new foot is where the common centre of pressure is.
     pub(in crate::sense::track) const TAKEN_OVER: f64 = 0.8;
 
-    /// Half widths that the new foot's patch may have along an axis, in metres, and how much they vary.
-    pub(in crate::sense::track) const HALVES: [f64; 4] = [0.045, 0.075, 0.105, 0.135];
+    /// Half widths that the new foot's patch may have along an axis, likeliest first, and the widest, in metres, and how
+    /// much they vary.
+    pub(in crate::sense::track) const HALVES: [f64; 4] = [0.075, 0.105, 0.045, WIDEST_M];
+
+    pub(in crate::sense::track) const WIDEST_M: f64 = 0.135;
 
     pub(in crate::sense::track) const HALF_SPREAD_M: f64 = 0.03;
 

@@ -7,6 +7,7 @@ use super::params::reach::{
 use super::params::state::{FLAT_S, LANDS_S, SHOE_M, SLIDING_N};
 use glam::DVec2;
 
+use super::cell_of;
 use super::outline::Outline;
 use super::state::{EAST, NORTH, Track};
 use super::strips::Axis;
@@ -71,8 +72,8 @@ impl Track {
     pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
         self.tiles.clear();
         let reach = self.half() * HALVES + BEYOND_M;
-        let mut low = ((self.centre() - reach) / pitch).floor().as_ivec2();
-        let mut high = ((self.centre() + reach) / pitch).floor().as_ivec2();
+        let mut low = cell_of(self.centre() - reach, pitch);
+        let mut high = cell_of(self.centre() + reach, pitch);
         if self.residual_weight() > KNOWN {
             // Where it was alone, it also presses what it pressed then.
             for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {

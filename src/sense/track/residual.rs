@@ -1,5 +1,6 @@
 //! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
 
+use super::number_of;
 use super::params::residual::{KNOWN_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
@@ -42,7 +43,7 @@ impl Track {
         let mut strips = Strips::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
         for axis in Axis::BOTH {
             let (c, h) = (axis.along(centre), axis.along(half));
-            for number in ((c - h) / pitch).floor() as i32..=((c + h) / pitch).floor() as i32 {
+            for number in number_of(c - h, pitch)..=number_of(c + h, pitch) {
                 strips.strip(axis, number);
             }
         }

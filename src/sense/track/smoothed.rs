@@ -25,14 +25,18 @@ pub(super) struct SmoothedLoad {
     pub seen: bool,
 }
 
+/// How much of a smoothed value is left after `dt` seconds.
+pub(super) fn kept(dt: f64) -> f64 {
+    (-dt / SMOOTHED_S).exp()
+}
+
 impl Track {
-    /// Lets the slow past learn from where the foot is now.
-    pub(super) fn smooth(&mut self, dt: f64) {
+    /// Lets the slow past learn from where the foot is now; `keep` is [`kept`] of `dt`.
+    pub(super) fn smooth(&mut self, dt: f64, keep: f64) {
         if dt <= 0.0 {
             return;
         }
         // A critically damped alpha-beta filter: no overshoot, steady motion followed without lag.
-        let keep = (-dt / SMOOTHED_S).exp();
         let (alpha, beta) = (1.0 - keep * keep, (1.0 - keep) * (1.0 - keep) / dt);
         let offset = self.centre() - self.smoothed.centre;
         let gain = self.force() - self.smoothed.force;
@@ -47,16 +51,14 @@ impl Track {
         self.smoothed = Smoothed { force: self.force(), centre: self.centre(), ..Smoothed::default() };
     }
 
-    /// Lets the slow load of one tile learn; `force` and `moment` are the foot's own part of it.
-    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, dt: f64, fresh: bool) {
-        let weight = 1.0 - (-dt / SMOOTHED_S).exp();
+    /// Lets the slow load of one tile learn by `weight`; `force` and `moment` are the foot's own part of it.
+    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, weight: f64) {
         let loads = &mut self.smoothed.loads;
         let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
             loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
             loads.len() - 1
         });
         let load = &mut loads[position];
-        let weight = if fresh { 1.0 } else { weight };
         load.force += weight * (force - load.force);
         load.moment += weight * (moment - load.moment);
         load.seen = true;

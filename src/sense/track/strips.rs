@@ -93,6 +93,14 @@ impl Strip {
         Slice::new(low, low + pitch, c, h)
     }
 
+    /// Whether no patch with its middle at `c` and a half width of at most `h` has one of the line's edges within it: the
+    /// line has all of it or nothing.
+    pub(super) fn is_divided_by_none(&self, pitch: f64, c: f64, h: f64) -> bool {
+        let low = f64::from(self.number) * pitch;
+        let (low, high) = (low - c, low + pitch - c);
+        low >= h || high <= -h || low <= -h && high >= h
+    }
+
     /// The same for a half width known to within a standard deviation of `doubt`.
     pub(super) fn slice_in_doubt(&self, pitch: f64, c: f64, h: f64, doubt: f64) -> Slice {
         let low = f64::from(self.number) * pitch;
@@ -114,18 +122,16 @@ pub(super) struct Whole {
     pub force: f64,
     /// Their centroid; not a number without force.
     pub middle: DVec2,
-    /// What is not known of it; see [`centroid_sigma`].
-    pub doubt: f64,
 }
 
 impl Whole {
-    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
+    pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile>) -> Self {
         let (mut force, mut sum) = (0.0, DVec2::ZERO);
-        for tile in tiles.clone() {
+        for tile in tiles {
             force += f64::from(tile.wrench.force);
             sum += tile.centroid.as_dvec2() * f64::from(tile.wrench.force);
         }
-        Self { force, middle: sum / force, doubt: centroid_sigma(tiles, force, pitch) }
+        Self { force, middle: sum / force }
     }
 }
 
@@ -145,16 +151,14 @@ pub(super) struct Strips {
     pub force: f64,
     /// Their centroid.
     pub middle: DVec2,
-    /// What is not known of it; see [`centroid_sigma`].
-    pub doubt: f64,
     pitch: f64,
 }
 
 impl Strips {
     /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
-        let Whole { force, middle, doubt } = Whole::of(tiles.clone(), pitch);
-        let mut sums = Self { strips: ArrayVec::new(), force, middle, doubt, pitch };
+        let Whole { force, middle } = Whole::of(tiles.clone());
+        let mut sums = Self { strips: ArrayVec::new(), force, middle, pitch };
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();

@@ -14,13 +14,14 @@ use super::params::stillness::SWAY_LEAST_M;
 use super::params::touchdown::{
     HALF_SPREAD_M, HALVES, LEAST_MOMENT, LEAST_WAY_M, MISREAD_N, MOSTLY, NEAREST_M, NOT_ITS_OWN, PLACE_M,
     SIDE_BY_SIDE_M, STEP_M, SWAY_M, TAKEN_OVER, TIGHT_M, TRIED, UNLIKE, UNLIKE_LEAST, USUAL_M, USUAL_SPREAD,
+    WIDEST_M,
 };
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
-use super::Cells;
 use super::state::{EAST, FORCE, NORTH, Track};
 use super::strips::{Axis, MOST_STRIPS, Strip, Strips};
+use super::{Cells, number_of};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
@@ -44,6 +45,7 @@ pub(super) fn is_seen_alone(
     stepping: &Track,
     from: DVec2,
     strips: &Strips,
+    doubt: f64,
     list: &[LoadedTile],
     cells: &Cells,
 ) -> bool {
@@ -51,10 +53,11 @@ pub(super) fn is_seen_alone(
     let own = tiles.filter(|tile| existing.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
     let own: DVec2 = own.map(|tile| (tile.centroid.as_dvec2() - from) * f64::from(tile.wrench.force)).sum();
     let all = (strips.middle - from) * strips.force;
-    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + strips.doubt) * strips.force
+    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + doubt) * strips.force
 }
 
-/// Places `stepping` beside `existing`, which stands still at `from`; `strips` is what the tiles of both carry.
+/// Places `stepping` beside `existing`, which stands still at `from`; `strips` is what the tiles of both carry, and
+/// `doubt` what is not known of their centroid.
 ///
 /// False if nothing can be said yet: the common centre of pressure has hardly moved.
 pub(super) fn place(
@@ -62,24 +65,26 @@ pub(super) fn place(
     stepping: &mut Track,
     from: DVec2,
     mut strips: Strips,
+    doubt: f64,
     cells: &Cells,
 ) -> bool {
     let (force, way) = (strips.force, strips.middle - from);
     let moment = force * way.length();
-    if moment < LEAST_MOMENT.max((LEAST_WAY_M + strips.doubt) * force) {
+    if moment < LEAST_MOMENT.max((LEAST_WAY_M + doubt) * force) {
         return false;
     }
     let ahead = way / way.length();
     // Strips that the feet would reach but that carry nothing speak too.
     for axis in Axis::BOTH {
         for point in [from, from + ahead * 0.3] {
-            let number = (axis.along(point) / cells.pitch).floor() as i32;
+            let number = number_of(axis.along(point), cells.pitch);
             if cells.have(axis, number) {
                 strips.strip(axis, number);
             }
         }
     }
     let standing = standing(existing, from, &strips, cells.pitch);
+    let tightness = TIGHT_M.hypot(doubt);
     let mut against = [f64::INFINITY; TRIED];
     for (misfit, distance) in against.iter_mut().zip(distances()) {
         let stepping_force = moment / distance;
@@ -90,7 +95,7 @@ pub(super) fn place(
         let existing_force = (force - stepping_force).max(0.0);
         let pair = Pair { existing_force, place, stepping_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
-        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / TIGHT_M.hypot(strips.doubt);
+        let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / tightness;
         *misfit = pair.misfit(&standing, strips.middle, cells.pitch) + unusual * unusual + tight * tight;
     }
     let Some(distance) = Distance::among(&against) else { return false };
@@ -189,11 +194,28 @@ impl Pair {
         let mut all = 0.0;
         for axis in Axis::BOTH {
             let mut best = f64::INFINITY;
+            // Of lines that the patch covers or misses whatever its width; NaN until it is known.
+            let mut same = [f64::NAN; MOST_STRIPS];
             for half in HALVES {
                 let unusual = (half - HALF_REST) / HALF_SPREAD_M;
                 let mut misfit = 0.0;
-                for line in lines.iter().filter(|line| line.strip.axis == axis) {
-                    misfit += self.misfit_on(line, half, middle, pitch);
+                let lines = lines.iter().zip(&mut same).filter(|(line, _)| line.strip.axis == axis);
+                for (line, same) in lines {
+                    if !same.is_nan() {
+                        misfit += *same;
+                        continue;
+                    }
+                    let (square, variances) = self.misfit_on(line, half, middle, pitch);
+                    // No term is negative: what fits worse already need not be looked at to the end.
+                    if unusual * unusual + (misfit + square) >= best {
+                        misfit = f64::INFINITY;
+                        break;
+                    }
+                    let all = square + variances[0].ln() + 2.0 * variances[1].ln();
+                    misfit += all;
+                    if line.strip.is_divided_by_none(pitch, axis.along(self.place), WIDEST_M) {
+                        *same = all;
+                    }
                 }
                 best = best.min(unusual * unusual + misfit);
             }
@@ -202,11 +224,14 @@ impl Pair {
         all
     }
 
-    /// Twice the negative logarithm of the likelihood of one line's load, but for a constant.
+    /// Twice the negative logarithm of the likelihood of one line's load, but for a constant: the squares, and the
+    /// variances of force and moments of which the logarithms are to be added, once and twice.
     ///
-    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones gains nothing.
+    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones gains
+    /// nothing. They are most of the work, so they are left to whoever needs them.
     #[inline]
-    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> f64 {
+    fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> (f64, [f64; 2]) {
+        const { assert!(MISREAD_N >= 1.0, "logarithms of variances are never negative") };
         let (strip, share) = (&line.strip, line.share);
         let axis = strip.axis;
         let new = strip.slice(pitch, axis.along(self.place), half);
@@ -224,6 +249,6 @@ impl Pair {
         let lever = 0.5 * pitch;
         let swaying = unsure + (SWAY_M * self.existing_force * share / lever).powi(2);
         let moments = (innovation[1] * innovation[1] + innovation[2] * innovation[2]) / (lever * lever);
-        innovation[0] * innovation[0] / unsure + moments / swaying + unsure.ln() + 2.0 * swaying.ln()
+        (innovation[0] * innovation[0] / unsure + moments / swaying, [unsure, swaying])
     }
 }
