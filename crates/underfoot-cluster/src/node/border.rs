@@ -295,7 +295,8 @@ impl Neighbours for Border {
                 cues.iter().filter_map(|cue| Some(NoteCue::of(cue, there(&cue.spots)?))).collect();
             let is_due = neighbour.told.is_none_or(|told| now.since(told) >= LASTING);
             let lasts = sustained.iter().any(|one| there(&one.spots).is_some());
-            if cues.is_empty() && !(lasts && is_due) && !(neighbour.told_lasting && !lasts) {
+            let lasting_changes = if lasts { is_due } else { neighbour.told_lasting };
+            if cues.is_empty() && !lasting_changes {
                 continue;
             }
             let mut lasting: Vec<_> =
