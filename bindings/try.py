@@ -15,7 +15,9 @@ on SIGUSR2. `--strict` asks all rounds to be in time, for an idle machine.
 
 import argparse
 import difflib
+import itertools
 import json
+import random
 import signal
 import socket
 import statistics
@@ -86,8 +88,8 @@ class Reader:
     """The lines that a program prints."""
 
     def __init__(self, command):
-        self.lines = []
-        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        self.lines, self.errors = [], tempfile.TemporaryFile()
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=self.errors, text=True)
         self.thread = threading.Thread(target=self.read)
         self.thread.start()
 
@@ -103,6 +105,11 @@ class Reader:
         except subprocess.TimeoutExpired:
             self.process.kill()
         self.thread.join()
+
+    def complaint(self):
+        """The end of what it said to people."""
+        self.errors.seek(0)
+        return self.errors.read().decode(errors="replace")[-2000:] or "it says nothing"
 
     def events(self):
         """What happened to controls, and of each drag the last value.
@@ -122,7 +129,7 @@ class Reader:
         end = time.monotonic() + 30
         while not any("listening" in line for line in list(self.lines)):
             if time.monotonic() > end or self.process.poll() is not None:
-                raise SystemExit("%s does not listen" % self.process.args)
+                raise SystemExit("%s does not listen: %s" % (self.process.args, self.complaint()))
             time.sleep(0.005)
 
     def wait_held(self, held, since=0.0):
@@ -132,7 +139,7 @@ class Reader:
                 if line.get("held") is held and line.get("now_s", 0) > since:
                     return line["now_s"]
             time.sleep(0.005)
-        raise SystemExit("%s never says: held %s" % (self.process.args, held))
+        raise SystemExit("%s never says: held %s: %s" % (self.process.args, held, self.complaint()))
 
 
 def alike(one, other):
@@ -144,10 +151,19 @@ def alike(one, other):
     return len(one) == len(other) and all(map(same, one, other))
 
 
+# Below the ports that the system hands out by itself: none of these is taken between the look and its use.
+PORTS = itertools.count(random.randrange(10_000, 20_000))
+
+
 def free_address(kind):
-    with socket.socket(socket.AF_INET, kind) as taken:
-        taken.bind(("127.0.0.1", 0))
-        return taken.getsockname()
+    for port in itertools.islice(PORTS, 10_000):
+        with socket.socket(socket.AF_INET, kind) as taken:
+            try:
+                taken.bind(("127.0.0.1", port))
+            except OSError:
+                continue
+            return taken.getsockname()
+    raise SystemExit("no free port")
 
 
 def said(address):
@@ -163,7 +179,7 @@ class Trial:
         if way == "--web":
             web = free_address(socket.SOCK_STREAM)
             self.serve(addresses[0], "--web", said(web), *["--floor=" + path for path in floor])
-            wait_open(web)
+            wait_open(web, self.floor)
             self.reader = Reader([*command, said(web), control])
         else:
             self.reader = Reader([*command, said(addresses[0]), layout, control, *floor])
@@ -192,14 +208,14 @@ class Trial:
         self.relay.end()
 
 
-def wait_open(address):
+def wait_open(address, floor):
     end = time.monotonic() + 30
-    while time.monotonic() < end:
+    while time.monotonic() < end and floor.process.poll() is None:
         try:
             return socket.create_connection(address).close()
         except OSError:
             time.sleep(0.02)
-    raise SystemExit("nobody listens at %s" % said(address))
+    raise SystemExit("nobody listens at %s: %s" % (said(address), floor.complaint()))
 
 
 def same_events(underfoot, layout, way, name, command, folder):

@@ -1,7 +1,7 @@
 //! The server for web pages, over real sockets: what is told, who is let in, and what becomes of who does not read.
 
 use std::io::{BufRead, BufReader, Read, Write};
-use std::net::{SocketAddr, TcpListener, TcpStream};
+use std::net::{SocketAddr, TcpStream};
 use std::process::Command;
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
@@ -10,6 +10,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
+use crate::end_to_end::free_port;
 use crate::holds::client::Client as OtherClient;
 use crate::holds::site::{Boards, Run, Site};
 
@@ -24,7 +25,7 @@ const SOON: Duration = Duration::from_millis(150);
 const TRIES: usize = 6;
 
 pub(super) fn free_address() -> SocketAddr {
-    TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap()
+    SocketAddr::from(([127, 0, 0, 1], free_port()))
 }
 
 fn run(site: &Site, more: &[&str]) -> (Run, SocketAddr) {
