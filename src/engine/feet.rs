@@ -5,9 +5,9 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use super::people::{Person, SAME_FOOT_M};
+use super::people::{Person, SAME_FOOT_M, STANCE_M};
 use super::snapshot::{FootRole, FootState};
-use super::step::{Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
+use super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
 use super::still::Stillness;
 use crate::layout::Stance;
 use crate::sense::{Contact, ContactId};
@@ -57,6 +57,13 @@ const SUM_N: f32 = 250.0;
 /// What the other foot must carry for such a share, in newtons.
 const OTHERS_N: f32 = 50.0;
 
+/// A contact that may have been two feet is told apart into both within so long of having been marked.
+const TOLD_APART: Duration = Duration::from_millis(100);
+
+/// Feet that had been one contact carry at least this share of their person from their first frame on; one that lands
+/// has a tenth of a body no sooner than 5 ms after it has touched the floor (10 N a millisecond, see [`super::step`]).
+const TOLD_APART_SHARE: f32 = 0.1;
+
 /// Where a foot was, with which force, and what the person's other feet carried.
 #[derive(Clone, Copy, Debug, Default)]
 struct PastLoad {
@@ -72,6 +79,8 @@ pub(super) enum PressMode {
     Tap,
     /// A press that may last.
     Hold,
+    /// A press that acts from its first moment on, and whose foot moves a value.
+    Follow,
     /// A stance: the person stands on it.
     Stand,
 }
@@ -92,6 +101,8 @@ pub(super) struct FootHistory {
     /// Whether somebody stood on the other foot when it landed.
     has_support: bool,
     in_stance: bool,
+    /// When it was last marked as perhaps two feet.
+    ambiguous: Option<Instant>,
     step: bool,
     watch: StepWatch,
     still: Stillness,
@@ -121,6 +132,7 @@ impl FootHistory {
             stepped: person.steps_to(place, now),
             has_support: false,
             in_stance: false,
+            ambiguous: contact.ambiguous.then_some(now),
             step: false,
             watch: StepWatch::default(),
             still: Stillness::new(force, place, now),
@@ -154,13 +166,18 @@ impl FootHistory {
     pub(super) fn is_step_on(&self, mode: PressMode, now: Instant) -> bool {
         match mode {
             PressMode::Tap => self.step || self.watch.stands(now) || self.watch.rests(now),
-            PressMode::Hold => self.step || self.watch.stands(now) && self.took_weight_over(),
+            PressMode::Hold | PressMode::Follow => {
+                self.step || self.watch.stands(now) && self.took_weight_over()
+            }
             PressMode::Stand => false,
         }
     }
 
     fn update(&mut self, contact: &Contact, now: Instant) {
         (self.place, self.force) = (contact.centroid, contact.force.0);
+        if contact.ambiguous {
+            self.ambiguous = Some(now);
+        }
         self.still.update(self.force, self.place, now);
         if now.since(self.kept_at) >= PLACE_EVERY {
             self.kept_at = now;
@@ -201,26 +218,44 @@ impl FootHistory {
         near(self.place) || (0..self.kept).any(|ago| near(self.past(ago).place))
     }
 
+    /// Whether another contact of the same person, who had `sum` on the floor, is a foot that had been down unseen as part of
+    /// this one.
+    fn held(&self, other: &Self, sum: f32, now: Instant) -> bool {
+        self.ambiguous.is_some_and(|at| now.since(at) <= TOLD_APART)
+            && self.place.distance(other.place) <= STANCE_M
+            && other.force >= TOLD_APART_SHARE * sum.max(SUM_N)
+    }
+
     /// Whether it presses neither harder nor elsewhere than a tenth of a second ago.
     fn is_steady(&self) -> bool {
-        let past = self.past(STEADY_PLACES);
-        (self.force - past.force).abs() <= STEADY_SHARE * self.force
-            && self.place.distance(past.place) <= STEADY_M
+        self.has_steady_force() && self.place.distance(self.past(STEADY_PLACES).place) <= STEADY_M
+    }
+
+    /// Whether it presses no harder than a tenth of a second ago, when it was down already, and no less.
+    fn has_steady_force(&self) -> bool {
+        self.kept > STEADY_PLACES
+            && (self.force - self.past(STEADY_PLACES).force).abs() <= STEADY_SHARE * self.force
     }
 
     /// Whether it may start a press of a control with this `guard`, as far as its past tells.
     ///
     /// A control to stand on ([`PressMode::Stand`]) starts once the foot has settled. A guarded control starts once
     /// the foot has settled and has not taken the weight over, since that would be a step; one that only asks for
-    /// confirmation does so at once if the other foot supports the person. A free control starts at once.
+    /// confirmation does so at once if the other foot supports the person. A free control starts at once, unless it acts
+    /// at once ([`PressMode::Follow`]): then a foot beside which nobody stands must have stopped gaining weight, which
+    /// a foot that lands in a walk does only when it is known for a step, and no foot may carry a body.
     pub(super) fn is_meant(&self, mode: PressMode, guard: Guard, now: Instant) -> bool {
         let stays = || now.since(self.landed) >= SETTLED && self.is_steady();
         let settled = || stays() && !self.took_weight_over();
         match (mode, guard) {
             (PressMode::Stand, _) => stays(),
             (PressMode::Tap | PressMode::Hold, Guard::Free) => true,
-            (PressMode::Tap | PressMode::Hold, Guard::Confirm { .. }) => self.has_support || settled(),
-            (PressMode::Tap | PressMode::Hold, Guard::HoldToRun { .. }) => settled(),
+            (PressMode::Follow, Guard::Free) => {
+                (self.has_support || self.has_steady_force())
+                    && self.share.is_none_or(|share| share < CARRIES)
+            }
+            (_, Guard::Confirm { .. }) => self.has_support || settled(),
+            (_, Guard::HoldToRun { .. }) => settled(),
         }
     }
 
@@ -381,8 +416,11 @@ impl FootHistories {
             .filter(|other| other.force >= SUPPORT_N && !other.pressing)
             .max_by(|a, b| a.force.total_cmp(&b.force));
         let mut others = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
-        if let Some(other) = others.find(|other| other.was_at(foot.place)) {
-            // No second foot, but the first one under another name, or a part of it told apart for a while.
+        if let Some(other) =
+            others.find(|other| other.was_at(foot.place) || other.held(&foot, person.sum, now))
+        {
+            // No foot that has just come, but the first one under another name, a part of it told apart for a while, or
+            // a second one that had stood beside it unseen.
             (foot.landed, foot.landed_at) = (other.landed, other.landed_at);
             (foot.step, foot.stepped, foot.has_support) = (other.step, other.stepped, other.has_support);
             return foot;
@@ -430,5 +468,44 @@ impl FootHistories {
         self.people.push(Person::new(self.next_person, now));
         self.next_person = self.next_person.wrapping_add(1);
         self.people.len() - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(id: u32, at: (f32, f32), force: f32, ambiguous: bool) -> Contact {
+        Contact {
+            id: ContactId(id),
+            centroid: at.into(),
+            force: Newtons(force),
+            ambiguous,
+            ..Contact::default()
+        }
+    }
+
+    #[test]
+    fn a_foot_that_had_stood_unseen_beside_the_other_has_not_just_stepped_there() {
+        let (mut feet, mut ms) = (FootHistories::default(), 0);
+        let mut give = |feet: &mut FootHistories, contacts: &[Contact], millis: u64| {
+            for _ in 0..millis {
+                ms += 1;
+                feet.update(contacts, &[], Instant::from_millis(ms));
+            }
+            Instant::from_millis(ms)
+        };
+        // Somebody with narrow feet stands, taken for one foot that may be two; weight goes over to the right one, which
+        // is told apart; nothing is left of the other one's load.
+        give(&mut feet, &[contact(1, (0.5, 0.3), 700.0, true)], 3000);
+        give(&mut feet, &[contact(1, (0.4, 0.3), 600.0, false), contact(2, (0.6, 0.3), 100.0, true)], 100);
+        give(&mut feet, &[contact(1, (0.4, 0.3), 20.0, true), contact(2, (0.6, 0.3), 680.0, false)], 500);
+        let standing = contact(2, (0.6, 0.3), 660.0, false);
+        give(&mut feet, std::slice::from_ref(&standing), 5);
+        // The left foot comes down on a control.
+        let now = give(&mut feet, &[standing, contact(3, (0.5, 0.9), 40.0, false)], 10);
+        let foot = feet.of(ContactId(3)).unwrap();
+        assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
+        assert!(foot.has_support, "beside a foot that stands");
     }
 }

@@ -45,7 +45,8 @@ pub enum Ignored {
     NotSeenUnloaded,
     /// The forces can't be believed: a saturated or failing sensor, or a load that came as no foot does.
     Unbelieved,
-    /// The guard wants a foot that has settled and does not take the weight over.
+    /// The guard wants a foot that has settled and does not take the weight over; or the control acts at once, and no foot
+    /// stands beside this one, whose force has not settled, or it bears a body.
     Guard,
     /// Another control that acts while it is held is held already.
     OtherRuns,
@@ -70,7 +71,7 @@ impl fmt::Display for Ignored {
             Self::SlidOn => "the foot slid onto it from beside",
             Self::NotSeenUnloaded => "it has to be seen unloaded first",
             Self::Unbelieved => "the forces can't be believed",
-            Self::Guard => "its guard wants a foot that has settled",
+            Self::Guard => "it wants a foot that has settled",
             Self::OtherRuns => "another control that acts while it is held is held already",
             Self::Disabled => "an app has switched it off",
             Self::Uncalibrated => "the floor is not calibrated",

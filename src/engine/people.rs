@@ -26,7 +26,7 @@ const ONE_FOOT_M: f32 = 0.2;
 const TRACE_N: f32 = 40.0;
 
 /// Two people do not stand on one leg each as near to each other as this, in metres.
-const STANCE_M: f32 = 0.45;
+pub(super) const STANCE_M: f32 = 0.45;
 
 /// A foot that comes back to where it had stood lands as near as this, in metres (our choice:
 /// those who turn on the spot put it further off).

@@ -49,7 +49,7 @@ const SWING_TIME: Duration = Duration::from_millis(900);
 
 /// From which share of the body on a foot carries it (our choice: more than anybody can press with
 /// while standing on the other foot without going over to it).
-const CARRIES: f32 = 0.65;
+pub(super) const CARRIES: f32 = 0.65;
 
 /// What a foot that is alone on the floor carries when it carries a body whose weight is not
 /// known, in newtons: far above any press (three times the heaviest shipped threshold).

@@ -223,6 +223,22 @@ fn a_slider_keeps_its_foot_and_slides_while_it_moves() {
 }
 
 #[test]
+fn a_foot_that_lands_alone_on_a_slider_in_a_walk_does_not_move_it() {
+    for newtons_per_ms in [2.0, 5.0, 10.0] {
+        let mut floor = Floor::with_page();
+        let at = Vec2::new(0.9, 1.5);
+        for ms in 0..600 {
+            floor.stand(&[(at, (newtons_per_ms * ms as f32).min(700.0))], 1);
+        }
+        floor.stand(&[], 50);
+        assert_eq!(floor.events_of("zoom"), [], "{newtons_per_ms} N a millisecond");
+        // A foot of somebody who sits presses it once its force has settled.
+        floor.stand(&[(at, 80.0)], 150);
+        assert_eq!(floor.events_of("zoom").first(), Some(&EventKind::Pressed));
+    }
+}
+
+#[test]
 fn losing_the_floor_cancels_and_a_loaded_control_must_be_lifted_afterwards() {
     let mut floor = Floor::with_page();
     floor.stand(&[(LIGHT, 100.0)], 100);

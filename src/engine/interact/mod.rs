@@ -1,11 +1,13 @@
 //! From cursors to controls: which control gets which foot.
 
+mod belief;
 mod unanswered;
 
 use std::time::Duration;
 
 use glam::Vec2;
 
+use self::belief::{is_believed, is_firm, is_sensed};
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
@@ -330,7 +332,8 @@ impl Interaction {
             && contact.force >= thresholds.release
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
-        let unbelieved = contact.force >= thresholds.press && !may_start(contact, at.frame);
+        let presses = contact.force >= thresholds.press;
+        let unbelieved = presses && !is_believed(contact, thresholds.guard, at.frame);
         let (input, why) =
             if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
                 let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
@@ -339,17 +342,17 @@ impl Interaction {
                 let why = if slid_on { Ignored::SlidOn } else { Ignored::Unbelieved };
                 (Input::SlidOn { force: contact.force }, Some(why))
             } else {
-                let presses = contact.force >= thresholds.press;
                 let risen = self.rises.has_risen(contact) || !presses;
                 let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
+                let enough = !presses || is_firm(contact, &thresholds, at.frame);
                 let why = [
                     (control.needs_lift(), Ignored::NotSeenUnloaded),
-                    (!risen, Ignored::Unbelieved),
+                    (!risen || !enough, Ignored::Unbelieved),
                     (!meant, Ignored::Guard),
                     (rivals, Ignored::OtherRuns),
                 ];
                 let why = why.into_iter().find(|(is_so, _)| presses && *is_so).map(|(_, why)| why);
-                (self::foot(contact, spec, at.frame, weight, risen && meant && !rivals), why)
+                (self::foot(contact, spec, at.frame, weight, risen && enough && meant && !rivals), why)
             };
         let why = switched_off(control).or(why);
         let emitted = control.step(now, input);
@@ -505,7 +508,7 @@ impl Interaction {
 /// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may start a press.
 fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<Newtons>, may: bool) -> Input {
     let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
-        && may_start(contact, frame)
+        && is_believed(contact, widget.behaviour.thresholds().guard, frame)
         && may;
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
 }
@@ -523,15 +526,14 @@ impl PressMode {
             Behaviour::Lean(_) => Self::Stand,
             Behaviour::Button(button) if button.gestures.long_press.is_none() && !held => Self::Tap,
             Behaviour::Switch(_) | Behaviour::Selector(_) if !held => Self::Tap,
-            Behaviour::Button(_)
-            | Behaviour::Switch(_)
-            | Behaviour::Selector(_)
-            | Behaviour::Hold(_)
+            Behaviour::Button(_) | Behaviour::Switch(_) | Behaviour::Selector(_) | Behaviour::Stepper(_) => {
+                Self::Hold
+            }
+            Behaviour::Hold(_)
             | Behaviour::Slider(_)
             | Behaviour::Pedal(_)
             | Behaviour::Pad(_)
-            | Behaviour::Dial(_)
-            | Behaviour::Stepper(_) => Self::Hold,
+            | Behaviour::Dial(_) => Self::Follow,
         }
     }
 }
@@ -539,20 +541,6 @@ impl PressMode {
 fn is_sensed_at(point: Vec2, geometry: &Geometry, frame: &ForceFrame) -> bool {
     let tile = geometry.tile_under(point).and_then(|tile| geometry.index(tile));
     tile.and_then(|tile| frame.quality.get(tile)).is_none_or(is_sensed)
-}
-
-/// Whether `contact` may start an engagement as far as the forces are to be believed.
-///
-/// `Degraded` tiles may: one with a dead sensor, whose force the other three tell, and one
-/// that loses packets. A tile with a saturated sensor, or one that reads what its plate
-/// does not bear, may not; see [`ForceFrame::may_start`].
-fn may_start(contact: &Contact, frame: &ForceFrame) -> bool {
-    contact.tiles.iter().all(|load| frame.may_start.get(load.index).is_some_and(|&may| may))
-}
-
-/// A tile goes on with three sensors.
-fn is_sensed(tile: &[Quality; 4]) -> bool {
-    tile.iter().filter(|quality| **quality < Quality::Stale).count() >= 3
 }
 
 fn place(position: Vec2, widget: &Widget) -> Vec2 {
