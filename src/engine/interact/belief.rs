@@ -1,6 +1,6 @@
 //! How far the forces of a contact are to be believed.
 
-use crate::sense::{Contact, ForceFrame, Quality};
+use crate::sense::{Contact, ForceFrame, Quality, TileLoad};
 use crate::units::Newtons;
 use crate::widget::{Guard, Thresholds};
 
@@ -12,13 +12,22 @@ use crate::widget::{Guard, Thresholds};
 /// erring sensor reads: one of these tiles is taken for wrong, and all of them where what runs while it is held depends
 /// on it.
 fn firm_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons {
-    let suspected = contact.tiles.iter().filter(|load| frame.may_start.get(load.index) != Some(&true));
-    let forces = suspected.map(|load| load.force.0);
+    let forces = suspected(contact, frame).map(|load| load.force.0);
     let wrong: f32 = match guard {
         Guard::HoldToRun { .. } => forces.sum(),
         Guard::Free | Guard::Confirm { .. } => forces.fold(0.0, f32::max),
     };
     contact.force - Newtons(wrong)
+}
+
+/// The tiles under `contact` at which a sensor is suspected.
+fn suspected<'a>(contact: &'a Contact, frame: &'a ForceFrame) -> impl Iterator<Item = &'a TileLoad> {
+    contact.tiles.iter().filter(|load| frame.may_start.get(load.index) != Some(&true))
+}
+
+/// Whether no sensor under `contact` is suspected.
+pub(super) fn is_certain(contact: &Contact, frame: &ForceFrame) -> bool {
+    suspected(contact, frame).next().is_none()
 }
 
 /// Whether `contact` is a foot whatever a suspected sensor reads: most of its force would be left without it.
@@ -44,7 +53,6 @@ mod tests {
 
     use super::*;
     use crate::floor::Geometry;
-    use crate::sense::TileLoad;
     use crate::widget::HoldToRun;
 
     /// A contact that presses with so much on the first tiles of a floor of which those `suspected` may not start.

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use self::belief::{is_believed, is_firm, is_sensed};
+use self::belief::{is_believed, is_certain, is_firm, is_sensed};
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
@@ -333,7 +333,8 @@ impl Interaction {
             && foot.is_some_and(|foot| now.since(foot.landed) > LANDING);
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let presses = contact.force >= thresholds.press;
-        let unbelieved = presses && !is_believed(contact, thresholds.guard, at.frame);
+        let believed = is_believed(contact, thresholds.guard, at.frame);
+        let unbelieved = presses && !believed;
         let (input, why) =
             if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
                 let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
@@ -352,7 +353,8 @@ impl Interaction {
                     (rivals, Ignored::OtherRuns),
                 ];
                 let why = why.into_iter().find(|(is_so, _)| presses && *is_so).map(|(_, why)| why);
-                (self::foot(contact, spec, at.frame, weight, risen && enough && meant && !rivals), why)
+                let may = believed && risen && enough && meant && !rivals;
+                (self::foot(contact, spec, at.frame, weight, may), why)
             };
         let why = switched_off(control).or(why);
         let emitted = control.step(now, input);
@@ -396,15 +398,23 @@ impl Interaction {
                 held.position = contact.centroid;
                 let off = spec.area.distance(contact.centroid) > SLIDE_OFF_MARGIN_M;
                 let guard = spec.behaviour.thresholds().guard;
+                let mode = PressMode::of(spec);
                 let falls = guard != Guard::Free && foot.is_some_and(FootHistory::falls);
-                let is_step =
-                    |foot: &FootHistory| foot.is_step_on(PressMode::of(spec), at.now()) || foot.is_object();
+                let is_step = |foot: &FootHistory| foot.is_step_on(mode, at.now()) || foot.is_object();
                 if falls || foot.is_some_and(is_step) {
                     Input::Stepping { force: contact.force }
                 } else if off && !control.captures() {
                     Input::SlidOff
                 } else {
-                    self::foot(contact, spec, at.frame, self.feet.weight(contact.id), true)
+                    // What a lift commits may be believed as a press is; what acts meanwhile waits for the sensors.
+                    let acts = matches!(mode, PressMode::Follow | PressMode::Stand)
+                        || matches!(guard, Guard::HoldToRun { .. });
+                    let believed = if acts {
+                        is_certain(contact, at.frame)
+                    } else {
+                        is_believed(contact, guard, at.frame)
+                    };
+                    self::foot(contact, spec, at.frame, self.feet.weight(contact.id), believed)
                 }
             }
             // Gone from a floor that is sensed, it was lifted; gone with the sensors, nobody knows.
@@ -505,11 +515,10 @@ impl Interaction {
     }
 }
 
-/// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may start a press.
+/// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may act on it.
 fn foot(contact: &Contact, widget: &Widget, frame: &ForceFrame, weight: Option<Newtons>, may: bool) -> Input {
-    let trusted = contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed))
-        && is_believed(contact, widget.behaviour.thresholds().guard, frame)
-        && may;
+    let trusted =
+        may && contact.tiles.iter().all(|load| frame.quality.get(load.index).is_some_and(is_sensed));
     Input::Foot { force: contact.force, trusted, place: place(contact.centroid, widget), weight }
 }
 
