@@ -47,15 +47,15 @@ pub struct AreaNews {
     /// Why, in words for a person; empty for one that lives.
     pub why: String,
     /// By how much the times of its events may be wrong against those of other areas; zero for one that does not live.
-    pub doubt: Duration,
+    pub uncertainty: Duration,
 }
 
-/// Writes how an area stands as the OSC message `/underfoot/area`: its name, state and why, three strings, and the doubt
+/// Writes how an area stands as the OSC message `/underfoot/area`: its name, state and why, three strings, and the uncertainty
 /// of its times in seconds, a float.
 pub fn write_area(prefix: &Prefix, news: &AreaNews, bytes: &mut Vec<u8>) {
     let texts = [news.area.as_str(), news.state.name(), news.why.as_str()];
     let mut args: Vec<OscType> = texts.map(|text| OscType::String(text.into())).into();
-    args.push(OscType::Float(news.doubt.as_secs_f32()));
+    args.push(OscType::Float(news.uncertainty.as_secs_f32()));
     write(&message(prefix.address("area"), args), bytes);
 }
 
@@ -66,13 +66,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn an_area_is_three_strings_and_the_doubt_of_its_times() {
+    fn an_area_is_three_strings_and_the_uncertainty_of_its_times() {
         let news = AreaNews {
             at: Instant::START,
             area: "west".into(),
             state: AreaState::Lost,
             why: "nothing new".into(),
-            doubt: Duration::from_micros(250),
+            uncertainty: Duration::from_micros(250),
         };
         let mut bytes = vec![7];
         write_area(&Prefix::default(), &news, &mut bytes);

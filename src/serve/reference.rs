@@ -130,7 +130,7 @@ impl Maker<'_> {
                 argument("area", "s", ""),
                 argument("state", "s", "waiting, live, lost or disputed"),
                 argument("why", "s", "empty while it is live"),
-                argument("doubt", "f", "s, of the times of its events"),
+                argument("uncertainty", "f", "s, of the times of its events"),
             ];
             self.add(
                 Direction::Out,

@@ -165,7 +165,7 @@ impl BoardTrack {
 
     /// Whether newtons made of what it sends may be wrong: some of its counts are taken for a nominal part's, or it has
     /// changed places with another board.
-    pub(super) const fn casts_doubt(&self) -> bool {
+    pub(super) const fn may_be_wrong(&self) -> bool {
         (self.sends_counts && self.has_nominal) || self.is_swapped
     }
 

@@ -506,11 +506,11 @@ impl Assembler {
     fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
         self.done = slot;
-        let (mut is_taring, mut is_doubtful, mut has_news) = (false, false, false);
+        let (mut is_taring, mut may_be_wrong, mut has_news) = (false, false, false);
         for board in &mut self.boards {
             board.apply(buffer, at_ns, &mut self.frame, &mut self.health, &mut self.counters);
             is_taring |= board.stream.awaited && board.is_taring();
-            is_doubtful |= board.casts_doubt();
+            may_be_wrong |= board.may_be_wrong();
             has_news |= board.stream.presence.has_news();
         }
         self.started |= !is_taring;
@@ -519,7 +519,7 @@ impl Assembler {
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame);
-            self.frame.calibrated = !self.health.is_foreign() && !is_doubtful;
+            self.frame.calibrated = !self.health.is_foreign() && !may_be_wrong;
             if has_news {
                 self.boards.iter_mut().for_each(|board| board.stream.presence.show());
             }

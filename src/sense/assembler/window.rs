@@ -211,8 +211,8 @@ impl<const LANES: usize> Window<LANES> {
             loud[lane] |= is_used & ((end == End::Low) | (end == End::High));
             guessed[lane] |= is_used & is_nominal;
             news[lane] |= is_used;
-            let is_doubtful = (end == End::High) | is_nominal | trust.is_foreign;
-            let own = if is_doubtful { Quality::Degraded } else { Quality::Live };
+            let is_uncertain = (end == End::High) | is_nominal | trust.is_foreign;
+            let own = if is_uncertain { Quality::Degraded } else { Quality::Live };
             let own = if is_used { own } else { Quality::Faulty };
             let own = if (own as u8) > (trust.quality as u8) { own } else { trust.quality };
             quality[lane] = if self.wired[lane] { own } else { quality[lane] };

@@ -13,12 +13,12 @@ use crate::units::Instant;
 /// 70 kg; running on the heel in shoes by some 70 (Lieberman et al. 2010), 48 N a millisecond; who stamps
 /// stays below 20. Six times the hardest of these leaves room for plates that ring, and is a third of what
 /// four sensors read that go from nothing to 60,000 counts (920 N of the nominal part). Who runs barefoot on the
-/// heel reaches 460 for a moment (the same source) and may be doubted: that ends a hold and presses nothing.
+/// heel reaches 460 for a moment (the same source) and may be suspected: that ends a hold and presses nothing.
 const MOST_N: f32 = 300.0;
 
 /// How long the tile is not believed after that (our choice: ten times the settling of a converter that was
 /// cut off and is back, and as long as a board may be silent).
-const DOUBTED_FOR: Duration = Duration::from_millis(100);
+const SUSPECTED_FOR: Duration = Duration::from_millis(100);
 
 /// Less change than this is no jump, whichever of a tile's sensors are known to be out, however it is rounded.
 const CALM_N: f32 = 0.9 * MOST_N;
@@ -36,7 +36,7 @@ pub(super) struct Jumps {
     /// Which sensors have been read for the frame in the making.
     news: Vec<[bool; 4]>,
     /// Until when each tile is not believed, and until when any is not.
-    doubted_until: Vec<Instant>,
+    suspected_until: Vec<Instant>,
     any_until: Instant,
     count: u64,
     /// The tile of the last jump and its height, in newtons.
@@ -49,7 +49,7 @@ impl Jumps {
             at: vec![None; tiles],
             forces: vec![[0.0; 4]; tiles],
             news: vec![[false; 4]; tiles],
-            doubted_until: vec![Instant::START; tiles],
+            suspected_until: vec![Instant::START; tiles],
             any_until: Instant::START,
             count: 0,
             last: None,
@@ -78,7 +78,7 @@ impl Jumps {
             self.news[block].fill([false; 4]);
         }
         if now < self.any_until {
-            for (quality, until) in frame.quality.iter_mut().zip(&self.doubted_until) {
+            for (quality, until) in frame.quality.iter_mut().zip(&self.suspected_until) {
                 if now < *until {
                     *quality = [Quality::Faulty; 4];
                 }
@@ -96,10 +96,10 @@ impl Jumps {
         let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
         let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
         // After silence whatever was held is cancelled anyway, and anybody may have come.
-        let spans = elapsed.filter(|elapsed| *elapsed < DOUBTED_FOR);
+        let spans = elapsed.filter(|elapsed| *elapsed < SUSPECTED_FOR);
         if spans.is_some_and(|elapsed| jump > MOST_N * (1e3 * elapsed.as_secs_f32()).max(1.0)) {
-            self.doubted_until[tile] = now + DOUBTED_FOR;
-            self.any_until = self.any_until.max(now + DOUBTED_FOR);
+            self.suspected_until[tile] = now + SUSPECTED_FOR;
+            self.any_until = self.any_until.max(now + SUSPECTED_FOR);
             self.count += 1;
             self.last = Some((tile, jump));
         }
@@ -132,10 +132,10 @@ mod tests {
     use crate::floor::Geometry;
 
     /// In which milliseconds a tile that carries `newtons` of each is not believed.
-    fn doubted(newtons: impl IntoIterator<Item = Option<f32>>) -> Vec<usize> {
+    fn suspected(newtons: impl IntoIterator<Item = Option<f32>>) -> Vec<usize> {
         let geometry = Geometry::of_paper_tiles(1, 1).unwrap();
         let (mut jumps, mut frame) = (Jumps::new(1), ForceFrame::empty(&geometry));
-        let mut doubted = Vec::new();
+        let mut suspected = Vec::new();
         for (ms, newtons) in newtons.into_iter().enumerate() {
             frame.at = Instant::from_millis(ms as u64);
             frame.quality.fill([Quality::Live; 4]);
@@ -145,25 +145,25 @@ mod tests {
             }
             jumps.mark(&mut frame, &[[Sensor::default(); 4]]);
             if frame.quality[0] == [Quality::Faulty; 4] {
-                doubted.push(ms);
+                suspected.push(ms);
             }
         }
-        doubted
+        suspected
     }
 
     #[test]
-    fn a_jump_up_or_down_is_doubt_for_a_tenth_of_a_second() {
+    fn a_jump_up_or_down_is_suspected_for_a_tenth_of_a_second() {
         let jump = |to: f32| (0..200).map(move |ms| Some(if ms < 50 { 450.0 } else { to }));
-        assert_eq!(doubted(jump(1000.0)), (50..150).collect::<Vec<_>>());
-        assert_eq!(doubted(jump(0.0)), (50..150).collect::<Vec<_>>());
-        assert!(doubted(jump(700.0)).is_empty());
+        assert_eq!(suspected(jump(1000.0)), (50..150).collect::<Vec<_>>());
+        assert_eq!(suspected(jump(0.0)), (50..150).collect::<Vec<_>>());
+        assert!(suspected(jump(700.0)).is_empty());
     }
 
     #[test]
     fn the_hardest_heel_strikes_are_believed() {
         for newtons_per_ms in [14.0, 48.0, 200.0] {
             let strike = (0..300).map(|ms| Some((newtons_per_ms * ms as f32).min(2500.0)));
-            assert!(doubted(strike).is_empty(), "{newtons_per_ms} N a millisecond");
+            assert!(suspected(strike).is_empty(), "{newtons_per_ms} N a millisecond");
         }
     }
 
@@ -171,6 +171,6 @@ mod tests {
     fn what_came_during_a_gap_is_judged_by_its_length() {
         // 50 ms of lost packets while a foot lands with 20 N a millisecond.
         let gap = (0..200).map(|ms| (!(50..100).contains(&ms)).then_some((20.0 * ms as f32).min(1500.0)));
-        assert!(doubted(gap).is_empty());
+        assert!(suspected(gap).is_empty());
     }
 }

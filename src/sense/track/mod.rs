@@ -62,7 +62,7 @@ use crate::floor::{Geometry, TileBlock, TileId};
 /// Follows feet over one floor.
 #[derive(Clone, Debug)]
 pub(super) struct Tracker {
-    doubt: SensorUncertainty,
+    uncertainty: SensorUncertainty,
     cells: Cells,
     next: u32,
     tracks: Vec<Track>,
@@ -141,11 +141,11 @@ fn first_of_least(a: &(f64, usize), b: &(f64, usize)) -> std::cmp::Ordering {
 }
 
 impl Tracker {
-    pub(super) fn new(geometry: &Geometry, doubt: SensorUncertainty) -> Self {
+    pub(super) fn new(geometry: &Geometry, uncertainty: SensorUncertainty) -> Self {
         let room = geometry.tile_count().min(1024);
         let cells = Cells { pitch: geometry.pitch_m().into(), block: geometry.block() };
         Self {
-            doubt,
+            uncertainty,
             near: Near::new(&cells, room),
             mates: Groups::new(room),
             cells,
@@ -308,19 +308,19 @@ impl Tracker {
         let Some(touchdown) = stepping.touchdown else { return false };
         let both = existing.tiles_with(stepping);
         let strips = Strips::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
-        let doubt = centroid_sigma(
+        let sigma = centroid_sigma(
             both.iter().map(|&position| &list[position as usize]),
             strips.force,
             self.cells.pitch,
         );
         // Where what the filter says of both has not fitted for some time, they are looked for anew.
         if !existing.ambiguous
-            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, doubt, list, &self.cells)
+            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, &self.cells)
         {
             existing.hold_at(touchdown.from);
             return false;
         }
-        touchdown::place(existing, stepping, touchdown.from, strips, doubt, &self.cells)
+        touchdown::place(existing, stepping, touchdown.from, strips, sigma, &self.cells)
     }
 
     /// One step of the joint filter over the feet in `members`.

@@ -120,14 +120,14 @@ pub(super) fn observe(
         let mut innovation = [strip.force, strip.moment, strip.cross];
         let mut rows: Rows = Default::default();
         let [force_noise, moment_noise, cross_noise] = strip.noise;
-        let mut doubt =
+        let mut covariance =
             [[4.0 + force_noise, 0.0, 0.0], [0.0, 0.09 + moment_noise, 0.0], [0.0, 0.0, 0.09 + cross_noise]];
         for (which, &member) in members.iter().enumerate() {
             let foot = &tracks[member as usize];
             let residual = foot.residual(axis, strip.number);
             let place_along = axis.along(foot.centre());
             let width = foot.covariance[half][half].sqrt();
-            let slice = strip.slice_in_doubt(cells.pitch, place_along, axis.along(foot.half()), width);
+            let slice = strip.slice_with_sigma(cells.pitch, place_along, axis.along(foot.half()), width);
             let share = (slice.share + residual.share).clamp(0.0, 1.0);
             if share <= 0.0 && slice.share <= 0.0 {
                 continue;
@@ -149,13 +149,13 @@ pub(super) fn observe(
             let frames = foot.age.clamp(0.1, 1.0) / dt.max(1e-4);
             let strayed = frames.max(1.0) * (f * shape_error).powi(2) * straddle;
             let lever = [1.0, (0.5 * cells.pitch).copysign(place_along - middle), offset];
-            for (row, values) in doubt.iter_mut().enumerate() {
+            for (row, values) in covariance.iter_mut().enumerate() {
                 for (column, value) in values.iter_mut().enumerate() {
                     *value += strayed * lever[row] * lever[column];
                 }
             }
-            doubt[1][1] += strayed * SPREAD_M * SPREAD_M;
-            doubt[2][2] += strayed * SPREAD_M * SPREAD_M;
+            covariance[1][1] += strayed * SPREAD_M * SPREAD_M;
+            covariance[2][2] += strayed * SPREAD_M * SPREAD_M;
             for (row, value, along, wider, across) in [
                 (0, share, slice.share_by[0], slice.share_by[1], 0.0),
                 (1, moment, slice.moment_by[0], slice.moment_by[1], 0.0),
@@ -167,7 +167,7 @@ pub(super) fn observe(
                 rows[row].push((at + aside, f * across));
             }
         }
-        let variances = decorrelate(&mut innovation, &mut rows, doubt);
+        let variances = decorrelate(&mut innovation, &mut rows, covariance);
         for row in 0..3 {
             let innovation = innovation[row] - now(joint, &rows[row]);
             nis += joint.observe(innovation, &rows[row], variances[row]);
@@ -183,12 +183,12 @@ type Rows = [ArrayVec<Derivative, { 4 * MOST_FEET }>; 3];
 ///
 /// # Source
 /// R = L D Lᵀ: multiplied by the inverse of L, errors of covariance R have the diagonal covariance D.
-fn decorrelate(innovation: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3]; 3]) -> [f64; 3] {
+fn decorrelate(innovation: &mut [f64; 3], rows: &mut Rows, mut covariance: [[f64; 3]; 3]) -> [f64; 3] {
     for pivot in 0..2 {
         for row in pivot + 1..3 {
-            let factor = doubt[row][pivot] / doubt[pivot][pivot];
-            let above = doubt[pivot];
-            for (below, above) in doubt[row].iter_mut().zip(above) {
+            let factor = covariance[row][pivot] / covariance[pivot][pivot];
+            let above = covariance[pivot];
+            for (below, above) in covariance[row].iter_mut().zip(above) {
                 *below -= factor * above;
             }
             innovation[row] -= factor * innovation[pivot];
@@ -198,5 +198,5 @@ fn decorrelate(innovation: &mut [f64; 3], rows: &mut Rows, mut doubt: [[f64; 3];
             }
         }
     }
-    [doubt[0][0], doubt[1][1], doubt[2][2]]
+    [covariance[0][0], covariance[1][1], covariance[2][2]]
 }

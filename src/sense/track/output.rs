@@ -58,8 +58,13 @@ impl Tracker {
                     contact.tiles.push(load);
                 }
                 contact.quality = contact.quality.max(tile.quality);
-                covariance +=
-                    self.doubt.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
+                covariance += self.uncertainty.covariance(
+                    tiles.geometry(),
+                    tile,
+                    share,
+                    contact.centroid,
+                    contact.force.0,
+                );
             }
             if contact.tiles.is_empty() {
                 // Its patch has come to lie beside every tile that could carry it.

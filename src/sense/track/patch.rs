@@ -48,17 +48,17 @@ impl Slice {
 }
 
 impl Slice {
-    /// The slice one expects if the half width `h` is only known to within a standard deviation of `doubt`.
+    /// The slice one expects if the half width `h` is only known to within a standard deviation of `sigma`.
     ///
     /// A patch that just doesn't reach a seam has no slope there: nothing the
     /// next tile carries could widen it. Looking at a narrower and a wider one
     /// instead gives the slope over the range that matters.
-    pub(super) fn in_doubt(low: f64, high: f64, c: f64, h: f64, doubt: f64) -> Self {
-        if doubt < 0.002 {
+    pub(super) fn with_sigma(low: f64, high: f64, c: f64, h: f64, sigma: f64) -> Self {
+        if sigma < 0.002 {
             return Self::new(low, high, c, h);
         }
-        let narrow = (h - doubt).max(0.3 * h);
-        let wide = h + doubt;
+        let narrow = (h - sigma).max(0.3 * h);
+        let wide = h + sigma;
         let (a, b) = (Self::new(low, high, c, narrow), Self::new(low, high, c, wide));
         let run = wide - narrow;
         Self {

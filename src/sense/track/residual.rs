@@ -12,7 +12,7 @@ impl Track {
     fn learn_halves(&mut self, strips: &Strips, pitch: f64, dt: f64) {
         let decay = (-dt / 0.3).exp();
         // The same error of the model is seen in many frames.
-        let doubt = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
+        let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
         for axis in Axis::BOTH {
             let half = axis.half();
             self.state[half] = HALF_REST + decay * (self.state[half] - HALF_REST);
@@ -28,7 +28,7 @@ impl Track {
                     [(seen[0], jacobian[0], 1.0), (seen[1], jacobian[1], 0.5 * pitch)]
                 {
                     let gain =
-                        variance * derivative / (derivative * derivative * variance + doubt * lever * lever);
+                        variance * derivative / (derivative * derivative * variance + noise * lever * lever);
                     self.state[half] = (self.state[half] + gain * innovation).clamp(HALF_LEAST, HALF_MOST);
                     variance *= 1.0 - gain * derivative;
                 }

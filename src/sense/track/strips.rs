@@ -101,10 +101,10 @@ impl Strip {
         low >= h || high <= -h || low <= -h && high >= h
     }
 
-    /// The same for a half width known to within a standard deviation of `doubt`.
-    pub(super) fn slice_in_doubt(&self, pitch: f64, c: f64, h: f64, doubt: f64) -> Slice {
+    /// The same for a half width known to within a standard deviation of `sigma`.
+    pub(super) fn slice_with_sigma(&self, pitch: f64, c: f64, h: f64, sigma: f64) -> Slice {
         let low = f64::from(self.number) * pitch;
-        Slice::in_doubt(low, low + pitch, c, h, doubt)
+        Slice::with_sigma(low, low + pitch, c, h, sigma)
     }
 }
 

@@ -45,7 +45,7 @@ pub(super) fn is_seen_alone(
     stepping: &Track,
     from: DVec2,
     strips: &Strips,
-    doubt: f64,
+    sigma: f64,
     list: &[LoadedTile],
     cells: &Cells,
 ) -> bool {
@@ -53,11 +53,11 @@ pub(super) fn is_seen_alone(
     let own = tiles.filter(|tile| existing.at(from, cells.of(tile)).share() < NOT_ITS_OWN);
     let own: DVec2 = own.map(|tile| (tile.centroid.as_dvec2() - from) * f64::from(tile.wrench.force)).sum();
     let all = (strips.middle - from) * strips.force;
-    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + doubt) * strips.force
+    (all - own).length() < (1.0 - MOSTLY) * all.length() + (SWAY_LEAST_M + sigma) * strips.force
 }
 
 /// Places `stepping` beside `existing`, which stands still at `from`; `strips` is what the tiles of both carry, and
-/// `doubt` what is not known of their centroid.
+/// `sigma` what is not known of their centroid.
 ///
 /// False if nothing can be said yet: the common centre of pressure has hardly moved.
 pub(super) fn place(
@@ -65,12 +65,12 @@ pub(super) fn place(
     stepping: &mut Track,
     from: DVec2,
     mut strips: Strips,
-    doubt: f64,
+    sigma: f64,
     cells: &Cells,
 ) -> bool {
     let (force, way) = (strips.force, strips.middle - from);
     let moment = force * way.length();
-    if moment < LEAST_MOMENT.max((LEAST_WAY_M + doubt) * force) {
+    if moment < LEAST_MOMENT.max((LEAST_WAY_M + sigma) * force) {
         return false;
     }
     let ahead = way / way.length();
@@ -84,7 +84,7 @@ pub(super) fn place(
         }
     }
     let standing = standing(existing, from, &strips, cells.pitch);
-    let tightness = TIGHT_M.hypot(doubt);
+    let tightness = TIGHT_M.hypot(sigma);
     let mut against = [f64::INFINITY; TRIED];
     for (misfit, distance) in against.iter_mut().zip(distances()) {
         let stepping_force = moment / distance;

@@ -64,7 +64,7 @@ enum Body<'a> {
         area: &'a str,
         state: &'static str,
         why: &'a str,
-        doubt_s: f64,
+        uncertainty_s: f64,
     },
     Gap {
         dropped: u64,
@@ -166,8 +166,8 @@ impl<'a> Body<'a> {
                 Self::Mute { all: muted.all, tiles }
             }
             OwnedReport::Control(_, state) => Self::state(state),
-            OwnedReport::Area(AreaNews { area, state, why, doubt, .. }) => {
-                Self::Area { area, state: state.name(), why, doubt_s: doubt.as_secs_f64() }
+            OwnedReport::Area(AreaNews { area, state, why, uncertainty, .. }) => {
+                Self::Area { area, state: state.name(), why, uncertainty_s: uncertainty.as_secs_f64() }
             }
         })
     }

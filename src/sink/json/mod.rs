@@ -37,7 +37,7 @@ use crate::wire::LinkState;
 /// {"t_s":9.9,"event":"mute","all":false,"tiles":[[2,1]]}
 /// {"t_s":9.9,"held":["zoom"],"sequence":12}
 /// {"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}
-/// {"t_s":9.9,"event":"area","area":"west","state":"lost","why":"nothing new from its node for 100 ms","doubt_s":0.0}
+/// {"t_s":9.9,"event":"area","area":"west","state":"lost","why":"nothing new from its node for 100 ms","uncertainty_s":0.0}
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
 ///

@@ -30,14 +30,14 @@ struct RoundTrip {
     /// The node's time less the gateway's, in microseconds.
     offset: i64,
     /// By how much that may be wrong, in microseconds.
-    doubt: i64,
+    uncertainty: i64,
 }
 
 impl RoundTrip {
     /// By how much it may be wrong at `now`.
-    fn doubt_at(&self, now: Instant) -> i64 {
+    fn uncertainty_at(&self, now: Instant) -> i64 {
         let drift = DRIFT * now.since(self.at).as_micros() as f64;
-        self.doubt.saturating_add(drift as i64)
+        self.uncertainty.saturating_add(drift as i64)
     }
 }
 
@@ -63,12 +63,12 @@ impl NodeClock {
             return false;
         }
         self.last = Some(echo.sent);
-        let doubt = (((g3 - g0) - (n2 - n1)) / 2).max(0);
+        let uncertainty = (((g3 - g0) - (n2 - n1)) / 2).max(0);
         let offset = (n1 - g0) / 2 + (n2 - g3) / 2;
-        let trip = RoundTrip { at: now, offset, doubt };
+        let trip = RoundTrip { at: now, offset, uncertainty };
         let was_set = self.best.is_some_and(|best| {
             let apart = best.offset.saturating_sub(offset).saturating_abs();
-            apart > best.doubt_at(now).saturating_add(doubt).saturating_add(1)
+            apart > best.uncertainty_at(now).saturating_add(uncertainty).saturating_add(1)
         });
         if was_set {
             self.trips.clear();
@@ -78,7 +78,7 @@ impl NodeClock {
             self.trips.pop_front();
         }
         self.trips.push_back(trip);
-        self.best = self.trips.iter().copied().min_by_key(|trip| trip.doubt_at(now));
+        self.best = self.trips.iter().copied().min_by_key(|trip| trip.uncertainty_at(now));
         was_set
     }
 
@@ -105,8 +105,8 @@ impl NodeClock {
 
     /// By how much [`NodeClock::here`] may be wrong at `now`.
     #[must_use]
-    pub fn doubt(&self, now: Instant) -> Option<Duration> {
-        let micros = self.best?.doubt_at(now);
+    pub fn uncertainty(&self, now: Instant) -> Option<Duration> {
+        let micros = self.best?.uncertainty_at(now);
         Some(Duration::from_micros(u64::try_from(micros).unwrap_or(0)))
     }
 }
@@ -128,7 +128,7 @@ mod tests {
     }
 
     #[test]
-    fn the_quickest_of_uneven_round_trips_says_the_offset_within_its_doubt() {
+    fn the_quickest_of_uneven_round_trips_says_the_offset_within_its_uncertainty() {
         let mut clock = NodeClock::default();
         for (number, (there, back)) in
             [(9000, 200), (300, 20_000), (150, 250), (4000, 4000)].into_iter().enumerate()
@@ -136,11 +136,11 @@ mod tests {
             trip(&mut clock, 1_000_000 + 50_000 * number as u64, 77_000_000, there, back);
         }
         let now = Instant::from_micros(1_200_000);
-        let doubt = clock.doubt(now).unwrap().as_micros() as i64;
+        let uncertainty = clock.uncertainty(now).unwrap().as_micros() as i64;
         let error = clock.here(77_000_000 + 1_100_000).unwrap().micros() as i64 - 1_100_000;
         // Half of 400 us, and what 0.1 s of drift may add.
-        assert!((200..=220).contains(&doubt), "{doubt}");
-        assert!(error.abs() <= doubt, "{error}");
+        assert!((200..=220).contains(&uncertainty), "{uncertainty}");
+        assert!(error.abs() <= uncertainty, "{error}");
     }
 
     #[test]

@@ -315,8 +315,9 @@ impl Gateway {
             area.begin(frame);
             area.presses.shut(&message.held);
             let (at, name) = (now, self.names.get(number).cloned().unwrap_or_default());
-            let doubt = area.clock.doubt(now).unwrap_or_default();
-            let news = AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), doubt };
+            let uncertainty = area.clock.uncertainty(now).unwrap_or_default();
+            let news =
+                AreaNews { at, area: name, state: Standing::Live.into(), why: String::new(), uncertainty };
             self.out.push(Told::Area(news));
             area.page.clone_from(&message.page);
             self.tell_mutes(number, now);
@@ -364,8 +365,8 @@ impl Gateway {
         let name = self.names.get(number).cloned().unwrap_or_default();
         self.requests.lose(number, &name);
         self.out.extend(cancelled.into_iter().map(Told::Event));
-        let (why, doubt) = (why.to_owned(), Duration::ZERO);
-        self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, doubt }));
+        let (why, uncertainty) = (why.to_owned(), Duration::ZERO);
+        self.out.push(Told::Area(AreaNews { at: now, area: name, state: standing.into(), why, uncertainty }));
     }
 
     fn tell(&mut self, number: usize, at: Instant, happened: Instant, item: Item) {
@@ -399,7 +400,7 @@ impl Gateway {
         let Some(outcome) = self.layouts.decide(live(&self.names, &self.areas), now) else { return };
         let notice = match outcome {
             Outcome::Current(name, _) => {
-                self.shared.adopt();
+                self.shared.take_proposal();
                 self.has_news = true;
                 format!("Layout {} goes to all areas.", name.revision)
             }

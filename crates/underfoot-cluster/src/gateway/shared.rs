@@ -50,7 +50,7 @@ impl Shared {
     }
 
     /// Takes note that the layout that was proposed is the current one.
-    pub(super) fn adopt(&mut self) {
+    pub(super) fn take_proposal(&mut self) {
         let Some(layout) = self.proposed.take() else { return };
         let owner = |place| self.areas.iter().position(|area| area.holds(&self.geometry, place));
         let controls = layout.widgets.iter();

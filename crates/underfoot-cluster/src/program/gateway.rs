@@ -101,7 +101,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         let lines = JsonSink::new(io::stdout())?;
         sinks.push(if args.json_contacts { lines.with_contacts() } else { lines });
     }
-    let mut door = args.commands.map(|address| Door::open(address, args)).transpose()?;
+    let mut requests = args.commands.map(|address| RequestSocket::open(address, args)).transpose()?;
     let changes = match &args.layout {
         Some(path) => {
             gateway.propose(layout::load(path, &floor.geometry)?, Instant::START);
@@ -142,8 +142,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             }
         }
         latest = latest.max(now());
-        if let Some(door) = &mut door {
-            door.requests()?.into_iter().for_each(|request| gateway.ask(request, latest));
+        if let Some(requests) = &mut requests {
+            requests.take()?.into_iter().for_each(|request| gateway.ask(request, latest));
         }
         match changes.as_ref().and_then(|changes| changes.try_recv().ok()) {
             Some(Ok(layout)) => gateway.propose(layout, latest),
@@ -152,8 +152,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         let told = gateway.advance(latest);
         tell(&told, &mut sinks, &notices);
-        if let Some(door) = &mut door {
-            told.iter().for_each(|told| door.answer(told));
+        if let Some(requests) = &mut requests {
+            told.iter().for_each(|told| requests.answer(told));
         }
         sinks.poll(latest);
         if let Some(layout) = gateway.layout_message(latest) {
@@ -171,13 +171,13 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Where apps ask, and are answered.
-struct Door {
+struct RequestSocket {
     source: UdpSource,
     prefix: Prefix,
     bytes: Vec<u8>,
 }
 
-impl Door {
+impl RequestSocket {
     fn open(address: SocketAddr, args: &Args) -> Result<Self, Failure> {
         let apps = if args.allow_commands.is_empty() { &Network::LOOPBACK[..] } else { &args.allow_commands };
         let prefix = args.osc_prefix.clone();
@@ -186,7 +186,7 @@ impl Door {
     }
 
     /// What apps have asked.
-    fn requests(&mut self) -> Result<Vec<Request>, Failure> {
+    fn take(&mut self) -> Result<Vec<Request>, Failure> {
         // There are no boards, whose packets this would give.
         while self.source.next(Duration::ZERO)?.is_some() {}
         Ok(std::iter::from_fn(|| self.source.take_request()).collect())
@@ -226,9 +226,11 @@ fn tell(told: &[Told], sinks: &mut Fanout, notices: &Notices) {
             sinks.report(report);
         }
         match told {
-            Told::Area(AreaNews { area, state: AreaState::Live, doubt, .. }) => {
-                notices
-                    .say(format!("Area \"{area}\" is live; its times are sure to {} us.", doubt.as_micros()));
+            Told::Area(AreaNews { area, state: AreaState::Live, uncertainty, .. }) => {
+                notices.say(format!(
+                    "Area \"{area}\" is live; its times are sure to {} us.",
+                    uncertainty.as_micros()
+                ));
             }
             Told::Area(AreaNews { area, state, why, .. }) => {
                 notices.say(format!("Area \"{area}\" is {}: {why}.", state.name()));
