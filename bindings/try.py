@@ -3,11 +3,12 @@ r"""Programs in other languages hear what JSON lines say, and believe no hold fo
     python3 bindings/try.py [--rounds N] [--at-once N] [--strict] UNDERFOOT LAYOUT \
         --own NAME COMMAND... [--web NAME COMMAND...] [--browser NAME COMMAND...]
 
-UNDERFOOT is the program. A COMMAND after `--own` has a floor of its own: it gets the address of packets, the layout and
-the name of a control. One after `--web` gets the address of the web server of `underfoot run`, and the name; one after
-`--browser` as well, and has the machine for itself. Each prints {"listening":...}, then events as JSON lines, and when
-that control begins and ends to be held. It is sent the same packets as `underfoot run --json`. Then, while the control is held, each thing fails that may, `--rounds` times: the one
-who sends, what lies between, the floor, the program. After `--same` stands a program that only needs to hear the events.
+UNDERFOOT is the program. A COMMAND after `--own` has a floor of its own: it gets the address of packets, the layout
+and the name of a control. One after `--web` gets the address of the web server of `underfoot run`, and the name; one
+after `--browser` as well, and has the machine for itself. Each prints {"listening":...}, then events as JSON lines, and
+when that control begins and ends to be held. It is sent the same packets as `underfoot run --json`. Then, while the
+control is held, each thing fails that may, `--rounds` times: the one who sends, what lies between, the floor, the
+program. After `--same` stands a program that only needs to hear the events.
 
 A program ends its floor on SIGTERM, fails in its own code on SIGUSR1, and gives back its handle or closes its connection
 on SIGUSR2. `--strict` asks all rounds to be in time, for an idle machine.
@@ -133,15 +134,17 @@ class Reader:
             time.sleep(0.005)
 
     def wait_held(self, held, since=0.0):
+        """When the program first said that the control is held or not, after `since`; None if it does not in 20 s."""
         end = time.monotonic() + 20
         while time.monotonic() < end:
             for line in list(self.lines):
                 if line.get("held") is held and line.get("now_s", 0) > since:
                     return line["now_s"]
             time.sleep(0.005)
-        if held:
-            return None
-        raise SystemExit("%s never says: held %s: %s" % (self.process.args, held, self.complaint()))
+        return None
+
+    def never_says(self, held):
+        return SystemExit("%s never says: held %s: %s" % (self.process.args, held, self.complaint()))
 
 
 def alike(one, other):
@@ -276,14 +279,16 @@ def believed_for(underfoot, way, command, folder, end):
         print("%s: the hold did not begin, and is walked again" % " ".join(command), flush=True)
         trial.end()
     else:
-        raise SystemExit("%s never says: held True" % command)
+        raise trial.reader.never_says(True)
     # Held for long enough that nothing of the beginning is still on its way.
     time.sleep(0.2)
     ended_at = time.monotonic()
     end(trial)
-    took = trial.reader.wait_held(False, held) - ended_at
+    let_go = trial.reader.wait_held(False, held)
     trial.end()
-    return took
+    if let_go is None:
+        raise trial.reader.never_says(False)
+    return let_go - ended_at
 
 
 def believed(underfoot, way, name, command, folder, args):

@@ -178,7 +178,8 @@ fn nine_sustained() -> SustainedCues {
         .collect()
 }
 
-/// The worst error of a bank of eight modes, drawn at random from `seed`, against double precision, in decibels of the signal.
+/// The worst error of a bank of eight modes, drawn at random from `seed`, against double precision, in decibels of the
+/// signal.
 ///
 /// Twenty banks of modes of 20 to 1000 Hz that ring for 1 ms to 2 s, a second of each in blocks of 64 samples.
 #[must_use]

@@ -25,7 +25,8 @@ pub(crate) struct Args {
     /// Folder of effects to add; without it, an `effects` folder beside each layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     effects: Option<PathBuf>,
-    /// Print each layout as it comes out on standard output: every value of every control, be it written or from its kind.
+    /// Print each layout as it comes out on standard output: every value of every control, be it written or from its
+    /// kind.
     #[arg(long, conflicts_with = "json")]
     resolved: bool,
     /// Print the diagnostics as one JSON array on standard output.

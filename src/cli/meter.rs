@@ -88,7 +88,8 @@ fn factor(length: Duration, mut second: impl FnMut()) -> f64 {
     factors[factors.len() / 2]
 }
 
-/// The same of packets that come through a socket, by the median of many batches; `None` if it fails or loses nearly all.
+/// The same of packets that come through a socket, by the median of many batches; `None` if it fails or loses nearly
+/// all.
 fn socket_factor(length: Duration, mut load: SocketLoad) -> Option<f64> {
     let mut factors = Vec::new();
     let begun = Instant::now();

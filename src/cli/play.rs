@@ -35,7 +35,8 @@ impl SimArgs {
         if self.ideal { SimConfig::ideal() } else { SimConfig::default() }
     }
 
-    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated, tared and perhaps mapped.
+    /// A simulated floor wired as `floor`, and `floor` as it comes out of the lab: calibrated, tared and perhaps
+    /// mapped.
     pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
         let sim = SimFloor::new(floor, self.config(), self.seed);
         let floor = sim::calibrated(floor, &sim, self.seed)

@@ -12,7 +12,8 @@ use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
 
-/// How long the floor is empty before the picture is taken, in milliseconds: longer than any control wants to see it so.
+/// How long the floor is empty before the picture is taken, in milliseconds: longer than any control wants to see it
+/// so.
 const EMPTY_MS: u64 = 100;
 
 /// What `underfoot render` is asked to do.

@@ -92,7 +92,8 @@ impl Default for Args {
     }
 }
 
-/// Plays a scenario on a simulated floor, faster than in real time, and leaves what a visitor would have seen, felt and caused.
+/// Plays a scenario on a simulated floor, faster than in real time, and leaves what a visitor would have seen, felt and
+/// caused.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let geometry = floor.geometry;

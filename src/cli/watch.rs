@@ -26,7 +26,8 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// Calls `tell` with the layout, or with what is wrong with it, each time its file or a kind's or an effect's file is saved.
+    /// Calls `tell` with the layout, or with what is wrong with it, each time its file or a kind's or an effect's file
+    /// is saved.
     ///
     /// Gives `None` for a built-in layout, which has no file.
     pub(crate) fn start(

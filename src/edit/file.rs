@@ -164,7 +164,8 @@ impl LayoutFile {
 
     /// Writes `text` to the file, unless another program has changed that meanwhile.
     ///
-    /// After a crash or power loss at any moment it holds the old text or the new one, and the draft what was not saved.
+    /// After a crash or power loss at any moment it holds the old text or the new one, and the draft what was not
+    /// saved.
     ///
     /// # Errors
     /// [`SaveError`]; the file is then as it was. Without a path nothing is done: [`LayoutFile::save_as`] gives it one.

@@ -7,7 +7,8 @@ use crate::format::number::plain;
 use crate::units::Newtons;
 use crate::widget::Thresholds;
 
-/// Most of the press force at which a control may let go without chattering under a foot that sways, as the reader warns.
+/// Most of the press force at which a control may let go without chattering under a foot that sways, as the reader
+/// warns.
 const RELEASE_MOST: f32 = 0.8;
 
 impl Document {

@@ -1,8 +1,8 @@
 //! Boxes with round corners as nine pieces of a small picture each.
 //!
-//! Without a graphics card a triangle costs as much as a hundred pixels, and the soft edge of a round corner takes dozens
-//! of them. As a picture it takes two. A box's corners, and one dot of each side and of its inside that is drawn long,
-//! are kept in one texture for all boxes that look alike, whatever their size.
+//! Without a graphics card a triangle costs as much as a hundred pixels, and the soft edge of a round corner takes
+//! dozens of them. As a picture it takes two. A box's corners, and one dot of each side and of its inside that is drawn
+//! long, are kept in one texture for all boxes that look alike, whatever their size.
 
 use std::collections::HashMap;
 
@@ -140,7 +140,8 @@ fn parts(pixels: f32) -> u16 {
 }
 
 impl Patches {
-    /// A box around `rect`, whose sides lie on whole pixels or all in their middles; `None` for one that is drawn otherwise.
+    /// A box around `rect`, whose sides lie on whole pixels or all in their middles; `None` for one that is drawn
+    /// otherwise.
     pub(super) fn mesh(&mut self, ctx: &Context, rect: Rect, look: Look) -> Option<Mesh> {
         let scale = ctx.pixels_per_point();
         let (beyond, within) = look.reach();

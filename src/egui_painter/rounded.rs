@@ -10,8 +10,8 @@ use egui::{Pos2, Rect, Stroke, Vec2, pos2};
 
 /// A rounded box about to be drawn.
 pub(super) struct Rounded {
-    /// Clockwise from the right end of its upper side, for each point of the outline: the middle of its corner's circle,
-    /// the way from there out over the corner, and the way to the point.
+    /// Clockwise from the right end of its upper side, for each point of the outline: the middle of its corner's
+    /// circle, the way from there out over the corner, and the way to the point.
     rim: Vec<(Pos2, Vec2, Vec2)>,
     radius: f32,
     /// Width of a soft edge, in points: one pixel.

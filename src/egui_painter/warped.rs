@@ -8,8 +8,8 @@ use crate::scene::Scene;
 
 /// Draws `scene` where `map` says and then moves every corner of every shape by `warp`.
 ///
-/// Shapes are cut into triangles first, finely for `map`; so `map` should be about as large as the picture. The inside of
-/// a triangle is drawn evenly: letters and outlines are exact, the shading of a large field of colours only nearly.
+/// Shapes are cut into triangles first, finely for `map`; so `map` should be about as large as the picture. The inside
+/// of a triangle is drawn evenly: letters and outlines are exact, the shading of a large field of colours only nearly.
 pub fn paint_warped(
     painter: &Painter,
     palette: &mut Palette,

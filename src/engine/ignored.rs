@@ -45,8 +45,8 @@ pub enum Ignored {
     NotSeenUnloaded,
     /// The forces can't be believed: a saturated or failing sensor, or a load that came as no foot does.
     Unbelieved,
-    /// The guard wants a foot that has settled and does not take the weight over; or the control acts at once, and no foot
-    /// stands beside this one, whose force has not settled, or it bears a body.
+    /// The guard wants a foot that has settled and does not take the weight over; or the control acts at once, and no
+    /// foot stands beside this one, whose force has not settled, or it bears a body.
     Guard,
     /// Another control that acts while it is held is held already.
     OtherRuns,

@@ -89,7 +89,8 @@ pub struct WidgetState {
     pub value: Option<Value>,
     /// Force of the foot on it, as a share of its press threshold; 0 with no foot on it.
     pub press_share: f32,
-    /// Whether a foot on it must be lifted before it works (after a lost floor, or when an app enabled it under a foot).
+    /// Whether a foot on it must be lifted before it works (after a lost floor, or when an app enabled it under a
+    /// foot).
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,

@@ -76,9 +76,9 @@ pub struct PressProposal {
 ///
 /// # Source
 /// Half is this project's choice, not a measured figure. The next press of the same people may be lighter than the
-/// lightest of a few: half leaves as much below it as it is above the threshold. The lightest counts and not the median,
-/// because a control that lets one person in ten press in vain is a broken one. The paper uses thresholds of normal
-/// force and names none.
+/// lightest of a few: half leaves as much below it as it is above the threshold. The lightest counts and not the
+/// median, because a control that lets one person in ten press in vain is a broken one. The paper uses thresholds of
+/// normal force and names none.
 #[must_use]
 pub fn propose_press(forces: &[Newtons]) -> Option<PressProposal> {
     let lowest = PressSpread::of(forces)?.lowest;

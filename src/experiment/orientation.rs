@@ -92,7 +92,8 @@ impl OrientationRow {
     }
 }
 
-/// Lines, ellipses and a disc across a seam at angles of 0 to 85 degrees, on an exact floor and on one of calibrated parts.
+/// Lines, ellipses and a disc across a seam at angles of 0 to 85 degrees, on an exact floor and on one of calibrated
+/// parts.
 ///
 /// # Source
 /// Paper, figure 7: for a line the difference vector points along it, for a disc along the seam's

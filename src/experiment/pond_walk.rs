@@ -143,8 +143,8 @@ impl PondWalk {
         self.lines.iter().find(|line| line.manner == manner)
     }
 
-    /// The shipped pond before anybody has come, after one step, after a stroll, and after somebody has stamped all over
-    /// it, each with a name for its file.
+    /// The shipped pond before anybody has come, after one step, after a stroll, and after somebody has stamped all
+    /// over it, each with a name for its file.
     ///
     /// # Errors
     /// As [`PondWalk::measure`].

@@ -58,8 +58,8 @@ impl Limiter {
         self.holding = false;
     }
 
-    /// Holds a stretch of samples, of which `loudest` is the largest, below full scale, in a smooth curve from [`KNEE`] on;
-    /// the answer is whether any may have changed.
+    /// Holds a stretch of samples, of which `loudest` is the largest, below full scale, in a smooth curve from [`KNEE`]
+    /// on; the answer is whether any may have changed.
     #[inline(always)]
     pub(super) fn hold_down(&mut self, columns: &mut [[f32; LANES]], loudest: f32) -> bool {
         if !(loudest > KNEE || self.holding) {
@@ -83,7 +83,8 @@ impl Limiter {
         true
     }
 
-    /// Takes direct current out of one sample of each channel, and holds it to `gain` at most, which it is multiplied by.
+    /// Takes direct current out of one sample of each channel, and holds it to `gain` at most, which it is multiplied
+    /// by.
     #[inline(always)]
     pub(super) fn finish<const FUSED: bool>(&mut self, column: &mut [f32; LANES], gain: f32) {
         for lane in 0..LANES {

@@ -203,7 +203,8 @@ impl Renderer {
         FeelCounters { dropped: self.schedule.dropped(), ..self.shared.counters() }
     }
 
-    /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from the first.
+    /// A view of what is played, for another thread; `None` without channels. A second call takes the view away from
+    /// the first.
     ///
     /// Takes memory, so it belongs before the start.
     #[cfg(any(feature = "internals", test))]

@@ -153,7 +153,8 @@ impl CueSender {
         self.sustained.publish();
     }
 
-    /// Fades everything out within 5 ms and forgets all cues that were sent, because sensing is lost or somebody says stop.
+    /// Fades everything out within 5 ms and forgets all cues that were sent, because sensing is lost or somebody says
+    /// stop.
     ///
     /// It cannot be overtaken or lost in a full ring. Lasts until [`CueSender::resume`].
     pub fn silence(&mut self) {
@@ -170,7 +171,8 @@ impl CueSender {
         }
     }
 
-    /// Mutes the actuator of tile number `tile` within 5 ms, or lets it be felt again; false if nothing moves that tile.
+    /// Mutes the actuator of tile number `tile` within 5 ms, or lets it be felt again; false if nothing moves that
+    /// tile.
     ///
     /// What it would play goes on meanwhile, unfelt. Tiles that share a channel are muted together.
     pub fn mute(&mut self, tile: u16, muted: bool) -> bool {

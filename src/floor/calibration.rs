@@ -82,8 +82,8 @@ impl Calibration {
         }
     }
 
-    /// Whether a force sensor can have it: both numbers within the ranges of floor files, and a finite force at the converter's
-    /// full scale.
+    /// Whether a force sensor can have it: both numbers within the ranges of floor files, and a finite force at the
+    /// converter's full scale.
     #[must_use]
     pub(crate) fn is_plausible(&self) -> bool {
         let ranges = match self {

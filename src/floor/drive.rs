@@ -53,7 +53,8 @@ impl Response {
         good.then_some(Self { points })
     }
 
-    /// A response from `points` of hertz and newtons for a full-scale sine, of an actuator that is meant to give `full_scale`.
+    /// A response from `points` of hertz and newtons for a full-scale sine, of an actuator that is meant to give
+    /// `full_scale`.
     ///
     /// `None` as for [`Response::of`], or if any force is not positive.
     #[must_use]

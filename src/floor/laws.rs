@@ -20,8 +20,9 @@ record! {
     /// that measures its current.
     ///
     /// # Source
-    /// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR Integration
-    /// Guide, force against resistance); the current through it, and the amplifier's voltage, are then a power of the force.
+    /// Resistance over force is close to a straight line on two logarithmic axes (Interlink Electronics, FSR
+    /// Integration Guide, force against resistance); the current through it, and the amplifier's voltage, are then a
+    /// power of the force.
     pub struct Power = "Power", Copy;
     /// Factor a, the force at one volt, in newtons; positive.
     pub a_n: f32 = "a_n", POWER[0];

@@ -66,8 +66,8 @@ impl MirrorLink {
         Ok((Self { asks, over }, told))
     }
 
-    /// Asks the server something, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal comes as a line; while it is
-    /// not there, nothing is asked.
+    /// Asks the server something, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal comes as a line; while it
+    /// is not there, nothing is asked.
     pub fn ask(&self, request: &str, arguments: &[Value]) {
         let line = json!({"request": request, "args": arguments}).to_string();
         // A link that has failed has said so.

@@ -1,9 +1,10 @@
-//! A floor at work, shown by windows elsewhere: what its server takes from the boards, as a stream, and as a source again.
+//! A floor at work, shown by windows elsewhere: what its server takes from the boards, as a stream, and as a source
+//! again.
 //!
 //! [`MirrorFeed`] taps the source of a server as a recording does, and gives frames of bytes for whoever has joined.
 //! [`MirrorSource`] is fed such frames, and gives the same packets, requests and layouts in the same order: what senses
-//! them sees the same floor. What a window has to know first is a [`Greeting`]; [`Follower`] keeps the values of controls
-//! as the server says they are. `docs/web-app.md` describes the stream.
+//! them sees the same floor. What a window has to know first is a [`Greeting`]; [`Follower`] keeps the values of
+//! controls as the server says they are. `docs/web-app.md` describes the stream.
 
 mod feed;
 mod follower;

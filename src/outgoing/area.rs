@@ -50,8 +50,8 @@ pub struct AreaNews {
     pub uncertainty: Duration,
 }
 
-/// Writes how an area stands as the OSC message `/underfoot/area`: its name, state and why, three strings, and the uncertainty
-/// of its times in seconds, a float.
+/// Writes how an area stands as the OSC message `/underfoot/area`: its name, state and why, three strings, and the
+/// uncertainty of its times in seconds, a float.
 pub fn write_area(prefix: &Prefix, news: &AreaNews, bytes: &mut Vec<u8>) {
     let texts = [news.area.as_str(), news.state.name(), news.why.as_str()];
     let mut args: Vec<OscType> = texts.map(|text| OscType::String(text.into())).into();

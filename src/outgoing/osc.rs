@@ -149,9 +149,9 @@ pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8
 /// Writes how a control is as an OSC bundle.
 ///
 /// `/underfoot/widget/<id>/value` with what it holds, if anything, as `changed` has it; `/state` with enabled, locked,
-/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/range` with least, greatest and step of a number, least
-/// and greatest of both numbers of a pair (floats), or the names of the choices (strings); `/page` with its page, empty
-/// if it is on all.
+/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/range` with least, greatest and step of a number,
+/// least and greatest of both numbers of a pair (floats), or the names of the choices (strings); `/page` with its page,
+/// empty if it is on all.
 pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>) {
     let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } = state;
     let mut content = Vec::new();

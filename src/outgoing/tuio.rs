@@ -183,7 +183,8 @@ const fn following(number: i32) -> i32 {
 ///
 /// `bundle` makes one of its number, the contacts that are alive, and what `set` made of news. Clients take each bundle
 /// for a frame, drop one whose number they have seen, and think up a place for contacts that are alive but were
-/// never set. Therefore each bundle has a number of its own, and a new contact is alive from the bundle on that sets it.
+/// never set. Therefore each bundle has a number of its own, and a new contact is alive from the bundle on that sets
+/// it.
 pub(super) fn send_frame(
     next: &mut i32,
     contacts: &[&Contact],

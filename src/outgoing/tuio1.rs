@@ -68,8 +68,8 @@ impl Tuio1 {
     ///
     /// A bundle per profile holds `source`, `alive` with all contacts, `set` with those that have
     /// changed (all of them once a second) and `fseq`; a frame that is too large takes several
-    /// bundles, each with an `fseq` of its own and an `alive` without the new contacts that are still to be set. Without
-    /// contacts `alive` is empty: that is also the goodbye.
+    /// bundles, each with an `fseq` of its own and an `alive` without the new contacts that are still to be set.
+    /// Without contacts `alive` is empty: that is also the goodbye.
     pub fn write(&mut self, at: Instant, contacts: &[Contact], mut send: impl FnMut(&[u8])) -> usize {
         let (contacts, left_out) = heaviest(contacts);
         let news = self.memory.news(at, &contacts);

@@ -96,8 +96,8 @@ impl AreaDemand {
         Self::of(floor, &area, crowd)
     }
 
-    /// Of an area of a floor file; nothing of one that has no tile on the floor. Areas that do not say where they listen
-    /// are forwarded nothing.
+    /// Of an area of a floor file; nothing of one that has no tile on the floor. Areas that do not say where they
+    /// listen are forwarded nothing.
     #[must_use]
     pub fn of(floor: &Floor, area: &Area, crowd: &Crowd) -> Self {
         let Some(part) = floor.part(area) else { return Self { id: area.id.clone(), ..Self::default() } };

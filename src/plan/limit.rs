@@ -119,8 +119,8 @@ mod tests {
 
     #[test]
     fn what_is_used_most_comes_first() {
-        // Sensing 20 + 100 + 80 + 200 = 400 us of 500; sound 32 + 64 = 96 us of 500; both of 1000; half of the channels;
-        // 200 Mb/s of 500.
+        // Sensing 20 + 100 + 80 + 200 = 400 us of 500; sound 32 + 64 = 96 us of 500; both of 1000; half of the
+        // channels; 200 Mb/s of 500.
         let limits = limits(&area(), &ROUND, 0.5);
         let shares: Vec<_> =
             limits.iter().map(|limit| (limit.resource, (limit.share * 1000.0).round())).collect();

@@ -119,9 +119,9 @@ const WARM_UP: Duration = Duration::from_millis(300);
 /// How long is waited for a packet.
 const PATIENCE: Duration = Duration::from_millis(1);
 
-/// Microseconds of work for each millisecond of a floor of `side` x `side` tiles, whose packets are taken for `length` in
-/// real time and from the network, as a sensing thread does it. Between two packets it sleeps, and wakes to caches that
-/// others have used; a load that never sleeps does not tell what that takes.
+/// Microseconds of work for each millisecond of a floor of `side` x `side` tiles, whose packets are taken for `length`
+/// in real time and from the network, as a sensing thread does it. Between two packets it sleeps, and wakes to caches
+/// that others have used; a load that never sleeps does not tell what that takes.
 fn paced_us(length: Duration, side: u16, walkers: u16, take: &Take) -> Result<f64, SourceError> {
     let (floor, source, mut boards) = BoardsLoad::new(side, walkers)?;
     let (is_over, sent) = (&AtomicBool::new(false), &AtomicU64::new(0));
@@ -155,8 +155,8 @@ fn paced_us(length: Duration, side: u16, walkers: u16, take: &Take) -> Result<f6
     })
 }
 
-/// Microseconds of work for each millisecond of a floor of which `second` does a second: the median of as many as are done
-/// in `length`, three at least.
+/// Microseconds of work for each millisecond of a floor of which `second` does a second: the median of as many as are
+/// done in `length`, three at least.
 fn millisecond_us(length: Duration, second: &mut dyn FnMut()) -> f64 {
     // Tables, caches and the processor's clock warm up first.
     second();

@@ -188,7 +188,8 @@ fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand 
     AreaDemand::new("", &extent, f64::from(size.columns) * f64::from(size.rows), crowd)
 }
 
-/// The most that any of some spans takes, each number by itself; what its home has anyway is taken off, so that the least.
+/// The most that any of some spans takes, each number by itself; what its home has anyway is taken off, so that the
+/// least.
 fn most(all: &[Along]) -> Along {
     let all = all.iter().copied().reduce(|most, one| Along {
         own: most.own.max(one.own),

@@ -72,8 +72,8 @@ impl Appearance {
         self.choice.window
     }
 
-    /// What is thrown onto the floor. Beyond the floor no light falls, and in a dark theme none on its plates, which are
-    /// there already.
+    /// What is thrown onto the floor. Beyond the floor no light falls, and in a dark theme none on its plates, which
+    /// are there already.
     pub(super) fn projected(&self) -> Theme {
         let theme = self.choice.projected;
         if theme.is_dark() {

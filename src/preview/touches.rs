@@ -34,8 +34,8 @@ pub(super) enum Phase {
 }
 
 impl Touch {
-    /// What `event` says of a finger. `floor` gives the place on the floor; `is_floor` says whether a point of the screen
-    /// is the bare floor, where a foot may be put down.
+    /// What `event` says of a finger. `floor` gives the place on the floor; `is_floor` says whether a point of the
+    /// screen is the bare floor, where a foot may be put down.
     pub(super) fn of(
         event: &Event,
         floor: impl Fn(eframe::egui::Pos2) -> Vec2,

@@ -1,8 +1,8 @@
 //! Keys and clicks one after the other, however seldom the window draws.
 //!
-//! egui hands all that came since the last frame to the widgets at once. Two steps of Tab are then one, and letters that
-//! were typed before a Tab go into the field behind it: a window that draws slowly loses what is typed quickly. What
-//! came after a key that leads elsewhere therefore waits for the next frame.
+//! egui hands all that came since the last frame to the widgets at once. Two steps of Tab are then one, and letters
+//! that were typed before a Tab go into the field behind it: a window that draws slowly loses what is typed quickly.
+//! What came after a key that leads elsewhere therefore waits for the next frame.
 
 use eframe::egui::{Event, Key};
 

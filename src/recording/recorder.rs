@@ -48,12 +48,12 @@ pub struct Recorded {
 }
 
 impl Recorder {
-    /// Records all that `source` gives into a new file at `path`, in place of what was there. Without a `path` nothing is
-    /// recorded or changed.
+    /// Records all that `source` gives into a new file at `path`, in place of what was there. Without a `path` nothing
+    /// is recorded or changed.
     ///
-    /// Floor and layout are kept as text, and what is read back from it is what the floor must work with: its numbers may
-    /// differ by a rounding from what was given. The source's time stands still from one packet to the next, so that a
-    /// replay can tell the same time whenever it is asked.
+    /// Floor and layout are kept as text, and what is read back from it is what the floor must work with: its numbers
+    /// may differ by a rounding from what was given. The source's time stands still from one packet to the next, so
+    /// that a replay can tell the same time whenever it is asked.
     ///
     /// # Errors
     /// [`RecordingError`] if the file can't be written, or if the floor or the layout can't be kept.

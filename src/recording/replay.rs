@@ -185,8 +185,8 @@ impl ReplaySource {
 }
 
 impl SensorSource for ReplaySource {
-    /// The next packet, or `None` where none came at the time, or where it is not time for what comes next; waits as its
-    /// speed says, whatever `patience` is.
+    /// The next packet, or `None` where none came at the time, or where it is not time for what comes next; waits as
+    /// its speed says, whatever `patience` is.
     ///
     /// # Errors
     /// [`SourceError::Ended`] at the end of the recording or where it breaks off, and ever after.

@@ -33,7 +33,8 @@ pub(super) struct Waker {
 }
 
 impl Waker {
-    /// A callback that panics leaves an app that may not notice when a foot lets go: `commands` then cancel what is held.
+    /// A callback that panics leaves an app that may not notice when a foot lets go: `commands` then cancel what is
+    /// held.
     pub(super) fn start(
         mut wake: Box<dyn FnMut() + Send>,
         commands: Sender<Command>,

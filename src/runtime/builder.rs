@@ -211,7 +211,8 @@ impl SessionBuilder {
     /// `move || context.request_repaint()`.
     ///
     /// It is called on a thread of its own; several events may make one call. If it panics, that is logged, what feet
-    /// hold is cancelled, since the app may no longer notice when they let go, and sensing goes on. The end waits for a call that is under way, for two seconds at most. It must not own a
+    /// hold is cancelled, since the app may no longer notice when they let go, and sensing goes on. The end waits for a
+    /// call that is under way, for two seconds at most. It must not own a
     /// [`Session`], which then would never be dropped.
     #[must_use]
     pub fn wake(mut self, wake: impl FnMut() + Send + 'static) -> Self {

@@ -72,7 +72,8 @@ impl Session {
 
     /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then. It
     /// ends with the recording, also where that breaks off. Why it ended is told by the
-    /// [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it themselves.
+    /// [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it
+    /// themselves.
     ///
     /// # Errors
     /// [`crate::recording::RecordingError`] if there is no recording to be read.
@@ -186,8 +187,8 @@ impl Session {
         self.0.held.has_ended()
     }
 
-    /// Asks for what an app may ask over the wire, and waits for the answer as a [`Control`] does. What is muted is asked for
-    /// by [`Session::send`].
+    /// Asks for what an app may ask over the wire, and waits for the answer as a [`Control`] does. What is muted is
+    /// asked for by [`Session::send`].
     ///
     /// # Errors
     /// [`Refusal`] says why nothing has changed.

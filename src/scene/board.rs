@@ -59,7 +59,8 @@ impl Scene {
         &self.marks
     }
 
-    /// The points of a [`Mark::Path`] or [`Mark::Band`] of this scene; empty for another scene's span that reaches too far.
+    /// The points of a [`Mark::Path`] or [`Mark::Band`] of this scene; empty for another scene's span that reaches too
+    /// far.
     #[must_use]
     pub fn points(&self, span: Span) -> &[Vec2] {
         self.points.get(span.start as usize..span.end as usize).unwrap_or_default()

@@ -247,7 +247,8 @@ impl<'a> Face<'a> {
         (room.x >= 0.15 && room.y >= 0.11).then_some(text)
     }
 
-    /// Draws the lamp, and the badge of a control that does not work as usual just now, over everything else on the face.
+    /// Draws the lamp, and the badge of a control that does not work as usual just now, over everything else on the
+    /// face.
     pub(super) fn draw_badge(&self, scene: &mut Scene) {
         let lift = match self.shape {
             Shape::Box => 0.028,
@@ -299,7 +300,8 @@ impl<'a> Face<'a> {
         self.write_in(scene, text, room, anchor, self.ink);
     }
 
-    /// Draws the icon, if there is one, and gives back the room that it leaves: beside it where there is width, else below.
+    /// Draws the icon, if there is one, and gives back the room that it leaves: beside it where there is width, else
+    /// below.
     pub(super) fn draw_icon(&self, scene: &mut Scene, room: Rect) -> Rect {
         let Some(icon) = self.widget.look.icon else { return room };
         let size = room.size();

@@ -52,8 +52,8 @@ fn radius_m(force: f32) -> f32 {
     (force.clamp(0.0, 5000.0) * CIRCLE_M2_PER_N).sqrt().max(0.012)
 }
 
-/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons; gives back where
-/// these are written.
+/// Circles whose area follows the force, a cross at the centroid, the way it moves, number and newtons; gives back
+/// where these are written.
 pub(super) fn contacts(scene: &mut Scene, view: &View<'_>) -> Vec<Rect> {
     let mut tags = Vec::new();
     for contact in &view.snapshot.contacts {
@@ -108,8 +108,8 @@ fn contact(scene: &mut Scene, view: &View<'_>, contact: &Contact, tags: &mut Vec
     );
 }
 
-/// Where a contact's tag covers neither controls, with their names and values, nor other tags, nor what lies beyond the floor: beside the
-/// circle if there is room, otherwise as near as there is; to the north-east before elsewhere.
+/// Where a contact's tag covers neither controls, with their names and values, nor other tags, nor what lies beyond the
+/// floor: beside the circle if there is room, otherwise as near as there is; to the north-east before elsewhere.
 fn tag_place(view: &View<'_>, at: Vec2, radius: f32, by: f32, tags: &mut Vec<Rect>) -> Vec2 {
     /// Half of a tag.
     const HALF: Vec2 = Vec2::new(0.075, 0.022);

@@ -112,7 +112,8 @@ const SOLE: [(f32, f32); 18] = [
 /// Points between two of [`SOLE`]'s.
 const SOLE_STEPS: usize = 4;
 
-/// The sole of a right shoe (mirrored for a left one) around `middle`, its toes `heading_rad` counter-clockwise from north.
+/// The sole of a right shoe (mirrored for a left one) around `middle`, its toes `heading_rad` counter-clockwise from
+/// north.
 pub(crate) fn sole(middle: Vec2, heading_rad: f32, length_m: f32, left: bool) -> impl Iterator<Item = Vec2> {
     let turn = Vec2::from_angle(heading_rad);
     let side = if left { -1.0 } else { 1.0 };

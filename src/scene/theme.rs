@@ -113,8 +113,8 @@ impl Theme {
         faces: None,
     };
 
-    /// Black with white edges and few, bright colours, at least 7 to 1: for weak eyes, bright rooms and weak projectors.
-    /// What is on differs from what is off by lightness too.
+    /// Black with white edges and few, bright colours, at least 7 to 1: for weak eyes, bright rooms and weak
+    /// projectors. What is on differs from what is off by lightness too.
     pub const CONTRAST: Self = Self {
         canvas: Colour::rgb(0x00, 0x00, 0x00),
         seam: Colour::rgb(0x5c, 0x5c, 0x5c),

@@ -38,7 +38,8 @@ enum Parent<'k> {
     Unusable,
 }
 
-/// The kinds that `nodes` describe, on top of those `below`; `None` for each that can't be used, which has been reported.
+/// The kinds that `nodes` describe, on top of those `below`; `None` for each that can't be used, which has been
+/// reported.
 pub(super) fn layer(nodes: &[Node<'_>], below: &Kinds) -> Vec<Option<Kind>> {
     let mut here: HashMap<&str, usize> = HashMap::new();
     for (index, node) in nodes.iter().enumerate() {

@@ -56,7 +56,8 @@ pub fn folder_beside(path: &Path, name: &str) -> Option<PathBuf> {
     home.ancestors().skip(1).take(2).map(|folder| folder.join(name)).find(|folder| folder.is_dir())
 }
 
-/// The shipped kinds and effects, and those in folders `widgets` and `effects` beside the file `path` or beside its folder.
+/// The shipped kinds and effects, and those in folders `widgets` and `effects` beside the file `path` or beside its
+/// folder.
 ///
 /// # Errors
 /// Everything wrong with the files in these folders, or that one cannot be read.

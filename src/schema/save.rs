@@ -64,8 +64,8 @@ pub fn save_floor(floor: &Floor, path: &Path) -> Result<Saved, SaveError> {
 ///
 /// The text goes to a new file beside it, which takes its place when it is
 /// safely on the disk. What the file held before is kept as `name.bak`, or
-/// `name.bak2` and so on up to `name.bak10`, of which the oldest but the first then makes room. A symbolic link stays one:
-/// the file it points to is replaced.
+/// `name.bak2` and so on up to `name.bak10`, of which the oldest but the first then makes room. A symbolic link stays
+/// one: the file it points to is replaced.
 ///
 /// # Errors
 /// [`SaveError::File`]; the old file, if there was one, is then as it was.

@@ -171,16 +171,16 @@ pub(super) fn extra_sigma(forces: [f32; 4], quality: [Quality; 4], may_start: bo
 /// Least load at which corners contradict each other, in newtons.
 const CONTRADICTS_N: f32 = 30.0;
 
-/// How far the sums of a tile's diagonals may differ, as a share of its load, by unequal supports and gains (two to three
-/// standard deviations), and by a foot that lies across a plate that bends.
+/// How far the sums of a tile's diagonals may differ, as a share of its load, by unequal supports and gains (two to
+/// three standard deviations), and by a foot that lies across a plate that bends.
 const UNEQUAL: f32 = 0.15;
 const ACROSS: f32 = 0.15;
 
 /// Share of a tile's load below which a corner may be in the air.
 const IN_THE_AIR: f32 = 0.03;
 
-/// The standard deviation of each of `forces` by what no plate, rigid or bent, lets its corners read together, in newtons:
-/// of a sensor that is dead under its load, or at its end, on the very frame.
+/// The standard deviation of each of `forces` by what no plate, rigid or bent, lets its corners read together, in
+/// newtons: of a sensor that is dead under its load, or at its end, on the very frame.
 ///
 /// A diagonal that carries too little lacks what the other has too much, unless the other has a corner in the air.
 ///

@@ -37,8 +37,8 @@ const PAPER_KEPT: f64 = 2.0;
 
 /// The excess up to which a straight line is preferred to a curve: from 4 on a model has considerably less support
 /// (the same source). A power law whose exponent is near one and a divider whose supply is far are straight lines but
-/// for the noise they follow: by the least excess alone, one of six made-up linear parts gets another law's name through
-/// 2 % of noise.
+/// for the noise they follow: by the least excess alone, one of six made-up linear parts gets another law's name
+/// through 2 % of noise.
 const STRAIGHT_KEPT: f64 = 4.0;
 
 /// The voltage up to which a reading says only that the load is light: 0.5 % of the converter's range, its offset and
@@ -59,8 +59,8 @@ impl Comparison {
     /// at every load, or in proportion to the load. Every law has two parameters and a spread, so the criterion's terms
     /// for their number, and its correction for few measurements, are the same for all. Errors that
     /// resemble their neighbour's (hysteresis, a wave that no law follows) are not independent evidence: the
-    /// difference is scaled by the share of measurements that count as independent. Readings of next to nothing are left
-    /// out of the comparison, as saturated ones are.
+    /// difference is scaled by the share of measurements that count as independent. Readings of next to nothing are
+    /// left out of the comparison, as saturated ones are.
     ///
     /// The paper's exponential law stays where its excess is at most 2, then a straight line where its excess is at
     /// most 4; otherwise the law with the least value is chosen. Fewer than five measurements compare nothing: the

@@ -103,9 +103,9 @@ pub struct LoadedTile {
     strayed: f32,
 }
 
-/// Noise of a loaded sensor, as a share of what it carries: a force that grows by `exp(1.34 v)` makes 0.3 to 1.3 % of the 2 to
-/// 10 mV of its converter (the paper's parts). It is not seen while a tile is idle, and part of the gain where uncertainty
-/// is told. With twice as much, two feet close together are told apart later.
+/// Noise of a loaded sensor, as a share of what it carries: a force that grows by `exp(1.34 v)` makes 0.3 to 1.3 % of
+/// the 2 to 10 mV of its converter (the paper's parts). It is not seen while a tile is idle, and part of the gain where
+/// uncertainty is told. With twice as much, two feet close together are told apart later.
 const LOADED_NOISE: f64 = 0.01;
 
 /// Below this force a tile counts for nothing in a centroid, from the other one on in full, in newtons (our
@@ -208,7 +208,8 @@ impl LoadedTile {
         self.wrench.moment = (self.centroid - self.centre) * self.wrench.force;
     }
 
-    /// Widens the standard deviations of its corners by the quality of its sensors; `may_start` as in [`super::ForceFrame::may_start`].
+    /// Widens the standard deviations of its corners by the quality of its sensors; `may_start` as in
+    /// [`super::ForceFrame::may_start`].
     pub(super) fn judge(&mut self, sensors: [Quality; 4], may_start: bool) {
         let extra = corners::extra_sigma(self.corners, sensors, may_start);
         self.extra_sigma = std::array::from_fn(|corner| extra[corner].max(self.extra_sigma[corner]));

@@ -42,15 +42,16 @@ const STRAYS: f32 = 0.55;
 /// The load from which on it is not the share but the newtons that stay as uncertain: a law is fitted to those.
 const FITTED_N: f32 = 180.0;
 
-/// The load from which on a part may be compressing towards its end, in newtons, and how much its standard deviation then grows for each
-/// newton more.
+/// The load from which on a part may be compressing towards its end, in newtons, and how much its standard deviation
+/// then grows for each newton more.
 ///
-/// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250 N and
-/// 55 N at 280 N: the share is the mean of what it hides there, and half of the simulated parts end later.
+/// A part that ends smoothly at 300 N, `r = f (1 + (f / 300)^6)^(-1/6)`, hides 2 N at a reading of 200 N, 17 N at 250 N
+/// and 55 N at 280 N: the share is the mean of what it hides there, and half of the simulated parts end later.
 const COMPRESSES_N: f32 = 200.0;
 const COMPRESSES: f32 = 0.4;
 
-/// The least force over which what is not known of the sensors is spread, in newtons: lighter contacts are not placed at all.
+/// The least force over which what is not known of the sensors is spread, in newtons: lighter contacts are not placed
+/// at all.
 const LEAST_N: f32 = 2.0;
 
 /// Standard deviation of what each sensor of a tile that the load strays to carries without being counted, in newtons
@@ -87,7 +88,8 @@ impl SensorUncertainty {
     /// First-order propagation through c = Σ fᵢ xᵢ / Σ fᵢ:
     /// ∂c/∂fᵢ = (xᵢ − c) / F, var fᵢ = offset² + (gain fᵢ)² + (memory fᵢ)² + (misplaced Σ f)² + noise² + extra², the
     /// last for a sensor that is estimated, not calibrated or at the end of its range. The gain is that of
-    /// [`SensorUncertainty::gain`] under the sensor's load; on a tile with a position map it follows from what that leaves ([`crate::floor::PositionMap::residual_m`]).
+    /// [`SensorUncertainty::gain`] under the sensor's load; on a tile with a position map it follows from what that
+    /// leaves ([`crate::floor::PositionMap::residual_m`]).
     #[must_use]
     #[inline]
     pub fn covariance(

@@ -27,9 +27,10 @@ const NOTHING_N: f32 = 10.0;
 
 /// A walk over all tiles: each sensor must have been seen to answer to a load on its plate.
 ///
-/// The plate is rigid: what one of its corners bears follows from the other three, as the sum of its neighbours less the
-/// opposite corner. Each sensor that has read a fair share of that for a while answers; one of which much was demanded
-/// and that never did is named. It needs no tare: it takes for granted that the floor is empty at the beginning.
+/// The plate is rigid: what one of its corners bears follows from the other three, as the sum of its neighbours less
+/// the opposite corner. Each sensor that has read a fair share of that for a while answers; one of which much was
+/// demanded and that never did is named. It needs no tare: it takes for granted that the floor is empty at the
+/// beginning.
 #[derive(Clone, Debug)]
 pub struct WalkTest {
     tiles: Vec<TileTest>,
@@ -176,7 +177,8 @@ impl WalkTest {
         self.boards.iter().all(|board| board.rested >= REST || board.channels.iter().flatten().count() == 0)
     }
 
-    /// How the sensors of the tile with this index have done, in [`Corner::ALL`] order; `None` if there is no such tile.
+    /// How the sensors of the tile with this index have done, in [`Corner::ALL`] order; `None` if there is no such
+    /// tile.
     #[must_use]
     pub fn tile(&self, index: usize) -> Option<[SensorVerdict; 4]> {
         self.tiles.get(index).map(|tile| tile.sensors.map(|sensor| sensor.verdict()))

@@ -48,8 +48,8 @@ pub(super) fn bend(from: Vec2, at: Vec2, to: Vec2) -> f32 {
 /// The points of `points` that its shape needs: no other is farther than `off_m` from the lines between them.
 ///
 /// # Source
-/// Ramer 1972, Douglas and Peucker 1973: of each stretch the point that is farthest from the straight line is kept, and so on
-/// to both sides of it.
+/// Ramer 1972, Douglas and Peucker 1973: of each stretch the point that is farthest from the straight line is kept, and
+/// so on to both sides of it.
 pub(super) fn simplified(points: &[Vec2], off_m: f32) -> Vec<Vec2> {
     let Some(end) = points.len().checked_sub(1) else { return Vec::new() };
     let mut kept = vec![false; points.len()];
@@ -73,7 +73,8 @@ fn distance_from(point: Vec2, from: Vec2, to: Vec2) -> f32 {
     beside.distance(along * share)
 }
 
-/// The points without those that are within `apart_m` of the one kept before; the last one stays, as the only one if all are.
+/// The points without those that are within `apart_m` of the one kept before; the last one stays, as the only one if
+/// all are.
 pub(super) fn spaced(points: &[Vec2], apart_m: f32) -> Vec<Vec2> {
     let mut kept: Vec<Vec2> = Vec::new();
     for point in points {

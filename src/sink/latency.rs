@@ -175,7 +175,8 @@ impl LatencyProbe {
         Self::of_stages(LatencyStages { whole: meter, ..LatencyStages::default() }, clock)
     }
 
-    /// A probe that fills those of `stages` that end with the device; `clock` is the one that stamped the packets' arrival.
+    /// A probe that fills those of `stages` that end with the device; `clock` is the one that stamped the packets'
+    /// arrival.
     #[must_use]
     pub fn of_stages(stages: LatencyStages, clock: HostClock) -> Self {
         Self { stages, clock }

@@ -94,7 +94,8 @@ impl Behaviour {
 
     /// The same control with another range, its value to begin with brought into it; `None` if it can't have it.
     ///
-    /// What takes one number from an app can have any that is finite, not beyond a million and no narrower than its step.
+    /// What takes one number from an app can have any that is finite, not beyond a million and no narrower than its
+    /// step.
     #[must_use]
     pub(crate) fn with_range(&self, least: f32, greatest: f32) -> Option<Self> {
         let mut other = self.clone();

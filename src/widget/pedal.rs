@@ -19,7 +19,8 @@ use crate::format::{Flat, Opt, num, record};
 use crate::units::Newtons;
 
 record! {
-    /// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the weight.
+    /// A pedal: force to value. `deadband` and `full` grow with the press threshold where that is a share of the
+    /// weight.
     pub struct PedalSpec = "Pedal", Copy => |it, faults| {
         if it.gives_from() >= it.full {
             let [deadband, full] = [it.gives_from(), it.full].map(|force| plain(force.0.into()));

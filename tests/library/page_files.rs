@@ -1,5 +1,5 @@
-//! What README.md and the pages under docs/ show is true: their files are good, and what they name is there; each source
-//! file says what it is.
+//! What README.md and the pages under docs/ show is true: their files are good, and what they name is there; each
+//! source file says what it is.
 
 use std::path::Path;
 

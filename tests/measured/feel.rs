@@ -10,8 +10,8 @@ use underfoot::glam::Vec2;
 use underfoot::schema::Effects;
 use underfoot::units::{Instant, Newtons};
 
-/// Ten seconds of forty sustained cues of every model, of clicks of eight modes struck by soft pushes and of tones, a new one
-/// every 2 ms, on four tiles each and most of them on loudspeakers.
+/// Ten seconds of forty sustained cues of every model, of clicks of eight modes struck by soft pushes and of tones, a
+/// new one every 2 ms, on four tiles each and most of them on loudspeakers.
 #[test]
 fn the_busiest_ten_seconds_do_not_allocate() {
     let (mut sender, mut renderer) = renderer(RendererConfig::of(&whole_floor(), 48_000));

@@ -1,4 +1,5 @@
-//! What a test measures of its own process: that nothing is allocated where nothing may be, and that memory stays level.
+//! What a test measures of its own process: that nothing is allocated where nothing may be, and that memory stays
+//! level.
 #![allow(unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use assert_no_alloc::AllocDisabler;

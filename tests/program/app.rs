@@ -4,7 +4,8 @@ use std::process::Stdio;
 use std::sync::mpsc;
 use std::thread;
 
-use super::end_to_end::{free_port, underfoot};
+use super::end_to_end::underfoot;
+use crate::ports::free_port;
 
 #[allow(dead_code)]
 #[path = "../../examples/runtime.rs"]

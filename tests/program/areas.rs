@@ -8,7 +8,8 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use crate::end_to_end::{Served, free_port, said, terminate, underfoot};
+use crate::end_to_end::{Served, said, terminate, underfoot};
+use crate::ports::free_port;
 
 /// Two areas side by side.
 const HALL: &str = r#"Floor(

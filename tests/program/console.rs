@@ -93,7 +93,7 @@ impl Drop for Terminal {
 #[test]
 fn one_line_on_a_terminal_tells_what_the_floor_does() {
     let site = Site::new();
-    let address = format!("127.0.0.1:{}", super::end_to_end::free_port());
+    let address = format!("127.0.0.1:{}", crate::ports::free_port());
     let program = env!("CARGO_BIN_EXE_underfoot");
     let command = format!("exec {program} run page.ron --floor floor.ron --no-osc --listen {address}");
     let Some(terminal) = Terminal::run(&site, &command) else { return };
@@ -115,7 +115,7 @@ fn one_line_on_a_terminal_tells_what_the_floor_does() {
 /// In a pipe there is no line that changes: only what is said once.
 #[test]
 fn a_pipe_gets_no_line_that_changes() {
-    let address = format!("127.0.0.1:{}", super::end_to_end::free_port());
+    let address = format!("127.0.0.1:{}", crate::ports::free_port());
     let output = super::end_to_end::underfoot()
         .args(["run", "map", "--no-osc", "--seconds", "3", "--listen", &address])
         .output()

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader};
-use std::net::{TcpListener, UdpSocket};
+use std::net::UdpSocket;
 use std::path::Path;
 use std::process::{Child, Command, Output, Stdio};
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::time::{Duration, Instant};
 
 use serde_json::Value;
+
+use crate::ports::free_port;
 
 pub(super) fn underfoot() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_underfoot"));
@@ -18,19 +19,6 @@ pub(super) fn underfoot() -> Command {
 
 pub(super) fn said(output: &Output) -> String {
     format!("{}{}", String::from_utf8_lossy(&output.stdout), String::from_utf8_lossy(&output.stderr))
-}
-
-/// A port that is free for UDP and TCP, and that nothing takes by chance until it is used: it lies below those that the
-/// system hands out by itself (32768 on Linux), and each test process begins its search somewhere else.
-pub(super) fn free_port() -> u16 {
-    static NEXT: AtomicU32 = AtomicU32::new(0);
-    (0..20_000)
-        .map(|_| std::process::id() * 61 + NEXT.fetch_add(1, Ordering::Relaxed))
-        .map(|number| 10_000 + (number % 20_000) as u16)
-        .find(|port| {
-            UdpSocket::bind(("127.0.0.1", *port)).is_ok() && TcpListener::bind(("127.0.0.1", *port)).is_ok()
-        })
-        .expect("one of 20,000 ports is free")
 }
 
 /// Events of controls from JSON lines: time, control, kind and value.

@@ -3,6 +3,8 @@
 
 #[path = "../support/pages.rs"]
 mod pages;
+#[path = "../support/ports.rs"]
+mod ports;
 #[path = "../support/sender.rs"]
 mod sender;
 

@@ -18,10 +18,11 @@ use underfoot::source::SensorSource;
 use underfoot::units;
 use underfoot::wire::{LinkState, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
-use super::end_to_end::{Served, free_port, terminate, underfoot};
+use super::end_to_end::{Served, terminate, underfoot};
 use super::web::{free_address, signal, stream};
 use crate::holds::client::Client as OtherClient;
 use crate::holds::site::{Boards, Run, Site};
+use crate::ports::free_port;
 
 /// How long something that is bound to happen may take.
 const AT_LAST: Duration = Duration::from_secs(30);
@@ -120,8 +121,8 @@ fn about_controls(lines: Vec<Value>) -> Vec<Value> {
     lines.into_iter().filter(|line| line["force_n"].is_number() && line["id"].is_string()).collect()
 }
 
-/// Whether both say that the same happened. A layout that is read again may differ by a rounding, and a busy server looks at
-/// its clock at other moments: so may numbers, and times by some microseconds.
+/// Whether both say that the same happened. A layout that is read again may differ by a rounding, and a busy server
+/// looks at its clock at other moments: so may numbers, and times by some microseconds.
 fn is_same(there: &Value, here: &Value) -> bool {
     let same = |field: &str| there[field] == here[field];
     let near = |field: &str, tolerance: f64| match (there[field].as_f64(), here[field].as_f64()) {

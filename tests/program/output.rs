@@ -7,7 +7,8 @@ use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::end_to_end::{Served, free_port, terminate, underfoot};
+use super::end_to_end::{Served, terminate, underfoot};
+use crate::ports::free_port;
 
 /// A file on a disk that is always full, as Linux has one.
 fn full() -> Option<Stdio> {
@@ -167,8 +168,8 @@ fn used(process: &Child) -> (u64, u64) {
     (memory_kb(&process.id().to_string()), ticks.map(|ticks| ticks.parse::<u64>().unwrap()).sum())
 }
 
-/// Row R4. A minute of whatever one sender gets out, beside nothing else: for an idle machine, in release form. With the
-/// log in a pipe, on a full disk, and with standard error closed.
+/// Row R4. A minute of whatever one sender gets out, beside nothing else: for an idle machine, in release form. With
+/// the log in a pipe, on a full disk, and with standard error closed.
 #[test]
 #[ignore = "takes three minutes"]
 #[cfg(target_os = "linux")]

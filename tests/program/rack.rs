@@ -73,7 +73,7 @@ fn devices_are_listed_with_what_they_can_do() {
 fn the_latency_of_clicks_on_a_paced_device_is_told_stage_by_stage() {
     let folder = tempfile::tempdir().unwrap();
     let table = folder.path().join("latency.csv");
-    let address = format!("127.0.0.1:{}", super::end_to_end::free_port());
+    let address = format!("127.0.0.1:{}", crate::ports::free_port());
     let layout = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/latency/layout.ron");
     let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/benches/latency/scenario.ron");
     let mut simulated = underfoot()

@@ -9,7 +9,8 @@ use underfoot::floor::Floor;
 use underfoot::sim::{SimConfig, SimFloor};
 use underfoot::wire::{SensorEncoder, SensorFormat, SensorPacket};
 
-use super::end_to_end::{Served, free_port, terminate, underfoot};
+use super::end_to_end::{Served, terminate, underfoot};
+use crate::ports::free_port;
 
 /// A socket of the machine at `ip`.
 fn at(ip: &str) -> UdpSocket {

@@ -6,8 +6,9 @@ use std::os::unix::net::UnixDatagram;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::end_to_end::{Served, free_port, underfoot};
+use super::end_to_end::{Served, underfoot};
 use super::output::ended;
+use crate::ports::free_port;
 
 fn signal(served: &Served, name: &str) {
     let status = Command::new("kill").args(["-s", name, &served.0.id().to_string()]).status().unwrap();

@@ -13,8 +13,9 @@ use underfoot::sim::{Foot, FootDriver, Scenario, Script, SimConfig, SimFloor};
 use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
 
-use super::end_to_end::{Served, free_port, underfoot};
+use super::end_to_end::{Served, underfoot};
 use super::output::{ended, memory_kb};
+use crate::ports::free_port;
 
 /// What a process has of the machine.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -5,7 +5,8 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-use super::end_to_end::{Served, free_port, peak, underfoot};
+use super::end_to_end::{Served, peak, underfoot};
+use crate::ports::free_port;
 
 /// The bytes of samples that a WAV file's header tells of, and those that are there.
 fn samples(path: &Path) -> Option<(u64, u64)> {

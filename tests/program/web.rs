@@ -10,9 +10,9 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tungstenite::{Message, WebSocket, client};
 
-use crate::end_to_end::free_port;
 use crate::holds::client::Client as OtherClient;
 use crate::holds::site::{Boards, Run, Site};
+use crate::ports::free_port;
 
 /// How long something that is bound to happen may take.
 const AT_LAST: Duration = Duration::from_secs(30);

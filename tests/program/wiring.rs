@@ -7,8 +7,9 @@ use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::sim::SimFloor;
 
-use super::end_to_end::{free_port, underfoot};
+use super::end_to_end::underfoot;
 use super::sender::{Sender, simulated, small_floor, standing};
+use crate::ports::free_port;
 
 /// The floor whose two boards send under each other's address, and somebody who steps on the first tile of the first
 /// row and then on that of the second, for half a second each, again and again.

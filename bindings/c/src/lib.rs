@@ -64,7 +64,8 @@ unsafe fn with_control(
 /// Starts a floor; see `underfoot.h`.
 ///
 /// # Safety
-/// The texts are null or end with 0, `options` is null or of the size it says, `error` is null or has `error_size` bytes.
+/// The texts are null or end with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// bytes.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_session_listen(
     address: *const c_char,

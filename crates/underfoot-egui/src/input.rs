@@ -69,7 +69,8 @@ impl FootInput {
         self.target = Some(target);
     }
 
-    /// Lets presses of `context` roll and last as those of feet do, before they no longer count as clicks: by 40 points, for 5 s.
+    /// Lets presses of `context` roll and last as those of feet do, before they no longer count as clicks: by 40
+    /// points, for 5 s.
     ///
     /// The same holds for the mouse of this app then; egui has one limit for all pointers.
     pub fn tune(context: &Context) {

@@ -55,8 +55,8 @@ struct Args {
     /// Open no window.
     #[arg(long)]
     no_window: bool,
-    /// Show pictures in Web Mercator over the map's own shapes: those of a folder, `level/x/y.png`, or of a server, such
-    /// as `http://127.0.0.1:8080/{z}/{x}/{y}.png`.
+    /// Show pictures in Web Mercator over the map's own shapes: those of a folder, `level/x/y.png`, or of a server,
+    /// such as `http://127.0.0.1:8080/{z}/{x}/{y}.png`.
     #[arg(long, value_name = "FOLDER|URL")]
     tiles: Option<String>,
     /// Whose pictures they are, told at the map's edge.

@@ -36,8 +36,8 @@ pub(crate) struct Args {
     /// Also print a line for each sensor: its law, what that leaves over, the verdict.
     #[arg(long)]
     sensors: bool,
-    /// As --sensors, and also print how every law follows each sensor: what it leaves over, by how much its information criterion
-    /// exceeds the least one, or why it doesn't fit.
+    /// As --sensors, and also print how every law follows each sensor: what it leaves over, by how much its information
+    /// criterion exceeds the least one, or why it doesn't fit.
     #[arg(long)]
     laws: bool,
     /// Print the result as JSON on standard output.

@@ -18,8 +18,8 @@ use super::number::{number, patience};
 /// What `underfoot plan` is asked to do.
 ///
 /// Says how many computers, links, packets, megabits and cores a floor and its people take, into which areas it is best
-/// cut, and what runs out first. What one computer does is measured on this one, which takes some fifteen seconds, or read
-/// from a file. Without a floor, plans the paper's 6 x 6 tiles.
+/// cut, and what runs out first. What one computer does is measured on this one, which takes some fifteen seconds, or
+/// read from a file. Without a floor, plans the paper's 6 x 6 tiles.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Args {
     /// Floor file: its boards, its actuators, and its areas if it names any.
@@ -49,7 +49,8 @@ pub(crate) struct Args {
     /// Channels of a computer's sound card, in place of what the constants say (64 where they are measured).
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=65_535))]
     channels: Option<u32>,
-    /// Megabits per second of a computer's network card, in place of what the constants say (1000 where they are measured).
+    /// Megabits per second of a computer's network card, in place of what the constants say (1000 where they are
+    /// measured).
     #[arg(long, value_name = "MBIT", value_parser = |text: &str| number(text, &(1.0..=1e7), "megabits per second"))]
     link: Option<f64>,
     /// How long each load is measured.

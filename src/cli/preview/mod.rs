@@ -53,7 +53,8 @@ pub(crate) struct Args {
     /// Show a real floor, whose packets arrive here.
     #[arg(long, value_name = "ADDR", conflicts_with_all = ["scenario", "session"])]
     listen: Option<SocketAddr>,
-    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from here.
+    /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from
+    /// here.
     #[arg(long, value_name = "ADDR", conflicts_with_all = JOINED_IS_SERVED)]
     join: Option<SocketAddr>,
     #[command(flatten)]

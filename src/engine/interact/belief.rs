@@ -7,11 +7,11 @@ use crate::widget::{Guard, Thresholds};
 /// How much of the force of `contact` would be left if a sensor erred that is suspected to.
 ///
 /// `Degraded` tiles count: one with a dead sensor, whose force the other three tell, and one that loses packets. A tile
-/// with a saturated sensor, or one that reads what its plate does not bear, is suspected; see [`ForceFrame::may_start`].
-/// A shoe that laps over onto a tile, or a foot over the meeting of tiles, presses there at one sensor alone, as an
-/// erring sensor reads: one of these tiles is taken for wrong, and all of them where what runs while it is held depends
-/// on it.
-fn firm_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons {
+/// with a saturated sensor, or one that reads what its plate does not bear, is suspected; see
+/// [`ForceFrame::may_start`]. A shoe that laps over onto a tile, or a foot over the meeting of tiles, presses there at
+/// one sensor alone, as an erring sensor reads: one of these tiles is taken for wrong, and all of them where what runs
+/// while it is held depends on it.
+fn certain_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons {
     let forces = suspected(contact, frame).map(|load| load.force.0);
     let wrong: f32 = match guard {
         Guard::HoldToRun { .. } => forces.sum(),
@@ -32,14 +32,14 @@ pub(super) fn is_certain(contact: &Contact, frame: &ForceFrame) -> bool {
 
 /// Whether `contact` is a foot whatever a suspected sensor reads: most of its force would be left without it.
 pub(super) fn is_believed(contact: &Contact, guard: Guard, frame: &ForceFrame) -> bool {
-    firm_force(contact, guard, frame) * 2.0 >= contact.force
+    certain_force(contact, guard, frame) * 2.0 >= contact.force
 }
 
-/// Whether a foot of this force may press: without a suspected sensor it would still keep the control pressed, and press
-/// one that runs while it is held.
-pub(super) fn is_firm(contact: &Contact, at: &Thresholds, frame: &ForceFrame) -> bool {
+/// Whether a foot of this force may press: without a suspected sensor it would still keep the control pressed, and
+/// press one that runs while it is held.
+pub(super) fn certainly_presses(contact: &Contact, at: &Thresholds, frame: &ForceFrame) -> bool {
     let least = if matches!(at.guard, Guard::HoldToRun { .. }) { at.press } else { at.release };
-    firm_force(contact, at.guard, frame) >= least
+    certain_force(contact, at.guard, frame) >= least
 }
 
 /// A tile goes on with three sensors.
@@ -70,12 +70,12 @@ mod tests {
         let run = Guard::HoldToRun(HoldToRun { max: Duration::from_secs(9), warn: None });
         for guard in [Guard::Free, run] {
             let (contact, frame) = pressed(&[130.0, 12.0], &[1]);
-            assert_eq!(firm_force(&contact, guard, &frame), Newtons(130.0));
+            assert_eq!(certain_force(&contact, guard, &frame), Newtons(130.0));
             assert!(is_believed(&contact, guard, &frame));
             let (contact, frame) = pressed(&[12.0, 130.0], &[1]);
             assert!(!is_believed(&contact, guard, &frame), "a sensor that reads what is not there");
             let (contact, frame) = pressed(&[130.0], &[0]);
-            assert_eq!(firm_force(&contact, guard, &frame), Newtons::ZERO);
+            assert_eq!(certain_force(&contact, guard, &frame), Newtons::ZERO);
         }
     }
 
@@ -84,9 +84,9 @@ mod tests {
         let run = Guard::HoldToRun(HoldToRun { max: Duration::from_secs(9), warn: None });
         for (guard, [some, enough]) in [(Guard::Free, [35.0, 45.0]), (run, [55.0, 65.0])] {
             let at = Thresholds { guard, ..Thresholds::new(Newtons(60.0), Newtons(40.0)) };
-            for (loads, firm) in [([some, 30.0], false), ([enough, 30.0], true)] {
+            for (loads, presses) in [([some, 30.0], false), ([enough, 30.0], true)] {
                 let (contact, frame) = pressed(&loads, &[1]);
-                assert_eq!(is_firm(&contact, &at, &frame), firm, "{guard:?} {loads:?}");
+                assert_eq!(certainly_presses(&contact, &at, &frame), presses, "{guard:?} {loads:?}");
             }
         }
     }
@@ -94,7 +94,7 @@ mod tests {
     #[test]
     fn sensors_of_several_tiles_do_not_err_at_once_unless_something_runs_by_them() {
         let (contact, frame) = pressed(&[40.0, 35.0, 30.0, 35.0], &[0, 1, 2, 3]);
-        assert_eq!(firm_force(&contact, Guard::Free, &frame), Newtons(100.0));
+        assert_eq!(certain_force(&contact, Guard::Free, &frame), Newtons(100.0));
         let run = Guard::HoldToRun(HoldToRun { max: Duration::from_secs(9), warn: None });
         assert!(!is_believed(&contact, run, &frame));
     }

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use self::belief::{is_believed, is_certain, is_firm, is_sensed};
+use self::belief::{certainly_presses, is_believed, is_certain, is_sensed};
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
@@ -20,7 +20,8 @@ use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, WidgetEvent};
 
-/// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means to stay).
+/// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means
+/// to stay).
 const SLIDE_OFF_MARGIN_M: f32 = 0.03;
 
 /// How long a landing foot's centroid may travel before entering a control counts as sliding on
@@ -345,7 +346,7 @@ impl Interaction {
             } else {
                 let risen = self.rises.has_risen(contact) || !presses;
                 let meant = foot.is_none_or(|foot| foot.is_meant(mode, thresholds.guard, now));
-                let enough = !presses || is_firm(contact, &thresholds, at.frame);
+                let enough = !presses || certainly_presses(contact, &thresholds, at.frame);
                 let why = [
                     (control.needs_lift(), Ignored::NotSeenUnloaded),
                     (!risen || !enough, Ignored::Unbelieved),

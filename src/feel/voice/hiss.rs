@@ -64,7 +64,8 @@ impl Hiss {
         };
         let hz = narrow.clamp(hz);
         chain.narrow(lane, hz, Q, rate);
-        // White noise in -1..1 has a mean square of 1/3; a pair of band-passes lets pi/4 * centre/Q hertz of it through.
+        // White noise in -1..1 has a mean square of 1/3; a pair of band-passes lets pi/4 * centre/Q hertz of it
+        // through.
         let through = FRAC_PI_4 * hz / Q / (0.5 * rate) / 3.0;
         // A sine's root mean square is its amplitude over the root of two.
         self.noise[lane] = (0.5 * noise / through).sqrt();

@@ -207,7 +207,8 @@ impl Voices {
         }
     }
 
-    /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet and of the loudspeakers.
+    /// Adds the samples from `start` to `end` of the block at hand to the channels under the feet and of the
+    /// loudspeakers.
     pub(in crate::feel) fn render(&mut self, mix: &mut Mix, start: usize, end: usize) {
         self.age = self.age.saturating_add(end.saturating_sub(start));
         if self.age as f32 > STALE_S * self.sample_rate {

@@ -119,7 +119,8 @@ impl Voice {
         (voice, unfelt)
     }
 
-    /// Heads for what the sustained cue is now; the answer is how many spots of a new sustained cue no actuator can play.
+    /// Heads for what the sustained cue is now; the answer is how many spots of a new sustained cue no actuator can
+    /// play.
     pub(super) fn follow(&mut self, sustained_cue: &SustainedCue, wiring: &Wiring, heard: &Panned) -> u32 {
         let new = self.state == State::Free;
         self.wanted = wish(sustained_cue);

@@ -22,8 +22,8 @@ impl Labels {
         Self { within, taken: Vec::new() }
     }
 
-    /// Writes the first of `texts`, the longest first, that has room under `shown` or above it; where none has, the last
-    /// one at once below.
+    /// Writes the first of `texts`, the longest first, that has room under `shown` or above it; where none has, the
+    /// last one at once below.
     pub(super) fn put(
         &mut self,
         painter: &egui::Painter,

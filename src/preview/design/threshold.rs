@@ -55,8 +55,8 @@ impl Designer {
 }
 
 impl App {
-    /// Sets a threshold of the control called `id` in the layout's text, as one step, and tries it on the floor; what to
-    /// say about it.
+    /// Sets a threshold of the control called `id` in the layout's text, as one step, and tries it on the floor; what
+    /// to say about it.
     pub(in crate::preview) fn set_threshold(
         &mut self,
         id: &WidgetId,

@@ -107,8 +107,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// Takes in a frame's state; one that is not later than the last is left out, and one that is earlier begins anew, as a
-    /// recording that is played again.
+    /// Takes in a frame's state; one that is not later than the last is left out, and one that is earlier begins anew,
+    /// as a recording that is played again.
     pub(super) fn note(&mut self, snapshot: &Snapshot, layout: &Arc<Layout>) {
         match self.moments.back() {
             Some(last) if last.at == snapshot.at => return,

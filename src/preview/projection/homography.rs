@@ -13,8 +13,8 @@ const FLATTEST: f64 = 1e-4;
 impl Homography {
     /// The map that takes each corner of `from` to that of `to`, both in order around.
     ///
-    /// `None` unless both are convex, go round the same way or the other, and are finite: otherwise the picture would be
-    /// folded.
+    /// `None` unless both are convex, go round the same way or the other, and are finite: otherwise the picture would
+    /// be folded.
     ///
     /// # Source
     /// P. Heckbert, *Fundamentals of Texture Mapping and Image Warping* (1989), section 2.2.3: square to quadrilateral.

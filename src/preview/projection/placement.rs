@@ -134,8 +134,8 @@ impl Placement {
     }
 }
 
-/// Where the placement is kept unless told otherwise: in the folder in which egui keeps what apps remember; `None` where
-/// the system names no such folder.
+/// Where the placement is kept unless told otherwise: in the folder in which egui keeps what apps remember; `None`
+/// where the system names no such folder.
 pub(super) fn usual_file() -> Option<PathBuf> {
     let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
     let folder = if cfg!(target_os = "windows") {

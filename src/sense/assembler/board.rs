@@ -178,8 +178,8 @@ impl BoardTrack {
         matches!(self.tare, TareState::FromFloor)
     }
 
-    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `mean`; `None` if that is
-    /// not for its channels, or if it would miss it by no less than `below`. `misses` is space for sorting.
+    /// By how many newtons the middle one of this board's sensors would miss its tare if it read `mean`; `None` if that
+    /// is not for its channels, or if it would miss it by no less than `below`. `misses` is space for sorting.
     pub(super) fn misfit(&self, mean: &Readings, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
         if mean.len() != self.channels.len() {
             return None;

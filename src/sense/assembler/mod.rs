@@ -223,7 +223,8 @@ impl Assembler {
         }
     }
 
-    /// Whether a slot is complete, or taken for it: [`Assembler::ready`] gives its frame, unless the tare is not known yet.
+    /// Whether a slot is complete, or taken for it: [`Assembler::ready`] gives its frame, unless the tare is not known
+    /// yet.
     pub(crate) fn is_due(&self) -> bool {
         self.waiting.first().is_some_and(|first| {
             let newest = self.waiting.last().map_or(first.slot, |last| last.slot);
@@ -312,8 +313,9 @@ impl Assembler {
     }
 
     /// The boards that have changed places, and how often they have: each that is out of its place comes with the one
-    /// whose empty tiles it reads, which is out of its place too. Two have been swapped, more follow each other in a ring.
-    /// Their sensors are [`Quality::Faulty`] until that is mended. Found only where the floor's tare comes from its file.
+    /// whose empty tiles it reads, which is out of its place too. Two have been swapped, more follow each other in a
+    /// ring. Their sensors are [`Quality::Faulty`] until that is mended. Found only where the floor's tare comes from
+    /// its file.
     pub fn swapped(&self) -> (u64, impl Iterator<Item = (u16, u16)> + '_) {
         self.swaps.places()
     }
@@ -348,8 +350,8 @@ impl Assembler {
         self.health.drift()
     }
 
-    /// How much the floor's sensors are found to creep, as a share of their load for each decade of time: 0 to 0.1. What
-    /// lingers of a load is taken off accordingly; below 0.02, nothing is.
+    /// How much the floor's sensors are found to creep, as a share of their load for each decade of time: 0 to 0.1.
+    /// What lingers of a load is taken off accordingly; below 0.02, nothing is.
     #[must_use]
     pub const fn creep(&self) -> f32 {
         self.health.creep()

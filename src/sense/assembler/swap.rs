@@ -12,7 +12,8 @@ use super::board::BoardTrack;
 const BLOCK: u16 = 64;
 
 /// By how much the middle one of a board's sensors must miss its tare for the board to be suspected, in newtons: less
-/// than parts that differ by a quarter do under a plate of 6 N, more than one day's drift of the middle one (our choice).
+/// than parts that differ by a quarter do under a plate of 6 N, more than one day's drift of the middle one (our
+/// choice).
 const LEAST_N: f32 = 0.1;
 
 /// Which share of what the boards of a ring miss their own tares by they may miss the next one's by (our choice).
@@ -99,7 +100,8 @@ impl Swaps {
         }
     }
 
-    /// Compares what board `number` reads with some more places; whether it has been compared with all that it may be in.
+    /// Compares what board `number` reads with some more places; whether it has been compared with all that it may be
+    /// in.
     fn compare(&mut self, number: usize, boards: &[BoardTrack]) -> bool {
         let Self { blocks, misses, .. } = self;
         let block = &mut blocks[number];

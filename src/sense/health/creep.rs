@@ -110,7 +110,8 @@ impl Parts {
 }
 
 impl Creep {
-    /// Learns from what the sensors of a tile read together, nothing taken off for creep, `seconds` after the last look.
+    /// Learns from what the sensors of a tile read together, nothing taken off for creep, `seconds` after the last
+    /// look.
     pub(super) fn learn(&mut self, memory: &mut Memory, reads: f32, seconds: f32) {
         let whole: f32 = memory.sums().iter().sum();
         if whole < TELLS_N || reads.abs() > MOST * whole {

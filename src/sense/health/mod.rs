@@ -8,7 +8,8 @@
 //!
 //! [`plate`] knows what a rigid plate allows, [`slow`] averages each tile over
 //! 64 ms and looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
-//! lingers of a load, [`jump`] what no body does. What must be known before a control could be pressed is decided here, in the same frame.
+//! lingers of a load, [`jump`] what no body does. What must be known before a control could be pressed is decided here,
+//! in the same frame.
 
 mod creep;
 mod drift;
@@ -374,8 +375,8 @@ impl Health {
 /// Whether all four sensors deliver, those known to be broken apart.
 /// The first tile of each share of the floor, and the end of the last one.
 ///
-/// A tile is in the same share however the whole floor is cut, so that each computer that senses it averages it over the
-/// same frames.
+/// A tile is in the same share however the whole floor is cut, so that each computer that senses it averages it over
+/// the same frames.
 fn shares(geometry: &Geometry) -> [usize; SHARES + 1] {
     let (columns, rows) = geometry.whole();
     let (columns, whole) = (usize::from(columns), usize::from(columns) * usize::from(rows));

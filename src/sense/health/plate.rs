@@ -3,7 +3,8 @@
 //! A rigid plate leaves the sum of one diagonal equal to that of the other. One that bends, such as 12 mm of plywood
 //! on soft feet, twists: a load off both middle lines presses the corners of its own diagonal harder. How far the
 //! floor's plates give way is learnt from the feet on them, starting from plates that are taken to be rigid rather than
-//! limp: on a limp one a single corner may carry it all, so nothing that one sensor reads alone could be held against it.
+//! limp: on a limp one a single corner may carry it all, so nothing that one sensor reads alone could be held against
+//! it.
 //!
 //! Corners are numbered as in [`crate::sense::corners`].
 
@@ -50,9 +51,9 @@ const BLOCK_DEVIATION: f32 = 0.3;
 /// alone is none a plate allows (twist of 0.6 at most), so little that the first step or two outweigh it (our choice).
 const RIGID_WEIGHT: f32 = 1.0;
 
-/// From which twist on a load over one sensor may hardly be felt by its neighbours: they carry `(1 - twist) / 4` of it, and
-/// of one on the plate's very corner `(1 - 1.3 twist) / 4` (on simulated floors of 0.45 one sensor was accused in an hour,
-/// of 0.2 none).
+/// From which twist on a load over one sensor may hardly be felt by its neighbours: they carry `(1 - twist) / 4` of it,
+/// and of one on the plate's very corner `(1 - 1.3 twist) / 4` (on simulated floors of 0.45 one sensor was accused in
+/// an hour, of 0.2 none).
 const LIMP: f32 = 0.3;
 
 /// How far a floor's plates give way to twist: 0 for rigid ones, 1 for such as have no stiffness of their own.
@@ -117,8 +118,8 @@ fn diagonal([sw, se, nw, ne]: [f32; 4]) -> Option<(f32, f32, f32)> {
     (whole > 1.0 && place.is_finite() && diagonal.is_finite()).then_some((diagonal, place, whole))
 }
 
-/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`; only plates that are known to
-/// bend are bent by how a foot lies.
+/// The nearest to `diagonal` that a plate allows whose twist lies between `low` and `high`; only plates that are known
+/// to bend are bent by how a foot lies.
 fn lawful(diagonal: f32, place: f32, whole: f32, (low, high): (f32, f32)) -> f32 {
     let across = low * ACROSS * whole;
     let (one, other) = (low * place, high * place);

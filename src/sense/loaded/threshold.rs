@@ -28,7 +28,8 @@ const GAP_S: f32 = 0.5;
 /// readings a second, one in three minutes goes above (normal distribution).
 const DEVIATIONS: f32 = 4.9;
 
-/// Mean absolute difference of two independent readings, in standard deviations of one (normal distribution: 2 / sqrt pi).
+/// Mean absolute difference of two independent readings, in standard deviations of one (normal distribution: 2 / sqrt
+/// pi).
 const DIFFERENCE: f32 = 1.128;
 
 /// Clipping of differences, in means, and the least it is done at, in newtons (M-estimate of scale; 3.5 means are 2.8
@@ -46,8 +47,8 @@ const SMOOTH_S: f32 = 0.008;
 /// The threshold that noise may ask for at most, in newtons: a foot is seen however much a tile hisses (our choice).
 const MOST_N: f32 = 40.0;
 
-/// How long a tile stays loaded whose load may be residual, in seconds: a foot that leaves by its toes is followed to the end
-/// (recorded steps give up their last tenth of weight within 20 to 40 ms).
+/// How long a tile stays loaded whose load may be residual, in seconds: a foot that leaves by its toes is followed to
+/// the end (recorded steps give up their last tenth of weight within 20 to 40 ms).
 const HOLD_S: f32 = 0.03;
 
 /// The times over which loads are remembered, in seconds, a decade apart as creep is stated.
@@ -151,8 +152,8 @@ impl Thresholds {
         })
     }
 
-    /// Notes that the tile at `index`, which reads `sum`, is not loaded: what is left of its last load goes, and does not
-    /// grow again.
+    /// Notes that the tile at `index`, which reads `sum`, is not loaded: what is left of its last load goes, and does
+    /// not grow again.
     pub(super) fn note_low(&mut self, index: usize, sum: f32) {
         self.lowest[index] = self.lowest[index].min(sum.max(0.0));
     }
@@ -173,8 +174,8 @@ impl Thresholds {
         noise + self.residual[index].min(self.lowest[index])
     }
 
-    /// What a recent load is taken to have left on the loaded tile at `index`, which carries `force`, in newtons: all of
-    /// its residual load as long as that alone would keep it loaded, nothing from twice as much on.
+    /// What a recent load is taken to have left on the loaded tile at `index`, which carries `force`, in newtons: all
+    /// of its residual load as long as that alone would keep it loaded, nothing from twice as much on.
     pub(super) fn left_n(&self, index: usize, force: f32) -> f32 {
         let residual = self.residual[index].min(self.lowest[index]);
         residual * (2.0 - force / (self.on[index] + residual)).clamp(0.0, 1.0)

@@ -52,7 +52,8 @@ impl Tracker {
             || self.stands_on_nothing(foot, tiles, all)
     }
 
-    /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry nothing.
+    /// Whether a foot with the least part of the load `all` that is worth a track would show on tiles that carry
+    /// nothing.
     pub(super) fn stands_on_nothing(&self, foot: &Track, tiles: &LoadedTiles, all: f64) -> bool {
         let at = cell_of(foot.centre(), self.cells.pitch);
         let around = (at.y - 2..=at.y + 2)

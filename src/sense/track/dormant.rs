@@ -130,8 +130,8 @@ impl Tracker {
         }
     }
 
-    /// The identity for a foot that lands at `place`: that of one that rests there, or a new one. Others near end: people
-    /// have two feet.
+    /// The identity for a foot that lands at `place`: that of one that rests there, or a new one. Others near end:
+    /// people have two feet.
     pub(super) fn identity(&mut self, place: DVec2) -> ContactId {
         let mut found = None;
         self.dormant.retain(|dormant| {

@@ -9,7 +9,8 @@
 //!   no other foot near, stands on both feet.
 //! - **Shift.** While one stands, the centre of pressure of a single foot sways by a centimetre or so. It moves farther
 //!   when a second foot takes over weight.
-//! - **Roll.** From heel to toes within a stance, a centre of pressure travels farther than that of two feet side by side.
+//! - **Roll.** From heel to toes within a stance, a centre of pressure travels farther than that of two feet side by
+//!   side.
 //!
 //! From even odds on the contact is ambiguous, and its ellipse is always as wide as the possibility. A second track
 //! begins once the odds pay for the risk, and the data say where it is.
@@ -31,8 +32,8 @@ pub(super) struct Spread {
     /// Standard deviation along the widest direction, and across it, in metres.
     pub along: f64,
     pub across: f64,
-    /// Half the difference between the variances eastwards and northwards, and the covariance of the two: what tells the
-    /// widest direction.
+    /// Half the difference between the variances eastwards and northwards, and the covariance of the two: what tells
+    /// the widest direction.
     difference: f64,
     mixed: f64,
 }

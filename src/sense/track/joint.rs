@@ -26,8 +26,8 @@ pub(super) struct Joint {
 /// One row of an observation's slopes: which state, how much.
 pub(super) type Derivative = (usize, f64);
 
-/// [`Joint::observe`], compiled for what the processor offers: nothing is added up in another order, so that the bits stay
-/// the same.
+/// [`Joint::observe`], compiled for what the processor offers: nothing is added up in another order, so that the bits
+/// stay the same.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn take_in(joint: &mut Joint, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
     // Two or three feet are what is estimated nearly always, and loops of a known length need no count.

@@ -355,7 +355,8 @@ impl Tracker {
         let leaps =
             new_track.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
         if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
-            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide covariance.
+            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide
+            // covariance.
             for &member in members {
                 self.tracks[member as usize].reset_covariance(THROWN_M);
             }

@@ -3,8 +3,8 @@
 //! "Recorded steps" are the 294 steps of five people of SpeedPP2DS (Pataky et al. 2008); "geometry" follows from what a
 //! shoe or a tile is; "our choice" was tried on recorded and simulated people.
 //!
-//! What a fifth more or less does was tried for 49 of them, one at a time, on a third of the recorded steps, of the works
-//! of a resting foot and of the weight shifts (14), and on recorded walks. No score moves but by these:
+//! What a fifth more or less does was tried for 49 of them, one at a time, on a third of the recorded steps, of the
+//! works of a resting foot and of the weight shifts (14), and on recorded walks. No score moves but by these:
 //!
 //! | number | a fifth | what moves |
 //! |---|---|---|
@@ -27,8 +27,8 @@ pub(super) mod explanation {
     /// Log odds that are paid before a second track begins: a false one can press something (cost 400 : 1).
     pub(in crate::sense::track) const BIRTH: f64 = 6.0;
 
-    /// The largest spread of tile loads under one foot along and across it, in metres, and by how much it varies. In 294
-    /// recorded steps and their turned, rocked and pressed kin at most 0.095 and 0.024.
+    /// The largest spread of tile loads under one foot along and across it, in metres, and by how much it varies. In
+    /// 294 recorded steps and their turned, rocked and pressed kin at most 0.095 and 0.024.
     pub(in crate::sense::track) const ALONG_M: f64 = 0.088;
 
     pub(in crate::sense::track) const ACROSS_M: f64 = 0.021;
@@ -45,8 +45,8 @@ pub(super) mod explanation {
 
     pub(in crate::sense::track) const STANDING_S: f64 = 0.2;
 
-    /// The same of a foot that another one was near to before: who stops walking puts the other foot beside it, and may have
-    /// done so where it cannot be told from sway.
+    /// The same of a foot that another one was near to before: who stops walking puts the other foot beside it, and may
+    /// have done so where it cannot be told from sway.
     pub(in crate::sense::track) const STOPPED: f64 = 4.8;
 
     pub(in crate::sense::track) const STOPPED_S: f64 = 0.6;
@@ -98,7 +98,8 @@ pub(super) mod associate {
     /// For how long a load beyond a foot is looked at before it is taken for another foot, in seconds.
     pub(in crate::sense::track) const PENDING_S: f64 = 0.006;
 
-    /// By how much noise of one newton per sensor moves the centroid of one newton, in metres: twice the sensors' reach.
+    /// By how much noise of one newton per sensor moves the centroid of one newton, in metres: twice the sensors'
+    /// reach.
     pub(in crate::sense::track) const NOISE_ARM_M: f64 = 0.264;
 }
 
@@ -126,9 +127,9 @@ pub(super) mod reach {
 
     pub(in crate::sense::track) const MEMORY_LIGHT_S: f64 = 0.08;
 
-    /// What share of a foot's force its rim presses with at most, and how far from its centre of pressure, in metres: of
-    /// one that stands alone, of one that slides on and comes onto the next tile with its rim, and of one that shares its
-    /// tiles and is itself known only roughly (our choice).
+    /// What share of a foot's force its rim presses with at most, and how far from its centre of pressure, in metres:
+    /// of one that stands alone, of one that slides on and comes onto the next tile with its rim, and of one that
+    /// shares its tiles and is itself known only roughly (our choice).
     pub(in crate::sense::track) const RIM: (f64, f64) = (0.02, 0.22);
 
     pub(in crate::sense::track) const RIM_AHEAD: (f64, f64) = (0.1, 0.24);
@@ -140,7 +141,8 @@ pub(super) mod reach {
 
     pub(in crate::sense::track) const BEYOND_M: f64 = 0.02;
 
-    /// How well a foot's habits must be known, and which share of it a line must have borne, for its tiles to be listed.
+    /// How well a foot's habits must be known, and which share of it a line must have borne, for its tiles to be
+    /// listed.
     pub(in crate::sense::track) const KNOWN: f64 = 0.3;
 
     pub(in crate::sense::track) const BORNE: f64 = 0.008;
@@ -168,7 +170,8 @@ pub(super) mod dormant {
     /// For how long at most a foot may be thought to rest without weight, in seconds.
     pub(in crate::sense::track) const MOST_S: f64 = 5.0;
 
-    /// Share of the load that such a foot is reported with: between nothing and [`SLEEPS`], by how often it is still there.
+    /// Share of the load that such a foot is reported with: between nothing and [`SLEEPS`], by how often it is still
+    /// there.
     pub(in crate::sense::track) const REPORTED: f64 = 0.02;
 
     /// Standard deviation of its place, in metres.
@@ -183,7 +186,8 @@ pub(super) mod dormant {
 
 /// Feet that have left.
 pub(super) mod delete {
-    /// Largest force, in newtons, with which a foot that shares its tiles counts as gone: below what makes a tile count.
+    /// Largest force, in newtons, with which a foot that shares its tiles counts as gone: below what makes a tile
+    /// count.
     pub(in crate::sense::track) const EMPTY_N: f64 = 8.0;
 
     /// How many standard deviations its force must be below that.
@@ -223,7 +227,8 @@ pub(super) mod delete {
 
 /// Feet.
 pub(super) mod state {
-    /// Half widths of the pressed patch, in metres: a toe's tip, and all of a long foot but its ends, which press little.
+    /// Half widths of the pressed patch, in metres: a toe's tip, and all of a long foot but its ends, which press
+    /// little.
     pub(in crate::sense::track) const HALF_LEAST: f64 = 0.015;
 
     pub(in crate::sense::track) const HALF_MOST: f64 = 0.11;
@@ -252,9 +257,9 @@ pub(super) mod state {
     /// The least that a foot bears that somebody stands on, in newtons: more than a leg of somebody who sits.
     pub(in crate::sense::track) const BODY_N: f64 = 350.0;
 
-    /// Which share of what somebody's foot has borne in a step tells their body from a foot that works a control: a body
-    /// that stands bears nine tenths of it (recorded steps). Children walk with less than [`BODY_N`], at the least so many
-    /// newtons (six years, our choice).
+    /// Which share of what somebody's foot has borne in a step tells their body from a foot that works a control: a
+    /// body that stands bears nine tenths of it (recorded steps). Children walk with less than [`BODY_N`], at the least
+    /// so many newtons (six years, our choice).
     pub(in crate::sense::track) const BODY_SHARE: f64 = 0.75;
 
     pub(in crate::sense::track) const LEAST_BODY_N: f64 = 140.0;
@@ -294,8 +299,8 @@ pub(super) mod stillness {
 
     pub(in crate::sense::track) const AWAY_S: f64 = 0.15;
 
-    /// Radius within which a foot stands still, in metres, for how long it then stands, how soon it stands elsewhere, and how
-    /// long it may be away, in seconds. No recorded step stays within a centimetre for more than 0.17 s.
+    /// Radius within which a foot stands still, in metres, for how long it then stands, how soon it stands elsewhere,
+    /// and how long it may be away, in seconds. No recorded step stays within a centimetre for more than 0.17 s.
     pub(in crate::sense::track) const ANCHOR_M: f64 = 0.012;
 
     pub(in crate::sense::track) const STANDS_S: f64 = 0.3;
@@ -325,13 +330,13 @@ pub(super) mod residual {
 
 /// Motion and measurement.
 pub(super) mod model {
-    /// How soon the rate of a force decays, in seconds, and its standard deviation, in newtons per second: a heel strikes
-    /// within 20 to 40 ms (recorded steps).
+    /// How soon the rate of a force decays, in seconds, and its standard deviation, in newtons per second: a heel
+    /// strikes within 20 to 40 ms (recorded steps).
     pub(in crate::sense::track) const FORCE_FADE_S: f64 = 0.03;
     pub(in crate::sense::track) const FORCE_RATE_N_S: f64 = 5000.0;
 
-    /// How soon the speed of a centre of pressure decays, in seconds, and its bounds as a standard deviation, in metres per
-    /// second: feet that share tiles are past their fastest (our choice).
+    /// How soon the speed of a centre of pressure decays, in seconds, and its bounds as a standard deviation, in metres
+    /// per second: feet that share tiles are past their fastest (our choice).
     pub(in crate::sense::track) const PLACE_FADE_S: f64 = 0.08;
     pub(in crate::sense::track) const SPEED_M_S: f64 = 0.4;
     pub(in crate::sense::track) const SPEED_LEAST_M_S: f64 = 0.05;
@@ -383,8 +388,8 @@ pub(super) mod touchdown {
     /// Share of all weight from which on the new foot is where the common centre of pressure is.
     pub(in crate::sense::track) const TAKEN_OVER: f64 = 0.8;
 
-    /// Half widths that the new foot's patch may have along an axis, likeliest first, and the widest, in metres, and how
-    /// much they vary.
+    /// Half widths that the new foot's patch may have along an axis, likeliest first, and the widest, in metres, and
+    /// how much they vary.
     pub(in crate::sense::track) const HALVES: [f64; 4] = [0.075, 0.105, 0.045, WIDEST_M];
 
     pub(in crate::sense::track) const WIDEST_M: f64 = 0.135;

@@ -93,8 +93,8 @@ impl Strip {
         Slice::new(low, low + pitch, c, h)
     }
 
-    /// Whether no patch with its middle at `c` and a half width of at most `h` has one of the line's edges within it: the
-    /// line has all of it or nothing.
+    /// Whether no patch with its middle at `c` and a half width of at most `h` has one of the line's edges within it:
+    /// the line has all of it or nothing.
     pub(super) fn is_divided_by_none(&self, pitch: f64, c: f64, h: f64) -> bool {
         let low = f64::from(self.number) * pitch;
         let (low, high) = (low - c, low + pitch - c);

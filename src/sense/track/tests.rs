@@ -202,7 +202,8 @@ fn a_foot_that_leaves_its_own_tile_is_gone_at_once() {
     assert_eq!(floor.sensing.contacts().len(), 1, "{:?}", floor.sensing.contacts());
 }
 
-/// Two feet of 350 N side by side on shared tiles, and their ids: the second one put down half a second after the first.
+/// Two feet of 350 N side by side on shared tiles, and their ids: the second one put down half a second after the
+/// first.
 fn stand_side_by_side(floor: &mut Floor, feet: [Sole; 2]) -> [crate::sense::ContactId; 2] {
     for milli in 0..1500_u16 {
         let landed = smooth(600.0, 850.0, milli.into());

@@ -227,8 +227,8 @@ impl Pair {
     /// Twice the negative logarithm of the likelihood of one line's load, but for a constant: the squares, and the
     /// variances of force and moments of which the logarithms are to be added, once and twice.
     ///
-    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones gains
-    /// nothing. They are most of the work, so they are left to whoever needs them.
+    /// The logarithms are the determinant term: an explanation with small expected errors must fit, one with large ones
+    /// gains nothing. They are most of the work, so they are left to whoever needs them.
     #[inline]
     fn misfit_on(&self, line: &Line, half: f64, middle: DVec2, pitch: f64) -> (f64, [f64; 2]) {
         const { assert!(MISREAD_N >= 1.0, "logarithms of variances are never negative") };

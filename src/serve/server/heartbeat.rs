@@ -27,7 +27,8 @@ pub(super) struct Heartbeat {
 }
 
 impl Heartbeat {
-    /// Reports what is held if that has changed or is due, and that the server lives. `seen`: when the last frame came in.
+    /// Reports what is held if that has changed or is due, and that the server lives. `seen`: when the last frame came
+    /// in.
     pub(super) fn beat<'a>(
         &mut self,
         held: impl Iterator<Item = &'a WidgetId> + Clone,

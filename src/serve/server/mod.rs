@@ -59,7 +59,8 @@ pub enum Command {
     Control(ControlMessage),
     /// Do what an app may also ask over OSC, but mute, and answer.
     Ask(ControlMessage, SyncSender<Result<(), SetError>>),
-    /// Give the tare in use, per tile and corner as in [`Floor::tare`]; `None` where it is the floor's own, or not known.
+    /// Give the tare in use, per tile and corner as in [`Floor::tare`]; `None` where it is the floor's own, or not
+    /// known.
     GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
     /// Play an effect on one tile as an imagined foot would, in place of what was being played so.
     Audition {

@@ -82,13 +82,16 @@ const BESIDE_M: f32 = 1.0;
 const TAP: Duration = Duration::from_millis(60);
 
 impl Scenario {
-    /// The built-in scenario of somebody who crosses the floor and touches no control; fits floors of 4 x 3 tiles and more.
+    /// The built-in scenario of somebody who crosses the floor and touches no control; fits floors of 4 x 3 tiles and
+    /// more.
     pub const CROSSING: &str = include_str!("../scenarios/crossing.ron");
 
-    /// The built-in session on the shipped layout `map`: walk on, press a button, drag a slider, flip a switch, walk off.
+    /// The built-in session on the shipped layout `map`: walk on, press a button, drag a slider, flip a switch, walk
+    /// off.
     pub const SESSION: &str = include_str!("../scenarios/session.ron");
 
-    /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of 6 x 5 tiles and more.
+    /// The built-in scenario for layouts without controls: a stroll over the floor and back; fits floors of 6 x 5 tiles
+    /// and more.
     pub const STROLL: &str = include_str!("../scenarios/stroll.ron");
 
     /// The scenario in the file at `path`.

@@ -19,7 +19,8 @@ const JUMP_US: f64 = 20_000.0;
 /// What is taken of an error at most: somebody who comes this late says nothing about the period.
 const LATEST_US: f64 = 1_000.0;
 
-/// From where on an error is not taken for a late wake-up if so many blocks in a row share it: the device has left out samples.
+/// From where on an error is not taken for a late wake-up if so many blocks in a row share it: the device has left out
+/// samples.
 const SHIFT_US: f64 = 300.0;
 const SHIFT_BLOCKS: u32 = 16;
 

@@ -121,7 +121,8 @@ pub(super) fn of_id(host: &cpal::Host, id: &DeviceId) -> Option<Card> {
     host.device_by_id(id).map(Card::System)
 }
 
-/// The device of that very name or identifier, or else the first that has it in its name, or what the system knows by it.
+/// The device of that very name or identifier, or else the first that has it in its name, or what the system knows by
+/// it.
 pub(super) fn named(host: &cpal::Host, name: &str) -> Option<Card> {
     let wanted = name.to_lowercase();
     let find = |fits: &dyn Fn(&cpal::Device) -> bool| host.output_devices().ok()?.find(fits);

@@ -32,7 +32,8 @@ pub struct DeviceOptions {
     pub block: Option<u32>,
     /// How the floor's channels go onto those of the device.
     pub mix: Mix,
-    /// With the clock that stamps cues, each is played exactly the renderer's delay after its cause; without, as soon as possible.
+    /// With the clock that stamps cues, each is played exactly the renderer's delay after its cause; without, as soon
+    /// as possible.
     pub steady: Option<HostClock>,
     /// Measures the latency of the cues, if wanted.
     pub latency: Option<LatencyProbe>,

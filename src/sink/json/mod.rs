@@ -45,7 +45,8 @@ use crate::wire::LinkState;
 /// in a list, the direction of a swipe, or null for events without a value;
 /// `contact` is null if no foot did it. A number that JSON cannot express
 /// (which the engine never gives) is null. Which controls are held is written 50
-/// times a second while any is, and once when none is any longer. Contacts are written on request ([`JsonSink::with_contacts`]):
+/// times a second while any is, and once when none is any longer. Contacts are written on request
+/// ([`JsonSink::with_contacts`]):
 ///
 /// ```json
 /// {"t_s":9.9,"event":"contacts","contacts":[{"id":3,"x_m":0.61,"y_m":1.2,"force_n":350.0,"x_velocity_m_s":0.0,"y_velocity_m_s":0.0}]}

@@ -28,7 +28,8 @@ impl FaultSwitch {
         self.0.send(Change::Packets(faults)).is_ok()
     }
 
-    /// Breaks a sensor, or mends it with `None`; false if the floor has ended. A sensor that the floor lacks is left alone.
+    /// Breaks a sensor, or mends it with `None`; false if the floor has ended. A sensor that the floor lacks is left
+    /// alone.
     #[must_use]
     pub fn set_sensor(&self, sensor: SensorId, fault: Option<SensorFault>) -> bool {
         self.0.send(Change::Sensor(sensor, fault)).is_ok()
@@ -45,7 +46,8 @@ pub struct RehearsalSource {
 }
 
 impl RehearsalSource {
-    /// `inner` with the faults of `planned`, which stay whatever is switched; which packets are hit follows from `seed`.
+    /// `inner` with the faults of `planned`, which stay whatever is switched; which packets are hit follows from
+    /// `seed`.
     #[must_use]
     pub fn new(inner: SimulatedSource, planned: Faults, seed: u64) -> (Self, FaultSwitch) {
         let (sender, changes) = channel();

@@ -169,8 +169,8 @@ impl UdpSource {
         Ok((self, counters))
     }
 
-    /// Hands notes of other computers that arrive among the packets to `notes`: datagrams of JSON, from where packets are
-    /// taken. What `notes` has no room for is dropped.
+    /// Hands notes of other computers that arrive among the packets to `notes`: datagrams of JSON, from where packets
+    /// are taken. What `notes` has no room for is dropped.
     #[must_use]
     pub fn handing_notes_to(mut self, notes: SyncSender<Vec<u8>>) -> Self {
         self.notes = Some(notes);

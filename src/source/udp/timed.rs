@@ -34,7 +34,8 @@ impl Timed {
     }
 }
 
-/// How long after `clock`, the wall clock, something with the time tag `due` is to wait; none if it is past or "at once".
+/// How long after `clock`, the wall clock, something with the time tag `due` is to wait; none if it is past or "at
+/// once".
 ///
 /// # Errors
 /// [`WireError::TooEarly`] if that is more than a second.

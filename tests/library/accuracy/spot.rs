@@ -15,8 +15,8 @@ fn one_contact_over_a_whole_tile() {
         // 95 in 100 true places lie in the ellipse. All places of a tile lie over the same four parts: 20 floors are
         // few for that (80 floors of 15 x 15 places: 94 to 98 %).
         let inside = 100.0 * row.share_inside();
-        // From 350 N on a lone contact may be two feet, and its ellipse is as wide; of 50 N a part may be left by the load
-        // that was there 60 ms before.
+        // From 350 N on a lone contact may be two feet, and its ellipse is as wide; of 50 N a part may be left by the
+        // load that was there 60 ms before.
         let expected = 90.0..=if (60.0..350.0).contains(&row.force.0) { 99.9 } else { 100.0 };
         assert!(expected.contains(&inside), "{inside} % in the ellipse, {what}");
         // The paper, without a position map: typically under 2 cm, under 5 cm at worst.

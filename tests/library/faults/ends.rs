@@ -148,8 +148,8 @@ fn r1_every_end_of_a_server_cancels_what_is_held_then_says_so_then_goodbye() {
         let holds = told
             .iter()
             .filter(|(address, args)| address == "/underfoot/widget/zoom/held" && args[0] == OscType::Int(1));
-        // Pressed at about 230 ms, by simulated time: 50 a second until 900 ms. Time runs faster here than datagrams are
-        // sent, and a repetition that finds the queue full is left out.
+        // Pressed at about 230 ms, by simulated time: 50 a second until 900 ms. Time runs faster here than datagrams
+        // are sent, and a repetition that finds the queue full is left out.
         let count = holds.count();
         assert!((10..=36).contains(&count), "{end:?}: {count} times held");
     }

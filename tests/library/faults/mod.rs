@@ -1,4 +1,5 @@
-//! What goes wrong with sensors, links and people, and what becomes of the feet: one test per row of the fault table, named by its id.
+//! What goes wrong with sensors, links and people, and what becomes of the feet: one test per row of the fault table,
+//! named by its id.
 //!
 //! Simulated packets go through the assembler into an engine, as those of a real floor do.
 

@@ -240,7 +240,8 @@ pub fn offset(newtons: f32) -> SensorFault {
     SensorFault::Offset(Newtons(newtons))
 }
 
-/// Hum that all sensors share, which is the worst case, and noise of their own: 5 N together, on boards that send newtons.
+/// Hum that all sensors share, which is the worst case, and noise of their own: 5 N together, on boards that send
+/// newtons.
 pub struct Hum {
     pub mains_hz: f32,
     /// Of each sensor, in newtons.

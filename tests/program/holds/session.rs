@@ -12,7 +12,8 @@ use underfoot::wire::{LinkCounters, LinkState, Request, SensorPacket};
 
 use super::site::{BoardFault, Boards, Site};
 use super::{SOON, TRIES};
-use crate::end_to_end::{free_port, underfoot};
+use crate::end_to_end::underfoot;
+use crate::ports::free_port;
 use crate::sender::ANY_PORT;
 
 /// A source whose next packet can be a panic, or can never come.

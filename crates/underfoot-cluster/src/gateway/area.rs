@@ -12,8 +12,8 @@ use crate::message::{LayoutStanding, NodeMessage, Standing};
 /// How old the newest frame of an area may be. What feet hold there is cancelled then.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
-/// How far in the future a frame may be: the uncertainty of clocks that are known to a round trip. What is further is of a
-/// clock that was set, of which the next echo tells.
+/// How far in the future a frame may be: the uncertainty of clocks that are known to a round trip. What is further is
+/// of a clock that was set, of which the next echo tells.
 const AHEAD: Duration = Duration::from_millis(20);
 
 /// One area.

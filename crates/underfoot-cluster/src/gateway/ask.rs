@@ -27,8 +27,8 @@ pub enum Answer {
 }
 
 impl Gateway {
-    /// Takes a request of an app, which came at `now`: nodes hear of it with the next beat, and the app is answered when
-    /// they have, or half a second later.
+    /// Takes a request of an app, which came at `now`: nodes hear of it with the next beat, and the app is answered
+    /// when they have, or half a second later.
     pub fn ask(&mut self, mut request: Request, now: Instant) {
         let pattern = request.message.id_mut().map(|id| id.as_str().to_owned()).unwrap_or_default();
         let ids: Vec<String> = match is_pattern(&pattern) && self.shared.owner(&pattern).is_none() {

@@ -14,8 +14,8 @@ use underfoot::units::Instant;
 
 use crate::message::NodeContact;
 
-/// How far apart two nodes may see the same foot: both feel the same forces, but not at the same moment, and a foot that
-/// lands moves by some millimetres in each.
+/// How far apart two nodes may see the same foot: both feel the same forces, but not at the same moment, and a foot
+/// that lands moves by some millimetres in each.
 const SAME_M: f32 = 0.05;
 
 /// How far apart they may come to see it before it is taken for two.
@@ -167,8 +167,8 @@ impl Joiner {
         told.collect()
     }
 
-    /// Ends what the node of `area` called `id`. If that node is believed of it and no other one has it in its own area,
-    /// it has ended for all.
+    /// Ends what the node of `area` called `id`. If that node is believed of it and no other one has it in its own
+    /// area, it has ended for all.
     fn end(&mut self, area: usize, id: u32, at: Instant) {
         let Some(view) = self.views.get_mut(area) else { return };
         let Some(joint) = view.joints.remove(&id) else { return };

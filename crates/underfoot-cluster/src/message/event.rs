@@ -125,8 +125,8 @@ impl NodeEvent {
         plain.or_else(valued).or_else(swiped)
     }
 
-    /// The event as outputs take it, with the time and the contact's name that the gateway gives it; `None` if it is not
-    /// an event that a control gives.
+    /// The event as outputs take it, with the time and the contact's name that the gateway gives it; `None` if it is
+    /// not an event that a control gives.
     #[must_use]
     pub fn event(&self, at: Instant, contact: Option<u32>) -> Option<WidgetEvent> {
         let position = Vec2::from(self.position);

@@ -1,8 +1,9 @@
 //! What is felt on tiles of neighbours, and what theirs is felt here.
 //!
-//! A control over a border belongs to one node. Its cues go to the neighbour under whose tiles they are felt too, at once
-//! and by UDP, as the packets of boards near the border do. A cue that comes too late is not played: a foot would take it
-//! for the answer to something else. Neighbours compare their clocks, since only by that is known how old a cue is.
+//! A control over a border belongs to one node. Its cues go to the neighbour under whose tiles they are felt too, at
+//! once and by UDP, as the packets of boards near the border do. A cue that comes too late is not played: a foot would
+//! take it for the answer to something else. Neighbours compare their clocks, since only by that is known how old a cue
+//! is.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -162,8 +163,8 @@ pub struct Border {
 }
 
 impl Border {
-    /// The areas that `area` hands cues to, in the order of their numbers: those on whose tiles it senses feet. Those that
-    /// do not say where they listen get none.
+    /// The areas that `area` hands cues to, in the order of their numbers: those on whose tiles it senses feet. Those
+    /// that do not say where they listen get none.
     pub fn neighbours<'f>(floor: &'f Floor, area: &Area) -> impl Iterator<Item = &'f Area> {
         let (sensed, id) = (area.sensed(&floor.geometry), area.id.clone());
         floor.areas.iter().filter(move |other| {

@@ -11,7 +11,8 @@ use underfoot::units::Instant;
 
 use crate::message::{LayoutName, LayoutOrder, LayoutStanding};
 
-/// For how long a gateway that is silent is still the one whose layouts count: two with different layouts would take turns.
+/// For how long a gateway that is silent is still the one whose layouts count: two with different layouts would take
+/// turns.
 const LEADS_FOR: Duration = Duration::from_secs(1);
 
 /// A node's layouts; `L` is what a layout is once it has been checked.

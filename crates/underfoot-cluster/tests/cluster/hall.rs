@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
-use std::net::{IpAddr, Ipv4Addr, SocketAddr, TcpListener, UdpSocket};
+use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -23,6 +23,7 @@ use underfoot::wire::{SensorEncoder, SensorFormat};
 use crate::lines::Lines;
 use crate::link::Link;
 use crate::netns::Namespaces;
+use crate::ports::free_port;
 
 /// Four areas of 6 x 6 tiles; their borders are at 6 tiles either way. Each has three boards of 6 x 2 tiles: few, since
 /// one machine does the work of six here.
@@ -86,7 +87,8 @@ impl Program {
         Self::start_by(Command::new(env!("CARGO_BIN_EXE_underfoot-cluster")), folder, args, notices)
     }
 
-    /// Starts it in a network namespace; `ip` makes way for it, so that it has the process of its own that signals reach.
+    /// Starts it in a network namespace; `ip` makes way for it, so that it has the process of its own that signals
+    /// reach.
     fn start_in(namespace: &str, folder: &Path, args: &[&str], notices: &Notices) -> Self {
         let mut ip = Command::new("ip");
         ip.args(["netns", "exec", namespace, env!("CARGO_BIN_EXE_underfoot-cluster")]);
@@ -184,7 +186,7 @@ impl Hall {
             // Boards are on the bridge, and those of the one computer on this machine.
             floor.allow = [here, Ipv4Addr::LOCALHOST].map(|address| IpAddr::from(address).into()).into();
         }
-        let address = TcpListener::bind((here, 0)).unwrap().local_addr().unwrap();
+        let address = SocketAddr::from((here, free_port()));
         floor.gateway = Some(address);
         std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
         let layout = layout(&floor);
@@ -326,10 +328,6 @@ impl EventSink for Frames {
 
 fn number(area: &str) -> usize {
     AREAS.iter().position(|one| *one == area).unwrap()
-}
-
-pub(crate) fn free_port() -> u16 {
-    UdpSocket::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port()
 }
 
 /// The hall's boards, which send on a thread of their own.

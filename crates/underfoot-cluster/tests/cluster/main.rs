@@ -1,6 +1,9 @@
 //! A hall of four areas, served by real processes over real loopback sockets, with people walking over all borders.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
+#[path = "../../../../tests/support/ports.rs"]
+mod ports;
+
 mod border;
 mod commands;
 mod faults;

@@ -1,7 +1,7 @@
 //! What a node costs does not depend on how many there are.
 
 use std::fs;
-use std::net::{SocketAddr, TcpListener, UdpSocket};
+use std::net::{SocketAddr, UdpSocket};
 use std::path::Path;
 use std::sync::{Arc, Mutex};
 use std::thread;
@@ -15,7 +15,8 @@ use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
-use crate::hall::{Program, free_port, say, script};
+use crate::hall::{Program, say, script};
+use crate::ports::free_port;
 
 /// Tiles along the side of an area.
 const SIDE: u16 = 6;
@@ -47,7 +48,7 @@ fn corridor(count: u16) -> Floor {
     floor.boards = (0..3 * count).map(board).collect();
     let sim = SimFloor::new(&floor, SimConfig::default(), 1);
     let mut floor = calibrated(&floor, &sim, 1).unwrap();
-    floor.gateway = Some(TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap());
+    floor.gateway = Some(([127, 0, 0, 1], free_port()).into());
     floor
 }
 
@@ -202,8 +203,8 @@ fn measure_nodes(folder: &Path, count: u16, slow: u32, machine: &Machine) -> Cos
     costs
 }
 
-/// The constants of a computer: those of the file that `UNDERFOOT_MACHINE` names, as `underfoot plan --json` prints them,
-/// or this one's as this build does its work.
+/// The constants of a computer: those of the file that `UNDERFOOT_MACHINE` names, as `underfoot plan --json` prints
+/// them, or this one's as this build does its work.
 fn machine() -> Machine {
     let Ok(path) = std::env::var("UNDERFOOT_MACHINE") else {
         return measure(Duration::from_secs(1), || {}).unwrap();

@@ -145,8 +145,8 @@ fn compare(rounds: usize) {
     ));
     let others: BTreeSet<u64> = pairs.values().copied().collect();
     assert_eq!((tracks.len(), others.len()), (whole.len(), whole.len()));
-    // How two feet that share tiles divide their load can be decided some milliseconds earlier or later where the noise of
-    // tiles that a node does not sense has a say. Measured over eight rounds: 36 places of 10,000.
+    // How two feet that share tiles divide their load can be decided some milliseconds earlier or later where the noise
+    // of tiles that a node does not sense has a say. Measured over eight rounds: 36 places of 10,000.
     assert!(apart * 100 <= places, "{apart} of {places}");
 }
 

@@ -20,7 +20,8 @@ impl Random {
     }
 }
 
-/// For so many seconds (or `UNDERFOOT_SOAK_S`), every one to four seconds something happens to a node; then people leave.
+/// For so many seconds (or `UNDERFOOT_SOAK_S`), every one to four seconds something happens to a node; then people
+/// leave.
 #[test]
 #[ignore = "ten minutes in real time"]
 fn restarts_at_random_leave_no_ghost_and_no_hold() {

@@ -1,0 +1,210 @@
+//! What is known of all contacts beyond the present frame, and whose feet they are.
+
+mod history;
+
+use glam::Vec2;
+
+pub(super) use self::history::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
+use super::people::Person;
+use super::snapshot::FootState;
+use super::step::Landing;
+use crate::layout::Stance;
+use crate::sense::{Contact, ContactId};
+use crate::units::{Instant, Newtons};
+
+/// Feet and people for which there is room from the start; more cost an allocation once.
+const ROOM: usize = 64;
+
+/// A support carries at least this much, in newtons.
+const SUPPORT_N: f32 = 100.0;
+
+/// All contacts with their past, and the people they belong to.
+#[derive(Clone, Debug)]
+pub(super) struct FootHistories {
+    /// In the order of their ids.
+    feet: Vec<FootHistory>,
+    people: Vec<Person>,
+    next_person: u32,
+}
+
+impl Default for FootHistories {
+    fn default() -> Self {
+        Self { feet: Vec::with_capacity(ROOM), people: Vec::with_capacity(ROOM), next_person: 1 }
+    }
+}
+
+impl FootHistories {
+    /// Takes in the contacts of one frame.
+    ///
+    /// # Real-time
+    /// Allocates nothing while there are no more than 64 contacts.
+    pub(super) fn update(&mut self, contacts: &[Contact], stances: &[Stance], now: Instant) {
+        let Self { feet, people, .. } = self;
+        let before = feet.len();
+        feet.retain(|foot| {
+            let down = contacts.iter().any(|contact| contact.id == foot.id);
+            if !down && let Some(person) = people.iter_mut().find(|person| person.id == foot.person) {
+                person.leave(foot, now);
+            }
+            down
+        });
+        people.retain(|person| !person.is_forgotten(now));
+        let mut changed = feet.len() != before;
+        for contact in contacts {
+            match self.feet.binary_search_by_key(&contact.id, |foot| foot.id) {
+                Ok(at) => self.feet[at].update(contact, now),
+                Err(at) => {
+                    let foot = self.land(contact, now);
+                    changed = true;
+                    self.feet.insert(at, foot);
+                }
+            }
+        }
+        if changed {
+            self.bring_together();
+        }
+        for person in &mut self.people {
+            let mine = self.feet.iter().filter(|foot| foot.person == person.id && !foot.is_object());
+            person.carry(mine.map(|foot| foot.force).sum(), now);
+        }
+        for foot in &mut self.feet {
+            foot.in_stance = stances.iter().any(|stance| stance.area.contains(foot.place));
+            if let Some(person) = self.people.iter().find(|person| person.id == foot.person) {
+                foot.judge(person, now);
+            }
+        }
+    }
+
+    /// The foot of a contact.
+    pub(super) fn of(&self, id: ContactId) -> Option<&FootHistory> {
+        self.feet.binary_search_by_key(&id, |foot| foot.id).ok().and_then(|at| self.feet.get(at))
+    }
+
+    /// A control has engaged a contact.
+    pub(super) fn note_press(&mut self, id: ContactId) {
+        if let Ok(at) = self.feet.binary_search_by_key(&id, |foot| foot.id) {
+            self.feet[at].pressing = true;
+        }
+    }
+
+    /// The weight of the person whose foot this is; `None` if it is not known.
+    pub(super) fn weight(&self, id: ContactId) -> Option<Newtons> {
+        self.person_of(id)?.weight()
+    }
+
+    /// What there is to show of each contact, in their order.
+    pub(super) fn states(&self, now: Instant) -> impl Iterator<Item = FootState> + '_ {
+        self.feet.iter().map(move |foot| FootState {
+            contact: foot.id,
+            role: foot.role(now),
+            person: foot.person,
+            weight: self.weight(foot.id),
+        })
+    }
+
+    fn person_of(&self, id: ContactId) -> Option<&Person> {
+        let person = self.of(id)?.person;
+        self.people.iter().find(|known| known.id == person)
+    }
+
+    fn land(&mut self, contact: &Contact, now: Instant) -> FootHistory {
+        let whose = self.whose(contact.centroid, now);
+        let person = &self.people[whose];
+        let mut foot = FootHistory::new(contact, person, now);
+        let support = self
+            .feet
+            .iter()
+            .filter(|other| other.person == person.id && !other.is_object())
+            .filter(|other| other.force >= SUPPORT_N && !other.pressing)
+            .max_by(|a, b| a.force.total_cmp(&b.force));
+        let mut others = self.feet.iter().filter(|other| other.person == person.id && !other.is_object());
+        if let Some(other) =
+            others.find(|other| other.was_at(foot.place) || other.contained(&foot, person.sum, now))
+        {
+            foot.go_on_as(other);
+            return foot;
+        }
+        let landing = Landing {
+            at: foot.place,
+            support: support.map(|support| support.as_support(now)),
+            left: person.last_left(now),
+        };
+        foot.land(&landing);
+        foot
+    }
+
+    /// Makes one person of two that had been taken for two while their feet were on the way.
+    fn bring_together(&mut self) {
+        let mut first = 0;
+        while first < self.people.len() {
+            let one = &self.people[first];
+            let second = (first + 1..self.people.len())
+                .find(|&second| one.is_one_with(&self.people[second], &self.feet));
+            match second {
+                Some(second) => {
+                    let (kept, gone) = (one.id, self.people.remove(second).id);
+                    for foot in self.feet.iter_mut().filter(|foot| foot.person == gone) {
+                        foot.person = kept;
+                    }
+                }
+                None => first += 1,
+            }
+        }
+    }
+
+    /// The position of the person to whom a foot that lands at `place` belongs; a new person if no known one can have
+    /// put it there.
+    fn whose(&mut self, place: Vec2, now: Instant) -> usize {
+        let near = self
+            .people
+            .iter()
+            .enumerate()
+            .filter_map(|(at, person)| Some((at, person.reach_to(place, &self.feet, now)?)))
+            .min_by(|a, b| a.1.total_cmp(&b.1));
+        if let Some((at, _)) = near {
+            return at;
+        }
+        self.people.push(Person::new(self.next_person, now));
+        self.next_person = self.next_person.wrapping_add(1);
+        self.people.len() - 1
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn contact(id: u32, at: (f32, f32), force: f32, ambiguous: bool) -> Contact {
+        Contact {
+            id: ContactId(id),
+            centroid: at.into(),
+            force: Newtons(force),
+            ambiguous,
+            ..Contact::default()
+        }
+    }
+
+    #[test]
+    fn a_foot_that_had_stood_unseen_beside_the_other_has_not_just_stepped_there() {
+        let (mut feet, mut ms) = (FootHistories::default(), 0);
+        let mut give = |feet: &mut FootHistories, contacts: &[Contact], millis: u64| {
+            for _ in 0..millis {
+                ms += 1;
+                feet.update(contacts, &[], Instant::from_millis(ms));
+            }
+            Instant::from_millis(ms)
+        };
+        // Somebody with narrow feet stands, taken for one foot that may be two; weight goes over to the right one,
+        // which is told apart; nothing is left of the other one's load.
+        give(&mut feet, &[contact(1, (0.5, 0.3), 700.0, true)], 3000);
+        give(&mut feet, &[contact(1, (0.4, 0.3), 600.0, false), contact(2, (0.6, 0.3), 100.0, true)], 100);
+        give(&mut feet, &[contact(1, (0.4, 0.3), 20.0, true), contact(2, (0.6, 0.3), 680.0, false)], 500);
+        let standing = contact(2, (0.6, 0.3), 660.0, false);
+        give(&mut feet, std::slice::from_ref(&standing), 5);
+        // The left foot comes down on a control.
+        let now = give(&mut feet, &[standing, contact(3, (0.5, 0.9), 40.0, false)], 10);
+        let foot = feet.of(ContactId(3)).unwrap();
+        assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
+        assert!(foot.has_support, "beside a foot that stands");
+    }
+}
