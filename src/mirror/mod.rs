@@ -5,6 +5,9 @@
 //! [`MirrorSource`] is fed such frames, and gives the same packets, requests and layouts in the same order: what senses
 //! them sees the same floor. What a window has to know first is a [`Greeting`]; [`Follower`] keeps the values of
 //! controls as the server says they are. `docs/web-app.md` describes the stream.
+//!
+//! Where there are no packets to be had, as of a floor that several computers serve, [`TextMirror`] shows what its JSON
+//! lines tell.
 
 mod feed;
 mod follower;
@@ -15,6 +18,7 @@ mod link;
 mod source;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use feed::MirrorFeed;
 pub use follower::Follower;
@@ -23,6 +27,7 @@ pub use greeting::{Greeting, MirrorError};
 #[cfg(feature = "web")]
 pub use link::{MirrorLink, MirrorNews};
 pub use source::{MirrorInput, MirrorSource};
+pub use text::{BadLine, TextMirror};
 
 /// The version of the greeting and of the frames.
 const VERSION: u8 = 1;

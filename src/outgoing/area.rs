@@ -23,6 +23,9 @@ pub enum AreaState {
 }
 
 impl AreaState {
+    /// All of them.
+    pub const ALL: [Self; 4] = [Self::Waiting, Self::Live, Self::Lost, Self::Disputed];
+
     /// The word for it in OSC and JSON.
     #[must_use]
     pub const fn name(self) -> &'static str {

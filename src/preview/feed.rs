@@ -17,7 +17,7 @@ use crate::recording::TappedPackets;
 use crate::scene::Shoe;
 use crate::schema::{Diagnostics, NamedEffect};
 use crate::sim::ArrivalHandle;
-use crate::sink::LatencyStages;
+use crate::sink::{AreaNews, LatencyStages};
 use crate::source::FaultSwitch;
 use crate::widget::{Value, WidgetEvent, WidgetId};
 
@@ -128,6 +128,16 @@ pub struct ServerState {
     pub takes_layouts: bool,
     /// Packets that it could not tell.
     pub left_out: u64,
+    /// How the areas stand of a floor that several computers serve; empty for one that one computer serves.
+    pub areas: Vec<AreaNews>,
+}
+
+impl ServerState {
+    /// Whether only lines tell of the floor, and neither packets nor forces are known.
+    #[must_use]
+    pub const fn tells_by_lines(&self) -> bool {
+        matches!(self.link, ServerLink::Followed | ServerLink::Ended(_))
+    }
 }
 
 /// Whether a server is there.
@@ -137,6 +147,10 @@ pub enum ServerLink {
     Joined,
     /// It is gone, for this reason; it is tried again each second.
     Lost(String),
+    /// What it tells is heard: its lines, not its packets.
+    Followed,
+    /// What it tells has ended, for this reason; nothing more is to come.
+    Ended(String),
 }
 
 /// What happened on the floor.

@@ -138,6 +138,8 @@ impl App {
                 (format!("joined {address}; {left_out} packets left out on the way"), theme.warning)
             }
             ServerLink::Joined => (format!("joined {address}"), theme.quiet),
+            ServerLink::Followed => (format!("follows {address}"), theme.quiet),
+            ServerLink::Ended(why) => (format!("{address} has ended: {why}"), theme.fault),
         }
     }
 
@@ -164,6 +166,19 @@ impl App {
         };
         let figure =
             |width, text, colour, meaning: &str| Figure { width, text, colour, meaning: meaning.into() };
+        let of_window = figure(
+            54.0,
+            drawn,
+            theme.quiet,
+            "Frames a second in this window, which draws when something changes",
+        );
+        if self.server.as_ref().is_some_and(ServerState::tells_by_lines) {
+            let refused = format!("{} lines refused", grouped(counters.malformed));
+            return vec![
+                figure(150.0, refused, seen(counters.malformed > 0), "Lines that tell nothing of a floor"),
+                of_window,
+            ];
+        }
         vec![
             figure(
                 106.0,
@@ -189,12 +204,7 @@ impl App {
                 colour: theme.quiet,
                 meaning: self.latency.meaning(plays),
             },
-            figure(
-                54.0,
-                drawn,
-                theme.quiet,
-                "Frames a second in this window, which draws when something changes",
-            ),
+            of_window,
         ]
     }
 }

@@ -2,6 +2,7 @@
 
 use super::feed::{ServerLink, ServerState};
 use crate::engine::Snapshot;
+use crate::sink::{AreaNews, AreaState};
 use crate::wire::LinkState;
 
 /// Silence after which the sensing thread is taken to have stopped.
@@ -65,6 +66,9 @@ impl Watch {
                 weight: Weight::Fault,
             });
         }
+        if let Some(said) = server.and_then(|server| told(server)) {
+            return said;
+        }
         let silent_s = now_s - self.packets_at_s;
         if let (LinkState::Lost, Some(ServerState { address, link: ServerLink::Lost(why), .. })) =
             (link, server)
@@ -96,9 +100,56 @@ impl Watch {
     }
 }
 
+/// What has to be said of a floor of which lines are heard; `None` for one whose packets come.
+fn told(server: &ServerState) -> Option<Option<Banner>> {
+    match &server.link {
+        ServerLink::Joined | ServerLink::Lost(_) => None,
+        ServerLink::Followed => Some(silent_areas(&server.areas)),
+        ServerLink::Ended(why) => Some(Some(Banner {
+            headline: format!("Nothing more comes from {}", server.address),
+            detail: format!("What happens on the floor is not known here: {why}."),
+            weight: Weight::Fault,
+        })),
+    }
+}
+
+/// What has to be said of areas that do not live.
+fn silent_areas(areas: &[AreaNews]) -> Option<Banner> {
+    let silent: Vec<&AreaNews> = areas.iter().filter(|news| news.state != AreaState::Live).collect();
+    let is_alone = silent.len() == areas.len();
+    let weight = match is_alone {
+        false => Weight::Hint,
+        true if silent.iter().all(|news| news.state == AreaState::Waiting) => Weight::Pause,
+        true => Weight::Fault,
+    };
+    let not_sensed = "Hatched tiles are not sensed";
+    let (headline, detail) = match silent.as_slice() {
+        [] => return None,
+        [news] => {
+            let because = if news.why.is_empty() { String::new() } else { format!(": {}", news.why) };
+            (format!("Area “{}” is {}", news.area, news.state.name()), format!("{not_sensed}{because}."))
+        }
+        _ if weight == Weight::Pause => {
+            ("Waiting for the first of the areas".into(), format!("{not_sensed}."))
+        }
+        several => {
+            let names: Vec<String> =
+                several.iter().map(|news| format!("{} is {}", news.area, news.state.name())).collect();
+            (
+                format!("{} of {} areas are silent", several.len(), areas.len()),
+                format!("{}.", names.join(", ")),
+            )
+        }
+    };
+    Some(Banner { headline, detail, weight })
+}
+
 #[cfg(test)]
 mod tests {
+    use std::time::Duration;
+
     use super::*;
+    use crate::units::Instant;
 
     fn at(packets: u64) -> Snapshot {
         let mut snapshot = Snapshot::default();
@@ -128,6 +179,7 @@ mod tests {
             link: ServerLink::Joined,
             takes_layouts: false,
             left_out: 0,
+            areas: Vec::new(),
         };
         let boards = watch.banner(5.4, LinkState::Lost, "", Some(&server)).unwrap();
         assert_eq!(boards.headline, "No sensor packets for 0.4 s", "the server is there, the boards are not");
@@ -135,6 +187,37 @@ mod tests {
         let gone = watch.banner(5.4, LinkState::Lost, "", Some(&server)).unwrap();
         assert_eq!(gone.headline, "No word from 10.0.0.7:9002 for 0.4 s: trying again");
         assert!(gone.detail.ends_with("the server is silent."), "{}", gone.detail);
+    }
+
+    #[test]
+    fn areas_that_are_lost_are_named_with_the_reason() {
+        let area = |name: &str, state, why: &str| AreaNews {
+            at: Instant::START,
+            area: name.into(),
+            state,
+            why: why.into(),
+            uncertainty: Duration::ZERO,
+        };
+        let mut server = ServerState {
+            address: "standard input".into(),
+            link: ServerLink::Followed,
+            takes_layouts: false,
+            left_out: 0,
+            areas: vec![area("west", AreaState::Live, ""), area("east", AreaState::Live, "")],
+        };
+        let said = |server: &ServerState, link| Watch::default().banner(0.0, link, "", Some(server));
+        assert_eq!(said(&server, LinkState::Live), None);
+        server.areas[1] = area("east", AreaState::Lost, "nothing new from its node for 100 ms");
+        let one = said(&server, LinkState::Partial).unwrap();
+        assert_eq!((one.headline.as_str(), one.weight), ("Area “east” is lost", Weight::Hint));
+        assert_eq!(one.detail, "Hatched tiles are not sensed: nothing new from its node for 100 ms.");
+        server.areas[0] = area("west", AreaState::Disputed, "two nodes");
+        let both = said(&server, LinkState::Lost).unwrap();
+        assert_eq!((both.headline.as_str(), both.weight), ("2 of 2 areas are silent", Weight::Fault));
+        assert_eq!(both.detail, "west is disputed, east is lost.");
+        server.link = ServerLink::Ended("the other program has ended".into());
+        let over = said(&server, LinkState::Lost).unwrap();
+        assert_eq!(over.headline, "Nothing more comes from standard input");
     }
 
     #[test]

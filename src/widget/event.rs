@@ -109,6 +109,9 @@ pub enum Direction {
 }
 
 impl Direction {
+    /// All four, clockwise from north.
+    pub const ALL: [Self; 4] = [Self::North, Self::East, Self::South, Self::West];
+
     /// The word for it: `north`, `east`, `south` or `west`.
     #[must_use]
     pub const fn name(self) -> &'static str {
@@ -200,6 +203,31 @@ pub enum Detail {
 }
 
 impl EventKind {
+    /// What happened, by its [name](Self::name) and what is said besides; `None` if that is nothing a control does.
+    #[must_use]
+    pub fn of(name: &str, detail: Option<Detail>) -> Option<Self> {
+        const PLAIN: [EventKind; 13] = [
+            EventKind::Pressed,
+            EventKind::Released,
+            EventKind::Clicked,
+            EventKind::DoubleTapped,
+            EventKind::LongPressed,
+            EventKind::HardPressed,
+            EventKind::HardReleased,
+            EventKind::Cancelled,
+            EventKind::Ticked,
+            EventKind::Armed,
+            EventKind::Disarmed,
+            EventKind::Warned,
+            EventKind::Refused,
+        ];
+        let with_detail = detail.map(|detail| match detail {
+            Detail::Value(value) => Self::Changed(value),
+            Detail::Direction(direction) => Self::Swiped(direction),
+        });
+        PLAIN.into_iter().chain(with_detail).find(|kind| kind.name() == name)
+    }
+
     /// What it says besides its name; `None` for most.
     #[must_use]
     pub const fn detail(self) -> Option<Detail> {

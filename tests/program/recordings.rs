@@ -6,8 +6,12 @@ use std::time::Duration;
 
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use underfoot::floor::Floor;
+use underfoot::mirror::TextMirror;
 use underfoot::recording::{Recording, Speed};
 use underfoot::runtime::{Kind, Session};
+use underfoot::schema::{Kinds, builtin_layout, parse_layout};
+use underfoot::widget::EventKind;
 
 use super::end_to_end::{said, underfoot};
 
@@ -48,6 +52,40 @@ fn a_recorded_session_gives_the_same_events_to_the_byte() {
         assert!(events.contains("\"clicked\""), "{app:?}");
         assert_eq!(String::from_utf8(output.stdout).unwrap(), events, "{app:?}");
     }
+}
+
+#[test]
+fn lines_show_a_window_the_feet_and_the_controls_of_the_floor() {
+    let folder = tempfile::tempdir().unwrap();
+    record(folder.path(), None);
+    let told = underfoot()
+        .arg("replay")
+        .arg(folder.path().join("visit.mcap"))
+        .args(["--speed", "max", "--no-osc", "--json", "--json-contacts"])
+        .output()
+        .unwrap();
+    let floor = Floor::default();
+    let map =
+        parse_layout(builtin_layout("map").unwrap(), "map", &Kinds::builtin(), &floor.geometry).unwrap();
+    let mut mirror = TextMirror::new(&floor, map.layout.clone());
+    let (mut most, mut zoom) = (0, None);
+    for line in std::str::from_utf8(&told.stdout).unwrap().lines() {
+        let event = mirror.take(line).unwrap();
+        assert_eq!(event.is_some(), line.contains(r#""id":""#) && !line.contains(r#""state""#), "{line}");
+        if let Some(EventKind::Changed(value)) =
+            event.filter(|event| event.id == "zoom").map(|event| event.kind)
+        {
+            zoom = Some(value);
+        }
+        most = most.max(mirror.snapshot().contacts.len());
+    }
+    assert_eq!(most, 2, "both feet");
+    let index = map.layout.widget_index("zoom").unwrap();
+    assert_ne!(zoom, None);
+    assert_eq!(mirror.snapshot().widgets[index].value, zoom);
+    // The visitor has left.
+    assert!(mirror.snapshot().contacts.is_empty() && mirror.snapshot().held.is_empty());
+    assert!(mirror.snapshot().widgets.iter().all(|widget| !widget.pressed && widget.press_share == 0.0));
 }
 
 #[test]

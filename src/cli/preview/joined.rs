@@ -73,6 +73,7 @@ impl Joined {
             link: ServerLink::Joined,
             takes_layouts: greeting.takes_layouts,
             left_out: 0,
+            areas: Vec::new(),
         };
         let shared = Shared(Arc::new(Mutex::new(state)));
         let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());

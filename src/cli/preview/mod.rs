@@ -3,6 +3,7 @@
 mod announced;
 mod commands;
 mod feeds;
+mod followed;
 mod joined;
 mod player;
 
@@ -31,6 +32,7 @@ use underfoot::units::HostClock;
 
 use self::commands::{CommandHandler, Desk};
 use self::feeds::{Mouse, Scopes, ToWindow, shoe};
+use self::followed::Followed;
 use self::joined::Joined;
 use self::player::Player;
 use super::actuate::ActuateArgs;
@@ -57,6 +59,11 @@ pub(crate) struct Args {
     /// here.
     #[arg(long, value_name = "ADDR", conflicts_with_all = JOINED_IS_SERVED)]
     join: Option<SocketAddr>,
+    /// Show the floor of which the JSON lines in this file tell, `-` for standard input: what
+    /// `underfoot-cluster gateway --json --json-contacts` or `underfoot run --json --json-contacts` prints, with the
+    /// same layout and floor. Nothing is put out from here.
+    #[arg(long, value_name = "FILE", conflicts_with_all = FOLLOWED_IS_TOLD)]
+    follow: Option<PathBuf>,
     #[command(flatten)]
     boards: BoardArgs,
     #[command(flatten)]
@@ -96,6 +103,12 @@ const JOINED_IS_SERVED: [&str; 14] = [
     "tuio2", "wav", "eq4",
 ];
 
+/// What is told of elsewhere, where lines are followed.
+const FOLLOWED_IS_TOLD: [&str; 13] = [
+    "join", "listen", "allow", "pin", "commands", "scenario", "session", "record", "osc", "tuio", "tuio2",
+    "wav", "eq4",
+];
+
 /// Whether a window can be hoped for.
 pub(crate) fn has_display() -> bool {
     let is_set = |name| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -118,6 +131,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     }
     if let Some(address) = args.join {
         return joined(args, address);
+    }
+    if let Some(path) = &args.follow {
+        return followed(args, path);
     }
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
@@ -220,6 +236,20 @@ fn joined(args: &Args, address: SocketAddr) -> Result<(), Failure> {
         packets: Some(joined.packets),
         design,
         ..PreviewInput::new(floor, joined.layout, address.to_string(), joined.snapshots, window)
+    };
+    preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
+}
+
+/// Shows a floor of which lines tell.
+fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
+    let floor = args.floor.load()?;
+    let (layout, warnings) = args.layout.reviewed(&floor)?;
+    let (window, program) = channels();
+    let followed = Followed::start(path, program, args.layout.clone(), &floor, layout.clone())?;
+    let input = PreviewInput {
+        warnings: Warnings::from(&warnings),
+        server: Some(followed.feed),
+        ..PreviewInput::new(Arc::new(floor), Arc::new(layout), followed.name, followed.snapshots, window)
     };
     preview::run(input, &args.window()).map_err(|PreviewError::NoWindow(reason)| Failure::NoWindow(reason))
 }

@@ -5,6 +5,7 @@ use eframe::egui::Ui;
 use super::super::app::App;
 use super::super::style::{Row, quiet, row, section};
 use crate::egui_painter::color;
+use crate::wire::LinkState;
 
 /// Lines that are always there, so that nothing below moves when feet come and go.
 const LINES: usize = 3;
@@ -53,7 +54,9 @@ impl App {
         for missing in snapshot.contacts.len()..LINES {
             let line = row(ui, 19.0, 13.0, "");
             if missing == 0 {
-                line.left(0.0, 1.0, "nobody on the floor", color(theme.quiet));
+                let is_known = snapshot.link != LinkState::Lost;
+                let text = if is_known { "nobody on the floor" } else { "not known: the link is lost" };
+                line.left(0.0, 1.0, text, color(theme.quiet));
             }
         }
         let more = snapshot.contacts.len().saturating_sub(MOST);

@@ -1,5 +1,6 @@
 //! The side panel: one file for each of its parts.
 
+mod areas;
 mod contacts;
 mod controls;
 mod events;
@@ -18,6 +19,7 @@ pub(in crate::preview) use tuner::Tuner;
 use eframe::egui::{Margin, Panel, ScrollArea, Ui};
 
 use super::app::App;
+use super::feed::ServerState;
 use super::style::panel_frame;
 
 /// Least height of the list of events, in points.
@@ -42,21 +44,28 @@ impl App {
                 // The scroll bar has its own place beside the figures.
                 ui.set_width(ui.available_width() - 8.0);
                 let top = ui.cursor().top();
-                self.tile_part(ui);
-                self.presses_part(ui);
-                self.people_part(ui);
+                // Lines tell neither forces nor sensors, and take no requests.
+                let is_told = self.server.as_ref().is_some_and(ServerState::tells_by_lines);
+                self.areas_part(ui);
+                if !is_told {
+                    self.tile_part(ui);
+                    self.presses_part(ui);
+                    self.people_part(ui);
+                }
                 self.contacts_part(ui);
                 // The list takes what the other parts leave, as they were at the last frame.
                 let events = (height - self.other_parts).max(EVENTS);
                 self.events_part(ui, events);
                 self.scopes_part(ui);
-                self.controls_part(ui);
-                self.faults_part(ui);
-                self.grounds_part(ui);
-                self.health_part(ui);
-                self.check_button(ui);
-                self.device_part(ui);
-                self.link_part(ui);
+                if !is_told {
+                    self.controls_part(ui);
+                    self.faults_part(ui);
+                    self.grounds_part(ui);
+                    self.health_part(ui);
+                    self.check_button(ui);
+                    self.device_part(ui);
+                    self.link_part(ui);
+                }
                 self.other_parts = ui.cursor().top() - top - events;
             });
         });

@@ -10,6 +10,7 @@ fn room() -> (Room, Arc<Mutex<ServerState>>) {
         link: ServerLink::Joined,
         takes_layouts: true,
         left_out: 0,
+        areas: Vec::new(),
     };
     let state = Arc::new(Mutex::new(state));
     let mut room = Room::of(false, 1280.0, 800.0);

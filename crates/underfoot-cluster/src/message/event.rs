@@ -52,8 +52,6 @@ impl From<Value> for NodeValue {
     }
 }
 
-const DIRECTIONS: [Direction; 4] = [Direction::North, Direction::East, Direction::South, Direction::West];
-
 impl NodeValue {
     /// The value; `None` for a direction and for numbers that no control holds.
     #[must_use]
@@ -71,7 +69,7 @@ impl NodeValue {
         match detail {
             Detail::Value(value) => value.into(),
             Detail::Direction(direction) => {
-                let number = (0_u8..).zip(DIRECTIONS).find(|(_, one)| *one == direction);
+                let number = (0_u8..).zip(Direction::ALL).find(|(_, one)| *one == direction);
                 Self::Direction(number.map_or(0, |(number, _)| number))
             }
         }
@@ -79,7 +77,7 @@ impl NodeValue {
 
     fn direction(self) -> Option<Direction> {
         match self {
-            Self::Direction(number) => DIRECTIONS.get(usize::from(number)).copied(),
+            Self::Direction(number) => Direction::ALL.get(usize::from(number)).copied(),
             _ => None,
         }
     }
@@ -103,26 +101,10 @@ impl NodeEvent {
     /// What happened; `None` if no control does that.
     #[must_use]
     pub fn event_kind(&self) -> Option<EventKind> {
-        const PLAIN: [EventKind; 13] = [
-            EventKind::Pressed,
-            EventKind::Released,
-            EventKind::Clicked,
-            EventKind::DoubleTapped,
-            EventKind::LongPressed,
-            EventKind::HardPressed,
-            EventKind::HardReleased,
-            EventKind::Cancelled,
-            EventKind::Ticked,
-            EventKind::Armed,
-            EventKind::Disarmed,
-            EventKind::Warned,
-            EventKind::Refused,
-        ];
-        let plain = PLAIN.into_iter().find(|kind| kind.name() == self.kind);
-        let valued = || self.value?.value().map(EventKind::Changed).filter(|kind| kind.name() == self.kind);
-        let swiped =
-            || self.value?.direction().map(EventKind::Swiped).filter(|kind| kind.name() == self.kind);
-        plain.or_else(valued).or_else(swiped)
+        let detail = |value: NodeValue| {
+            value.value().map(Detail::Value).or_else(|| value.direction().map(Detail::Direction))
+        };
+        EventKind::of(&self.kind, self.value.and_then(detail))
     }
 
     /// The event as outputs take it, with the time and the contact's name that the gateway gives it; `None` if it is
@@ -170,8 +152,10 @@ mod tests {
             EventKind::Warned,
             EventKind::Refused,
         ];
-        let all =
-            kinds.into_iter().chain(values.map(EventKind::Changed)).chain(DIRECTIONS.map(EventKind::Swiped));
+        let all = kinds
+            .into_iter()
+            .chain(values.map(EventKind::Changed))
+            .chain(Direction::ALL.map(EventKind::Swiped));
         for kind in all {
             let told = event(kind);
             let bytes = serde_json::to_vec(&NodeEvent::of(&told)).unwrap();

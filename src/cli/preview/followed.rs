@@ -1,0 +1,204 @@
+//! A floor behind the window of which JSON lines tell: that of several computers, whose packets go nowhere together.
+
+use std::fs::File;
+use std::io::{self, BufRead, BufReader, Read};
+use std::path::Path;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, channel, sync_channel};
+use std::sync::{Arc, Mutex, PoisonError};
+use std::thread::{self, Builder};
+use std::time::{Duration, Instant as HostInstant};
+
+use underfoot::engine::Snapshot;
+use underfoot::floor::Floor;
+use underfoot::layout::Layout;
+use underfoot::mirror::TextMirror;
+use underfoot::preview::{
+    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
+    Warnings,
+};
+use underfoot::schema::Diagnostics;
+
+use super::super::failure::Failure;
+use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::super::watch::Watch;
+use super::commands::keep_floor;
+
+/// Time between two states of the floor: half of a picture's.
+const LOOK: Duration = Duration::from_millis(8);
+
+/// Lines that may wait: who writes them is held up then, and counts what it drops.
+const WAITING: usize = 4096;
+
+/// The longest line that is taken, in bytes: a thousand contacts.
+const LONGEST: u64 = 1 << 18;
+
+/// A floor that is being followed; ends when the window hangs up.
+pub(super) struct Followed {
+    pub(super) snapshots: triple_buffer::Output<Snapshot>,
+    /// What the window says of who tells.
+    pub(super) feed: ServerFeed,
+    /// Whose lines they are.
+    pub(super) name: String,
+}
+
+impl Followed {
+    /// Follows the lines in the file at `path`, `-` for standard input, on a floor with this layout; `files` are the
+    /// layout's.
+    pub(super) fn start(
+        path: &Path,
+        window: ProgramChannels,
+        files: LayoutArgs,
+        floor: &Floor,
+        layout: Layout,
+    ) -> Result<Self, Failure> {
+        let failed = |error: io::Error| Failure::Other(format!("can't follow {}: {error}", path.display()));
+        let (name, lines): (_, Box<dyn Read + Send>) = if path == Path::new("-") {
+            ("standard input".to_owned(), Box::new(io::stdin()))
+        } else {
+            (path.display().to_string(), Box::new(File::open(path).map_err(failed)?))
+        };
+        let (sender, read) = sync_channel(WAITING);
+        Builder::new().name("lines".into()).spawn(move || pass_on(lines, &sender)).map_err(failed)?;
+        let (input, snapshots) = triple_buffer::triple_buffer(&Snapshot::default());
+        let mirror = TextMirror::new(floor, layout);
+        let state = ServerState {
+            address: name.clone(),
+            link: ServerLink::Followed,
+            takes_layouts: false,
+            left_out: 0,
+            areas: mirror.areas().cloned().collect(),
+        };
+        let shared = Arc::new(Mutex::new(state));
+        let told = Arc::clone(&shared);
+        let (changed, changes) = channel();
+        // A window that is closed need not know.
+        let watch = Watch::start(&files, floor.geometry, move |layout| drop(changed.send(layout)))?;
+        let floor = FollowedFloor {
+            lines: read,
+            changes,
+            window,
+            mirror,
+            snapshots: input,
+            shared,
+            layout_name: files.path().map_or(DEFAULT_LAYOUT.into(), |path| path.display().to_string()),
+            ended: false,
+            _watch: watch,
+        };
+        Builder::new().name("followed".into()).spawn(move || floor.run()).map_err(failed)?;
+        let feed = Box::new(move || told.lock().unwrap_or_else(PoisonError::into_inner).clone());
+        Ok(Self { snapshots, feed, name })
+    }
+}
+
+/// Passes lines on until there are no more of them, or nobody wants them; those that are too long to the end of what
+/// is taken.
+fn pass_on(lines: Box<dyn Read + Send>, to: &SyncSender<io::Result<Vec<u8>>>) {
+    let mut lines = BufReader::new(lines);
+    loop {
+        let mut line = Vec::new();
+        let read = lines.by_ref().take(LONGEST).read_until(b'\n', &mut line);
+        if matches!(read, Ok(0)) || to.send(read.map(|_| line)).is_err() {
+            return;
+        }
+    }
+}
+
+struct FollowedFloor {
+    lines: Receiver<io::Result<Vec<u8>>>,
+    changes: Receiver<Result<Layout, Diagnostics>>,
+    window: ProgramChannels,
+    mirror: TextMirror,
+    snapshots: triple_buffer::Input<Snapshot>,
+    shared: Arc<Mutex<ServerState>>,
+    layout_name: String,
+    ended: bool,
+    _watch: Option<Watch>,
+}
+
+impl FollowedFloor {
+    /// Shows the floor until the window hangs up.
+    fn run(mut self) {
+        loop {
+            self.hear();
+            loop {
+                match self.window.commands.try_recv() {
+                    Ok(command) => self.answer(command),
+                    Err(TryRecvError::Empty) => break,
+                    Err(TryRecvError::Disconnected) => return,
+                }
+            }
+            while let Ok(change) = self.changes.try_recv() {
+                self.take_layout(change);
+            }
+            self.snapshots.input_buffer_mut().clone_from(self.mirror.snapshot());
+            self.snapshots.publish();
+            let mut state = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
+            if !state.areas.iter().eq(self.mirror.areas()) {
+                state.areas = self.mirror.areas().cloned().collect();
+            }
+        }
+    }
+
+    /// Takes what has been told, for as long as the window need not know.
+    fn hear(&mut self) {
+        let until = HostInstant::now() + LOOK;
+        if self.ended {
+            return thread::sleep(LOOK);
+        }
+        loop {
+            match self.lines.recv_timeout(until.saturating_duration_since(HostInstant::now())) {
+                Ok(Ok(line)) => self.take(&String::from_utf8_lossy(&line)),
+                Ok(Err(error)) => return self.end(&error.to_string()),
+                Err(RecvTimeoutError::Disconnected) => return self.end("the other program has ended"),
+                Err(RecvTimeoutError::Timeout) => return,
+            }
+        }
+    }
+
+    fn take(&mut self, line: &str) {
+        match self.mirror.take(line) {
+            Ok(Some(event)) => {
+                // What a window can't take in that is busy for so long, its list does not show.
+                let _ = self.window.events.try_send(EventNews::Event(event));
+            }
+            Ok(None) => {}
+            Err(error) => {
+                if self.mirror.snapshot().counters.malformed == 1 {
+                    self.say(error.to_string());
+                }
+            }
+        }
+    }
+
+    fn end(&mut self, why: &str) {
+        self.ended = true;
+        self.mirror.end();
+        self.shared.lock().unwrap_or_else(PoisonError::into_inner).link = ServerLink::Ended(why.into());
+    }
+
+    fn take_layout(&mut self, change: Result<Layout, Diagnostics>) {
+        let name = self.layout_name.clone();
+        let news = match change {
+            Ok(layout) => LayoutNews::Loaded {
+                revision: self.mirror.set_layout(layout.clone()),
+                layout: Arc::new(layout),
+                name,
+                cause: LayoutCause::Saved,
+                warnings: Warnings::default(),
+            },
+            Err(problems) => LayoutNews::Refused { name, diagnostics: problems.to_string() },
+        };
+        let _ = self.window.layouts.send(news);
+    }
+
+    fn answer(&self, command: PreviewCommand) {
+        match command {
+            PreviewCommand::SaveFloor { floor, path } => self.say(keep_floor(&floor, &path)),
+            _ => self.say("That is done where the floor is served."),
+        }
+    }
+
+    fn say(&self, notice: impl Into<String>) {
+        let _ = self.window.notices.send(notice.into());
+    }
+}

@@ -1,0 +1,473 @@
+//! A floor as its JSON lines tell of it, for windows that get none of its packets.
+
+use std::borrow::Cow;
+use std::time::Duration;
+
+use glam::Vec2;
+use serde::Deserialize;
+use thiserror::Error;
+
+use crate::engine::{Engine, FootRole, FootState, Snapshot};
+use crate::floor::{Area, Floor, Geometry};
+use crate::layout::Layout;
+use crate::outgoing::{AreaNews, AreaState};
+use crate::sense::{Contact, ContactId, Method, Quality};
+use crate::units::{Instant, Newtons};
+use crate::widget::{Detail, Direction, EventKind, Value, WidgetEvent, WidgetId};
+use crate::wire::LinkState;
+
+/// A line that tells nothing of a floor.
+#[derive(Debug, Error)]
+#[error("this is no line of a floor's events: {0}")]
+pub struct BadLine(#[from] serde_json::Error);
+
+/// A floor of which only JSON lines are heard: its contacts, what its controls did, and how its areas stand.
+///
+/// Tiles have no forces here, and a tile is silent while its area does not live. Values are those of the layout until
+/// a line tells of them.
+#[derive(Clone, Debug)]
+pub struct TextMirror {
+    geometry: Geometry,
+    layout: Layout,
+    areas: Vec<(Area, AreaNews)>,
+    /// Of each control, who has it pressed.
+    pressed_by: Vec<Option<ContactId>>,
+    snapshot: Snapshot,
+}
+
+/// What can stand in a line; see [`crate::sink::JsonSink`].
+#[derive(Deserialize)]
+struct Line<'a> {
+    t_s: f64,
+    #[serde(borrow)]
+    event: Option<Cow<'a, str>>,
+    #[serde(borrow)]
+    id: Option<Cow<'a, str>>,
+    value: Option<serde_json::Value>,
+    #[serde(default)]
+    force_n: f32,
+    #[serde(default)]
+    x_m: f32,
+    #[serde(default)]
+    y_m: f32,
+    contact: Option<u32>,
+    contacts: Option<Vec<ContactLine>>,
+    held: Option<Vec<String>>,
+    page: Option<String>,
+    area: Option<String>,
+    state: Option<String>,
+    #[serde(default)]
+    why: String,
+    #[serde(default)]
+    uncertainty_s: f64,
+    #[serde(default)]
+    dropped: u64,
+    enabled: Option<bool>,
+    locked: Option<bool>,
+    armed: Option<bool>,
+    pressed: Option<bool>,
+}
+
+#[derive(Deserialize)]
+struct ContactLine {
+    id: u32,
+    x_m: f32,
+    y_m: f32,
+    force_n: f32,
+    x_velocity_m_s: f32,
+    y_velocity_m_s: f32,
+}
+
+impl TextMirror {
+    /// What is known before the first line: an empty floor, all of it silent, with the controls of `layout`.
+    #[must_use]
+    pub fn new(floor: &Floor, layout: Layout) -> Self {
+        let waiting = |area: &Area| AreaNews {
+            at: Instant::START,
+            area: area.id.clone(),
+            state: AreaState::Waiting,
+            why: String::new(),
+            uncertainty: Duration::ZERO,
+        };
+        let areas = floor.areas.iter().map(|area| (area.clone(), waiting(area))).collect();
+        let (geometry, snapshot, pressed_by) = (floor.geometry, Snapshot::default(), Vec::new());
+        let mut mirror = Self { geometry, layout: layout.clone(), areas, pressed_by, snapshot };
+        mirror.begin(layout);
+        mirror.show_areas();
+        mirror
+    }
+
+    /// Shows the controls of another layout from now on; which [`Snapshot::layout_revision`] that is.
+    pub fn set_layout(&mut self, layout: Layout) -> u64 {
+        let Snapshot { at, link, layout_revision, .. } = self.snapshot;
+        let tiles = std::mem::take(&mut self.snapshot.tiles);
+        self.begin(layout);
+        (self.snapshot.at, self.snapshot.link, self.snapshot.tiles) = (at, link, tiles);
+        self.snapshot.layout_revision = layout_revision + 1;
+        self.snapshot.layout_revision
+    }
+
+    fn begin(&mut self, layout: Layout) {
+        Engine::new(self.geometry, layout.clone(), Method::default()).snapshot(&mut self.snapshot);
+        // Whether a floor is calibrated and who stands on a control, its own computers know.
+        for widget in &mut self.snapshot.widgets {
+            (widget.uncalibrated, widget.needs_lift) = (false, false);
+        }
+        self.pressed_by = vec![None; layout.widgets.len()];
+        self.layout = layout;
+    }
+
+    /// The floor as it is now, by what was told.
+    #[must_use]
+    pub const fn snapshot(&self) -> &Snapshot {
+        &self.snapshot
+    }
+
+    /// How each area stands, in the floor file's order; empty for a floor of one computer.
+    pub fn areas(&self) -> impl Iterator<Item = &AreaNews> {
+        self.areas.iter().map(|(_, news)| news)
+    }
+
+    /// Takes one line; gives the event, if it tells of one of a control of this layout.
+    ///
+    /// What a line says of controls and areas that are not there is passed over, and so are events that this program
+    /// does not know.
+    ///
+    /// # Errors
+    /// [`BadLine`] if it is not JSON, has no time, or has no numbers where they belong; it is counted as malformed, and
+    /// nothing else is changed.
+    pub fn take(&mut self, line: &str) -> Result<Option<WidgetEvent>, BadLine> {
+        self.snapshot.counters.datagrams += 1;
+        let line: Line<'_> =
+            serde_json::from_str(line).inspect_err(|_| self.snapshot.counters.malformed += 1)?;
+        let at = Instant::START + Duration::try_from_secs_f64(line.t_s).unwrap_or_default();
+        self.snapshot.at = self.snapshot.at.max(at);
+        if let Some(held) = line.held {
+            self.snapshot.held = held.iter().map(|id| WidgetId::new(id)).collect();
+            return Ok(None);
+        }
+        match line.event.as_deref().unwrap_or_default() {
+            "contacts" => self.take_contacts(line.contacts.unwrap_or_default()),
+            "area" => self.take_area(at, line),
+            "link" => self.take_link(line.state.as_deref().unwrap_or_default()),
+            "page" => self.take_page(line.page.as_deref()),
+            "gap" => self.snapshot.unsent_events += line.dropped,
+            "state" => self.take_state(&line),
+            name => return Ok(self.take_event(at, name, &line)),
+        }
+        Ok(None)
+    }
+
+    /// Nothing more is told: what was known of feet, and what they held, is not believed any longer.
+    pub fn end(&mut self) {
+        self.snapshot.link = LinkState::Lost;
+        self.take_contacts(Vec::new());
+        self.snapshot.tiles.iter_mut().for_each(|tile| tile.quality = [Quality::Stale; 4]);
+        self.snapshot.held.clear();
+        self.pressed_by.fill(None);
+        self.snapshot.widgets.iter_mut().for_each(|widget| {
+            (widget.pressed, widget.armed, widget.warned, widget.press_share) = (false, false, false, 0.0);
+        });
+    }
+
+    fn take_contacts(&mut self, contacts: Vec<ContactLine>) {
+        self.snapshot.counters.frames += 1;
+        self.snapshot.contacts.clear();
+        self.snapshot.contacts.extend(contacts.into_iter().map(|contact| Contact {
+            id: ContactId(contact.id),
+            centroid: Vec2::new(contact.x_m, contact.y_m),
+            force: Newtons(contact.force_n),
+            velocity: Vec2::new(contact.x_velocity_m_s, contact.y_velocity_m_s),
+            ..Contact::default()
+        }));
+        // Whose feet they are is not told.
+        let foot = |contact: &Contact| FootState {
+            contact: contact.id,
+            role: FootRole::Free,
+            person: contact.id.0,
+            weight: None,
+        };
+        self.snapshot.feet = self.snapshot.contacts.iter().map(foot).collect();
+        for index in 0..self.pressed_by.len() {
+            self.show_press(index);
+        }
+        if self.areas.is_empty() && self.snapshot.link == LinkState::Waiting {
+            self.show_link(LinkState::Live);
+        }
+    }
+
+    /// How hard the foot presses that has this control pressed.
+    fn show_press(&mut self, index: usize) {
+        let by = self.pressed_by.get(index).copied().flatten();
+        let contact = self.snapshot.contacts.iter().find(|contact| Some(contact.id) == by);
+        let (Some(widget), Some(state)) =
+            (self.layout.widgets.get(index), self.snapshot.widgets.get_mut(index))
+        else {
+            return;
+        };
+        let least = widget.behaviour.thresholds().press.0;
+        state.press_share = contact.map_or(0.0, |contact| contact.force.0 / least.max(1.0));
+    }
+
+    fn take_area(&mut self, at: Instant, line: Line<'_>) {
+        let named = |(area, _): &&mut (Area, AreaNews)| Some(&area.id) == line.area.as_ref();
+        let Some((_, news)) = self.areas.iter_mut().find(named) else { return };
+        let Some(state) =
+            AreaState::ALL.into_iter().find(|state| Some(state.name()) == line.state.as_deref())
+        else {
+            return;
+        };
+        let uncertainty = Duration::try_from_secs_f64(line.uncertainty_s).unwrap_or_default();
+        *news = AreaNews { at, area: news.area.clone(), state, why: line.why, uncertainty };
+        self.show_areas();
+    }
+
+    /// Lets the tiles of areas that do not live be silent.
+    fn show_areas(&mut self) {
+        if self.areas.is_empty() {
+            return self.show_link(self.snapshot.link);
+        }
+        for (area, news) in &self.areas {
+            let quality = if news.state == AreaState::Live { Quality::Live } else { Quality::Stale };
+            for index in area.tiles.tiles().filter_map(|tile| self.geometry.index(tile)) {
+                if let Some(tile) = self.snapshot.tiles.get_mut(index) {
+                    tile.quality = [quality; 4];
+                }
+            }
+        }
+        let count = |state| self.areas.iter().filter(|(_, news)| news.state == state).count();
+        self.snapshot.link = match (count(AreaState::Live), count(AreaState::Waiting)) {
+            (live, _) if live == self.areas.len() => LinkState::Live,
+            (0, waiting) if waiting == self.areas.len() => LinkState::Waiting,
+            (0, _) => LinkState::Lost,
+            _ => LinkState::Partial,
+        };
+    }
+
+    fn take_link(&mut self, state: &str) {
+        let known = [LinkState::Waiting, LinkState::Live, LinkState::Partial, LinkState::Lost];
+        if let Some(link) = known.into_iter().find(|link| link.name() == state)
+            && self.areas.is_empty()
+        {
+            self.show_link(link);
+        }
+    }
+
+    /// The link of a floor of one computer; which boards are silent is not told.
+    fn show_link(&mut self, link: LinkState) {
+        self.snapshot.link = link;
+        let is_sensed = matches!(link, LinkState::Live | LinkState::Partial);
+        let quality = if is_sensed { Quality::Live } else { Quality::Stale };
+        self.snapshot.tiles.iter_mut().for_each(|tile| tile.quality = [quality; 4]);
+    }
+
+    fn take_page(&mut self, name: Option<&str>) {
+        let Some(page) = self.layout.pages.iter().position(|page| Some(page.id.as_str()) == name) else {
+            return;
+        };
+        self.snapshot.page = page;
+        for (state, widget) in self.snapshot.widgets.iter_mut().zip(&self.layout.widgets) {
+            state.hidden = !widget.is_on(page);
+        }
+    }
+
+    fn take_state(&mut self, line: &Line<'_>) {
+        let Some(index) = line.id.as_deref().and_then(|id| self.layout.widget_index(id)) else { return };
+        let Some(state) = self.snapshot.widgets.get_mut(index) else { return };
+        state.value = line.value.as_ref().and_then(|value| like(state.value?, value)).or(state.value);
+        state.disabled = line.enabled.map_or(state.disabled, |enabled| !enabled);
+        state.locked = line.locked.unwrap_or(state.locked);
+        state.armed = line.armed.unwrap_or(state.armed);
+        state.pressed = line.pressed.unwrap_or(state.pressed);
+    }
+
+    fn take_event(&mut self, at: Instant, name: &str, line: &Line<'_>) -> Option<WidgetEvent> {
+        let id = line.id.as_deref()?;
+        let index = self.layout.widget_index(id)?;
+        let state = self.snapshot.widgets.get_mut(index)?;
+        let kind = EventKind::of(name, line.value.as_ref().and_then(|value| detail(state.value, value)))?;
+        let contact = line.contact.map(ContactId);
+        match kind {
+            EventKind::Pressed => state.pressed = true,
+            EventKind::Released | EventKind::Cancelled => (state.pressed, state.warned) = (false, false),
+            EventKind::Changed(value) => state.value = Some(value),
+            EventKind::Armed => state.armed = true,
+            EventKind::Disarmed => state.armed = false,
+            EventKind::Warned => state.warned = true,
+            EventKind::Clicked
+            | EventKind::DoubleTapped
+            | EventKind::LongPressed
+            | EventKind::Swiped(_)
+            | EventKind::HardPressed
+            | EventKind::HardReleased
+            | EventKind::Ticked
+            | EventKind::Refused => {}
+        }
+        self.pressed_by[index] = if state.pressed { contact.or(self.pressed_by[index]) } else { None };
+        self.show_press(index);
+        let position = Vec2::new(line.x_m, line.y_m);
+        Some(WidgetEvent { at, id: WidgetId::new(id), kind, contact, force: Newtons(line.force_n), position })
+    }
+}
+
+/// What an event says besides its name, of a control that holds such a value as `known`.
+fn detail(known: Option<Value>, said: &serde_json::Value) -> Option<Detail> {
+    let direction = || Direction::ALL.into_iter().find(|direction| Some(direction.name()) == said.as_str());
+    let value = known.and_then(|known| like(known, said));
+    value.map(Detail::Value).or_else(|| direction().map(Detail::Direction))
+}
+
+/// A value of the same kind as `known`; `None` if it is of another, or not finite.
+fn like(known: Value, said: &serde_json::Value) -> Option<Value> {
+    let number = |said: &serde_json::Value| {
+        said.as_f64().map(|number| number as f32).filter(|number| number.is_finite())
+    };
+    match known {
+        Value::Switch(_) => said.as_bool().map(Value::Switch),
+        Value::Number(_) => number(said).map(Value::Number),
+        Value::Choice(_) => u16::try_from(said.as_u64()?).ok().map(Value::Choice),
+        Value::Pair(_) => match said.as_array()?.as_slice() {
+            [x, y] => Some(Value::Pair(Vec2::new(number(x)?, number(y)?))),
+            _ => None,
+        },
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::floor::TileBlock;
+    use crate::floor::TileId;
+    use crate::schema::{Kinds, builtin_layout, parse_layout};
+
+    fn layout(name: &str, floor: &Floor) -> Layout {
+        parse_layout(builtin_layout(name).unwrap(), name, &Kinds::builtin(), &floor.geometry).unwrap().layout
+    }
+
+    /// A floor of two areas, three columns each, and the map's controls on it.
+    fn hall() -> TextMirror {
+        let area =
+            |id, column| Area::new(id, TileBlock { first: TileId::new(column, 0), columns: 3, rows: 6 });
+        let floor = Floor::default().with_areas(vec![area("west", 0), area("east", 3)]);
+        TextMirror::new(&floor, layout("map", &floor))
+    }
+
+    fn take(mirror: &mut TextMirror, lines: &[&str]) -> Vec<WidgetEvent> {
+        lines.iter().filter_map(|line| mirror.take(line).unwrap()).collect()
+    }
+
+    const WEST: &str =
+        r#"{"t_s":1.0,"event":"area","area":"west","state":"live","why":"","uncertainty_s":0.0002}"#;
+    const EAST: &str =
+        r#"{"t_s":1.1,"event":"area","area":"east","state":"live","why":"","uncertainty_s":0.0003}"#;
+    const LOST: &str = r#"{"t_s":2.0,"event":"area","area":"east","state":"lost","why":"nothing new from its node for 100 ms","uncertainty_s":0.0}"#;
+
+    #[test]
+    fn the_tiles_of_a_lost_area_are_silent_and_those_of_others_are_not() {
+        let mut hall = hall();
+        let silent = |hall: &TextMirror| -> Vec<usize> {
+            let is_silent = |tile: &usize| hall.snapshot().tiles[*tile].quality == [Quality::Stale; 4];
+            (0..36).filter(is_silent).collect()
+        };
+        assert_eq!((silent(&hall).len(), hall.snapshot().link), (36, LinkState::Waiting));
+        take(&mut hall, &[WEST]);
+        assert_eq!(hall.snapshot().link, LinkState::Partial);
+        take(&mut hall, &[EAST]);
+        assert_eq!((silent(&hall), hall.snapshot().link), (vec![], LinkState::Live));
+        take(&mut hall, &[LOST]);
+        let east: Vec<usize> = (0..36).filter(|tile| tile % 6 >= 3).collect();
+        assert_eq!((silent(&hall), hall.snapshot().link), (east, LinkState::Partial));
+        let named: Vec<&str> = hall.areas().map(|news| news.why.as_str()).collect();
+        assert_eq!(named, ["", "nothing new from its node for 100 ms"]);
+        assert_eq!(hall.snapshot().at, Instant::from_millis(2000));
+        hall.end();
+        assert_eq!((silent(&hall).len(), hall.snapshot().link), (36, LinkState::Lost));
+    }
+
+    #[test]
+    fn a_press_shows_its_force_until_the_foot_lets_go_or_the_lines_end() {
+        let mut hall = hall();
+        let press = r#"{"t_s":3.0,"event":"pressed","id":"home","value":null,"force_n":62.0,"x_m":0.4,"y_m":1.3,"contact":7}"#;
+        let foot = r#"{"t_s":3.01,"event":"contacts","contacts":[{"id":7,"x_m":0.41,"y_m":1.3,"force_n":90.0,"x_velocity_m_s":0.1,"y_velocity_m_s":0.0}]}"#;
+        let told = take(&mut hall, &[WEST, press, foot]);
+        assert_eq!((told.len(), told[0].kind, told[0].contact), (1, EventKind::Pressed, Some(ContactId(7))));
+        let index = hall.layout.widget_index("home").unwrap();
+        let least = hall.layout.widgets[index].behaviour.thresholds().press.0;
+        let state = hall.snapshot().widgets[index];
+        assert!(state.pressed && (state.press_share - 90.0 / least).abs() < 1e-6);
+        assert_eq!(hall.snapshot().contacts[0].centroid, Vec2::new(0.41, 1.3));
+        let mut ended = hall.clone();
+        ended.end();
+        assert!(!ended.snapshot().widgets[index].pressed && ended.snapshot().contacts.is_empty());
+        let release = press.replace("pressed", "released");
+        assert_eq!(take(&mut hall, &[&release])[0].kind, EventKind::Released);
+        assert_eq!((hall.snapshot().widgets[index].pressed, hall.pressed_by[index]), (false, None));
+    }
+
+    #[test]
+    fn values_are_of_the_kind_that_the_control_holds() {
+        let mut hall = hall();
+        let floor = Floor::default();
+        hall.set_layout(layout("all_controls", &floor));
+        assert_eq!(hall.snapshot().layout_revision, 1);
+        for index in 0..hall.layout.widgets.len() {
+            let id = hall.layout.widgets[index].id.clone();
+            let Some(value) = hall.snapshot().widgets[index].value else { continue };
+            let (said, value) = match value {
+                Value::Switch(_) => ("true".to_owned(), Value::Switch(true)),
+                Value::Number(_) => ("0.25".to_owned(), Value::Number(0.25)),
+                Value::Choice(_) => ("1".to_owned(), Value::Choice(1)),
+                Value::Pair(_) => ("[0.25,-0.5]".to_owned(), Value::Pair(Vec2::new(0.25, -0.5))),
+            };
+            let line = format!(r#"{{"t_s":4.0,"event":"changed","id":"{id}","value":{said}}}"#);
+            assert_eq!(take(&mut hall, &[&line])[0].kind, EventKind::Changed(value), "{id}");
+            assert_eq!(hall.snapshot().widgets[index].value, Some(value), "{id}");
+            let odd = format!(r#"{{"t_s":4.0,"event":"changed","id":"{id}","value":"wide"}}"#);
+            assert!(take(&mut hall, &[&odd]).is_empty(), "{id} holds no words");
+        }
+    }
+
+    #[test]
+    fn a_page_hides_what_is_on_another() {
+        let text = r#"Layout(
+            version: 1,
+            regions: [(id: "desk", at: (0, 2), size: (6, 4))],
+            pages: [
+                (id: "maps", widgets: [(id: "home", kind: "button", at: (0.2, 2.2), size: (0.8, 0.8))]),
+                (id: "notes", widgets: [(id: "write", kind: "button", at: (2.2, 2.2), size: (0.8, 0.8))]),
+            ],
+        )"#;
+        let floor = Floor::default();
+        let layout = parse_layout(text, "pages", &Kinds::builtin(), &floor.geometry).unwrap().layout;
+        let mut mirror = TextMirror::new(&floor, layout);
+        let hidden = |mirror: &TextMirror| [0, 1].map(|index| mirror.snapshot().widgets[index].hidden);
+        assert_eq!(hidden(&mirror), [false, true]);
+        take(&mut mirror, &[r#"{"t_s":5.0,"event":"page","page":"notes"}"#]);
+        assert_eq!((mirror.snapshot().page, hidden(&mirror)), (1, [true, false]));
+        take(&mut mirror, &[r#"{"t_s":5.0,"event":"page","page":"atlas"}"#]);
+        assert_eq!(mirror.snapshot().page, 1, "there is no such page");
+    }
+
+    #[test]
+    fn what_is_no_line_of_a_floor_is_counted_and_changes_nothing() {
+        let mut hall = hall();
+        take(&mut hall, &[WEST]);
+        for odd in [
+            "",
+            "null",
+            "{}",
+            "[1]",
+            r#"{"t_s":"soon"}"#,
+            r#"{"t_s":1,"event":"contacts","contacts":[{"id":-1}]}"#,
+        ] {
+            assert!(hall.take(odd).is_err(), "{odd}");
+        }
+        assert_eq!(hall.snapshot().counters.malformed, 6);
+        // Whatever the number, time does not stand at its end, and nobody else's control is pressed.
+        take(
+            &mut hall,
+            &[r#"{"t_s":1e300,"event":"pressed","id":"nobody's"}"#, r#"{"t_s":-1,"event":"jumped"}"#],
+        );
+        assert_eq!(hall.snapshot().at, Instant::from_millis(1000));
+    }
+}
