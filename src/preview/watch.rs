@@ -66,7 +66,7 @@ impl Watch {
                 weight: Weight::Fault,
             });
         }
-        if let Some(said) = server.and_then(|server| told(server)) {
+        if let Some(said) = server.and_then(told) {
             return said;
         }
         let silent_s = now_s - self.packets_at_s;

@@ -25,6 +25,10 @@ use super::{Cells, number_of};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
 
+/// Twice the logarithm of how many times likelier another distance must be for one not to count: its weight vanishes in
+/// the sum of all, to the last bit.
+const OUT_OF_QUESTION: f64 = 100.0;
+
 /// Beside whom a foot has landed, and where that one stood before.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touchdown {
@@ -86,7 +90,15 @@ pub(super) fn place(
     let standing = standing(existing, from, &strips, cells.pitch);
     let tightness = TIGHT_M.hypot(sigma);
     let mut against = [f64::INFINITY; TRIED];
-    for (misfit, distance) in against.iter_mut().zip(distances()) {
+    let mut least = f64::INFINITY;
+    // What is likely comes first, since it spares most of the work for what is not.
+    let now = stepping.centre().distance(from);
+    let likely = (((now - NEAREST_M) / STEP_M).max(0.0) as usize).min(TRIED - 1);
+    let (nearer, farther) = against.split_at_mut(likely);
+    let nearer = nearer.iter_mut().enumerate().rev();
+    let farther = (likely..).zip(farther);
+    for (step, misfit) in farther.chain(nearer) {
+        let distance = distance(step);
         let stepping_force = moment / distance;
         let place = from + ahead * distance;
         if stepping_force > 1.03 * force || place.distance(stepping.landed) > SHOE_M {
@@ -96,7 +108,10 @@ pub(super) fn place(
         let pair = Pair { existing_force, place, stepping_force };
         let unusual = (distance / USUAL_M).ln() / USUAL_SPREAD;
         let tight = (SIDE_BY_SIDE_M - distance).max(0.0) / tightness;
-        *misfit = pair.misfit(&standing, strips.middle, cells.pitch) + unusual * unusual + tight * tight;
+        let limit = least + OUT_OF_QUESTION - unusual * unusual - tight * tight;
+        *misfit =
+            pair.misfit(&standing, strips.middle, cells.pitch, limit) + unusual * unusual + tight * tight;
+        least = least.min(*misfit);
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);
@@ -123,8 +138,9 @@ pub(super) fn place(
     true
 }
 
-fn distances() -> impl Iterator<Item = f64> {
-    (0..TRIED).map(|step| NEAREST_M + STEP_M * step as f64)
+/// The distance that is tried at this step.
+fn distance(step: usize) -> f64 {
+    NEAREST_M + STEP_M * step as f64
 }
 
 /// How far apart the two feet are, as far as it is known.
@@ -138,7 +154,7 @@ impl Distance {
     fn among(against: &[f64; TRIED]) -> Option<Self> {
         let least = against.iter().copied().min_by(f64::total_cmp).filter(|least| least.is_finite())?;
         let (mut sum, mut first, mut second) = (0.0, 0.0, 0.0);
-        for (misfit, distance) in against.iter().zip(distances()) {
+        for (misfit, distance) in against.iter().zip((0..TRIED).map(distance)) {
             let weight = (-0.5 * (misfit - least)).exp();
             sum += weight;
             first += weight * distance;
@@ -189,8 +205,8 @@ fn standing(existing: &Track, from: DVec2, strips: &Strips, pitch: f64) -> Array
 }
 
 impl Pair {
-    /// How badly all lines fit, with the half widths of the new foot that fit best.
-    fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
+    /// How badly all lines fit, with the half widths of the new foot that fit best; infinite from `limit` on.
+    fn misfit(&self, lines: &[Line], middle: DVec2, pitch: f64, limit: f64) -> f64 {
         let mut all = 0.0;
         for axis in Axis::BOTH {
             let mut best = f64::INFINITY;
@@ -207,7 +223,7 @@ impl Pair {
                     }
                     let (square, variances) = self.misfit_on(line, half, middle, pitch);
                     // No term is negative: what fits worse already need not be looked at to the end.
-                    if unusual * unusual + (misfit + square) >= best {
+                    if unusual * unusual + (misfit + square) >= best.min(limit - all) {
                         misfit = f64::INFINITY;
                         break;
                     }
@@ -218,6 +234,9 @@ impl Pair {
                     }
                 }
                 best = best.min(unusual * unusual + misfit);
+            }
+            if best.is_infinite() {
+                return best;
             }
             all += best;
         }
