@@ -97,7 +97,8 @@ fn pass_on(lines: Box<dyn Read + Send>, to: &SyncSender<io::Result<Vec<u8>>>) {
     loop {
         let mut line = Vec::new();
         let read = lines.by_ref().take(LONGEST).read_until(b'\n', &mut line);
-        if matches!(read, Ok(0)) || to.send(read.map(|_| line)).is_err() {
+        let has_failed = read.is_err();
+        if matches!(read, Ok(0)) || to.send(read.map(|_| line)).is_err() || has_failed {
             return;
         }
     }
