@@ -47,7 +47,7 @@ impl Followed {
     pub(super) fn start(
         path: &Path,
         window: ProgramChannels,
-        files: LayoutArgs,
+        files: &LayoutArgs,
         floor: &Floor,
         layout: Layout,
     ) -> Result<Self, Failure> {
@@ -72,7 +72,7 @@ impl Followed {
         let told = Arc::clone(&shared);
         let (changed, changes) = channel();
         // A window that is closed need not know.
-        let watch = Watch::start(&files, floor.geometry, move |layout| drop(changed.send(layout)))?;
+        let watch = Watch::start(files, floor.geometry, move |layout| drop(changed.send(layout)))?;
         let floor = FollowedFloor {
             lines: read,
             changes,

@@ -245,7 +245,7 @@ fn followed(args: &Args, path: &Path) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let (layout, warnings) = args.layout.reviewed(&floor)?;
     let (window, program) = channels();
-    let followed = Followed::start(path, program, args.layout.clone(), &floor, layout.clone())?;
+    let followed = Followed::start(path, program, &args.layout, &floor, layout.clone())?;
     let input = PreviewInput {
         warnings: Warnings::from(&warnings),
         server: Some(followed.feed),
