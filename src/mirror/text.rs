@@ -160,9 +160,9 @@ impl TextMirror {
 
     /// Nothing more is told: what was known of feet, and what they held, is not believed any longer.
     pub fn end(&mut self) {
-        self.snapshot.link = LinkState::Lost;
         self.take_contacts(Vec::new());
-        self.snapshot.tiles.iter_mut().for_each(|tile| tile.quality = [Quality::Stale; 4]);
+        self.show_link(LinkState::Lost);
+        self.areas.iter_mut().for_each(|(_, news)| news.state = AreaState::Lost);
         self.snapshot.held.clear();
         self.pressed_by.fill(None);
         self.snapshot.widgets.iter_mut().for_each(|widget| {
@@ -382,6 +382,7 @@ mod tests {
         assert_eq!(hall.snapshot().at, Instant::from_millis(2000));
         hall.end();
         assert_eq!((silent(&hall).len(), hall.snapshot().link), (36, LinkState::Lost));
+        assert!(hall.areas().all(|news| news.state == AreaState::Lost));
     }
 
     #[test]

@@ -120,7 +120,7 @@ pub type ServerFeed = Box<dyn FnMut() -> ServerState + Send>;
 /// A server whose floor is shown.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ServerState {
-    /// Where it is: `127.0.0.1:9002`.
+    /// Where it is, or what its lines are read from: `127.0.0.1:9002`, `standard input`.
     pub address: String,
     /// Whether it is there.
     pub link: ServerLink,

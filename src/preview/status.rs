@@ -173,9 +173,15 @@ impl App {
             "Frames a second in this window, which draws when something changes",
         );
         if self.server.as_ref().is_some_and(ServerState::tells_by_lines) {
-            let refused = format!("{} lines refused", grouped(counters.malformed));
+            let (missed, malformed) = (snapshot.unsent_events, counters.malformed);
+            let refused = format!("{} missed, {} refused", grouped(missed), grouped(malformed));
             return vec![
-                figure(150.0, refused, seen(counters.malformed > 0), "Lines that tell nothing of a floor"),
+                figure(
+                    150.0,
+                    refused,
+                    seen(missed + malformed > 0),
+                    "Events that were lost on the way, and lines that tell nothing of a floor",
+                ),
                 of_window,
             ];
         }

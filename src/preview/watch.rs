@@ -66,8 +66,8 @@ impl Watch {
                 weight: Weight::Fault,
             });
         }
-        if let Some(said) = server.and_then(told) {
-            return said;
+        if let Some(server) = server.filter(|server| server.tells_by_lines()) {
+            return told(server);
         }
         let silent_s = now_s - self.packets_at_s;
         if let (LinkState::Lost, Some(ServerState { address, link: ServerLink::Lost(why), .. })) =
@@ -100,17 +100,14 @@ impl Watch {
     }
 }
 
-/// What has to be said of a floor of which lines are heard; `None` for one whose packets come.
-fn told(server: &ServerState) -> Option<Option<Banner>> {
-    match &server.link {
-        ServerLink::Joined | ServerLink::Lost(_) => None,
-        ServerLink::Followed => Some(silent_areas(&server.areas)),
-        ServerLink::Ended(why) => Some(Some(Banner {
-            headline: format!("Nothing more comes from {}", server.address),
-            detail: format!("What happens on the floor is not known here: {why}."),
-            weight: Weight::Fault,
-        })),
-    }
+/// What has to be said of a floor of which lines tell.
+fn told(server: &ServerState) -> Option<Banner> {
+    let ServerLink::Ended(why) = &server.link else { return silent_areas(&server.areas) };
+    Some(Banner {
+        headline: format!("Nothing more comes from {}", server.address),
+        detail: format!("What happens on the floor is not known here: {why}."),
+        weight: Weight::Fault,
+    })
 }
 
 /// What has to be said of areas that do not live.

@@ -203,29 +203,31 @@ pub enum Detail {
 }
 
 impl EventKind {
+    /// Those that say nothing besides their name.
+    pub const PLAIN: [Self; 13] = [
+        Self::Pressed,
+        Self::Released,
+        Self::Clicked,
+        Self::DoubleTapped,
+        Self::LongPressed,
+        Self::HardPressed,
+        Self::HardReleased,
+        Self::Cancelled,
+        Self::Ticked,
+        Self::Armed,
+        Self::Disarmed,
+        Self::Warned,
+        Self::Refused,
+    ];
+
     /// What happened, by its [name](Self::name) and what is said besides; `None` if that is nothing a control does.
     #[must_use]
     pub fn of(name: &str, detail: Option<Detail>) -> Option<Self> {
-        const PLAIN: [EventKind; 13] = [
-            EventKind::Pressed,
-            EventKind::Released,
-            EventKind::Clicked,
-            EventKind::DoubleTapped,
-            EventKind::LongPressed,
-            EventKind::HardPressed,
-            EventKind::HardReleased,
-            EventKind::Cancelled,
-            EventKind::Ticked,
-            EventKind::Armed,
-            EventKind::Disarmed,
-            EventKind::Warned,
-            EventKind::Refused,
-        ];
         let with_detail = detail.map(|detail| match detail {
             Detail::Value(value) => Self::Changed(value),
             Detail::Direction(direction) => Self::Swiped(direction),
         });
-        PLAIN.into_iter().chain(with_detail).find(|kind| kind.name() == name)
+        Self::PLAIN.into_iter().chain(with_detail).find(|kind| kind.name() == name)
     }
 
     /// What it says besides its name; `None` for most.

@@ -13,15 +13,16 @@ use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::mirror::TextMirror;
 use underfoot::preview::{
-    EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
-    Warnings,
+    LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState, Warnings,
 };
 use underfoot::schema::Diagnostics;
+use underfoot::sink::{EventSink, Report};
 
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::super::watch::Watch;
 use super::commands::keep_floor;
+use super::feeds::ToWindow;
 
 /// Time between two states of the floor: half of a picture's.
 const LOOK: Duration = Duration::from_millis(8);
@@ -76,6 +77,7 @@ impl Followed {
         let floor = FollowedFloor {
             lines: read,
             changes,
+            events: ToWindow { events: window.events.clone(), missed: 0 },
             window,
             mirror,
             snapshots: input,
@@ -108,6 +110,7 @@ struct FollowedFloor {
     lines: Receiver<io::Result<Vec<u8>>>,
     changes: Receiver<Result<Layout, Diagnostics>>,
     window: ProgramChannels,
+    events: ToWindow,
     mirror: TextMirror,
     snapshots: triple_buffer::Input<Snapshot>,
     shared: Arc<Mutex<ServerState>>,
@@ -131,7 +134,9 @@ impl FollowedFloor {
             while let Ok(change) = self.changes.try_recv() {
                 self.take_layout(change);
             }
-            self.snapshots.input_buffer_mut().clone_from(self.mirror.snapshot());
+            let shown = self.snapshots.input_buffer_mut();
+            shown.clone_from(self.mirror.snapshot());
+            shown.unsent_events += self.events.dropped();
             self.snapshots.publish();
             let mut state = self.shared.lock().unwrap_or_else(PoisonError::into_inner);
             if !state.areas.iter().eq(self.mirror.areas()) {
@@ -159,8 +164,7 @@ impl FollowedFloor {
     fn take(&mut self, line: &str) {
         match self.mirror.take(line) {
             Ok(Some(event)) => {
-                // What a window can't take in that is busy for so long, its list does not show.
-                let _ = self.window.events.try_send(EventNews::Event(event));
+                self.events.report(Report::Event(&event));
             }
             Ok(None) => {}
             Err(error) => {

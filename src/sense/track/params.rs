@@ -367,6 +367,9 @@ pub(super) mod touchdown {
     pub(in crate::sense::track) const STEP_M: f64 = 0.02;
 
     pub(in crate::sense::track) const TRIED: usize = 22;
+    /// Twice the logarithm of how many times likelier another distance must be for one not to count: its weight vanishes
+    /// in the sum of all, to the last bit (arithmetic of 53 bits). A fifth more or less changes nothing but the time.
+    pub(in crate::sense::track) const OUT_OF_QUESTION: f64 = 100.0;
 
     /// Distance one expects before anything is seen, and how much it varies (as a factor).
     pub(in crate::sense::track) const USUAL_M: f64 = 0.22;

@@ -12,9 +12,9 @@
 use super::params::state::{HALF_REST, SHOE_M};
 use super::params::stillness::SWAY_LEAST_M;
 use super::params::touchdown::{
-    HALF_SPREAD_M, HALVES, LEAST_MOMENT, LEAST_WAY_M, MISREAD_N, MOSTLY, NEAREST_M, NOT_ITS_OWN, PLACE_M,
-    SIDE_BY_SIDE_M, STEP_M, SWAY_M, TAKEN_OVER, TIGHT_M, TRIED, UNLIKE, UNLIKE_LEAST, USUAL_M, USUAL_SPREAD,
-    WIDEST_M,
+    HALF_SPREAD_M, HALVES, LEAST_MOMENT, LEAST_WAY_M, MISREAD_N, MOSTLY, NEAREST_M, NOT_ITS_OWN,
+    OUT_OF_QUESTION, PLACE_M, SIDE_BY_SIDE_M, STEP_M, SWAY_M, TAKEN_OVER, TIGHT_M, TRIED, UNLIKE,
+    UNLIKE_LEAST, USUAL_M, USUAL_SPREAD, WIDEST_M,
 };
 use arrayvec::ArrayVec;
 use glam::DVec2;
@@ -24,10 +24,6 @@ use super::strips::{Axis, MOST_STRIPS, Strip, Strips};
 use super::{Cells, number_of};
 use crate::sense::contact::ContactId;
 use crate::sense::tile::LoadedTile;
-
-/// Twice the logarithm of how many times likelier another distance must be for one not to count: its weight vanishes in
-/// the sum of all, to the last bit.
-const OUT_OF_QUESTION: f64 = 100.0;
 
 /// Beside whom a foot has landed, and where that one stood before.
 #[derive(Clone, Copy, Debug)]
