@@ -234,7 +234,11 @@ pub(super) const ELLIPSE_95: f32 = 5.991;
 /// Most contacts that feet are searched for among, heaviest first: beyond it the search grows out of hand.
 const MOST_CONTACTS: usize = 6;
 
-/// For each foot the place of its contact: as many pairs as there can be, with the least total distance.
+/// A contact farther than this from where a foot's force acts is not that foot's, in metres: a shoe's length.
+const FOUND_M: f32 = 0.33;
+
+/// For each foot the place of its contact: as many pairs within [`FOUND_M`] as there can be, with the least total
+/// distance.
 fn pair(feet: &[Truth], contacts: &[Contact]) -> SmallVec<[Option<usize>; 4]> {
     let mut places: SmallVec<[usize; 8]> = (0..contacts.len()).collect();
     places.sort_by(|&a, &b| contacts[b].force.0.total_cmp(&contacts[a].force.0));
@@ -242,47 +246,47 @@ fn pair(feet: &[Truth], contacts: &[Contact]) -> SmallVec<[Option<usize>; 4]> {
     let mut search = Search {
         feet,
         contacts,
-        spare: feet.len().saturating_sub(places.len()),
         chosen: SmallVec::new(),
         best: smallvec::smallvec![None; feet.len()],
         least: f32::INFINITY,
     };
-    search.go_on(&mut places, 0.0, 0);
+    search.go_on(&mut places, 0.0);
     search.best
 }
 
 struct Search<'a> {
     feet: &'a [Truth],
     contacts: &'a [Contact],
-    /// How many feet must go without a contact.
-    spare: usize,
     chosen: SmallVec<[Option<usize>; 4]>,
     best: SmallVec<[Option<usize>; 4]>,
     least: f32,
 }
 
 impl Search<'_> {
-    fn go_on(&mut self, free: &mut SmallVec<[usize; 8]>, distance: f32, without: usize) {
+    fn go_on(&mut self, free: &mut SmallVec<[usize; 8]>, distance: f32) {
         let Some(foot) = self.feet.get(self.chosen.len()) else {
             (self.least, self.best) = (distance, self.chosen.clone());
             return;
         };
         for place in 0..free.len() {
             let contact = free[place];
-            let further = distance + self.contacts[contact].centroid.distance(foot.centre);
-            if further < self.least {
+            let away = self.contacts[contact].centroid.distance(foot.centre);
+            let further = distance + away;
+            if away < FOUND_M && further < self.least {
                 free.swap_remove(place);
                 self.chosen.push(Some(contact));
-                self.go_on(free, further, without);
+                self.go_on(free, further);
                 self.chosen.pop();
                 free.push(contact);
                 let last = free.len() - 1;
                 free.swap(place, last);
             }
         }
-        if without < self.spare {
+        // A foot that goes without costs more than all that could be found.
+        let further = distance + FOUND_M * self.feet.len() as f32;
+        if further < self.least {
             self.chosen.push(None);
-            self.go_on(free, distance, without + 1);
+            self.go_on(free, further);
             self.chosen.pop();
         }
     }
@@ -318,12 +322,15 @@ mod tests {
     fn feet_get_the_contacts_that_make_the_least_total_distance() {
         // The contact at 0.3 is nearest to both feet; the total decides.
         let feet = [foot(0.2, 300.0), foot(0.35, 300.0)];
-        let contacts = [contact(7, 0.3, 300.0), contact(8, 0.9, 300.0), contact(9, 0.1, 300.0)];
+        let contacts = [contact(7, 0.3, 300.0), contact(8, 0.5, 300.0), contact(9, 0.1, 300.0)];
         let found = pair(&feet, &contacts);
         assert_eq!(found[..], [Some(2), Some(0)]);
         assert_eq!(pair(&feet, &contacts[1..2])[..], [None, Some(0)], "one contact goes to the nearer foot");
         assert_eq!(pair(&feet, &[])[..], [None, None]);
         assert!(pair(&[], &contacts).is_empty());
+        let other_tile = [contact(7, 0.6, 300.0), contact(8, 0.4, 300.0)];
+        assert_eq!(pair(&feet[..1], &other_tile[..1])[..], [None], "40 cm away is not this foot");
+        assert_eq!(pair(&feet, &other_tile)[..], [Some(1), Some(0)], "as many as can be");
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! Feet as contacts.
 
 use super::params::dormant::{PLACE_M, REPORTED};
-use super::params::output::{AMBIGUOUS_M, INFLATION, LEAST_N, LOST_M, OTHERS_MISREAD, TOGETHER_M};
+use super::params::output::{
+    AMBIGUOUS_M, FITS, INFLATION, LEAST_N, LOST_M, OTHERS_MISREAD, STRAYED_M, TOGETHER_M,
+};
 use glam::Vec2;
 
 use super::state::{EAST, NORTH, Track};
@@ -19,7 +21,7 @@ impl Tracker {
         pool.clear();
         for foot in &mut self.tracks {
             if !foot.shared {
-                foot.nis = 0.0;
+                (foot.nis, foot.misfit) = (0.0, 0.0);
             }
             // Predictions that keep failing say that the feet are not what the filter takes them for.
             let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
@@ -33,7 +35,10 @@ impl Tracker {
             contact.centroid = foot.centre().as_vec2();
             contact.force = Newtons(foot.force() as f32);
             contact.velocity = foot.velocity().as_vec2();
-            contact.ambiguous = foot.ambiguous;
+            // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not fit.
+            let strayed_m = STRAYED_M * (foot.misfit - FITS).max(0.0).sqrt().sqrt();
+            let is_guess = foot.shared && (inflation * variance).sqrt().hypot(strayed_m) > AMBIGUOUS_M;
+            contact.ambiguous = foot.ambiguous || is_guess;
             let mut covariance = if foot.shared {
                 Covariance {
                     xx: (inflation * foot.covariance[EAST][EAST]) as f32,
@@ -74,6 +79,7 @@ impl Tracker {
                     TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
                 }));
             }
+            covariance += Covariance::isotropic(strayed_m as f32);
             if foot.landed_together {
                 covariance += Covariance::isotropic(TOGETHER_M);
             }

@@ -63,6 +63,8 @@ pub(super) struct Track {
     pub residuals: SmallVec<[Residual; 8]>,
     /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
     pub nis: f64,
+    /// How badly the loads fit a foot that was put down beside one that stands still: 0 where it was not looked at.
+    pub misfit: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub mean_speed: f64,
     /// Seconds for which it has been alone on its tiles.
@@ -122,6 +124,7 @@ impl Track {
             shared: false,
             residuals: SmallVec::new(),
             nis: 0.0,
+            misfit: 0.0,
             mean_speed: 0.4,
             alone_s: 0.0,
             alone_at: None,

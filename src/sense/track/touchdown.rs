@@ -111,8 +111,11 @@ pub(super) fn place(
     }
     let Some(distance) = Distance::among(&against) else { return false };
     let part = (moment / distance.mean).min(force);
-    existing.put(force - part, from);
-    stepping.put(part, from + ahead * distance.mean);
+    let place = from + ahead * distance.mean;
+    let pair = Pair { existing_force: force - part, place, stepping_force: part };
+    let misfit = pair.misfit_per_load(&standing, strips.middle, cells.pitch);
+    existing.put(force - part, from, misfit);
+    stepping.put(part, place, misfit);
     if part > TAKEN_OVER * force {
         // What was once guessed of its place is no home to go back to.
         stepping.rest_point = stepping.centre();
@@ -163,8 +166,8 @@ impl Distance {
 }
 
 impl Track {
-    /// Is there with this force, standing still.
-    fn put(&mut self, force: f64, centre: DVec2) {
+    /// Is there with this force, standing still, which fits the loads as badly as `misfit` says.
+    fn put(&mut self, force: f64, centre: DVec2, misfit: f64) {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
@@ -172,6 +175,7 @@ impl Track {
         self.state[NORTH + 1] = 0.0;
         self.reset_covariance(PLACE_M);
         self.nis = 0.0;
+        self.misfit = misfit;
     }
 }
 
@@ -237,6 +241,21 @@ impl Pair {
             all += best;
         }
         all
+    }
+
+    /// Mean square of by how many deviations a line's force and moments differ from those of the pair: about a third
+    /// for two feet, of which one stands still.
+    fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
+        let along = |axis: Axis| {
+            let fits = HALVES.map(|half| {
+                let unusual = (half - HALF_REST) / HALF_SPREAD_M;
+                let lines = lines.iter().filter(|line| line.strip.axis == axis);
+                let squares = lines.map(|line| self.misfit_on(line, half, middle, pitch).0);
+                unusual * unusual + squares.sum::<f64>()
+            });
+            fits.into_iter().fold(f64::INFINITY, f64::min)
+        };
+        Axis::BOTH.into_iter().map(along).sum::<f64>() / (3 * lines.len()) as f64
     }
 
     /// Twice the negative logarithm of the likelihood of one line's load, but for a constant: the squares, and the
