@@ -168,16 +168,17 @@ impl Plot {
             let count = ((axis.to - axis.from) / axis.tick + 1e-3) as u16;
             for step in 0..=count {
                 let value = axis.from + f32::from(step) * axis.tick;
+                let (sign, size) = (if value < -0.5 { "\u{2212}" } else { "" }, value.abs());
                 if horizontal {
                     let at = Vec2::new(plot.at(Vec2::new(value, y.from)).x, area.min.y);
                     page.line(at, Vec2::new(at.x, area.max.y), grid);
                     let kind = Type { size_m: 0.0028, ..Type::QUIET }.middle();
-                    page.text(at - Vec2::new(0.0, 0.0041), kind, format_args!("{value:.0}"));
+                    page.text(at - Vec2::new(0.0, 0.0041), kind, format_args!("{sign}{size:.0}"));
                 } else {
                     let at = Vec2::new(area.min.x, plot.at(Vec2::new(x.from, value)).y);
                     page.line(at, Vec2::new(area.max.x, at.y), grid);
                     let kind = Type { size_m: 0.0028, ..Type::QUIET }.end();
-                    page.text(at - Vec2::new(0.0014, 0.001), kind, format_args!("{value:.0}"));
+                    page.text(at - Vec2::new(0.0014, 0.001), kind, format_args!("{sign}{size:.0}"));
                 }
             }
         }
@@ -261,7 +262,10 @@ mod tests {
         assert!(plot.at(Vec2::new(0.0, -30.0)).distance(area.min) < 1e-6);
         assert!(plot.at(Vec2::new(60.0, 30.0)).distance(area.max) < 1e-6);
         let ticks: Vec<&str> = page.scene.texts().map(|(text, _)| text).collect();
-        assert!(ticks.contains(&"60") && ticks.contains(&"-30") && ticks.contains(&"Plot"), "{ticks:?}");
+        assert!(
+            ticks.contains(&"60") && ticks.contains(&"\u{2212}30") && ticks.contains(&"Plot"),
+            "{ticks:?}"
+        );
     }
 
     #[test]

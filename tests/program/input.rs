@@ -45,6 +45,37 @@ const READERS: [&[&str]; 11] = [
     &["calibrate", "map", "FILE"],
 ];
 
+/// A window that shows a floor of elsewhere puts nothing out from here, and says so of every option that would.
+#[cfg(feature = "preview")]
+#[test]
+fn a_floor_of_elsewhere_is_not_served_here() {
+    let folder = tempfile::tempdir().unwrap();
+    let options = [
+        "--device paced",
+        "--rate 48000",
+        "--seed 3",
+        "--no-osc",
+        "--json",
+        "--pin",
+        "--wav feet.wav",
+        "--eq4",
+    ];
+    for elsewhere in ["--join 127.0.0.1:9", "--follow -"] {
+        for option in options {
+            let arguments: Vec<&str> =
+                ["preview"].into_iter().chain(elsewhere.split(' ')).chain(option.split(' ')).collect();
+            let output = ended(&arguments, folder.path());
+            assert_eq!(output.status.code(), Some(2), "{arguments:?}: {}", said(&output));
+            let name = option.split(' ').next().unwrap();
+            assert!(
+                said(&output).contains(&format!("cannot be used with '{name}")),
+                "{arguments:?}: {}",
+                said(&output)
+            );
+        }
+    }
+}
+
 /// A device that never ends and a pipe that nobody writes to are refused; neither is read.
 #[cfg(unix)]
 #[test]

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, channel, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, Builder};
-use std::time::{Duration, Instant as HostInstant};
+use std::time::Instant as HostInstant;
 
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
@@ -21,11 +21,9 @@ use underfoot::sink::{EventSink, Report};
 use super::super::failure::Failure;
 use super::super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
 use super::super::watch::Watch;
+use super::LOOK;
 use super::commands::keep_floor;
 use super::feeds::ToWindow;
-
-/// Time between two states of the floor: half of a picture's.
-const LOOK: Duration = Duration::from_millis(8);
 
 /// Lines that may wait: who writes them is held up then, and counts what it drops.
 const WAITING: usize = 4096;

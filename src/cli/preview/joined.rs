@@ -22,12 +22,10 @@ use underfoot::serve::Command;
 use super::super::failure::Failure;
 use super::super::layout_args::LayoutArgs;
 use super::super::watch::Watch;
+use super::LOOK;
 use super::announced::AnnouncingSource;
 use super::commands::keep_floor;
 use super::feeds::{ToWindow, stop_and_wait};
-
-/// Time between looks at the floor that is sensed: half of a picture's.
-const LOOK: Duration = Duration::from_millis(8);
 
 /// How often controls are compared with what the server says of them.
 const COMPARE_EVERY: Duration = Duration::from_millis(100);

@@ -57,12 +57,12 @@ pub(crate) struct Args {
     listen: Option<SocketAddr>,
     /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from
     /// here.
-    #[arg(long, value_name = "ADDR", conflicts_with_all = JOINED_IS_SERVED)]
+    #[arg(long, value_name = "ADDR", conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
     join: Option<SocketAddr>,
     /// Show the floor of which the JSON lines in this file tell, `-` for standard input: what
     /// `underfoot-cluster gateway --json --json-contacts` or `underfoot run --json --json-contacts` prints, with the
     /// same layout and floor. Nothing is put out from here.
-    #[arg(long, value_name = "FILE", conflicts_with_all = FOLLOWED_IS_TOLD)]
+    #[arg(long, value_name = "FILE", conflicts_with_all = SERVED_HERE, conflicts_with = "join")]
     follow: Option<PathBuf>,
     #[command(flatten)]
     boards: BoardArgs,
@@ -97,17 +97,39 @@ pub(crate) struct Args {
     eq4: bool,
 }
 
-/// What is the server's to say, where its floor is shown.
-const JOINED_IS_SERVED: [&str; 14] = [
-    "listen", "allow", "pin", "commands", "scenario", "session", "record", "floor", "grid", "osc", "tuio",
-    "tuio2", "wav", "eq4",
+/// Options of a floor that is served and felt here; one of elsewhere is only shown.
+const SERVED_HERE: [&str; 27] = [
+    "listen",
+    "allow",
+    "pin",
+    "commands",
+    "allow_commands",
+    "scenario",
+    "session",
+    "record",
+    "seed",
+    "ideal",
+    "mapped",
+    "osc",
+    "no_osc",
+    "osc_prefix",
+    "tuio",
+    "tuio2",
+    "tuio_profiles",
+    "json",
+    "json_contacts",
+    "wav",
+    "rate",
+    "sound",
+    "device",
+    "block",
+    "resample",
+    "delay_ms",
+    "eq4",
 ];
 
-/// What is told of elsewhere, where lines are followed.
-const FOLLOWED_IS_TOLD: [&str; 13] = [
-    "join", "listen", "allow", "pin", "commands", "scenario", "session", "record", "osc", "tuio", "tuio2",
-    "wav", "eq4",
-];
+/// Time between two looks at a floor that is shown as it comes: half of a picture's.
+const LOOK: Duration = Duration::from_millis(8);
 
 /// Whether a window can be hoped for.
 pub(crate) fn has_display() -> bool {

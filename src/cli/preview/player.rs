@@ -19,11 +19,9 @@ use underfoot::source::SensorSource;
 use underfoot::units::Instant;
 
 use super::super::failure::Failure;
+use super::LOOK;
 use super::announced::AnnouncingSource;
 use super::feeds::{ToWindow, stop_and_wait};
-
-/// Time between looks at the floor that is sensed: half of a picture's.
-const LOOK: Duration = Duration::from_millis(8);
 
 /// A recording that is being shown; ends with this.
 pub(super) struct Player {
