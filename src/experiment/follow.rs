@@ -50,7 +50,7 @@ pub struct Followed {
     pub inside: [usize; 2],
     /// Feet searched for, one per foot that was down and sample.
     pub feet: usize,
-    /// Those of them for which there was no contact.
+    /// Those of them for which there was no contact within a shoe's length.
     pub missed: usize,
     /// Feet searched for while two were down, and those of them found within 5 cm.
     pub of_two: usize,

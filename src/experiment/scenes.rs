@@ -147,7 +147,7 @@ pub struct SceneLine {
     pub median_cm: Option<f32>,
     /// Error that 95 in 100 of them keep to.
     pub p95_cm: Option<f32>,
-    /// Share of the feet for which there was no contact.
+    /// Share of the feet for which there was no contact within a shoe's length.
     pub missed: f32,
     /// Contacts that no foot had made, as a share of the feet.
     pub extra: f32,
