@@ -63,7 +63,8 @@ pub(super) struct Track {
     pub residuals: SmallVec<[Residual; 8]>,
     /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
     pub nis: f64,
-    /// How badly the loads fit a foot that was put down beside one that stands still: 0 where it was not looked at.
+    /// How badly the loads fitted it and the other foot when one was last placed beside the other, which stood still; 0
+    /// once it is alone.
     pub misfit: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub mean_speed: f64,
