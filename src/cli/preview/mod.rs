@@ -383,3 +383,24 @@ impl Args {
         given.into_iter().chain(schema::builtin_layouts().map(String::from)).collect()
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use clap::Args as _;
+
+    use super::{Args, SERVED_HERE};
+
+    /// Options of what is shown and how, whoever serves it.
+    const SHOWN: [&str; 10] =
+        ["layout", "widgets", "effects", "floor", "grid", "join", "follow", "project", "monitor", "corners"];
+
+    #[test]
+    fn every_option_is_of_a_floor_served_here_or_of_any() {
+        let command = Args::augment_args(clap::Command::new("preview"));
+        let mut options: Vec<&str> = command.get_arguments().map(|option| option.get_id().as_str()).collect();
+        let mut known: Vec<&str> = SERVED_HERE.into_iter().chain(SHOWN).collect();
+        options.sort_unstable();
+        known.sort_unstable();
+        assert_eq!(options, known);
+    }
+}

@@ -35,7 +35,8 @@ impl Tracker {
             contact.centroid = foot.centre().as_vec2();
             contact.force = Newtons(foot.force() as f32);
             contact.velocity = foot.velocity().as_vec2();
-            // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not fit.
+            // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
+            // fit. That is told; the filter goes on by its own uncertainty.
             let strayed_m = STRAYED_M * (foot.misfit - FITS).max(0.0).sqrt().sqrt();
             let is_guess = foot.shared && (inflation * variance).sqrt().hypot(strayed_m) > AMBIGUOUS_M;
             contact.ambiguous = foot.ambiguous || is_guess;

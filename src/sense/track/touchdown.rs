@@ -243,8 +243,8 @@ impl Pair {
         all
     }
 
-    /// Mean square of by how many deviations a line's force and moments differ from those of the pair: about a third
-    /// for two feet, of which one stands still.
+    /// Mean square of by how many deviations a line's force and moments differ from those of the pair, with the half
+    /// widths of the new foot that fit best.
     fn misfit_per_load(&self, lines: &[Line], middle: DVec2, pitch: f64) -> f64 {
         let along = |axis: Axis| {
             let fits = HALVES.map(|half| {
