@@ -126,6 +126,12 @@ impl Page {
     }
 }
 
+/// A number without decimals, with a minus sign and no hyphen.
+pub(super) fn whole(value: f32) -> String {
+    // Adding 0 makes 0 of what rounds to -0.
+    format!("{:.0}", value.round() + 0.0).replace('-', "\u{2212}")
+}
+
 /// Distance of everything from the page's edges, in metres.
 pub(super) const MARGIN_M: f32 = 0.008;
 
@@ -168,17 +174,17 @@ impl Plot {
             let count = ((axis.to - axis.from) / axis.tick + 1e-3) as u16;
             for step in 0..=count {
                 let value = axis.from + f32::from(step) * axis.tick;
-                let (sign, size) = (if value < -0.5 { "\u{2212}" } else { "" }, value.abs());
+                let said = whole(value);
                 if horizontal {
                     let at = Vec2::new(plot.at(Vec2::new(value, y.from)).x, area.min.y);
                     page.line(at, Vec2::new(at.x, area.max.y), grid);
                     let kind = Type { size_m: 0.0028, ..Type::QUIET }.middle();
-                    page.text(at - Vec2::new(0.0, 0.0041), kind, format_args!("{sign}{size:.0}"));
+                    page.text(at - Vec2::new(0.0, 0.0041), kind, format_args!("{said}"));
                 } else {
                     let at = Vec2::new(area.min.x, plot.at(Vec2::new(x.from, value)).y);
                     page.line(at, Vec2::new(area.max.x, at.y), grid);
                     let kind = Type { size_m: 0.0028, ..Type::QUIET }.end();
-                    page.text(at - Vec2::new(0.0014, 0.001), kind, format_args!("{sign}{size:.0}"));
+                    page.text(at - Vec2::new(0.0014, 0.001), kind, format_args!("{said}"));
                 }
             }
         }

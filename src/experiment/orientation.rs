@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{Axis, LINE_M, MARGIN_M, Map, Page, Plot, Sample, THEME, Type};
+use super::chart::{Axis, LINE_M, MARGIN_M, Map, Page, Plot, Sample, THEME, Type, whole};
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
 use crate::floor::{Geometry, Rect};
@@ -190,7 +190,7 @@ impl Figure for Orientation {
                 let corner = Vec2::new(left + column as f32 * cell.x, y);
                 if line == 0 {
                     let at = corner + Vec2::new(0.5 * cell.x, cell.y + 0.0015);
-                    page.text(at, Type::QUIET.middle(), format_args!("{:.0}°", row.true_deg));
+                    page.text(at, Type::QUIET.middle(), format_args!("{}°", whole(row.true_deg)));
                 }
                 draw_cell(&mut page, Rect::from_min_size(corner, cell - 0.0012), row, COLOURS[line]);
             }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use glam::Vec2;
 
-use super::chart::{Axis, MARGIN_M, Map, Page, Plot, Sample, THEME, Type};
+use super::chart::{Axis, MARGIN_M, Map, Page, Plot, Sample, THEME, Type, whole};
 use super::errors::Errors;
 use super::figure::Figure;
 use super::rig::{ExperimentError, Rig};
@@ -127,7 +127,7 @@ impl Figure for SeamObject {
             page.ring(truth, THEME.ink);
             page.cross(found, THEME.cursor);
             let beside = Vec2::new(truth.x.max(found.x) + 0.0028, truth.y - 0.001);
-            page.text(beside, Type::QUIET, format_args!("{:.0}°", row.angle_deg));
+            page.text(beside, Type::QUIET, format_args!("{}°", whole(row.angle_deg)));
         }
         page.legend(
             Vec2::new(MARGIN_M, 0.0055),
@@ -198,7 +198,7 @@ fn draw_object(page: &mut Page, area: Rect, row: &SeamObjectRow) {
     page.ring(map.at(row.truth), THEME.ink);
     page.cross(map.at(row.found), THEME.cursor);
     let at = Vec2::new(area.min.x, area.max.y + 0.0015);
-    page.text(at, Type::PLAIN, format_args!("{:.0}°", row.angle_deg));
+    page.text(at, Type::PLAIN, format_args!("{}°", whole(row.angle_deg)));
     let kind = Type { anchor: Anchor::End, ..Type::QUIET };
     let error = row.truth.distance(row.found) * 100.0;
     page.text(Vec2::new(area.max.x, at.y), kind, format_args!("{error:.2} cm off"));
