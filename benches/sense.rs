@@ -7,50 +7,20 @@
 mod sense_support;
 
 use std::hint::black_box;
+use std::num::NonZeroUsize;
 
 use criterion::{BatchSize, BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use sense_support::{Sensors, walk};
-use underfoot::floor::{Geometry, TileId};
+use sense_support::{Crowd, Moment};
+use underfoot::parallel::ThreadPool;
 use underfoot::sense::{ForceFrame, Method, Sensing};
-use underfoot::units::Instant;
 
-/// What changes from one frame to the next: when it is, and what the loaded tiles read.
-struct Moment {
-    at: Instant,
-    loads: Vec<(usize, [f32; 4])>,
-}
-
-/// A floor of `side` x `side` tiles on which `walkers` people cross a stretch of 6 x 6 tiles each, for as many
-/// milliseconds as `millis`.
-fn crowd(side: u16, walkers: u16, millis: usize) -> (Geometry, Vec<Moment>) {
-    let geometry = Geometry::of_paper_tiles(side, side).expect("a square floor");
-    let people = [walk(1, Sensors::PERFECT), walk(4, Sensors::PERFECT)];
-    let stretches = side / 6;
-    let moments = (0..millis).map(|ms| {
-        let mut loads: Vec<(usize, [f32; 4])> = Vec::new();
-        for walker in 0..walkers {
-            let scene = &people[usize::from(walker % 2)];
-            // Two on each stretch, and no two stretches in step.
-            let stretch = walker / 2;
-            let (east, north) = (6 * (stretch % stretches), 6 * (stretch / stretches));
-            let ms = 500 + (ms + 37 * usize::from(stretch)) % 2000;
-            for (index, forces) in scene.frames[ms].forces.iter().enumerate() {
-                if forces.iter().all(|force| *force == 0.0) {
-                    continue;
-                }
-                let tile = scene.geometry.tile_at_index(index);
-                let column = (tile.column + 3 * (walker % 2)) % 6 + east;
-                let here = TileId::new(column, tile.row % 6 + north);
-                let here = geometry.index(here).expect("a tile of the floor");
-                match loads.iter_mut().find(|(index, _)| *index == here) {
-                    Some((_, sum)) => sum.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force),
-                    None => loads.push((here, *forces)),
-                }
-            }
-        }
-        Moment { at: people[0].frames[500 + ms].at, loads }
-    });
-    (geometry, moments.collect())
+/// Senses a frame for each of `moments`.
+fn sense(sensing: &mut Sensing, frame: &mut ForceFrame, moments: &[Moment]) {
+    let mut before = None;
+    for moment in moments {
+        moment.show(frame, before.replace(moment));
+        black_box(sensing.update(frame));
+    }
 }
 
 fn frames(criterion: &mut Criterion) {
@@ -58,23 +28,15 @@ fn frames(criterion: &mut Criterion) {
     for (side, walkers, millis) in
         [(6, 2, 2000), (24, 2, 2000), (96, 2, 2000), (24, 32, 1000), (96, 512, 500)]
     {
-        let (geometry, moments) = crowd(side, walkers, millis);
+        let Crowd { geometry, moments } = Crowd::of(side, walkers, millis);
         group.throughput(Throughput::Elements(moments.len() as u64));
         for method in [Method::Eq4, Method::Tracker] {
             let id = BenchmarkId::new(format!("{method:?}"), format!("{side}x{side}, {walkers} walkers"));
+            let begin = || (Sensing::new(geometry, method), ForceFrame::empty(&geometry));
             group.bench_function(id, |bencher| {
                 bencher.iter_batched_ref(
-                    || (Sensing::new(geometry, method), ForceFrame::empty(&geometry)),
-                    |(sensing, frame)| {
-                        // One frame, renewed where it changes, as the assembler does.
-                        let mut before: &[(usize, [f32; 4])] = &[];
-                        for moment in &moments {
-                            before.iter().for_each(|(index, _)| frame.forces[*index] = [0.0; 4]);
-                            moment.loads.iter().for_each(|(index, forces)| frame.forces[*index] = *forces);
-                            (frame.at, before) = (moment.at, &moment.loads);
-                            black_box(sensing.update(frame));
-                        }
-                    },
+                    begin,
+                    |(sensing, frame)| sense(sensing, frame, &moments),
                     BatchSize::LargeInput,
                 );
             });
@@ -83,5 +45,27 @@ fn frames(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, frames);
+/// The densest crowd on as many threads as there are cores, and on half of them, beside one.
+fn thread_pools(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("sense on several threads");
+    let cores = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let Crowd { geometry, moments } = Crowd::of(96, 512, 500);
+    group.throughput(Throughput::Elements(moments.len() as u64));
+    let mut threads = vec![1, cores.div_ceil(2), cores];
+    threads.dedup();
+    for threads in threads.into_iter().filter_map(NonZeroUsize::new) {
+        let pool = ThreadPool::new(threads).expect("threads");
+        let id = BenchmarkId::new("Tracker/96x96, 512 walkers", threads);
+        group.bench_function(id, |bencher| {
+            bencher.iter_batched_ref(
+                || (Sensing::new(geometry, Method::Tracker), ForceFrame::empty(&geometry)),
+                |(sensing, frame)| pool.run(|| sense(sensing, frame, &moments)),
+                BatchSize::LargeInput,
+            );
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(benches, frames, thread_pools);
 criterion_main!(benches);

@@ -107,6 +107,10 @@ pub mod mirror;
 pub mod outgoing;
 #[cfg(not(feature = "internals"))]
 mod outgoing;
+#[cfg(feature = "threads")]
+pub mod parallel;
+#[cfg(not(feature = "threads"))]
+mod parallel;
 #[cfg(feature = "picture")]
 pub mod picture;
 #[cfg(feature = "lab")]

@@ -1,7 +1,6 @@
 //! `underfoot capacity`: how large a floor this machine carries.
 
 use std::num::NonZeroUsize;
-use std::thread;
 use std::time::Duration;
 
 use clap::Args as ClapArgs;
@@ -10,10 +9,11 @@ use underfoot::capacity::{
     AssemblyLoad, BankLoad, PacketLoad, RenderLoad, RenderWork, SensingLoad, ServeLoad, modal_error_db,
 };
 use underfoot::floor::Geometry;
+use underfoot::parallel::ThreadPool;
 
 use super::failure::Failure;
 use super::meter::{Measured, Meter};
-use super::number::patience;
+use super::number::{patience, threads};
 
 /// What `underfoot capacity` is asked to do.
 ///
@@ -27,8 +27,11 @@ pub(crate) struct Args {
     #[arg(long, value_name = "S", default_value = "1", value_parser = patience)]
     seconds: Duration,
     /// On how many cores at once each load is done, every core a floor of its own; `all` for as many as there are.
-    #[arg(long, value_name = "N|all", default_value = "1", value_parser = cores)]
+    #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads)]
     threads: NonZeroUsize,
+    /// On how many cores the feet of a crowd are sensed on one floor.
+    #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads, conflicts_with = "threads")]
+    sensing_threads: NonZeroUsize,
     /// Print the result as JSON on standard output.
     #[arg(long)]
     json: bool,
@@ -51,9 +54,6 @@ const SERVED_WALKERS: u16 = SERVED_SIDE * SERVED_SIDE / 18;
 /// Loads that are measured: six of rendering, three of receiving, four of sensing, one of serving.
 const LOADS: u64 = 14;
 
-/// Most threads that may be asked for.
-const MOST_THREADS: usize = 1024;
-
 /// One kind of work, and the tiles that it is good for with half of the cores.
 struct Limit {
     id: &'static str,
@@ -69,10 +69,11 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if cfg!(debug_assertions) {
         errln!("This is a debug build: a release build is many times faster.");
     }
+    let pool = ThreadPool::new(args.sensing_threads)?;
     let meter = Meter::new(args.seconds, args.threads, LOADS);
     let rendering = rendering(&meter);
     let receiving = receiving(&meter)?;
-    let sensing = sensing(&meter);
+    let sensing = sensing(&meter, &pool);
     let serving = [serving(&meter)];
     drop(meter);
     let errors = [48_000, 96_000].map(|rate| (rate, modal_error_db(rate, 1)));
@@ -94,6 +95,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             "{}",
             json!({
                 "threads": args.threads,
+                "sensing_threads": args.sensing_threads,
                 "render_x_real_time": table(&rendering),
                 "receive_x_real_time": table(&receiving),
                 "sense_x_real_time": table(&sensing),
@@ -114,7 +116,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     rendering.iter().for_each(print);
     outln!("Receiving at 1 kHz, on {cores}:");
     receiving.iter().for_each(print);
-    outln!("Sensing at 1 kHz, on {cores}:");
+    match args.sensing_threads.get() {
+        1 => outln!("Sensing at 1 kHz, on {cores}:"),
+        many => outln!("Sensing at 1 kHz, crowds on {many} cores:"),
+    }
     sensing.iter().for_each(print);
     outln!("A floor at work but for its socket and its sound, on {cores}:");
     serving.iter().for_each(print);
@@ -223,7 +228,7 @@ fn receiving(meter: &Meter) -> Result<Vec<Measured>, Failure> {
     Ok(vec![socket, packets, frames])
 }
 
-fn sensing(meter: &Meter) -> Vec<Measured> {
+fn sensing(meter: &Meter, pool: &ThreadPool) -> Vec<Measured> {
     let sizes = [
         ("6x6_2_walkers", 6, 2),
         ("24x24_2_walkers", 24, 2),
@@ -234,7 +239,7 @@ fn sensing(meter: &Meter) -> Vec<Measured> {
         meter.measure(id, format!("{side} x {side} tiles, {walkers} walkers"), || {
             let mut load = SensingLoad::new(side, walkers);
             move || {
-                load.second();
+                pool.run(|| load.second());
             }
         })
     });
@@ -249,15 +254,6 @@ fn serving(meter: &Meter) -> Measured {
             load.second();
         }
     })
-}
-
-/// Reads a number of threads, or `all`.
-fn cores(text: &str) -> Result<NonZeroUsize, String> {
-    if text == "all" {
-        return Ok(thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
-    }
-    let number = text.parse().ok().filter(|number: &NonZeroUsize| number.get() <= MOST_THREADS);
-    number.ok_or_else(|| format!("expected a number of threads from 1 to {MOST_THREADS}, or `all`"))
 }
 
 #[cfg(test)]
@@ -278,14 +274,5 @@ mod tests {
         assert_eq!(tiles, 1136.0);
         assert_eq!(first(&found, tiles).id, "sensing");
         assert_eq!(first(&found, 1801.0).id, "sound");
-    }
-
-    #[test]
-    fn threads_are_a_number_or_all() {
-        assert_eq!(cores("3").unwrap().get(), 3);
-        assert!(cores("all").unwrap().get() >= 1);
-        for wrong in ["0", "-1", "many", "1025", ""] {
-            assert!(cores(wrong).is_err(), "{wrong}");
-        }
     }
 }

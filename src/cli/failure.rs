@@ -3,6 +3,7 @@
 use std::path::PathBuf;
 
 use thiserror::Error;
+use underfoot::parallel::ThreadPoolError;
 use underfoot::picture::PictureError;
 use underfoot::recording::RecordingError;
 use underfoot::runtime::StartError;
@@ -38,6 +39,9 @@ pub(crate) enum Failure {
     /// A recording can't be begun.
     #[error("error: {0}")]
     Recording(#[from] RecordingError),
+    /// The system gives no threads.
+    #[error("error: {0}")]
+    ThreadPool(#[from] ThreadPoolError),
     /// Anything else, said in full.
     #[error("error: {0}")]
     Other(String),

@@ -1,6 +1,8 @@
 //! Numbers on the command line: finite, within their range, and said so where they are not.
 
+use std::num::NonZeroUsize;
 use std::ops::RangeInclusive;
+use std::thread;
 use std::time::Duration;
 
 /// Longest time that a program is asked to work: a year.
@@ -39,6 +41,18 @@ pub(crate) fn delay_ms(text: &str) -> Result<Duration, String> {
     number(text, &(0.0..=1000.0), "milliseconds").map(|ms| Duration::from_secs_f64(ms * 1e-3))
 }
 
+/// Most threads that may be asked for.
+const MOST_THREADS: usize = 1024;
+
+/// Reads a number of threads, or `all`.
+pub(crate) fn threads(text: &str) -> Result<NonZeroUsize, String> {
+    if text == "all" {
+        return Ok(thread::available_parallelism().unwrap_or(NonZeroUsize::MIN));
+    }
+    let number = text.parse().ok().filter(|number: &NonZeroUsize| number.get() <= MOST_THREADS);
+    number.ok_or_else(|| format!("expected a number of threads from 1 to {MOST_THREADS}, or `all`"))
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -55,5 +69,14 @@ mod tests {
         assert_eq!(lifetime("2.5"), Ok(Duration::from_millis(2500)));
         assert_eq!(lifetime("0"), Ok(Duration::ZERO));
         assert_eq!(delay_ms("12"), Ok(Duration::from_millis(12)));
+    }
+
+    #[test]
+    fn threads_are_a_number_or_all() {
+        assert_eq!(threads("3").unwrap().get(), 3);
+        assert!(threads("all").unwrap().get() >= 1);
+        for wrong in ["0", "-1", "many", "1025", ""] {
+            assert!(threads(wrong).is_err(), "{wrong}");
+        }
     }
 }

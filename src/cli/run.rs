@@ -1,6 +1,7 @@
 //! `underfoot run`: a floor is served.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, mpsc};
@@ -26,7 +27,7 @@ use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
 use super::latency::LatencyArgs;
 use super::layout_args::LayoutArgs;
-use super::number::lifetime;
+use super::number::{lifetime, threads};
 use super::outputs::OutputArgs;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
@@ -71,6 +72,10 @@ pub(crate) struct Args {
     /// The paper's plain sensing: one contact per group of connected tiles.
     #[arg(long)]
     eq4: bool,
+    /// On how many threads the feet of a crowd are sensed; `all` for as many as there are cores. Those beyond the first
+    /// sleep while fewer than a hundred feet are on the floor, and keep a core busy each while there are more.
+    #[arg(long, value_name = "N|all", default_value = "1", value_parser = threads)]
+    sensing_threads: NonZeroUsize,
     /// Record everything that decides what happens into this file, for `underfoot replay`; what was there is replaced.
     /// Latencies are not measured meanwhile.
     #[arg(long, value_name = "FILE", conflicts_with = "latency")]
@@ -132,6 +137,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .actuators(actuators)
         .latency(latency.clone())
         .realtime()
+        .sensing_threads(args.sensing_threads)
         .stop_flag(Arc::clone(&stop))
         .start()?;
     let told = session.clone();

@@ -1,6 +1,8 @@
 //! What a session is made of.
 
 use std::net::ToSocketAddrs;
+#[cfg(feature = "threads")]
+use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
 use std::sync::mpsc::{channel, sync_channel};
@@ -19,6 +21,8 @@ use super::thread::{self, Actuators, OpenActuators, Plan, Told};
 use crate::engine;
 use crate::floor::{Floor, Geometry};
 use crate::layout::Layout;
+#[cfg(feature = "threads")]
+use crate::parallel::ThreadPool;
 #[cfg(feature = "record")]
 use crate::recording::{Recorded, Recorder, WhenBehind};
 use crate::schema::{self, Diagnostics};
@@ -44,6 +48,8 @@ pub struct SessionBuilder {
     every_change: bool,
     realtime: bool,
     stop: Arc<AtomicBool>,
+    #[cfg(feature = "threads")]
+    sensing_threads: NonZeroUsize,
     #[cfg(feature = "record")]
     record: Option<std::path::PathBuf>,
 }
@@ -84,6 +90,10 @@ pub enum StartError {
     #[cfg(feature = "record")]
     #[error(transparent)]
     Recording(#[from] crate::recording::RecordingError),
+    /// The system gives no threads to share a crowd's feet among.
+    #[cfg(feature = "threads")]
+    #[error(transparent)]
+    ThreadPool(#[from] crate::parallel::ThreadPoolError),
     /// The system gives no thread.
     #[error("the system gives no thread: {0}")]
     Thread(std::io::Error),
@@ -105,6 +115,8 @@ impl SessionBuilder {
             every_change: false,
             realtime: false,
             stop: Arc::default(),
+            #[cfg(feature = "threads")]
+            sensing_threads: NonZeroUsize::MIN,
             #[cfg(feature = "record")]
             record: None,
         }
@@ -243,6 +255,17 @@ impl SessionBuilder {
         self
     }
 
+    /// Shares the feet of a crowd among so many threads; without it, one thread does all. What they find is the same.
+    ///
+    /// Threads beyond the first sleep while there are fewer than a hundred feet on the floor, and are busy, not only
+    /// ready, while there are more: give no more than there are cores to spare.
+    #[cfg(feature = "threads")]
+    #[must_use]
+    pub fn sensing_threads(mut self, threads: NonZeroUsize) -> Self {
+        self.sensing_threads = threads;
+        self
+    }
+
     /// Also ends when somebody sets `stop`, such as a signal handler.
     #[must_use]
     pub fn stop_flag(mut self, stop: Arc<AtomicBool>) -> Self {
@@ -295,6 +318,10 @@ impl SessionBuilder {
             neighbours: self.neighbours,
             latency: self.latency,
             realtime: self.realtime,
+            #[cfg(feature = "threads")]
+            pool: (self.sensing_threads.get() > 1)
+                .then(|| ThreadPool::new(self.sensing_threads))
+                .transpose()?,
             commands: received,
             snapshots,
             stop: Arc::clone(&self.stop),

@@ -15,6 +15,8 @@ use crate::engine;
 use crate::feel::CueSender;
 use crate::floor::Floor;
 use crate::layout::Layout;
+#[cfg(feature = "threads")]
+use crate::parallel::ThreadPool;
 use crate::sense::Method;
 use crate::serve::{Command, Neighbours, Server};
 use crate::sink::{ActuatorSink, Fanout, LatencyStages, Rank, SinkError, claim_priority};
@@ -48,6 +50,9 @@ pub(super) struct Plan {
     pub(super) neighbours: Option<Box<dyn Neighbours>>,
     pub(super) latency: Option<LatencyStages>,
     pub(super) realtime: bool,
+    /// Shares the feet of a crowd; `None` if the sensing thread works alone.
+    #[cfg(feature = "threads")]
+    pub(super) pool: Option<ThreadPool>,
     pub(super) commands: Receiver<Command>,
     pub(super) snapshots: triple_buffer::Input<engine::Snapshot>,
     pub(super) stop: Arc<AtomicBool>,
@@ -60,8 +65,21 @@ pub(super) struct Told {
     pub(super) waker: Option<Arc<Waker>>,
 }
 
-/// Serves until the end; `ready` hears when the first snapshot is there, or why it can't begin.
-pub(super) fn run(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
+/// Serves until the end, on this thread or on one of the pool; `ready` hears when the first snapshot is there, or why
+/// it can't begin.
+#[cfg_attr(not(feature = "threads"), expect(unused_mut, reason = "no pool to take from it"))]
+pub(super) fn run(mut plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
+    #[cfg(feature = "threads")]
+    if let Some(pool) = plan.pool.take() {
+        if plan.realtime {
+            pool.for_each_thread(|| _ = claim_priority(Rank::Sensing));
+        }
+        return pool.run(|| run_here(plan, told, ready));
+    }
+    run_here(plan, told, ready);
+}
+
+fn run_here(plan: Plan, told: &Told, ready: &SyncSender<Result<(), StartError>>) {
     let clock = Arc::clone(&plan.clock);
     // What a panic leaves half done is only looked at to cancel what is held.
     let served = catch_unwind(AssertUnwindSafe(|| serve(plan, told, ready)));

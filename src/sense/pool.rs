@@ -45,9 +45,11 @@ impl ContactPool {
     }
 
     pub(super) fn sort_by_id(&mut self) {
-        if let Some(used) = self.contacts.get_mut(..self.used) {
-            used.sort_unstable_by_key(|contact| contact.id);
-        }
+        self.contacts_mut().sort_unstable_by_key(|contact| contact.id);
+    }
+
+    pub(super) fn contacts_mut(&mut self) -> &mut [Contact] {
+        self.contacts.get_mut(..self.used).unwrap_or_default()
     }
 
     pub(super) fn contacts(&self) -> &[Contact] {

@@ -9,6 +9,7 @@ use super::track::Tracker;
 use super::uncertainty::SensorUncertainty;
 use super::{Contact, ForceFrame};
 use crate::floor::{Geometry, PositionMap};
+use crate::parallel;
 use crate::units::Instant;
 
 /// How contacts are made from tile forces.
@@ -90,13 +91,18 @@ impl Sensing {
     pub fn update(&mut self, frame: &ForceFrame) -> &[Contact] {
         let dt = self.last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
         self.last = Some(frame.at);
-        self.tiles.update(frame);
-        match &mut self.maker {
+        let Self { tiles, maker, pool, .. } = self;
+        match maker {
             Maker::Eq4(clusters, eq4) => {
-                clusters.update(&self.tiles);
-                eq4.update(&self.tiles, clusters, dt, &mut self.pool);
+                tiles.update(frame);
+                clusters.update(tiles);
+                eq4.update(tiles, clusters, dt, pool);
             }
-            Maker::Tracker(tracker) => tracker.update(&self.tiles, dt, &mut self.pool),
+            // Who helps wakes while the loaded tiles are found.
+            Maker::Tracker(tracker) => parallel::with_pool_awake(tracker.feet(), || {
+                tiles.update(frame);
+                tracker.update(tiles, dt, pool);
+            }),
         }
         self.pool.contacts()
     }

@@ -1,9 +1,18 @@
 //! From packets to contacts nothing is allocated once the floor runs, whatever breaks meanwhile: it may run for months.
 
+#[cfg(feature = "threads")]
+use std::num::NonZeroUsize;
+
+#[cfg(feature = "threads")]
+use crate::sense_support::Crowd;
 use crate::sense_support::{Sensors, walk};
 use assert_no_alloc::{assert_no_alloc, violation_count};
 use underfoot::experiment::Visit;
 use underfoot::floor::{Corner, Floor, Geometry, SensorId};
+#[cfg(feature = "threads")]
+use underfoot::parallel::ThreadPool;
+#[cfg(feature = "threads")]
+use underfoot::sense::ForceFrame;
 use underfoot::sense::{Assembler, Method, Sensing};
 use underfoot::sim::{self, Foot, SensorFault, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
@@ -84,4 +93,36 @@ fn once_warm_nothing_is_allocated() {
         });
         assert_eq!(violation_count(), before, "{method:?}");
     }
+}
+
+// R4
+#[cfg(feature = "threads")]
+#[test]
+fn a_crowd_on_several_cores_allocates_nothing_on_the_sensing_thread() {
+    let crowd = Crowd::of(60, 200, 300);
+    let pool = ThreadPool::new(NonZeroUsize::new(3).unwrap()).unwrap();
+    pool.run(|| {
+        let mut sensing = Sensing::new(crowd.geometry, Method::Tracker);
+        let mut frame = ForceFrame::empty(&crowd.geometry);
+        let (mut before, mut most, mut watched) = (None, 0, 0);
+        // To and fro, so that nobody jumps.
+        let times = || crowd.moments.iter().chain(crowd.moments.iter().rev());
+        for (ms, moment) in (0..).zip(times().chain(times())) {
+            moment.show(&mut frame, before.replace(moment));
+            frame.at = Instant::from_millis(ms);
+            let (counted, is_first) = (violation_count(), ms < times().count() as u64);
+            let contacts = if is_first {
+                sensing.update(&frame).len()
+            } else {
+                assert_no_alloc(|| sensing.update(&frame).len())
+            };
+            // Only a floor fuller than ever takes memory.
+            if !is_first && contacts <= most {
+                assert_eq!(violation_count(), counted, "{ms} ms");
+                watched += 1;
+            }
+            most = most.max(contacts);
+        }
+        assert!(watched > 500, "{watched} frames");
+    });
 }

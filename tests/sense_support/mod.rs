@@ -11,7 +11,7 @@ use std::f32::consts::{PI, TAU};
 use rand::{RngExt, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64Mcg;
-use underfoot::floor::{Corner, Geometry};
+use underfoot::floor::{Corner, Geometry, TileId};
 use underfoot::glam::Vec2;
 use underfoot::sense::{Contact, ForceFrame, Method, Sensing, SensingConfig, SensorUncertainty};
 use underfoot::units::Instant;
@@ -290,6 +290,62 @@ pub fn tap(seed: u64, sensors: Sensors) -> Scene {
     }
     let geometry = Geometry::of_paper_tiles(12, 12).expect("a floor of 12 x 12 tiles");
     play(format!("tap {seed} with {tapping:.0} N"), geometry, 8.0, &steps, sensors, seed)
+}
+
+/// People on a large floor, two on each stretch of 6 x 6 tiles, no two stretches in step.
+pub struct Crowd {
+    pub geometry: Geometry,
+    pub moments: Vec<Moment>,
+}
+
+/// One millisecond of a crowd.
+pub struct Moment {
+    at: Instant,
+    /// What the loaded tiles read.
+    loads: Vec<(usize, [f32; 4])>,
+}
+
+impl Moment {
+    /// Brings `frame` up to date, in which `before` is shown, as the assembler does: where something changes.
+    pub fn show(&self, frame: &mut ForceFrame, before: Option<&Self>) {
+        let loads = before.map_or(&[][..], |before| &before.loads);
+        loads.iter().for_each(|(index, _)| frame.forces[*index] = [0.0; 4]);
+        self.loads.iter().for_each(|(index, forces)| frame.forces[*index] = *forces);
+        frame.at = self.at;
+    }
+}
+
+impl Crowd {
+    /// A floor of `side` x `side` tiles on which `walkers` people walk for so many milliseconds.
+    pub fn of(side: u16, walkers: u16, millis: usize) -> Self {
+        let geometry = Geometry::of_paper_tiles(side, side).expect("a square floor");
+        let people = [walk(1, Sensors::PERFECT), walk(4, Sensors::PERFECT)];
+        let stretches = side / 6;
+        let moments = (0..millis).map(|ms| {
+            let mut loads: Vec<(usize, [f32; 4])> = Vec::new();
+            for walker in 0..walkers {
+                let scene = &people[usize::from(walker % 2)];
+                let stretch = walker / 2;
+                let (east, north) = (6 * (stretch % stretches), 6 * (stretch / stretches));
+                let ms = 500 + (ms + 37 * usize::from(stretch)) % 2000;
+                for (index, forces) in scene.frames[ms].forces.iter().enumerate() {
+                    if forces.iter().all(|force| *force == 0.0) {
+                        continue;
+                    }
+                    let tile = scene.geometry.tile_at_index(index);
+                    let column = (tile.column + 3 * (walker % 2)) % 6 + east;
+                    let here = TileId::new(column, tile.row % 6 + north);
+                    let here = geometry.index(here).expect("a tile of the floor");
+                    match loads.iter_mut().find(|(index, _)| *index == here) {
+                        Some((_, sum)) => sum.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force),
+                        None => loads.push((here, *forces)),
+                    }
+                }
+            }
+            Moment { at: people[0].frames[500 + ms].at, loads }
+        });
+        Self { geometry, moments: moments.collect() }
+    }
 }
 
 /// How well contacts followed people, at 100 Hz.

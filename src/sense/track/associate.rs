@@ -93,7 +93,7 @@ impl Tracker {
                     foot.touchdown = self.touchdown_at(centroid);
                     foot.tiles.push(position);
                     self.owner[position as usize] = self.tracks.len() as u32;
-                    self.near.add(foot.centre());
+                    self.near.add(&foot);
                     self.tracks.push(foot);
                 }
             }
@@ -165,13 +165,13 @@ impl Tracker {
         (existing.is_slow() && !existing.shared)
             .then_some(Touchdown { existing: existing.id, from: existing.rest_point })
     }
+}
 
-    /// Gives feet that have just landed, and are guessed to be beside all loaded tiles, the tiles they were noticed on.
+impl Track {
+    /// Takes the tiles it was noticed on, if it has just landed and is guessed to be beside all loaded tiles.
     pub(super) fn keep_noticed_tiles(&mut self, tiles: &LoadedTiles) {
-        for foot in &mut self.tracks {
-            if foot.tiles.is_empty() && foot.age < LANDS_S {
-                foot.tiles.extend(foot.smoothed.loads.iter().filter_map(|load| tiles.position(load.index)));
-            }
+        if self.tiles.is_empty() && self.age < LANDS_S {
+            self.tiles.extend(self.smoothed.loads.iter().filter_map(|load| tiles.position(load.index)));
         }
     }
 }

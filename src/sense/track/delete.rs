@@ -7,24 +7,36 @@ use super::params::delete::{
 use super::params::state::{LANDS_S, SHOE_M};
 use super::state::{FORCE, Track};
 use super::{Tracker, cell_of, first_of_least};
+use crate::parallel;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 impl Tracker {
     /// Takes away feet that are not there.
     pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
-        self.near.renew(self.tracks.iter().map(Track::centre));
-        for which in 0..self.tracks.len() {
+        self.near.renew(&self.tracks);
+        let mut empty_s = std::mem::take(&mut self.empty_s);
+        empty_s.clear();
+        empty_s.extend(self.tracks.iter().map(|foot| foot.empty_s));
+        parallel::for_each(&mut empty_s, |which, empty_s| {
             let foot = &self.tracks[which];
-            let gone = if foot.shared { self.is_empty(foot, tiles) } else { self.is_rim(foot) };
-            let foot = &mut self.tracks[which];
+            let gone = if foot.shared { self.is_empty(foot, tiles) } else { self.is_rim(which) };
             let change = if gone { 1.0 } else { -RECOVERS };
-            foot.empty_s = (foot.empty_s + change * dt).max(0.0);
-            if foot.empty_s >= FAINT_S {
+            *empty_s = (*empty_s + change * dt).max(0.0);
+        });
+        for (which, &empty_s) in empty_s.iter().enumerate() {
+            let foot = &mut self.tracks[which];
+            foot.empty_s = empty_s;
+            if empty_s >= FAINT_S {
                 for mate in self.mates.of(foot.group) {
                     self.tracks[mate].suppress_births();
                 }
             }
+        }
+        let is_any_gone = empty_s.iter().any(|&empty_s| empty_s >= FAINT_S);
+        self.empty_s = empty_s;
+        if !is_any_gone {
+            return;
         }
         for which in 0..self.tracks.len() {
             if self.tracks[which].empty_s >= FAINT_S {
@@ -85,14 +97,16 @@ impl Tracker {
         self.mates.of(foot.group).map(|mate| &self.tracks[mate]).filter(move |mate| mate.id != id)
     }
 
-    /// Whether it is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both pressed.
-    fn is_rim(&self, foot: &Track) -> bool {
+    /// Whether foot `which` is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both
+    /// pressed.
+    fn is_rim(&self, which: usize) -> bool {
+        let foot = &self.tracks[which];
         let (place, force) = (foot.centre(), foot.force());
         foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self.near.distances(place).filter(|&(distance, _)| distance < RIM_M).any(|(_, other)| {
-                let other = &self.tracks[other];
-                other.id != foot.id && force < RIM_SHARE * other.force()
-            })
+            && self
+                .near
+                .others(which)
+                .any(|(distance, other)| distance < RIM_M && force < RIM_SHARE * self.tracks[other].force())
     }
 
     /// Whether it presses a tile that none of the others can reach: proof that it is still there.

@@ -52,13 +52,8 @@ impl Tracker {
             existing.restart_smoothing();
             (existing.anchor, existing.anchored_s, existing.astray_s) = (existing.centre(), 0.0, 0.0);
             self.dormant.push(Dormant { existing: existing.id, from, foot, age: 0.0 });
-            self.tracks[which].empty_s = f64::INFINITY;
+            self.tracks.remove(which);
             break;
-        }
-        let before = self.tracks.len();
-        self.tracks.retain(|foot| foot.empty_s.is_finite());
-        if self.tracks.len() != before {
-            self.near.renew(self.tracks.iter().map(Track::centre));
         }
     }
 
@@ -125,7 +120,7 @@ impl Tracker {
                 foot.tiles.extend_from_slice(&self.tracks[existing].tiles);
             }
             self.near.moved(existing, from);
-            self.near.add(foot.centre());
+            self.near.add(&foot);
             self.tracks.push(foot);
         }
     }

@@ -9,16 +9,18 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::explanation::Second;
+use super::neighbours::Near;
 use super::state::{FORCE, Track};
 use super::strips::Whole;
 use super::touchdown::Touchdown;
-use super::{Tracker, first_of_least};
+use super::{Cells, Tracker, first_of_least};
+use crate::parallel;
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
 /// A foot that has just landed among another's tiles.
 #[derive(Clone, Debug, Default)]
-struct Candidate {
+pub(super) struct Candidate {
     force: f64,
     place: DVec2,
     deviation: f64,
@@ -32,23 +34,13 @@ impl Tracker {
     /// Lets feet land on tiles that others already press.
     pub(super) fn initiate(&mut self, tiles: &LoadedTiles, dt: f64) {
         let list = tiles.list();
+        let (near, cells) = (&self.near, &self.cells);
+        parallel::for_each(&mut self.tracks, |which, foot| {
+            foot.look_for_second(which, near, list, cells, dt);
+        });
         for which in 0..self.tracks.len() {
+            let Some(candidate) = self.tracks[which].candidate.take() else { continue };
             let foot = &self.tracks[which];
-            if foot.shared {
-                continue;
-            }
-            // A sensor whose quality changes moves what its tile says without any foot.
-            let quality = foot.tiles.iter().map(|&position| list[position as usize].quality).max();
-            if quality.is_some_and(|quality| quality != foot.quality) {
-                // A sensor that is lost or found goes over to what the others say little by little.
-                let lasts = foot.tiles.iter().any(|&position| !list[position as usize].is_settled());
-                self.tracks[which].on_quality_change(quality.unwrap_or_default(), lasts);
-                continue;
-            }
-            let second = self.second(which, list, dt);
-            let foot = &self.tracks[which];
-            let added = if foot.age > LANDS_S { self.added(foot, list) } else { None };
-            let Some(candidate) = added.or(second) else { continue };
             // A track that it may be a part of has its centre of pressure within a stride.
             let others = self.near.around(candidate.place).filter(|&other| other != which);
             let nearest = others
@@ -107,28 +99,43 @@ impl Tracker {
                     self.tracks[which].back_to_prediction();
                 }
                 self.near.moved(which, self.tracks[which].centre());
-                self.near.add(new_track.centre());
+                self.near.add(&new_track);
                 self.tracks.push(new_track);
             }
         }
     }
+}
 
-    /// Whether no other track is within a stride.
-    fn is_far_from_all(&self, which: usize) -> bool {
-        let mut others = self.near.distances(self.tracks[which].centre());
-        others.all(|(distance, other)| other == which || distance > STRIDE_M)
+impl Track {
+    /// Notes who may have landed among the tiles of this foot, number `which` of those on the floor.
+    fn look_for_second(&mut self, which: usize, near: &Near, list: &[LoadedTile], cells: &Cells, dt: f64) {
+        if self.shared {
+            return;
+        }
+        // A sensor whose quality changes moves what its tile says without any foot.
+        let quality = self.tiles.iter().map(|&position| list[position as usize].quality).max();
+        if quality.is_some_and(|quality| quality != self.quality) {
+            // A sensor that is lost or found goes over to what the others say little by little.
+            let lasts = self.tiles.iter().any(|&position| !list[position as usize].is_settled());
+            self.on_quality_change(quality.unwrap_or_default(), lasts);
+            return;
+        }
+        let alone = near.others(which).all(|(distance, _)| distance > STRIDE_M);
+        let second = self.second(alone, list, cells.pitch, dt);
+        let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
+        self.candidate = added.or(second);
     }
 
     /// A foot whose load has been added to tiles where the track itself cannot have put it.
-    fn added(&self, foot: &Track, list: &[LoadedTile]) -> Option<Candidate> {
+    fn added(&self, list: &[LoadedTile], cells: &Cells) -> Option<Candidate> {
         let mut found = Candidate::default();
-        if !foot.bears() && foot.velocity().length() > SLIDES_M_S {
+        if !self.bears() && self.velocity().length() > SLIDES_M_S {
             return None;
         }
-        for &position in &foot.tiles {
+        for &position in &self.tiles {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
-            let slow = foot.smoothed_load(tile.index);
+            let slow = self.smoothed_load(tile.index);
             let centre = tile.centre.as_dvec2();
             let added = force - slow.force;
             let noise = tile.loaded_noise_n();
@@ -137,13 +144,13 @@ impl Tracker {
             }
             let moment = (tile.centroid.as_dvec2() - centre) * force - slow.moment;
             // Moment of what was added about the foot's own centre of pressure.
-            let about = moment + (centre - foot.smoothed.centre) * added;
+            let about = moment + (centre - self.smoothed.centre) * added;
             let place = centre + moment / added;
-            let (low, high) = self.cells.of(tile);
+            let (low, high) = cells.of(tile);
             let inside = place.cmpge(low - 0.02).all() && place.cmple(high + 0.02).all();
             // What the foot's own sway may look like, at its own centre of pressure.
             let sway = slow.force * 0.012 + 3.5 * NOISE_ARM_M * noise;
-            if inside && about.length() > added * 0.08 + sway && foot.beyond(place) > sway / added {
+            if inside && about.length() > added * 0.08 + sway && self.beyond(place) > sway / added {
                 found.place =
                     (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);
                 found.force += added;
@@ -154,22 +161,19 @@ impl Tracker {
         (found.force > 0.0).then_some(found)
     }
 
-    /// A second foot that one track's load tells of: where it would be.
-    fn second(&mut self, which: usize, list: &[LoadedTile], dt: f64) -> Option<Candidate> {
-        let foot = &self.tracks[which];
-        let seen = Whole::of(foot.tiles.iter().map(|&position| &list[position as usize]));
-        let alone = self.is_far_from_all(which);
-        let mut explanation = foot.explanation;
-        let second = explanation.update(foot, &seen, list, self.cells.pitch, alone, dt);
-        self.tracks[which].explanation = explanation;
-        let foot = &self.tracks[which];
-        if foot.suppressed_s > 0.0 {
+    /// A second foot that its load tells of: where it would be. `alone`: no other foot is within a stride.
+    fn second(&mut self, alone: bool, list: &[LoadedTile], pitch: f64, dt: f64) -> Option<Candidate> {
+        let seen = Whole::of(self.tiles.iter().map(|&position| &list[position as usize]));
+        let mut explanation = self.explanation;
+        let second = explanation.update(self, &seen, list, pitch, alone, dt);
+        self.explanation = explanation;
+        if self.suppressed_s > 0.0 {
             return None;
         }
         match second? {
             Second::Shift(shift) => Some(Candidate {
                 force: seen.force * shift.length() / STANCE_M,
-                place: foot.anchor + shift.normalize() * STANCE_M,
+                place: self.anchor + shift.normalize() * STANCE_M,
                 deviation: GUESSED_M,
                 ..Candidate::default()
             }),
@@ -177,7 +181,7 @@ impl Tracker {
                 let axis = spread.axis();
                 // The lighter side is the new one.
                 let mut sides = [(0.0, DVec2::ZERO); 2];
-                for &position in &foot.tiles {
+                for &position in &self.tiles {
                     let tile = &list[position as usize];
                     let force = f64::from(tile.wrench.force);
                     let at = tile.centroid.as_dvec2();
@@ -187,7 +191,7 @@ impl Tracker {
                 }
                 let centre = |side: usize| sides[side].1 / sides[side].0;
                 let new =
-                    if centre(0).distance(foot.landed) > centre(1).distance(foot.landed) { 0 } else { 1 };
+                    if centre(0).distance(self.landed) > centre(1).distance(self.landed) { 0 } else { 1 };
                 let (keep, place) = (centre(1 - new), centre(new));
                 let mut candidate = Candidate {
                     force: sides[new].0,

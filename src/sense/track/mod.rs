@@ -9,8 +9,8 @@
 //! 2. **Initiate** ([`initiate`], [`explanation`]): a track that is alone on its tiles is explained by one foot or
 //!    by two; a second track begins when two are likely enough to pay for the risk, and the data say where.
 //! 3. **Estimate**: a track that is alone is measured by Eq. 4. Tracks that share tiles are estimated together
-//!    by an extended Kalman filter ([`joint`], [`model`]) that predicts the force and both moments of each column and
-//!    row of tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each
+//!    by an extended Kalman filter ([`groups`], [`joint`], [`model`]) that predicts the force and both moments of each
+//!    column and row of tiles ([`strips`]). A foot put down beside a standing one is placed by the likelihood of each
 //!    distance ([`touchdown`]).
 //! 4. **Delete or rest** ([`delete`], [`dormant`]): a foot whose place is proven empty is gone; one that carries so
 //!    little that the other one explains all of it keeps its identity, marked, until its weight comes back or
@@ -23,6 +23,7 @@ mod associate;
 mod delete;
 mod dormant;
 mod explanation;
+mod groups;
 mod initiate;
 mod joint;
 mod model;
@@ -41,23 +42,21 @@ mod strips;
 mod tests;
 mod touchdown;
 
-use self::params::tracker::{
-    FIRST_STEP_M, LANDING_S, MOST_MORE_N, MOST_SHARE, NIS_S, SEEN_S, STRIDE_M, THROWN_M,
-};
+use self::params::tracker::{LANDING_S, STRIDE_M};
 use glam::{DVec2, IVec2};
 
-use self::joint::{Joint, MOST_FEET};
-use self::model::{observe, predict};
+use self::groups::{BATCHES, GroupEstimator, Link};
 use self::neighbours::{Groups, Near};
 use self::smoothed::kept;
-use self::state::{EAST, NORTH, STATES, Track};
-use self::strips::{Axis, Strips, centroid_sigma};
+use self::state::Track;
+use self::strips::Axis;
 use super::contact::ContactId;
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
 use super::tile::LoadedTile;
 use super::uncertainty::SensorUncertainty;
 use crate::floor::{Geometry, TileBlock, TileId};
+use crate::parallel;
 
 /// Follows feet over one floor.
 #[derive(Clone, Debug)]
@@ -67,29 +66,24 @@ pub(super) struct Tracker {
     next: u32,
     tracks: Vec<Track>,
     dormant: Vec<dormant::Dormant>,
-    links: Vec<Link>,
-    new_links: Vec<Link>,
-    joint: Box<Joint>,
+    estimators: Vec<GroupEstimator>,
+    /// Covariances between feet after the last frame, one list per estimator.
+    links: Vec<Vec<Link>>,
+    /// Per track, the number of the group that it is the first member of, among groups of several.
+    group_numbers: Vec<u32>,
     /// Per loaded tile: the first foot that reaches it, or `UNASSIGNED`.
     owner: Vec<u32>,
     unassigned: Vec<u32>,
     pending: Vec<associate::Pending>,
     /// Orphans, each with a foot that had it in the last frame.
     previous_owners: Vec<(u32, u32)>,
-    members: Vec<u32>,
+    /// Per foot, for how long its place has been empty.
+    empty_s: Vec<f64>,
     near: Near,
     mates: Groups,
 }
 
 const UNASSIGNED: u32 = u32::MAX;
-
-/// The covariance between two feet that are estimated together.
-#[derive(Clone, Copy, Debug)]
-struct Link {
-    first: ContactId,
-    second: ContactId,
-    cross: [[f64; STATES]; STATES],
-}
 
 /// The cells of the floor's tiles, without gaps between them.
 #[derive(Clone, Copy, Debug)]
@@ -152,31 +146,36 @@ impl Tracker {
             next: 1,
             tracks: Vec::with_capacity(room),
             dormant: Vec::with_capacity(room),
-            links: Vec::with_capacity(room),
-            new_links: Vec::with_capacity(room),
-            joint: Box::new(Joint::new()),
+            estimators: (0..BATCHES).map(|number| GroupEstimator::new(number, room / BATCHES)).collect(),
+            links: (0..BATCHES).map(|_| Vec::with_capacity(room / BATCHES)).collect(),
+            group_numbers: Vec::with_capacity(room),
             owner: Vec::with_capacity(room),
             unassigned: Vec::with_capacity(room),
             pending: Vec::with_capacity(room),
             previous_owners: Vec::with_capacity(room),
-            members: Vec::with_capacity(room),
+            empty_s: Vec::with_capacity(room),
         }
+    }
+
+    /// How many feet it follows.
+    pub(super) fn feet(&self) -> usize {
+        self.tracks.len()
     }
 
     /// Fills `pool` with this frame's contacts; `dt` seconds have passed since the last frame.
     pub(super) fn update(&mut self, tiles: &LoadedTiles, dt: f32, pool: &mut ContactPool) {
         let dt = f64::from(dt);
-        for foot in &mut self.tracks {
+        let pitch = self.cells.pitch;
+        parallel::for_each(&mut self.tracks, |_, foot| {
             foot.predict(dt);
-            foot.reach(tiles, self.cells.pitch);
-        }
-        self.near.renew(self.tracks.iter().map(Track::centre));
+            foot.reach(tiles, pitch);
+        });
+        self.near.renew(&self.tracks);
         self.associate(tiles, dt);
         self.forget_pending();
         self.wake(tiles, dt);
         self.initiate(tiles, dt);
-        self.note_partners();
-        self.keep_noticed_tiles(tiles);
+        self.note_partners(tiles);
         self.tracks.retain(|foot| !foot.tiles.is_empty());
         self.group(tiles.list().len());
         self.estimate(tiles, dt);
@@ -186,22 +185,21 @@ impl Tracker {
         self.describe(tiles, pool);
     }
 
-    /// Lets each foot remember where others near it are.
-    fn note_partners(&mut self) {
-        for which in 0..self.tracks.len() {
-            let here = self.tracks[which].centre();
-            let others = self.near.distances(here).filter(|&(distance, other)| {
-                distance < STRIDE_M && other != which && self.tracks[other].age > SEEN_S
-            });
-            let nearest = others.min_by(first_of_least);
-            if let Some((_, other)) = nearest {
-                if self.tracks[which].age < LANDING_S {
-                    self.tracks[which].body_n = self.tracks[other].body_of_owner();
+    /// Lets each foot remember where others near it are, and keep the tiles it was noticed on.
+    fn note_partners(&mut self, tiles: &LoadedTiles) {
+        let near = &self.near;
+        parallel::for_each(&mut self.tracks, |which, foot| {
+            let others =
+                near.others(which).filter(|&(distance, other)| distance < STRIDE_M && near.is_seen(other));
+            if let Some((_, other)) = others.min_by(first_of_least) {
+                if foot.age < LANDING_S {
+                    foot.body_n = near.body_n(other);
                 }
-                self.tracks[which].partner = Some((self.tracks[other].centre(), 0.0));
-                self.tracks[which].accompanied = true;
+                foot.partner = Some((near.place(other), 0.0));
+                foot.accompanied = true;
             }
-        }
+            foot.keep_noticed_tiles(tiles);
+        });
     }
 
     fn name(&mut self) -> ContactId {
@@ -246,166 +244,45 @@ impl Tracker {
 
     /// Measures feet that are alone on their tiles, estimates those that are not.
     fn estimate(&mut self, tiles: &LoadedTiles, dt: f64) {
-        self.new_links.clear();
-        for which in 0..self.tracks.len() {
-            if self.tracks[which].group != which as u32 {
-                continue;
+        parallel::for_each(&mut self.tracks, |which, foot| {
+            if foot.group == which as u32 && !foot.crowded {
+                foot.measure(tiles.list(), dt);
             }
-            if !self.tracks[which].crowded {
-                let foot = &mut self.tracks[which];
-                let before = foot.centre();
-                let until_now = std::mem::replace(&mut foot.shared, false);
-                foot.alone(tiles.list(), dt);
-                let quality_changed = std::mem::take(&mut foot.quality_changed);
-                if until_now || quality_changed {
-                    foot.restart_smoothing();
-                    (foot.anchor, foot.anchored_s, foot.astray_s) = (foot.centre(), 0.0, 0.0);
-                }
-                if quality_changed {
-                    // Still it stands where it stood, only seen otherwise.
-                    foot.rest_point = if foot.suppressed_s > 0.0 {
-                        foot.centre()
-                    } else {
-                        foot.rest_point + foot.centre() - before
-                    };
-                }
-                continue;
-            }
-            self.members.clear();
-            for other in self.mates.of(which as u32) {
-                let foot = &mut self.tracks[other];
-                if !foot.shared {
-                    foot.keep_shape();
-                }
-                foot.shared = true;
-                // More feet than one filter holds: the rest go on as predicted, as guesses.
-                foot.beyond_filter = self.members.len() >= MOST_FEET;
-                if !foot.beyond_filter {
-                    self.members.push(other as u32);
-                }
-            }
-            if !self.place_touchdown(tiles.list()) {
-                self.estimate_together(tiles, dt);
-            }
-        }
-        std::mem::swap(&mut self.links, &mut self.new_links);
-    }
-
-    /// Places a foot that was put down beside a standing one; false if there is none, or nothing to be said.
-    fn place_touchdown(&mut self, list: &[LoadedTile]) -> bool {
-        let &[a, b] = self.members.as_slice() else { return false };
-        let Some((before, after)) = self.tracks.split_at_mut_checked(b as usize) else { return false };
-        let (Some(first), Some(second)) = (before.get_mut(a as usize), after.first_mut()) else {
-            return false;
-        };
-        let (existing, stepping) = if second.has_landed_beside(first) {
-            (first, second)
-        } else if first.has_landed_beside(second) {
-            (second, first)
-        } else {
-            return false;
-        };
-        let Some(touchdown) = stepping.touchdown else { return false };
-        let both = existing.tiles_with(stepping);
-        let strips = Strips::of(both.iter().map(|&position| &list[position as usize]), self.cells.pitch);
-        let sigma = centroid_sigma(
-            both.iter().map(|&position| &list[position as usize]),
-            strips.force,
-            self.cells.pitch,
-        );
-        // Where what the filter says of both has not fitted for some time, they are looked for anew.
-        if !existing.ambiguous
-            && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, &self.cells)
-        {
-            existing.hold_at(touchdown.from);
-            return false;
-        }
-        touchdown::place(existing, stepping, touchdown.from, strips, sigma, &self.cells)
-    }
-
-    /// One step of the joint filter over the feet in `members`.
-    fn estimate_together(&mut self, tiles: &LoadedTiles, dt: f64) {
-        let members = &self.members;
-        let list = tiles.list();
-        let joint = &mut self.joint;
-        joint.clear();
-        for &member in members {
-            joint.add(&self.tracks[member as usize]);
-        }
-        for (first, &a) in members.iter().enumerate() {
-            for (second, &b) in members.iter().enumerate().skip(first + 1) {
-                let (a, b) = (&self.tracks[a as usize], &self.tracks[b as usize]);
-                let links = self.links.get(a.links_from..).unwrap_or_default();
-                let mut links = links.iter().take_while(|link| link.first == a.id);
-                if let Some(link) = links.find(|link| link.second == b.id) {
-                    joint.link(first, second, &link.cross);
-                }
-            }
-        }
-        predict(joint, members, &self.tracks, dt);
-        joint.confine(self.cells.bounds());
-        for (which, &member) in members.iter().enumerate() {
-            joint.take(which, &mut self.tracks[member as usize]);
-        }
-        let (nis, force) = observe(joint, members, &self.tracks, list, &self.cells, dt);
-        joint.confine(self.cells.bounds());
-        let centre = |at: usize| DVec2::new(joint.x[at * STATES + EAST], joint.x[at * STATES + NORTH]);
-        let mut new_track =
-            members.iter().enumerate().map(|(which, &member)| (which, &self.tracks[member as usize]));
-        let leaps =
-            new_track.any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
-        if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
-            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide
-            // covariance.
-            for &member in members {
-                self.tracks[member as usize].reset_covariance(THROWN_M);
-            }
-            return;
-        }
-        let weight = 1.0 - (-dt / NIS_S).exp();
-        for (which, &member) in members.iter().enumerate() {
-            let foot = &mut self.tracks[member as usize];
-            joint.take(which, foot);
-            foot.nis += weight * (nis - foot.nis);
-        }
-        for (first, &a) in members.iter().enumerate() {
-            self.tracks[a as usize].links_from = self.new_links.len();
-            for (second, &b) in members.iter().enumerate().skip(first + 1) {
-                self.new_links.push(Link {
-                    first: self.tracks[a as usize].id,
-                    second: self.tracks[b as usize].id,
-                    cross: joint.cross(first, second),
-                });
-            }
-        }
+        });
+        self.estimate_groups(tiles, dt);
     }
 
     /// Lets each foot's slow past learn from this frame.
     fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
-        let list = tiles.list();
-        let keep = kept(dt);
-        for foot in &mut self.tracks {
-            foot.smooth(dt, keep);
-            foot.roll(dt);
-            foot.note_outline(list, dt);
-            if !foot.shared {
-                foot.learn_residuals(list, self.cells.pitch, dt);
-            }
-            // A foot that has just come to stand alone starts from what is measured.
-            let fresh = !foot.shared && foot.smoothed.loads.is_empty();
-            let weight = if fresh && foot.age > 0.0 { 1.0 } else { 1.0 - keep };
-            for at in 0..foot.tiles.len() {
-                let tile = &list[foot.tiles[at] as usize];
-                let (force, moment) = if foot.shared {
-                    let on = foot.on(self.cells.of(tile));
-                    (on.share() * foot.force(), on.moment() * foot.force())
-                } else {
-                    let force = f64::from(tile.wrench.force);
-                    (force, (tile.centroid - tile.centre).as_dvec2() * force)
-                };
-                foot.learn_load(tile.index, force, moment, weight);
-            }
-            foot.forget_loads();
+        let (list, cells, keep) = (tiles.list(), self.cells, kept(dt));
+        parallel::for_each(&mut self.tracks, |_, foot| foot.learn(list, &cells, keep, dt));
+    }
+}
+
+impl Track {
+    /// Lets its slow past learn from this frame; `keep` is [`kept`] of `dt`.
+    fn learn(&mut self, list: &[LoadedTile], cells: &Cells, keep: f64, dt: f64) {
+        self.smooth(dt, keep);
+        self.roll(dt);
+        self.note_outline(list, dt);
+        if !self.shared {
+            self.learn_residuals(list, cells.pitch, dt);
         }
+        // A foot that has just come to stand alone starts from what is measured.
+        let fresh = !self.shared && self.smoothed.loads.is_empty();
+        let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - keep };
+        for at in 0..self.tiles.len() {
+            let tile = &list[self.tiles[at] as usize];
+            let (force, moment) = if self.shared {
+                let on = self.on(cells.of(tile));
+                (on.share() * self.force(), on.moment() * self.force())
+            } else {
+                let force = f64::from(tile.wrench.force);
+                (force, (tile.centroid - tile.centre).as_dvec2() * force)
+            };
+            self.learn_load(tile.index, force, moment, weight);
+        }
+        self.forget_loads();
+        self.judge();
     }
 }

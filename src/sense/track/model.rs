@@ -14,12 +14,11 @@ use super::strips::{Axis, Strips};
 use super::{Cells, number_of};
 use crate::sense::tile::LoadedTile;
 
-/// Lets `dt` seconds pass for the feet in `members`.
-pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: f64) {
-    for (which, &member) in members.iter().enumerate() {
+/// Lets `dt` seconds pass for the feet of a group.
+pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], dt: f64) {
+    for (which, foot) in group.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
-        let foot = &tracks[member as usize];
         let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST_M_S, SPEED_M_S);
         for (value, fade_s, rate) in
             [(FORCE, FORCE_FADE_S, FORCE_RATE_N_S), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
@@ -31,7 +30,7 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: 
             // A foot that has come down flat strays about its home: in the long run no further than `stray`.
             let spread = 2.0 * speed * speed * PLACE_FADE_S * dt;
             let away_s = DVec2::new(joint.x[at + EAST], joint.x[at + NORTH]).distance(foot.rest_point);
-            let stood = members.iter().all(|&other| tracks[other as usize].age <= foot.age);
+            let stood = group.iter().all(|other| other.age <= foot.age);
             let held = stood && away_s > HELD * foot.sway_m;
             let variance = if held { foot.sway_m.powi(2) } else { foot.sway_m.powi(4) / spread };
             for (place, rest_point) in [(EAST, foot.rest_point.x), (NORTH, foot.rest_point.y)] {
@@ -39,7 +38,7 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: 
             }
         }
         // What a foot is known to be shaped like, it keeps while it stays where it is.
-        let loose = 1.0 - tracks[member as usize].residual_weight();
+        let loose = 1.0 - foot.residual_weight();
         let decay = (-dt * loose / HALF_FADE_S).exp();
         for half in [HALF_EAST, HALF_NORTH] {
             joint.relax(at + half, HALF_REST, decay, HALF_SPREAD_M * HALF_SPREAD_M * (1.0 - decay * decay));
@@ -51,15 +50,14 @@ pub(super) fn predict(joint: &mut Joint, members: &[u32], tracks: &[Track], dt: 
 /// force of all those tiles.
 pub(super) fn observe(
     joint: &mut Joint,
-    members: &[u32],
-    tracks: &[Track],
+    group: &[&mut Track],
     list: &[LoadedTile],
     cells: &Cells,
     dt: f64,
 ) -> (f64, f64) {
     let mut seen: ArrayVec<u32, 64> = ArrayVec::new();
-    for &member in members {
-        for &position in &tracks[member as usize].tiles {
+    for foot in group {
+        for &position in &foot.tiles {
             if !seen.contains(&position) && !seen.is_full() {
                 seen.push(position);
             }
@@ -67,9 +65,8 @@ pub(super) fn observe(
     }
     let mut strips = Strips::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
     let (force, middle) = (strips.force, strips.middle);
-    for &member in members {
+    for foot in group {
         // Strips that a patch would reach but that carry nothing speak too.
-        let foot = &tracks[member as usize];
         for axis in Axis::BOTH {
             let wide = foot.covariance[axis.half()][axis.half()].sqrt();
             let (c, h) = (axis.along(foot.centre()), axis.along(foot.half()) + wide);
@@ -82,7 +79,7 @@ pub(super) fn observe(
     }
     // The whole of it, free of any patch model.
     let mut jacobian = [[(0, 0.0); 2 * MOST_FEET]; 3];
-    for which in 0..members.len() {
+    for which in 0..group.len() {
         let at = which * STATES;
         let state = &joint.x[at..at + STATES];
         jacobian[0][which] = (at + FORCE, 1.0);
@@ -91,7 +88,7 @@ pub(super) fn observe(
         jacobian[2][2 * which] = (at + FORCE, state[NORTH] - middle.y);
         jacobian[2][2 * which + 1] = (at + NORTH, state[FORCE]);
     }
-    let n = members.len();
+    let n = group.len();
     let start = joint.x;
     let now = |joint: &Joint, jacobian: &[Derivative]| -> f64 {
         // What the linearised prediction still misses after the observations so far.
@@ -122,8 +119,7 @@ pub(super) fn observe(
         let [force_noise, moment_noise, cross_noise] = strip.noise;
         let mut covariance =
             [[4.0 + force_noise, 0.0, 0.0], [0.0, 0.09 + moment_noise, 0.0], [0.0, 0.0, 0.09 + cross_noise]];
-        for (which, &member) in members.iter().enumerate() {
-            let foot = &tracks[member as usize];
+        for (which, foot) in group.iter().enumerate() {
             let residual = foot.residual(axis, strip.number);
             let place_along = axis.along(foot.centre());
             let width = foot.covariance[half][half].sqrt();

@@ -1,8 +1,9 @@
 //! Who is near, and who shares tiles with whom: without looking at everybody.
 
-use super::params::tracker::STRIDE_M;
+use super::params::tracker::{SEEN_S, STRIDE_M};
 use glam::DVec2;
 
+use super::state::Track;
 use super::{Cells, UNASSIGNED, cell_of};
 
 /// The feet by where they are, in squares of a stride.
@@ -27,6 +28,10 @@ struct Neighbour {
     square: u32,
     /// The foot that was put into that square before it.
     before: u32,
+    /// Whether it has been down for long enough to be another's partner.
+    is_seen: bool,
+    /// From which force on feet of the same person bear their body, in newtons.
+    body_n: f64,
 }
 
 impl Near {
@@ -44,19 +49,38 @@ impl Near {
     }
 
     /// Takes down where everybody is now, foot by foot in their order.
-    pub(super) fn renew(&mut self, places: impl Iterator<Item = DVec2>) {
+    pub(super) fn renew(&mut self, tracks: &[Track]) {
         for foot in &self.tracks {
             self.last[foot.square as usize] = UNASSIGNED;
         }
         self.tracks.clear();
-        places.for_each(|place| self.add(place));
+        tracks.iter().for_each(|foot| self.add(foot));
     }
 
     /// Adds the next foot.
-    pub(super) fn add(&mut self, place: DVec2) {
+    pub(super) fn add(&mut self, foot: &Track) {
+        let place = foot.centre();
         let square = self.square(place);
         let before = std::mem::replace(&mut self.last[square], self.tracks.len() as u32);
-        self.tracks.push(Neighbour { place, square: square as u32, before });
+        self.tracks.push(Neighbour {
+            place,
+            square: square as u32,
+            before,
+            is_seen: foot.age > SEEN_S,
+            body_n: foot.body_of_owner(),
+        });
+    }
+
+    pub(super) fn place(&self, which: usize) -> DVec2 {
+        self.tracks[which].place
+    }
+
+    pub(super) fn is_seen(&self, which: usize) -> bool {
+        self.tracks[which].is_seen
+    }
+
+    pub(super) fn body_n(&self, which: usize) -> f64 {
+        self.tracks[which].body_n
     }
 
     /// Foot `which` is elsewhere now.
@@ -76,12 +100,17 @@ impl Near {
             self.tracks[after as usize].before = before;
         }
         let before = std::mem::replace(&mut self.last[new], which as u32);
-        self.tracks[which] = Neighbour { place, square: new as u32, before };
+        let foot = &mut self.tracks[which];
+        (foot.square, foot.before) = (new as u32, before);
     }
 
     /// All feet within a stride of `place` and some that are farther away, in no order.
     pub(super) fn around(&self, place: DVec2) -> Around<'_> {
         let (column, row) = self.column_and_row(place);
+        self.around_square(column, row)
+    }
+
+    fn around_square(&self, column: i32, row: i32) -> Around<'_> {
         let (west, east) = ((column - 1).max(0), (column + 1).min(self.columns - 1));
         let (south, north) = ((row - 1).max(0), (row + 1).min(self.rows - 1));
         let first = self.last[(south * self.columns + west) as usize];
@@ -91,6 +120,14 @@ impl Near {
     /// The same, each with its distance from `place`, in metres.
     pub(super) fn distances(&self, place: DVec2) -> impl Iterator<Item = (f64, usize)> {
         self.around(place).map(move |which| (self.tracks[which].place.distance(place), which))
+    }
+
+    /// The feet around foot `which`, each with its distance from that one, in metres.
+    pub(super) fn others(&self, which: usize) -> impl Iterator<Item = (f64, usize)> {
+        let Neighbour { place, square, .. } = self.tracks[which];
+        let (column, row) = (square as i32 % self.columns, square as i32 / self.columns);
+        let others = self.around_square(column, row).filter(move |&other| other != which);
+        others.map(move |other| (self.tracks[other].place.distance(place), other))
     }
 
     /// The square of a place; places beyond the floor belong to its outermost squares.
@@ -197,6 +234,7 @@ mod tests {
 
     use super::*;
     use crate::floor::{TileBlock, TileId};
+    use crate::sense::ContactId;
 
     #[test]
     fn nobody_within_a_stride_is_overlooked() {
@@ -208,8 +246,9 @@ mod tests {
         let mut near = Near::new(&cells, 8);
         for _ in 0..20 {
             let mut tracks: Vec<DVec2> = (0..40).map(|_| place()).collect();
-            near.renew(tracks[..30].iter().copied());
-            tracks[30..].iter().for_each(|&foot| near.add(foot));
+            let at = |&place: &DVec2| Track::new(ContactId(1), 700.0, place, 0.01);
+            near.renew(&tracks[..30].iter().map(at).collect::<Vec<_>>());
+            tracks[30..].iter().for_each(|foot| near.add(&at(foot)));
             for which in [0, 7, 7, 39, 22] {
                 tracks[which] = place();
                 near.moved(which, tracks[which]);

@@ -8,10 +8,12 @@ use glam::Vec2;
 
 use super::state::{EAST, NORTH, Track};
 use super::{Cells, Tracker};
-use crate::sense::contact::{Covariance, TileLoad};
+use crate::parallel;
+use crate::sense::contact::{Contact, Covariance, TileLoad};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::pool::ContactPool;
 use crate::sense::tile::LoadedTile;
+use crate::sense::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
 impl Tracker {
@@ -19,77 +21,12 @@ impl Tracker {
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
         let list = tiles.list();
         pool.clear();
-        for foot in &mut self.tracks {
-            if !foot.shared {
-                (foot.nis, foot.misfit) = (0.0, 0.0);
-            }
-            // Predictions that keep failing say that the feet are not what the filter takes them for.
-            let variance = foot.covariance[EAST][EAST].max(foot.covariance[NORTH][NORTH]);
-            let inflation = (1.0 + INFLATION * foot.nis).min(LOST_M * LOST_M / variance).max(1.0);
-            foot.ambiguous = if foot.shared {
-                foot.beyond_filter || inflation * variance > AMBIGUOUS_M * AMBIGUOUS_M
-            } else {
-                foot.explanation.is_open()
-            };
-            let contact = pool.add(foot.id);
-            contact.centroid = foot.centre().as_vec2();
-            contact.force = Newtons(foot.force() as f32);
-            contact.velocity = foot.velocity().as_vec2();
-            // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
-            // fit. That is told; the filter goes on by its own uncertainty.
-            let strayed_m = STRAYED_M * (foot.misfit - FITS).max(0.0).sqrt().sqrt();
-            let is_guess = foot.shared && (inflation * variance).sqrt().hypot(strayed_m) > AMBIGUOUS_M;
-            contact.ambiguous = foot.ambiguous || is_guess;
-            let mut covariance = if foot.shared {
-                Covariance {
-                    xx: (inflation * foot.covariance[EAST][EAST]) as f32,
-                    xy: (inflation * foot.covariance[EAST][NORTH]) as f32,
-                    yy: (inflation * foot.covariance[NORTH][NORTH]) as f32,
-                }
-            } else {
-                Covariance::default()
-            };
-            if !foot.shared {
-                let left: f32 = foot.tiles.iter().map(|&position| list[position as usize].left_n).sum();
-                contact.force = Newtons((contact.force.0 - left).max(LEAST_N));
-            }
-            for &position in &foot.tiles {
-                let tile = &list[position as usize];
-                let (mut share, load) = part_of(foot, tile, &self.cells);
-                if foot.shared {
-                    // What the others' loads are misread by is known in part, from when they stood alone.
-                    share += (1.0 - share) * OTHERS_MISREAD;
-                }
-                if load.force.0 > 0.0 {
-                    contact.tiles.push(load);
-                }
-                contact.quality = contact.quality.max(tile.quality);
-                covariance += self.uncertainty.covariance(
-                    tiles.geometry(),
-                    tile,
-                    share,
-                    contact.centroid,
-                    contact.force.0,
-                );
-            }
-            if contact.tiles.is_empty() {
-                // Its patch has come to lie beside every tile that could carry it.
-                contact.tiles.extend(foot.tiles.first().map(|&position| {
-                    let tile = &list[position as usize];
-                    let force = Newtons(tile.wrench.force.min(contact.force.0));
-                    TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
-                }));
-            }
-            covariance += Covariance::isotropic(strayed_m as f32);
-            if foot.landed_together {
-                covariance += Covariance::isotropic(TOGETHER_M);
-            }
-            if !foot.shared {
-                covariance += Covariance::isotropic(foot.explanation.hidden_m() as f32);
-            }
-            contact.covariance = covariance;
-            contact.finish();
+        for foot in &self.tracks {
+            pool.add(foot.id);
         }
+        parallel::for_each(pool.contacts_mut(), |which, contact| {
+            self.tracks[which].describe(tiles, &self.cells, &self.uncertainty, contact);
+        });
         for dormant in &self.dormant {
             let Some(existing) = self.tracks.iter().find(|foot| foot.id == dormant.existing) else {
                 continue;
@@ -108,6 +45,99 @@ impl Tracker {
             contact.finish();
         }
         pool.sort_by_id();
+    }
+}
+
+impl Track {
+    /// Notes how far it is told from others.
+    pub(super) fn judge(&mut self) {
+        if !self.shared {
+            (self.nis, self.misfit) = (0.0, 0.0);
+        }
+        self.ambiguous = if self.shared {
+            self.beyond_filter || self.inflated() > AMBIGUOUS_M * AMBIGUOUS_M
+        } else {
+            self.explanation.is_open()
+        };
+    }
+
+    /// Variance of its place along the worse axis.
+    fn variance(&self) -> f64 {
+        self.covariance[EAST][EAST].max(self.covariance[NORTH][NORTH])
+    }
+
+    /// By how much its covariance is too small: predictions that keep failing say that the feet are not what the filter
+    /// takes them for.
+    fn inflation(&self) -> f64 {
+        (1.0 + INFLATION * self.nis).min(LOST_M * LOST_M / self.variance()).max(1.0)
+    }
+
+    fn inflated(&self) -> f64 {
+        self.inflation() * self.variance()
+    }
+
+    /// Fills `contact`, which has nothing but its id yet.
+    fn describe(
+        &self,
+        tiles: &LoadedTiles,
+        cells: &Cells,
+        uncertainty: &SensorUncertainty,
+        contact: &mut Contact,
+    ) {
+        let list = tiles.list();
+        contact.centroid = self.centre().as_vec2();
+        contact.force = Newtons(self.force() as f32);
+        contact.velocity = self.velocity().as_vec2();
+        // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
+        // fit. That is told; the filter goes on by its own uncertainty.
+        let strayed_m = STRAYED_M * (self.misfit - FITS).max(0.0).sqrt().sqrt();
+        let is_guess = self.shared && self.inflated().sqrt().hypot(strayed_m) > AMBIGUOUS_M;
+        contact.ambiguous = self.ambiguous || is_guess;
+        let mut covariance = if self.shared {
+            let inflation = self.inflation();
+            Covariance {
+                xx: (inflation * self.covariance[EAST][EAST]) as f32,
+                xy: (inflation * self.covariance[EAST][NORTH]) as f32,
+                yy: (inflation * self.covariance[NORTH][NORTH]) as f32,
+            }
+        } else {
+            Covariance::default()
+        };
+        if !self.shared {
+            let left: f32 = self.tiles.iter().map(|&position| list[position as usize].left_n).sum();
+            contact.force = Newtons((contact.force.0 - left).max(LEAST_N));
+        }
+        for &position in &self.tiles {
+            let tile = &list[position as usize];
+            let (mut share, load) = part_of(self, tile, cells);
+            if self.shared {
+                // What the others' loads are misread by is known in part, from when they stood alone.
+                share += (1.0 - share) * OTHERS_MISREAD;
+            }
+            if load.force.0 > 0.0 {
+                contact.tiles.push(load);
+            }
+            contact.quality = contact.quality.max(tile.quality);
+            covariance +=
+                uncertainty.covariance(tiles.geometry(), tile, share, contact.centroid, contact.force.0);
+        }
+        if contact.tiles.is_empty() {
+            // Its patch has come to lie beside every tile that could carry it.
+            contact.tiles.extend(self.tiles.first().map(|&position| {
+                let tile = &list[position as usize];
+                let force = Newtons(tile.wrench.force.min(contact.force.0));
+                TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
+            }));
+        }
+        covariance += Covariance::isotropic(strayed_m as f32);
+        if self.landed_together {
+            covariance += Covariance::isotropic(TOGETHER_M);
+        }
+        if !self.shared {
+            covariance += Covariance::isotropic(self.explanation.hidden_m() as f32);
+        }
+        contact.covariance = covariance;
+        contact.finish();
     }
 }
 

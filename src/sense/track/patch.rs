@@ -22,8 +22,16 @@ pub(super) struct Slice {
 
 impl Slice {
     /// The part of the patch with its middle at `c` and half width `h` that falls between `low` and `high`.
+    #[inline]
     pub(super) fn new(low: f64, high: f64, c: f64, h: f64) -> Self {
         let middle = 0.5 * (low + high);
+        // Most patches lie on one tile or the other.
+        if low - c >= h || high - c <= -h {
+            return Self::default();
+        }
+        if low - c <= -h && high - c >= h {
+            return Self { share: 1.0, moment: c - middle, share_by: [0.0; 2], moment_by: [1.0, 0.0] };
+        }
         let a = ((low - c) / h).clamp(-1.0, 1.0);
         let b = ((high - c) / h).clamp(-1.0, 1.0);
         // Density at the edges, and the integrals of the density and of u times the density.

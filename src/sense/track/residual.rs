@@ -18,8 +18,13 @@ impl Track {
             self.state[half] = HALF_REST + decay * (self.state[half] - HALF_REST);
             let mut variance = self.covariance[half][half];
             variance = variance * decay * decay + 0.03_f64.powi(2) * (1.0 - decay * decay);
+            let along = axis.along(self.centre());
             for strip in strips.strips.iter().filter(|strip| strip.axis == axis) {
-                let slice = strip.slice(pitch, axis.along(self.centre()), self.state[half]);
+                // Where all of it or nothing lies on a strip, its width shows in nothing.
+                if strip.is_divided_by_none(pitch, along, self.state[half]) {
+                    continue;
+                }
+                let slice = strip.slice(pitch, along, self.state[half]);
                 let seen =
                     [strip.force / strips.force - slice.share, strip.moment / strips.force - slice.moment];
                 // A share that strays lies half a pitch from the line's middle.

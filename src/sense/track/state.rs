@@ -8,6 +8,7 @@ use glam::DVec2;
 use smallvec::SmallVec;
 
 use super::explanation::Explanation;
+use super::initiate::Candidate;
 use super::outline::Outline;
 use super::patch::PatchOnTile;
 use super::smoothed::Smoothed;
@@ -49,8 +50,8 @@ pub(super) struct Track {
     pub suppressed_s: f64,
     /// Which group of feet it is estimated with.
     pub group: u32,
-    /// Where its links to others begin in the tracker's list, if it has any.
-    pub links_from: usize,
+    /// Which estimator has its links to others, if it has any, and where they begin in its list.
+    pub links_from: (usize, usize),
     /// Whether this foot is the first of a group of several.
     pub crowded: bool,
     /// Whether it is one more than the joint filter holds.
@@ -101,6 +102,8 @@ pub(super) struct Track {
     pub accompanied: bool,
     /// Whether it is one foot or two.
     pub explanation: Explanation,
+    /// Who may have landed among its tiles in this frame.
+    pub candidate: Option<Candidate>,
 }
 
 impl Track {
@@ -118,7 +121,7 @@ impl Track {
             enough_s: 0.0,
             suppressed_s: 0.0,
             group: 0,
-            links_from: 0,
+            links_from: (0, 0),
             crowded: false,
             beyond_filter: false,
             ambiguous: false,
@@ -146,6 +149,7 @@ impl Track {
             landed_together: false,
             accompanied: false,
             explanation: Explanation::new(),
+            candidate: None,
         };
         foot.reset_covariance(deviation);
         for half in [HALF_EAST, HALF_NORTH] {
@@ -239,8 +243,28 @@ impl Track {
         }
     }
 
-    /// Measures the track by the tiles that it has to itself (Eq. 4).
-    pub(super) fn alone(&mut self, list: &[LoadedTile], dt: f64) {
+    /// Measures the track by the tiles that it has to itself, from now on or again.
+    pub(super) fn measure(&mut self, list: &[LoadedTile], dt: f64) {
+        let before = self.centre();
+        let until_now = std::mem::replace(&mut self.shared, false);
+        self.alone(list, dt);
+        let quality_changed = std::mem::take(&mut self.quality_changed);
+        if until_now || quality_changed {
+            self.restart_smoothing();
+            (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
+        }
+        if quality_changed {
+            // Still it stands where it stood, only seen otherwise.
+            self.rest_point = if self.suppressed_s > 0.0 {
+                self.centre()
+            } else {
+                self.rest_point + self.centre() - before
+            };
+        }
+    }
+
+    /// Its force and place by Eq. 4.
+    fn alone(&mut self, list: &[LoadedTile], dt: f64) {
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {

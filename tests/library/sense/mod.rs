@@ -3,3 +3,5 @@
 mod areas;
 mod feet;
 mod robust;
+#[cfg(feature = "threads")]
+mod thread_pools;

@@ -1,6 +1,7 @@
 //! `underfoot-cluster node`: one area is served, and told of.
 
 use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
@@ -51,6 +52,10 @@ pub(crate) struct Args {
     gateway: Vec<String>,
     #[command(flatten)]
     sound: SoundArgs,
+    /// On how many threads the feet of a crowd are sensed. Those beyond the first sleep while fewer than a hundred feet
+    /// are in the area, and keep a core busy each while there are more.
+    #[arg(long, value_name = "N", default_value_t = NonZeroUsize::MIN)]
+    sensing_threads: NonZeroUsize,
     /// Stop after so many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
@@ -122,6 +127,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .neighbours(border)
         .actuators(move |floor, start, _| sound.open(floor, start))
         .realtime()
+        .sensing_threads(args.sensing_threads)
         .stop_flag(stop)
         .start()?;
     let notices = Notices::start();

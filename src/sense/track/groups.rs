@@ -1,0 +1,188 @@
+//! Groups of feet that share tiles, each estimated on its own.
+//!
+//! Two groups have no tile in common, so they are estimated in any order and on any thread with the same result.
+
+use arrayvec::ArrayVec;
+use glam::DVec2;
+
+use super::joint::{Joint, MOST_FEET};
+use super::model::{observe, predict};
+use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, NIS_S, THROWN_M};
+use super::state::{EAST, NORTH, STATES, Track};
+use super::strips::{Strips, centroid_sigma};
+use super::{Cells, Tracker, UNASSIGNED, touchdown};
+use crate::parallel;
+use crate::sense::contact::ContactId;
+use crate::sense::loaded::LoadedTiles;
+use crate::sense::tile::LoadedTile;
+
+/// Most batches of groups that are estimated in parallel: several for each of a few threads.
+pub(super) const BATCHES: usize = 16;
+
+/// Most groups that are divided into batches at once, which bounds the space on the stack.
+const MOST_GROUPS: usize = 256;
+
+/// The feet of a group, as many as one filter holds.
+type Group<'a> = ArrayVec<&'a mut Track, MOST_FEET>;
+
+/// The joint filter for one batch of groups, and the covariances that it leaves for the next frame.
+#[derive(Clone, Debug)]
+pub(super) struct GroupEstimator {
+    number: usize,
+    joint: Box<Joint>,
+    links: Vec<Link>,
+}
+
+/// The covariance between two feet that are estimated together.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Link {
+    first: ContactId,
+    second: ContactId,
+    cross: [[f64; STATES]; STATES],
+}
+
+impl Tracker {
+    /// Estimates the feet of each group that has several.
+    pub(super) fn estimate_groups(&mut self, tiles: &LoadedTiles, dt: f64) {
+        for estimator in &mut self.estimators {
+            estimator.links.clear();
+        }
+        self.group_numbers.clear();
+        let mut count = 0;
+        self.group_numbers.extend(self.tracks.iter().map(|foot| {
+            if !foot.crowded {
+                return UNASSIGNED;
+            }
+            count += 1;
+            count - 1
+        }));
+        let feet = self.tracks.len();
+        for first in (0..count).step_by(MOST_GROUPS) {
+            let mut groups = ArrayVec::<Group<'_>, MOST_GROUPS>::new();
+            groups.extend((first..count).take(MOST_GROUPS).map(|_| Group::new()));
+            for foot in &mut self.tracks {
+                let number = self.group_numbers[foot.group as usize].wrapping_sub(first);
+                let Some(group) = groups.get_mut(number as usize) else { continue };
+                if let Err(full) = group.try_push(foot) {
+                    // More feet than one filter holds: the rest go on as predicted, as guesses.
+                    full.element().join(true);
+                }
+            }
+            let size = groups.len().div_ceil(BATCHES);
+            let mut batches: ArrayVec<_, BATCHES> =
+                self.estimators.iter_mut().zip(groups.chunks_mut(size)).collect();
+            let (links, cells) = (&self.links, &self.cells);
+            parallel::for_each_batch(&mut batches, feet, |_, (estimator, groups)| {
+                for group in groups.iter_mut() {
+                    group.iter_mut().for_each(|foot| foot.join(false));
+                    if !place_touchdown(group, tiles.list(), cells) {
+                        estimator.estimate(group, links, tiles.list(), cells, dt);
+                    }
+                }
+            });
+        }
+        for (estimator, links) in self.estimators.iter_mut().zip(&mut self.links) {
+            std::mem::swap(&mut estimator.links, links);
+        }
+    }
+}
+
+impl Track {
+    /// Notes that it shares tiles with other feet.
+    fn join(&mut self, beyond_filter: bool) {
+        if !self.shared {
+            self.keep_shape();
+        }
+        self.shared = true;
+        self.beyond_filter = beyond_filter;
+    }
+}
+
+/// Places a foot that was put down beside a standing one; false if there is none, or nothing to be said.
+fn place_touchdown(group: &mut Group<'_>, list: &[LoadedTile], cells: &Cells) -> bool {
+    let [first, second] = group.as_mut_slice() else { return false };
+    let (existing, stepping) = if second.has_landed_beside(first) {
+        (first, second)
+    } else if first.has_landed_beside(second) {
+        (second, first)
+    } else {
+        return false;
+    };
+    let Some(touchdown) = stepping.touchdown else { return false };
+    let both = existing.tiles_with(stepping);
+    let tiles = both.iter().map(|&position| &list[position as usize]);
+    let strips = Strips::of(tiles.clone(), cells.pitch);
+    let sigma = centroid_sigma(tiles, strips.force, cells.pitch);
+    // Where what the filter says of both has not fitted for some time, they are looked for anew.
+    if !existing.ambiguous
+        && touchdown::is_seen_alone(existing, stepping, touchdown.from, &strips, sigma, list, cells)
+    {
+        existing.hold_at(touchdown.from);
+        return false;
+    }
+    touchdown::place(existing, stepping, touchdown.from, strips, sigma, cells)
+}
+
+impl GroupEstimator {
+    pub(super) fn new(number: usize, room: usize) -> Self {
+        Self { number, joint: Box::new(Joint::new()), links: Vec::with_capacity(room) }
+    }
+
+    /// One step of the joint filter over the feet of `group`; `links` are those of the last frame, one list per
+    /// estimator.
+    fn estimate(
+        &mut self,
+        group: &mut Group<'_>,
+        links: &[Vec<Link>],
+        list: &[LoadedTile],
+        cells: &Cells,
+        dt: f64,
+    ) {
+        let joint = &mut *self.joint;
+        joint.clear();
+        group.iter().for_each(|foot| joint.add(foot));
+        for (first, a) in group.iter().enumerate() {
+            let (estimator, from) = a.links_from;
+            let links = links.get(estimator).and_then(|links| links.get(from..)).unwrap_or_default();
+            for (second, b) in group.iter().enumerate().skip(first + 1) {
+                let mut links = links.iter().take_while(|link| link.first == a.id);
+                if let Some(link) = links.find(|link| link.second == b.id) {
+                    joint.link(first, second, &link.cross);
+                }
+            }
+        }
+        predict(joint, group, dt);
+        joint.confine(cells.bounds());
+        for (which, foot) in group.iter_mut().enumerate() {
+            joint.take(which, foot);
+        }
+        let (nis, force) = observe(joint, group, list, cells, dt);
+        joint.confine(cells.bounds());
+        let centre = |at: usize| DVec2::new(joint.x[at * STATES + EAST], joint.x[at * STATES + NORTH]);
+        let leaps = group
+            .iter()
+            .enumerate()
+            .any(|(at, foot)| foot.age == 0.0 && centre(at).distance(foot.centre()) > FIRST_STEP_M);
+        if leaps || !joint.forces().all(|part| part < MOST_SHARE * force + MOST_MORE_N) {
+            // A step so large that derivatives mean nothing: all stay where they were predicted, with a wide
+            // covariance.
+            group.iter_mut().for_each(|foot| foot.reset_covariance(THROWN_M));
+            return;
+        }
+        let weight = 1.0 - (-dt / NIS_S).exp();
+        for (which, foot) in group.iter_mut().enumerate() {
+            joint.take(which, foot);
+            foot.nis += weight * (nis - foot.nis);
+        }
+        for first in 0..group.len() {
+            group[first].links_from = (self.number, self.links.len());
+            for second in first + 1..group.len() {
+                self.links.push(Link {
+                    first: group[first].id,
+                    second: group[second].id,
+                    cross: joint.cross(first, second),
+                });
+            }
+        }
+    }
+}
