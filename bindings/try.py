@@ -176,9 +176,12 @@ def said(address):
 
 
 class Trial:
-    """A program that listens, with the floor that tells it where it has none of its own, and the feet."""
+    """A program that listens, with the floor that tells it where it has none of its own, and the feet.
 
-    def __init__(self, underfoot, layout, way, command, control, folder, floor=()):
+    The feet send to it themselves unless what they send `is_relayed`: a relay may lag behind them on a busy machine, and
+    passes on what waits in it when they have gone."""
+
+    def __init__(self, underfoot, layout, way, command, control, folder, floor=(), is_relayed=True):
         self.underfoot, self.layout, self.folder = underfoot, layout, Path(tempfile.mkdtemp(dir=folder))
         self.floor, self.feet, addresses = None, None, [free_address(socket.SOCK_DGRAM)]
         if way in ("--web", "--browser"):
@@ -191,7 +194,8 @@ class Trial:
             if not floor:
                 addresses.append(free_address(socket.SOCK_DGRAM))
                 self.serve(addresses[1])
-        self.relay = Relay(addresses)
+        self.relay = Relay(addresses) if is_relayed else None
+        self.target = self.relay.address() if self.relay else said(addresses[0])
         self.reader.wait_listening()
 
     def serve(self, address, *more):
@@ -201,7 +205,7 @@ class Trial:
     def walk(self, scenario, layout):
         path = self.folder / "visit.ron"
         path.write_text(scenario)
-        command = [self.underfoot, "simulate", layout, "--scenario", str(path), "--send", self.relay.address()]
+        command = [self.underfoot, "simulate", layout, "--scenario", str(path), "--send", self.target]
         self.feet = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
     def end(self):
@@ -210,7 +214,8 @@ class Trial:
             self.floor.end()
         self.feet.kill()
         self.feet.wait()
-        self.relay.end()
+        if self.relay:
+            self.relay.end()
 
 
 def wait_open(address, floor):
@@ -244,10 +249,11 @@ def tell(name):
     return lambda trial: trial.reader.process.send_signal(name)
 
 
+CUT = "the packets stop"
 ENDS = {
     "the sender is killed": lambda trial: trial.feet.kill(),
     "the sender is asked to end": lambda trial: trial.feet.terminate(),
-    "the packets stop": lambda trial: trial.relay.cut(),
+    CUT: lambda trial: trial.relay.cut(),
 }
 ENDS_OF = {
     "--own": ENDS | {
@@ -266,11 +272,11 @@ ENDS_OF = {
 ENDS_OF["--browser"] = ENDS_OF["--web"]
 
 
-def believed_for(underfoot, way, command, folder, end):
-    """For how long a program believes that the control is held, once `end` has ended that."""
+def believed_for(underfoot, way, command, folder, what):
+    """For how long a program believes that the control is held, once `what` has ended that."""
     page, floor = Path(folder) / "beam.ron", Path(folder) / "floor.ron"
     for _ in range(TRIES):
-        trial = Trial(underfoot, str(page), way, command, "beam", folder, [str(floor)])
+        trial = Trial(underfoot, str(page), way, command, "beam", folder, [str(floor)], what == CUT)
         trial.walk(HOLD, str(page))
         held = trial.reader.wait_held(True)
         if held:
@@ -283,7 +289,7 @@ def believed_for(underfoot, way, command, folder, end):
     # Held for long enough that nothing of the beginning is still on its way.
     time.sleep(0.2)
     ended_at = time.monotonic()
-    end(trial)
+    ENDS_OF[way][what](trial)
     let_go = trial.reader.wait_held(False, held)
     trial.end()
     if let_go is None:
@@ -295,9 +301,9 @@ def believed(underfoot, way, name, command, folder, args):
     good = True
     # Several browsers take the processor from the feet, and the floor is lost before they press.
     with ThreadPoolExecutor(1 if way == "--browser" else args.at_once) as pool:
-        def begin(end):
-            return pool.submit(believed_for, underfoot, way, command, folder, end)
-        rounds = [(what, [begin(end) for _ in range(args.rounds)]) for what, end in ENDS_OF[way].items()]
+        def begin(what):
+            return pool.submit(believed_for, underfoot, way, command, folder, what)
+        rounds = [(what, [begin(what) for _ in range(args.rounds)]) for what in ENDS_OF[way]]
         for what, begun in rounds:
             times = [one.result() for one in begun]
             print("%s: %s, believed for %.0f ms (median of %d), %.0f ms at most"

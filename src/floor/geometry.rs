@@ -214,6 +214,12 @@ impl Geometry {
         self.whole
     }
 
+    /// Whether it is a part of a larger floor.
+    #[must_use]
+    pub const fn is_part(&self) -> bool {
+        self.columns < self.whole.0 || self.rows < self.whole.1
+    }
+
     /// What of it lies within `block`; `None` if nothing does.
     #[must_use]
     pub fn part(&self, block: &TileBlock) -> Option<Self> {

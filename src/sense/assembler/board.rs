@@ -12,7 +12,7 @@ use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
 
 /// How many slots may wait for their boards at once.
-pub(super) const BUFFERS: usize = 4;
+pub(super) const BUFFERS: usize = 8;
 
 /// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
 const RESTS_N: f32 = 1.0;

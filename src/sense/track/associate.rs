@@ -4,6 +4,7 @@ use super::params::associate::{ASTRIDE_M, NOISE_ARM_M, PENDING_S};
 use super::params::state::LANDS_S;
 use glam::DVec2;
 
+use super::elapsed::Elapsed;
 use super::state::{EAST, FORCE, NORTH, Track};
 use super::touchdown::Touchdown;
 use super::{Tracker, UNASSIGNED, first_of_least};
@@ -24,7 +25,7 @@ pub(super) struct Pending {
 impl Tracker {
     /// Finds which track reaches which tile, gives tiles out of reach to the nearest track that
     /// may have grown onto them, and lets new feet land on the rest.
-    pub(super) fn associate(&mut self, tiles: &LoadedTiles, dt: f64) {
+    pub(super) fn associate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         let list = tiles.list();
         self.owner.clear();
         self.owner.resize(list.len(), UNASSIGNED);
@@ -80,7 +81,7 @@ impl Tracker {
                     }
                     self.owner[position as usize] = which as u32;
                 }
-                None if self.is_pending(tile, dt) => {
+                None if self.is_pending(tile, elapsed) => {
                     // Until that is sure, it counts to the nearest.
                     let nearest = self.near.distances(centroid).min_by(first_of_least);
                     if let Some((_, which)) = nearest {
@@ -106,14 +107,14 @@ impl Tracker {
     }
 
     /// Whether it is not yet sure enough that a load lies beyond all feet near it.
-    fn is_pending(&mut self, tile: &LoadedTile, dt: f64) -> bool {
+    fn is_pending(&mut self, tile: &LoadedTile, elapsed: &Elapsed) -> bool {
+        let (dt, keep) = (elapsed.dt, elapsed.pending);
         let place = tile.centroid.as_dvec2();
         let mut near = self.near.distances(place);
         let is_near = near.any(|(distance, which)| distance < ASTRIDE_M && self.tracks[which].age > 0.0);
         if !is_near {
             return false;
         }
-        let keep = (-dt / PENDING_S).exp();
         let at = self.pending.iter().position(|pending| pending.index == tile.index).unwrap_or_else(|| {
             self.pending.push(Pending {
                 index: tile.index,

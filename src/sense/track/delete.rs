@@ -14,7 +14,6 @@ use crate::sense::tile::LoadedTile;
 impl Tracker {
     /// Takes away feet that are not there.
     pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
-        self.near.renew(&self.tracks);
         let mut empty_s = std::mem::take(&mut self.empty_s);
         empty_s.clear();
         empty_s.extend(self.tracks.iter().map(|foot| foot.empty_s));
@@ -103,10 +102,10 @@ impl Tracker {
         let foot = &self.tracks[which];
         let (place, force) = (foot.centre(), foot.force());
         foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self
-                .near
-                .others(which)
-                .any(|(distance, other)| distance < RIM_M && force < RIM_SHARE * self.tracks[other].force())
+            && self.near.others(which).any(|(_, other)| {
+                let other = &self.tracks[other];
+                force < RIM_SHARE * other.force() && other.centre().distance(place) < RIM_M
+            })
     }
 
     /// Whether it presses a tile that none of the others can reach: proof that it is still there.

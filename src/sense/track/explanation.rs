@@ -17,11 +17,12 @@
 
 use super::params::explanation::{
     ACCOMPANIED, ACROSS_M, ACROSS_SPREAD_M, ALONG_M, ALONG_SPREAD_M, BIRTH, HALF_STANCE_M, LONE, MOST, ROLL,
-    ROLL_M, SPREAD_N, STANDING, STANDING_S, STOPPED, STOPPED_S, SWAY_M, WINDOW_S,
+    ROLL_M, SPREAD_N, STANDING, STANDING_S, STOPPED, STOPPED_S, SWAY_M,
 };
 use super::params::stillness::STANDS_S;
 use glam::DVec2;
 
+use super::elapsed::Elapsed;
 use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
 use crate::sense::tile::LoadedTile;
@@ -104,7 +105,8 @@ impl Explanation {
         Self { log_odds: ACCOMPANIED }
     }
 
-    /// Takes in what the track's tiles carry now, `pitch` from tile to tile; `alone`: no other foot is within a stride.
+    /// Takes in what the track's tiles carry now, `pitch` from tile to tile; `alone` says whether no
+    /// other foot is within a stride.
     ///
     /// Gives where the second foot is once it is worth a track.
     pub(super) fn update(
@@ -113,8 +115,8 @@ impl Explanation {
         seen: &Whole,
         list: &[LoadedTile],
         pitch: f64,
-        alone: bool,
-        dt: f64,
+        alone: impl FnOnce() -> bool,
+        elapsed: &Elapsed,
     ) -> Option<Second> {
         // A light contact far from all others is a foot that taps; a body stands on one foot or on two.
         let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
@@ -125,7 +127,7 @@ impl Explanation {
         }
         let mut evidence = prior + spread.evidence();
         let mut shift = DVec2::ZERO;
-        if alone && foot.anchored_s > 0.0 && seen.force > foot.body_n {
+        if foot.anchored_s > 0.0 && seen.force > foot.body_n && alone() {
             if foot.anchored_s > STANDS_S {
                 let (standing, after_s) =
                     if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
@@ -138,7 +140,7 @@ impl Explanation {
                 evidence -= (ROLL * (foot.travel / ROLL_M).powi(2)).min(ROLL);
             }
         }
-        let weight = 1.0 - (-dt / WINDOW_S).exp();
+        let weight = 1.0 - elapsed.explanation;
         self.log_odds += weight * (evidence - self.log_odds);
         if self.log_odds < BIRTH || evidence < BIRTH {
             return None;

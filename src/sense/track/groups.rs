@@ -5,9 +5,10 @@
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
+use super::elapsed::Elapsed;
 use super::joint::{Joint, MOST_FEET};
 use super::model::{observe, predict};
-use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, NIS_S, THROWN_M};
+use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, THROWN_M};
 use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
 use super::{Cells, Tracker, UNASSIGNED, touchdown};
@@ -43,7 +44,7 @@ pub(super) struct Link {
 
 impl Tracker {
     /// Estimates the feet of each group that has several.
-    pub(super) fn estimate_groups(&mut self, tiles: &LoadedTiles, dt: f64) {
+    pub(super) fn estimate_groups(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         for estimator in &mut self.estimators {
             estimator.links.clear();
         }
@@ -76,7 +77,7 @@ impl Tracker {
                 for group in groups.iter_mut() {
                     group.iter_mut().for_each(|foot| foot.join(false));
                     if !place_touchdown(group, tiles.list(), cells) {
-                        estimator.estimate(group, links, tiles.list(), cells, dt);
+                        estimator.estimate(group, links, tiles.list(), cells, elapsed);
                     }
                 }
             });
@@ -136,7 +137,7 @@ impl GroupEstimator {
         links: &[Vec<Link>],
         list: &[LoadedTile],
         cells: &Cells,
-        dt: f64,
+        elapsed: &Elapsed,
     ) {
         let joint = &mut *self.joint;
         joint.clear();
@@ -151,12 +152,12 @@ impl GroupEstimator {
                 }
             }
         }
-        predict(joint, group, dt);
+        predict(joint, group, elapsed);
         joint.confine(cells.bounds());
         for (which, foot) in group.iter_mut().enumerate() {
             joint.take(which, foot);
         }
-        let (nis, force) = observe(joint, group, list, cells, dt);
+        let (nis, force) = observe(joint, group, list, cells, elapsed.dt);
         joint.confine(cells.bounds());
         let centre = |at: usize| DVec2::new(joint.x[at * STATES + EAST], joint.x[at * STATES + NORTH]);
         let leaps = group
@@ -169,7 +170,7 @@ impl GroupEstimator {
             group.iter_mut().for_each(|foot| foot.reset_covariance(THROWN_M));
             return;
         }
-        let weight = 1.0 - (-dt / NIS_S).exp();
+        let weight = 1.0 - elapsed.nis;
         for (which, foot) in group.iter_mut().enumerate() {
             joint.take(which, foot);
             foot.nis += weight * (nis - foot.nis);

@@ -8,6 +8,7 @@ use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::elapsed::Elapsed;
 use super::explanation::Second;
 use super::neighbours::Near;
 use super::state::{FORCE, Track};
@@ -32,11 +33,11 @@ pub(super) struct Candidate {
 
 impl Tracker {
     /// Lets feet land on tiles that others already press.
-    pub(super) fn initiate(&mut self, tiles: &LoadedTiles, dt: f64) {
+    pub(super) fn initiate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         let list = tiles.list();
         let (near, cells) = (&self.near, &self.cells);
         parallel::for_each(&mut self.tracks, |which, foot| {
-            foot.look_for_second(which, near, list, cells, dt);
+            foot.look_for_second(which, near, list, cells, elapsed);
         });
         for which in 0..self.tracks.len() {
             let Some(candidate) = self.tracks[which].candidate.take() else { continue };
@@ -108,7 +109,14 @@ impl Tracker {
 
 impl Track {
     /// Notes who may have landed among the tiles of this foot, number `which` of those on the floor.
-    fn look_for_second(&mut self, which: usize, near: &Near, list: &[LoadedTile], cells: &Cells, dt: f64) {
+    fn look_for_second(
+        &mut self,
+        which: usize,
+        near: &Near,
+        list: &[LoadedTile],
+        cells: &Cells,
+        elapsed: &Elapsed,
+    ) {
         if self.shared {
             return;
         }
@@ -120,8 +128,8 @@ impl Track {
             self.on_quality_change(quality.unwrap_or_default(), lasts);
             return;
         }
-        let alone = near.others(which).all(|(distance, _)| distance > STRIDE_M);
-        let second = self.second(alone, list, cells.pitch, dt);
+        let alone = || near.others(which).all(|(distance, _)| distance > STRIDE_M);
+        let second = self.second(alone, list, cells.pitch, elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
         self.candidate = added.or(second);
     }
@@ -161,11 +169,17 @@ impl Track {
         (found.force > 0.0).then_some(found)
     }
 
-    /// A second foot that its load tells of: where it would be. `alone`: no other foot is within a stride.
-    fn second(&mut self, alone: bool, list: &[LoadedTile], pitch: f64, dt: f64) -> Option<Candidate> {
+    /// A second foot that its load tells of: where it would be. `alone` says whether no other foot is within a stride.
+    fn second(
+        &mut self,
+        alone: impl FnOnce() -> bool,
+        list: &[LoadedTile],
+        pitch: f64,
+        elapsed: &Elapsed,
+    ) -> Option<Candidate> {
         let seen = Whole::of(self.tiles.iter().map(|&position| &list[position as usize]));
         let mut explanation = self.explanation;
-        let second = explanation.update(self, &seen, list, pitch, alone, dt);
+        let second = explanation.update(self, &seen, list, pitch, alone, elapsed);
         self.explanation = explanation;
         if self.suppressed_s > 0.0 {
             return None;

@@ -114,6 +114,7 @@ impl Joint {
     pub(super) fn take(&self, which: usize, foot: &mut Track) {
         let at = which * STATES;
         foot.state.copy_from_slice(&self.x[at..at + STATES]);
+        foot.has_lone_covariance = false;
         for row in 0..STATES {
             foot.covariance[row].copy_from_slice(&self.p[at + row][at..at + STATES]);
         }

@@ -22,6 +22,7 @@
 mod associate;
 mod delete;
 mod dormant;
+mod elapsed;
 mod explanation;
 mod groups;
 mod initiate;
@@ -45,9 +46,9 @@ mod touchdown;
 use self::params::tracker::{LANDING_S, STRIDE_M};
 use glam::{DVec2, IVec2};
 
+use self::elapsed::Elapsed;
 use self::groups::{BATCHES, GroupEstimator, Link};
 use self::neighbours::{Groups, Near};
-use self::smoothed::kept;
 use self::state::Track;
 use self::strips::Axis;
 use super::contact::ContactId;
@@ -63,6 +64,7 @@ use crate::parallel;
 pub(super) struct Tracker {
     uncertainty: SensorUncertainty,
     cells: Cells,
+    elapsed: Elapsed,
     next: u32,
     tracks: Vec<Track>,
     dormant: Vec<dormant::Dormant>,
@@ -143,6 +145,7 @@ impl Tracker {
             near: Near::new(&cells, room),
             mates: Groups::new(room),
             cells,
+            elapsed: Elapsed::new(0.0),
             next: 1,
             tracks: Vec::with_capacity(room),
             dormant: Vec::with_capacity(room),
@@ -165,23 +168,27 @@ impl Tracker {
     /// Fills `pool` with this frame's contacts; `dt` seconds have passed since the last frame.
     pub(super) fn update(&mut self, tiles: &LoadedTiles, dt: f32, pool: &mut ContactPool) {
         let dt = f64::from(dt);
+        if dt != self.elapsed.dt {
+            self.elapsed = Elapsed::new(dt);
+        }
+        let elapsed = self.elapsed;
         let pitch = self.cells.pitch;
         parallel::for_each(&mut self.tracks, |_, foot| {
             foot.predict(dt);
             foot.reach(tiles, pitch);
         });
         self.near.renew(&self.tracks);
-        self.associate(tiles, dt);
+        self.associate(tiles, &elapsed);
         self.forget_pending();
         self.wake(tiles, dt);
-        self.initiate(tiles, dt);
+        self.initiate(tiles, &elapsed);
         self.note_partners(tiles);
-        self.tracks.retain(|foot| !foot.tiles.is_empty());
+        self.delete_without_tiles();
         self.group(tiles.list().len());
-        self.estimate(tiles, dt);
+        self.estimate(tiles, &elapsed);
         self.delete_empty(tiles, dt);
         self.let_sleep(tiles, dt);
-        self.learn(tiles, dt);
+        self.learn(tiles, &elapsed);
         self.describe(tiles, pool);
     }
 
@@ -200,6 +207,13 @@ impl Tracker {
             }
             foot.keep_noticed_tiles(tiles);
         });
+    }
+
+    fn delete_without_tiles(&mut self) {
+        if self.tracks.iter().any(|foot| foot.tiles.is_empty()) {
+            self.tracks.retain(|foot| !foot.tiles.is_empty());
+            self.near.renew(&self.tracks);
+        }
     }
 
     fn name(&mut self) -> ContactId {
@@ -243,34 +257,34 @@ impl Tracker {
     }
 
     /// Measures feet that are alone on their tiles, estimates those that are not.
-    fn estimate(&mut self, tiles: &LoadedTiles, dt: f64) {
+    fn estimate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
         parallel::for_each(&mut self.tracks, |which, foot| {
             if foot.group == which as u32 && !foot.crowded {
-                foot.measure(tiles.list(), dt);
+                foot.measure(tiles.list(), elapsed);
             }
         });
-        self.estimate_groups(tiles, dt);
+        self.estimate_groups(tiles, elapsed);
     }
 
     /// Lets each foot's slow past learn from this frame.
-    fn learn(&mut self, tiles: &LoadedTiles, dt: f64) {
-        let (list, cells, keep) = (tiles.list(), self.cells, kept(dt));
-        parallel::for_each(&mut self.tracks, |_, foot| foot.learn(list, &cells, keep, dt));
+    fn learn(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
+        let (list, cells) = (tiles.list(), self.cells);
+        parallel::for_each(&mut self.tracks, |_, foot| foot.learn(list, &cells, elapsed));
     }
 }
 
 impl Track {
-    /// Lets its slow past learn from this frame; `keep` is [`kept`] of `dt`.
-    fn learn(&mut self, list: &[LoadedTile], cells: &Cells, keep: f64, dt: f64) {
-        self.smooth(dt, keep);
-        self.roll(dt);
-        self.note_outline(list, dt);
+    /// Lets its slow past learn from this frame.
+    fn learn(&mut self, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
+        self.smooth(elapsed);
+        self.roll(elapsed);
+        self.note_outline(list, elapsed);
         if !self.shared {
-            self.learn_residuals(list, cells.pitch, dt);
+            self.learn_shape(list, cells.pitch, elapsed.dt);
         }
         // A foot that has just come to stand alone starts from what is measured.
         let fresh = !self.shared && self.smoothed.loads.is_empty();
-        let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - keep };
+        let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
         for at in 0..self.tiles.len() {
             let tile = &list[self.tiles[at] as usize];
             let (force, moment) = if self.shared {

@@ -8,22 +8,25 @@ use super::params::state::{FLAT_S, HALF_REST};
 use arrayvec::ArrayVec;
 use glam::DVec2;
 
+use super::elapsed::Elapsed;
 use super::joint::{Derivative, Joint, MOST_FEET};
 use super::state::{EAST, FORCE, HALF_EAST, HALF_NORTH, NORTH, STATES, Track};
 use super::strips::{Axis, Strips};
 use super::{Cells, number_of};
 use crate::sense::tile::LoadedTile;
 
-/// Lets `dt` seconds pass for the feet of a group.
-pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], dt: f64) {
+/// Lets time pass for the feet of a group.
+pub(super) fn predict(joint: &mut Joint, group: &[&mut Track], elapsed: &Elapsed) {
+    let dt = elapsed.dt;
     for (which, foot) in group.iter().enumerate() {
         let at = which * STATES;
         // A foot that has stood still is expected to go on standing still.
         let speed = (2.0 * foot.mean_speed).clamp(SPEED_LEAST_M_S, SPEED_M_S);
-        for (value, fade_s, rate) in
-            [(FORCE, FORCE_FADE_S, FORCE_RATE_N_S), (EAST, PLACE_FADE_S, speed), (NORTH, PLACE_FADE_S, speed)]
-        {
-            let decay = (-dt / fade_s).exp();
+        for (value, fade_s, decay, rate) in [
+            (FORCE, FORCE_FADE_S, elapsed.force_rate, FORCE_RATE_N_S),
+            (EAST, PLACE_FADE_S, elapsed.velocity, speed),
+            (NORTH, PLACE_FADE_S, elapsed.velocity, speed),
+        ] {
             joint.drift(at + value, fade_s * (1.0 - decay), decay, rate * rate * (1.0 - decay * decay));
         }
         if foot.age > FLAT_S && dt > 0.0 {

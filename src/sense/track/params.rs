@@ -239,6 +239,9 @@ pub(super) mod state {
     /// Longest distance between two points under one shoe that carry noticeable load.
     pub(in crate::sense::track) const SHOE_M: f64 = 0.33;
 
+    /// Time constant of a lone foot's rates, in seconds: they are differences of frames (our choice).
+    pub(in crate::sense::track) const RATE_S: f64 = 0.015;
+
     /// After which time a foot has come down flat, in seconds.
     pub(in crate::sense::track) const FLAT_S: f64 = 0.3;
 
@@ -288,6 +291,9 @@ pub(super) mod stillness {
     /// Mean speed of its centre of pressure below which a foot hardly rolls, in metres per second.
     pub(in crate::sense::track) const SLOW_M_S: f64 = 0.15;
 
+    /// Time constant of a foot's mean speed, in seconds (our choice).
+    pub(in crate::sense::track) const MEAN_SPEED_S: f64 = 0.25;
+
     /// How soon a foot that stood still is taken to roll, in metres per second squared.
     pub(in crate::sense::track) const SPEED_RISE_M_S2: f64 = 0.2;
 
@@ -323,6 +329,10 @@ pub(super) mod residual {
 
     /// How long a foot must be alone for its shape to be known, in seconds.
     pub(in crate::sense::track) const KNOWN_S: f64 = 0.1;
+
+    /// How often its shape is learnt, in seconds: often beside [`RESIDUAL_S`], for it is a fourth of all work on a lone
+    /// foot (our choice).
+    pub(in crate::sense::track) const LEARN_EVERY_S: f64 = 0.004;
 
     /// How long only its heel may be down, which tells nothing of the rest, in seconds.
     pub(in crate::sense::track) const TOUCHES_S: f64 = 0.1;

@@ -1,13 +1,14 @@
 //! What can belong to a foot: where else one shoe may press.
 
 use super::params::reach::{
-    AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, KNOWN, MEMORY_LIGHT_S, MEMORY_S, NOTED,
-    NOTED_M, NOTED_PER_NOISE, RIM, RIM_AHEAD, RIM_OF_SHARED, SHOE,
+    AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, KNOWN, NOTED, NOTED_M, NOTED_PER_NOISE,
+    RIM, RIM_AHEAD, RIM_OF_SHARED, SHOE,
 };
 use super::params::state::{FLAT_S, LANDS_S, SHOE_M, SLIDING_N};
 use glam::DVec2;
 
 use super::cell_of;
+use super::elapsed::Elapsed;
 use super::outline::Outline;
 use super::state::{EAST, NORTH, Track};
 use super::strips::Axis;
@@ -31,7 +32,7 @@ impl Track {
     }
 
     /// Adds what it presses now to what it has pressed of late.
-    pub(super) fn note_outline(&mut self, list: &[LoadedTile], dt: f64) {
+    pub(super) fn note_outline(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let mut now = Outline::new(self.centre());
         if !self.shared {
             for &position in &self.tiles {
@@ -44,8 +45,8 @@ impl Track {
         } else if self.covariance[EAST][EAST] + self.covariance[NORTH][NORTH] > NOTED_M * NOTED_M {
             return;
         }
-        let memory_s = if self.bears() { MEMORY_S } else { MEMORY_LIGHT_S };
-        self.outline.relax(&now, (-dt / memory_s).exp());
+        let kept = if self.bears() { elapsed.outline } else { elapsed.light_outline };
+        self.outline.relax(&now, kept);
         self.outline.unite(&now);
     }
 
@@ -74,16 +75,17 @@ impl Track {
         let reach = self.half() * HALVES + BEYOND_M;
         let mut low = cell_of(self.centre() - reach, pitch);
         let mut high = cell_of(self.centre() + reach, pitch);
-        if self.residual_weight() > KNOWN {
-            // Where it was alone, it also presses what it pressed then.
-            for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
-                match residual.axis {
-                    Axis::East => (low.x, high.x) = (low.x.min(residual.number), high.x.max(residual.number)),
-                    Axis::North => {
-                        (low.y, high.y) = (low.y.min(residual.number), high.y.max(residual.number));
-                    }
-                }
-            }
+        let (mut known_low, mut known_high) = (low, high);
+        for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
+            let (low, high) = match residual.axis {
+                Axis::East => (&mut known_low.x, &mut known_high.x),
+                Axis::North => (&mut known_low.y, &mut known_high.y),
+            };
+            (*low, *high) = ((*low).min(residual.number), (*high).max(residual.number));
+        }
+        // Where it was alone, it also presses what it pressed then.
+        if (known_low, known_high) != (low, high) && self.residual_weight() > KNOWN {
+            (low, high) = (known_low, known_high);
         }
         for row in low.y..=high.y {
             for column in low.x..=high.x {

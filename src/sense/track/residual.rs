@@ -1,7 +1,8 @@
 //! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
 
 use super::number_of;
-use super::params::residual::{KNOWN_S, RESIDUAL_S, TOUCHES_S};
+use super::params::model::HALF_FADE_S;
+use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
 use super::strips::{Axis, Residual, Strips};
@@ -10,7 +11,7 @@ use crate::sense::tile::LoadedTile;
 impl Track {
     /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
     fn learn_halves(&mut self, strips: &Strips, pitch: f64, dt: f64) {
-        let decay = (-dt / 0.3).exp();
+        let decay = (-dt / HALF_FADE_S).exp();
         // The same error of the model is seen in many frames.
         let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
         for axis in Axis::BOTH {
@@ -42,8 +43,17 @@ impl Track {
         }
     }
 
-    /// Notes how the foot, alone on its tiles, differs from its model patch.
-    pub(super) fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
+    /// Notes how the foot, alone on its tiles, differs from its model patch, if it is time.
+    pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
+        self.unlearnt_s += dt;
+        if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * dt {
+            let since = std::mem::take(&mut self.unlearnt_s);
+            self.learn_residuals(list, pitch, since);
+        }
+    }
+
+    /// The same after `dt` seconds.
+    fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
         let (centre, half) = (self.centre(), self.half());
         let mut strips = Strips::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
         for axis in Axis::BOTH {

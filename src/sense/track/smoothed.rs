@@ -1,9 +1,9 @@
 //! What the last few hundredths of a second predict of a foot: what a newcomer is measured against.
 
-use super::params::smoothed::SMOOTHED_S;
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::elapsed::Elapsed;
 use super::state::{EAST, FORCE, NORTH, Track};
 
 /// Force, place and rates of a foot as its last few hundredths of a second predict them.
@@ -25,14 +25,10 @@ pub(super) struct SmoothedLoad {
     pub seen: bool,
 }
 
-/// How much of a smoothed value is left after `dt` seconds.
-pub(super) fn kept(dt: f64) -> f64 {
-    (-dt / SMOOTHED_S).exp()
-}
-
 impl Track {
-    /// Lets the slow past learn from where the foot is now; `keep` is [`kept`] of `dt`.
-    pub(super) fn smooth(&mut self, dt: f64, keep: f64) {
+    /// Lets the slow past learn from where the foot is now.
+    pub(super) fn smooth(&mut self, elapsed: &Elapsed) {
+        let (dt, keep) = (elapsed.dt, elapsed.smoothed);
         if dt <= 0.0 {
             return;
         }

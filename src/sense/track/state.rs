@@ -7,6 +7,7 @@ use arrayvec::ArrayVec;
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::elapsed::Elapsed;
 use super::explanation::Explanation;
 use super::initiate::Candidate;
 use super::outline::Outline;
@@ -34,6 +35,8 @@ pub(super) struct Track {
     pub age: f64,
     pub state: [f64; STATES],
     pub covariance: [[f64; STATES]; STATES],
+    /// Whether the covariance of force and place is that of a foot measured alone.
+    pub has_lone_covariance: bool,
     /// Where it was expected before this frame, from its slow past.
     pub smoothed: Smoothed,
     /// Positions of the tiles it may press, in the list of loaded tiles.
@@ -69,6 +72,8 @@ pub(super) struct Track {
     pub misfit: f64,
     /// Mean speed of its centre of pressure over the last quarter of a second.
     pub mean_speed: f64,
+    /// Seconds for which it has been alone without its shape being learnt.
+    pub unlearnt_s: f64,
     /// Seconds for which it has been alone on its tiles.
     pub alone_s: f64,
     /// Where it was when last seen alone; `None` if it never was.
@@ -113,6 +118,7 @@ impl Track {
             age: 0.0,
             state: [force, 0.0, centre.x, 0.0, centre.y, 0.0, HALF_REST, HALF_REST],
             covariance: [[0.0; STATES]; STATES],
+            has_lone_covariance: false,
             smoothed: Smoothed { force, centre, ..Smoothed::default() },
             tiles: SmallVec::new(),
             empty_s: 0.0,
@@ -130,6 +136,7 @@ impl Track {
             nis: 0.0,
             misfit: 0.0,
             mean_speed: 0.4,
+            unlearnt_s: 0.0,
             alone_s: 0.0,
             alone_at: None,
             rest_point: centre,
@@ -160,6 +167,7 @@ impl Track {
 
     /// Forgets what force and place had to do with each other and sets how sure both are.
     pub(super) fn reset_covariance(&mut self, deviation: f64) {
+        self.has_lone_covariance = false;
         for row in 0..HALF_EAST {
             self.covariance[row] = [0.0; STATES];
         }
@@ -244,10 +252,10 @@ impl Track {
     }
 
     /// Measures the track by the tiles that it has to itself, from now on or again.
-    pub(super) fn measure(&mut self, list: &[LoadedTile], dt: f64) {
+    pub(super) fn measure(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
         let before = self.centre();
         let until_now = std::mem::replace(&mut self.shared, false);
-        self.alone(list, dt);
+        self.alone(list, elapsed);
         let quality_changed = std::mem::take(&mut self.quality_changed);
         if until_now || quality_changed {
             self.restart_smoothing();
@@ -264,7 +272,8 @@ impl Track {
     }
 
     /// Its force and place by Eq. 4.
-    fn alone(&mut self, list: &[LoadedTile], dt: f64) {
+    fn alone(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
+        let dt = elapsed.dt;
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
         for &position in &self.tiles {
@@ -276,7 +285,7 @@ impl Track {
         }
         let centre = sum / weight;
         if dt > 0.0 {
-            let weight = 1.0 - (-dt / 0.015).exp();
+            let weight = 1.0 - elapsed.rates;
             let rate = (force - self.state[FORCE]) / dt;
             let velocity = ((centre - self.centre()) / dt).clamp(DVec2::splat(-2.0), DVec2::splat(2.0));
             self.state[FORCE + 1] += weight * (rate - self.state[FORCE + 1]);
@@ -286,12 +295,15 @@ impl Track {
         self.state[FORCE] = force;
         self.state[EAST] = centre.x;
         self.state[NORTH] = centre.y;
-        self.reset_covariance(0.003);
+        if !self.has_lone_covariance {
+            self.reset_covariance(0.003);
+            self.has_lone_covariance = true;
+        }
         self.landed_together = false;
         self.ambiguous = false;
     }
 
-    /// Moves the slow past on by `dt`.
+    /// Moves the slow past on by `dt` seconds.
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
         self.suppressed_s = (self.suppressed_s - dt).max(0.0);

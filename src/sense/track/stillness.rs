@@ -2,11 +2,12 @@
 
 use super::params::state::FLAT_S;
 use super::params::stillness::{
-    ANCHOR_M, ANCHOR_S, ASTRAY_S, AWAY_S, REST_POINT_S, SHARED_SPEED_M_S, SLOW_M_S, SPEED_RISE_M_S2,
-    STANDS_S, STILL_M_S, STILL_REST_POINT_S, STILL_S, SWAY_LEAST_M, SWAY_MOST_M, SWAY_PER_SPEED_S,
+    ANCHOR_M, ANCHOR_S, ASTRAY_S, AWAY_S, SHARED_SPEED_M_S, SLOW_M_S, SPEED_RISE_M_S2, STANDS_S, STILL_M_S,
+    STILL_S, SWAY_LEAST_M, SWAY_MOST_M, SWAY_PER_SPEED_S,
 };
 use glam::DVec2;
 
+use super::elapsed::Elapsed;
 use super::state::Track;
 
 impl Track {
@@ -28,18 +29,19 @@ impl Track {
     }
 
     /// Remembers where the foot has been.
-    pub(super) fn roll(&mut self, dt: f64) {
+    pub(super) fn roll(&mut self, elapsed: &Elapsed) {
+        let dt = elapsed.dt;
         let centre = self.centre();
         self.peak = self.peak.max(self.force());
         let rolls = !self.shared || self.age < FLAT_S && !self.landed_together;
         let speed = if rolls { self.velocity().length().min(1.0) } else { SHARED_SPEED_M_S };
         // Weight that goes over to another foot draws it along for a moment: that is not its own.
-        let change = (1.0 - (-dt / 0.25).exp()) * (speed - self.mean_speed);
+        let change = (1.0 - elapsed.mean_speed) * (speed - self.mean_speed);
         self.mean_speed += change.min(SPEED_RISE_M_S2 * dt);
         if rolls {
             self.sway_m = (SWAY_LEAST_M + SWAY_PER_SPEED_S * self.mean_speed).min(SWAY_MOST_M);
         }
-        self.rest(dt, rolls);
+        self.rest(elapsed, rolls);
         if self.age < 0.01 {
             self.landed = centre;
         }
@@ -68,17 +70,16 @@ impl Track {
     }
 
     /// Notes where the foot rests, and for how long it has stood still or been on the move.
-    fn rest(&mut self, dt: f64, rolls: bool) {
-        let centre = self.centre();
-        let drift = |time_s: f64| 1.0 - (-dt / time_s).exp();
+    fn rest(&mut self, elapsed: &Elapsed, rolls: bool) {
+        let (centre, dt) = (self.centre(), elapsed.dt);
         if self.shared {
             (self.still_s, self.away_s) = (0.0, 0.0);
-            let soon = if rolls { 1.0 } else { drift(REST_POINT_S) };
+            let soon = if rolls { 1.0 } else { 1.0 - elapsed.rest_point };
             self.rest_point += (centre - self.rest_point) * soon;
         } else if self.velocity().length() < STILL_M_S {
             self.still_s += dt;
             self.away_s = 0.0;
-            self.rest_point += (centre - self.rest_point) * drift(STILL_REST_POINT_S);
+            self.rest_point += (centre - self.rest_point) * (1.0 - elapsed.still_rest_point);
         } else {
             self.away_s += dt;
             if self.away_s > AWAY_S {

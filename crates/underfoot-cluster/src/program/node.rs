@@ -184,7 +184,13 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     if crossed.given() + crossed.felt() > 0 {
         eprintln!("{} cues handed to neighbours, {} of theirs felt here.", crossed.given(), crossed.felt());
     }
+    let counters = session.snapshot().floor.counters;
     let lost = [
+        (counters.lost, "packets of boards that never came"),
+        (counters.late, "packets of boards that came too late for their frame"),
+        (counters.overflowed, "packets that the system dropped, since its buffer was full"),
+        (counters.refused(), "datagrams refused"),
+        (counters.jumps, "loads that changed faster than a body changes them, not believed for 100 ms"),
         (crossed.late(), "cues of neighbours older than 50 ms, not played"),
         (crossed.lost(), "cues of neighbours that never came"),
         (crossed.untimed(), "cues of neighbours whose clock was not known yet, not played"),

@@ -49,10 +49,12 @@ impl Fault {
     fn await_hold(&self) {
         loop {
             let from = self.hall.lines.len();
-            self.hall.lines.find(from, "pressed", |line| is(line, "pressed"));
+            let pressed = self.hall.lines.find(from, "pressed", |line| is(line, "pressed"));
             std::thread::sleep(Duration::from_millis(500));
-            let lines = self.hall.lines.all();
-            if !lines.iter().skip(from).any(|line| is(line, "cancelled") || is(line, "released")) {
+            // The hold before it may have been released since the call.
+            let is_over =
+                |line: &&Line| line.came > pressed.came && (is(line, "cancelled") || is(line, "released"));
+            if !self.hall.lines.all().iter().skip(from).any(|line| is_over(&line)) {
                 return;
             }
         }

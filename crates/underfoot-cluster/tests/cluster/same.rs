@@ -67,6 +67,13 @@ impl Account {
         all
     }
 
+    /// Says when what happened, for a person who looks for what differs.
+    fn say(&self, name: &str) {
+        for (id, done, t_s, _) in &self.events {
+            say(&format!("{name}: {t_s:.4} s {id} {done}"));
+        }
+    }
+
     /// The nth event of each control and kind.
     fn moments(&self) -> BTreeMap<(String, String, usize), (f64, std::time::Instant)> {
         let mut counts = BTreeMap::<_, usize>::new();
@@ -110,7 +117,7 @@ fn quantile(all: &mut [f64], share: f64) -> f64 {
 /// which the machine must have time for five computers.
 fn walk_about(rounds: usize, is_exact: bool) {
     let hall = Hall::open();
-    let _nodes: Vec<Program> = AREAS.iter().map(|area| hall.node(area)).collect();
+    let nodes: Vec<Program> = AREAS.iter().map(|area| hall.node(area)).collect();
     let (session, port, single, frames) = hall.single();
     let boards = hall.boards(hall.script(&crowd(rounds)), &[port]);
     AREAS.iter().for_each(|area| hall.await_live(area, 0));
@@ -118,20 +125,34 @@ fn walk_about(rounds: usize, is_exact: bool) {
     // The last events are on their way.
     std::thread::sleep(std::time::Duration::from_millis(300));
     session.snapshot().floor.ignored.iter().for_each(|press| say(&press.to_string()));
+    let counters = session.snapshot().floor.counters;
+    say(&format!(
+        "one computer: {} packets lost, {} late, {} jumps",
+        counters.lost, counters.late, counters.jumps
+    ));
     session.stop();
+    // What they have counted, they say at their end.
+    nodes.into_iter().for_each(Program::end);
     let joined = Account::of(&hall.lines.all());
     let whole = Account { tracks: frames.tracks(), ..Account::of(&single.all()) };
 
     // The same events in the same order.
     say(&format!("{} events, {} contacts", whole.events.len(), whole.tracks.len()));
     assert!(whole.done().len() > 13 * rounds, "{:?}", whole.done());
+    if joined.done() != whole.done() {
+        joined.say("joined");
+        whole.say("one computer");
+    }
     assert_eq!(joined.done(), whole.done());
 
     // At the same times, but for the start of their clocks.
     let (here, there) = (joined.moments(), whole.moments());
     let offset = median(there.iter().map(|(event, (t_s, _))| here[event].0 - t_s).collect());
-    let mut apart: Vec<f64> =
-        there.iter().map(|(event, (t_s, _))| (here[event].0 - t_s - offset).abs()).collect();
+    let apart = |event, t_s: f64| (here[event].0 - t_s - offset).abs();
+    for (event, (t_s, _)) in there.iter().filter(|(event, (t_s, _))| apart(event, *t_s) > 0.002) {
+        say(&format!("{event:?} at {t_s:.4} s is at {:.4} s here", here[event].0 - offset));
+    }
+    let mut apart: Vec<f64> = there.iter().map(|(event, (t_s, _))| apart(event, *t_s)).collect();
     let mut added: Vec<f64> = there
         .iter()
         .map(|(event, (_, came))| {

@@ -2,6 +2,7 @@
 
 use std::time::Duration;
 
+use underfoot::floor::{TileBlock, TileId};
 use underfoot::wire::LinkState;
 
 use super::*;
@@ -208,4 +209,27 @@ fn a_flapping_link_stays_stale_until_it_is_clean_for_a_second() {
     assert!(live_ms.contains(&5111));
     assert!(live_ms.iter().all(|ms| !(5300..7910).contains(ms)));
     assert!(live_ms.contains(&7910));
+}
+
+#[test]
+fn a_part_of_a_floor_waits_for_what_its_neighbour_forwards_late() {
+    // The computer that forwards board 1's packets is busy for five milliseconds.
+    let busy = |p: SensorPacket| {
+        let ms = p.received.micros() / 1000;
+        let is_held_up = p.board == 1 && (500..505).contains(&ms);
+        if is_held_up { packet(1, p.sequence, 505) } else { p }
+    };
+    let mut packets: Vec<_> = steady(0, 1000).map(busy).collect();
+    packets.sort_by_key(|packet| packet.received);
+    let whole = Geometry::of_paper_tiles(4, BOARDS).unwrap();
+    let part = whole.part(&TileBlock { first: TileId::new(2, 0), columns: 2, rows: BOARDS }).unwrap();
+    for (geometry, late) in [(part, 0), (floor().geometry, 3)] {
+        let mut assembler = Assembler::new(&Floor::of(geometry));
+        let frames = feed(&mut assembler, packets.iter().cloned());
+        assert_eq!(frames.len(), 1000, "one frame each millisecond");
+        assert_eq!(assembler.counters().late, late);
+        let is_whole = |(ms, frame): (u16, &Shown)| frame.samples == [f32::from(ms); 3];
+        let missed = (0..).zip(&frames).filter(|&frame| !is_whole(frame)).count();
+        assert_eq!(missed as u64, late, "frames without that board's own sample");
+    }
 }

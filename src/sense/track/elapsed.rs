@@ -1,0 +1,55 @@
+//! What the time between two frames makes of averages: the same for every foot.
+
+use super::params::associate::PENDING_S;
+use super::params::explanation::WINDOW_S;
+use super::params::model::{FORCE_FADE_S, PLACE_FADE_S};
+use super::params::reach::{MEMORY_LIGHT_S, MEMORY_S};
+use super::params::smoothed::SMOOTHED_S;
+use super::params::state::RATE_S;
+use super::params::stillness::{MEAN_SPEED_S, REST_POINT_S, STILL_REST_POINT_S};
+use super::params::tracker::NIS_S;
+
+/// The time since the last frame, and how much of each average is left after it.
+///
+/// An exponential function for each foot and average would cost as much as all else that is done for a foot.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Elapsed {
+    /// In seconds.
+    pub dt: f64,
+    /// Of a lone foot's rates.
+    pub rates: f64,
+    pub mean_speed: f64,
+    pub rest_point: f64,
+    pub still_rest_point: f64,
+    pub smoothed: f64,
+    /// Of the outline of a foot that bears a body, and of a light one's.
+    pub outline: f64,
+    pub light_outline: f64,
+    pub explanation: f64,
+    pub pending: f64,
+    pub nis: f64,
+    /// Of the rates of feet that share tiles.
+    pub force_rate: f64,
+    pub velocity: f64,
+}
+
+impl Elapsed {
+    pub(super) fn new(dt: f64) -> Self {
+        let kept = |time_s: f64| (-dt / time_s).exp();
+        Self {
+            dt,
+            rates: kept(RATE_S),
+            mean_speed: kept(MEAN_SPEED_S),
+            rest_point: kept(REST_POINT_S),
+            still_rest_point: kept(STILL_REST_POINT_S),
+            smoothed: kept(SMOOTHED_S),
+            outline: kept(MEMORY_S),
+            light_outline: kept(MEMORY_LIGHT_S),
+            explanation: kept(WINDOW_S),
+            pending: kept(PENDING_S),
+            nis: kept(NIS_S),
+            force_rate: kept(FORCE_FADE_S),
+            velocity: kept(PLACE_FADE_S),
+        }
+    }
+}
