@@ -46,7 +46,7 @@ pub struct Sensing {
 #[derive(Clone, Debug)]
 enum Maker {
     Eq4(Clusters, Eq4),
-    Tracker(Tracker),
+    Tracker(Box<Tracker>),
 }
 
 impl Sensing {
@@ -66,7 +66,7 @@ impl Sensing {
                 Method::Eq4 => {
                     Maker::Eq4(Clusters::with_capacity(tiles), Eq4::new(tiles, config.uncertainty))
                 }
-                Method::Tracker => Maker::Tracker(Tracker::new(&geometry, config.uncertainty)),
+                Method::Tracker => Maker::Tracker(Box::new(Tracker::new(&geometry, config.uncertainty))),
             },
             pool: ContactPool::with_capacity(64),
             last: None,

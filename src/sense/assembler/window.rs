@@ -204,17 +204,34 @@ impl<const LANES: usize> Window<LANES> {
             loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
             forces[lane] = if is_used[lane] { force } else { forces[lane] };
         }
+        // One loop for each list: what does much at once becomes no vector instructions.
         for lane in 0..LANES {
-            let (end, is_used) = (read.ends[lane], is_used[lane]);
-            let is_nominal = self.nominal[lane] & !read.by_board;
-            ends[lane] = if is_used { end } else { ends[lane] };
-            loud[lane] |= is_used & ((end == End::Low) | (end == End::High));
-            guessed[lane] |= is_used & is_nominal;
-            news[lane] |= is_used;
-            let is_uncertain = (end == End::High) | is_nominal | trust.is_foreign;
-            let own = if is_uncertain { Quality::Degraded } else { Quality::Live };
-            let own = if is_used { own } else { Quality::Faulty };
-            let own = if (own as u8) > (trust.quality as u8) { own } else { trust.quality };
+            ends[lane] = if is_used[lane] { read.ends[lane] } else { ends[lane] };
+        }
+        let mut is_high = [false; LANES];
+        for lane in 0..LANES {
+            is_high[lane] = read.ends[lane] as u8 == End::High as u8;
+        }
+        for lane in 0..LANES {
+            let is_low = read.ends[lane] as u8 == End::Low as u8;
+            loud[lane] |= is_used[lane] & (is_low | is_high[lane]);
+        }
+        let mut is_nominal = [false; LANES];
+        for lane in 0..LANES {
+            is_nominal[lane] = self.nominal[lane] & !read.by_board;
+        }
+        for lane in 0..LANES {
+            guessed[lane] |= is_used[lane] & is_nominal[lane];
+        }
+        for lane in 0..LANES {
+            news[lane] |= is_used[lane];
+        }
+        let [degraded, live] = [Quality::Degraded, Quality::Live].map(|own| own.max(trust.quality));
+        let faulty = Quality::Faulty.max(trust.quality);
+        for lane in 0..LANES {
+            let is_uncertain = is_high[lane] | is_nominal[lane] | trust.is_foreign;
+            let own = if is_uncertain { degraded } else { live };
+            let own = if is_used[lane] { own } else { faulty };
             quality[lane] = if self.wired[lane] { own } else { quality[lane] };
         }
         let mut found = Found { bad: 0, is_used: false, is_any_loud: false, loud };
