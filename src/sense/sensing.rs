@@ -45,7 +45,7 @@ pub struct Sensing {
 /// What makes contacts from loaded tiles.
 #[derive(Clone, Debug)]
 enum Maker {
-    Eq4(Clusters, Eq4),
+    Eq4(Box<Clusters>, Box<Eq4>),
     Tracker(Box<Tracker>),
 }
 
@@ -63,9 +63,10 @@ impl Sensing {
         Self {
             tiles: LoadedTiles::new(geometry, config.threshold),
             maker: match method {
-                Method::Eq4 => {
-                    Maker::Eq4(Clusters::with_capacity(tiles), Eq4::new(tiles, config.uncertainty))
-                }
+                Method::Eq4 => Maker::Eq4(
+                    Box::new(Clusters::with_capacity(tiles)),
+                    Box::new(Eq4::new(tiles, config.uncertainty)),
+                ),
                 Method::Tracker => Maker::Tracker(Box::new(Tracker::new(&geometry, config.uncertainty))),
             },
             pool: ContactPool::with_capacity(64),
