@@ -172,10 +172,9 @@ impl Rack {
                 faults += run(group, rows, columns, gains, out, widths);
             }
             group.settle(fed);
-            for (channel, spent) in (first..).zip(group.gate.reset()) {
-                if spent {
-                    modes.clear_channel(channel);
-                }
+            if let Some(closed) = group.gate.reset() {
+                let closed = (first..).zip(closed).filter(|(_, closed)| *closed);
+                closed.for_each(|(channel, _)| modes.clear_channel(channel));
             }
         }
         faults
