@@ -110,8 +110,7 @@ impl Mix {
                     *row = samples;
                 }
             }
-            let mut across = [[0.0; LANES]; LANES];
-            transpose(&rows, &mut across);
+            let across: [[f32; LANES]; LANES] = transposed(&rows);
             // As one flat run of numbers: nested loops over both would be made slow gathers of.
             for (sample, more) in columns.as_flattened_mut().iter_mut().zip(across.as_flattened()) {
                 *sample += more;
@@ -125,7 +124,8 @@ const NOTHING: [f32; LANES] = [0.0; LANES];
 /// Makes columns of rows, in squares of four by four.
 // Not inlined: wider instructions would make slow gathers of these shuffles.
 #[inline(never)]
-pub(super) fn transpose(rows: &[&[f32; LANES]; LANES], columns: &mut [[f32; LANES]; LANES]) {
+pub(super) fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES] {
+    let mut columns = [[0.0; LANES]; LANES];
     for lane in (0..LANES).step_by(4) {
         for n in (0..LANES).step_by(4) {
             let square = Mat4::from_cols(
@@ -141,6 +141,7 @@ pub(super) fn transpose(rows: &[&[f32; LANES]; LANES], columns: &mut [[f32; LANE
             square.w_axis.write_to_slice(&mut columns[n + 3][lane..]);
         }
     }
+    columns
 }
 
 /// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
@@ -148,15 +149,14 @@ const TRIFLE: f32 = 1e-12;
 
 /// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
 pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
-    let larger = |a: f32, b: f32| if a > b { a } else { b };
-    let mut largest = [0.0; LANES];
-    for numbers in numbers {
-        for (number, largest) in numbers.iter_mut().zip(&mut largest) {
-            *number = if number.abs() < TRIFLE { 0.0 } else { *number };
-            *largest = larger(number.abs(), *largest);
+    let mut largest = 0.0;
+    for number in numbers.as_flattened_mut() {
+        if number.abs() < TRIFLE {
+            *number = 0.0;
         }
+        largest = if number.abs() > largest { number.abs() } else { largest };
     }
-    largest.into_iter().fold(0.0, |largest, number| larger(number, largest))
+    largest
 }
 
 #[cfg(test)]

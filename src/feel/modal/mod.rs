@@ -12,7 +12,7 @@ use std::f64::consts::TAU;
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
-use super::mix::{LANES, transpose};
+use super::mix::{LANES, transposed};
 use basis::{Basis, TERMS};
 
 pub(super) use basis::SPAN;
@@ -476,7 +476,5 @@ fn draw_banks_with<const FUSED: bool>(
             *terms = bank.terms::<FUSED>(samples);
         }
     }
-    let mut columns = [[0.0; LANES]; TERMS];
-    transpose(&terms.each_ref(), &mut columns);
-    basis.draw_side_by_side::<FUSED, LANES>(&columns, out);
+    basis.draw_side_by_side::<FUSED, LANES>(&transposed(&terms.each_ref()), out);
 }

@@ -50,12 +50,12 @@ impl Gate {
         first
     }
 
-    /// Opens tripped channels that have closed, and says which, if there are any: their voices may be forgotten now.
-    pub(super) fn reset(&mut self) -> Option<[bool; LANES]> {
-        if !self.tripped.contains(&true) {
-            return None;
-        }
+    /// Opens tripped channels that have closed, and says which: their voices may be forgotten now.
+    pub(super) fn reset(&mut self) -> [bool; LANES] {
         let mut closed = [false; LANES];
+        if !self.tripped.contains(&true) {
+            return closed;
+        }
         for lane in 0..LANES {
             closed[lane] = self.tripped[lane] && self.level[lane] == 0.0;
             if closed[lane] {
@@ -63,7 +63,7 @@ impl Gate {
                 self.turn(lane);
             }
         }
-        Some(closed)
+        closed
     }
 
     fn turn(&mut self, lane: usize) {
@@ -141,9 +141,9 @@ mod tests {
         gate.trip(1);
         gate.mute(1, true);
         through(&mut gate, 100);
-        assert!(!gate.reset().unwrap().contains(&true), "still fading");
+        assert!(!gate.reset().contains(&true), "still fading");
         through(&mut gate, 200);
-        assert_eq!(gate.reset().unwrap()[..3], [true, true, false]);
+        assert_eq!(gate.reset()[..3], [true, true, false]);
         assert_eq!(through(&mut gate, 300)[299], [1.0, 0.0]);
     }
 }

@@ -172,9 +172,10 @@ impl Rack {
                 faults += run(group, rows, columns, gains, out, widths);
             }
             group.settle(fed);
-            if let Some(closed) = group.gate.reset() {
-                let closed = (first..).zip(closed).filter(|(_, closed)| *closed);
-                closed.for_each(|(channel, _)| modes.clear_channel(channel));
+            for (channel, spent) in (first..).zip(group.gate.reset()) {
+                if spent {
+                    modes.clear_channel(channel);
+                }
             }
         }
         faults
