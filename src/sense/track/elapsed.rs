@@ -11,7 +11,7 @@ use super::params::tracker::NIS_S;
 
 /// The time since the last frame, and how much of each average is left after it.
 ///
-/// An exponential function for each foot and average would cost as much as all else that is done for a foot.
+/// Computed for each foot, these exponentials took a twentieth of the work on a crowd.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Elapsed {
     /// In seconds.

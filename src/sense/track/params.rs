@@ -330,8 +330,8 @@ pub(super) mod residual {
     /// How long a foot must be alone for its shape to be known, in seconds.
     pub(in crate::sense::track) const KNOWN_S: f64 = 0.1;
 
-    /// How often its shape is learnt, in seconds: often beside [`RESIDUAL_S`], for it is a fourth of all work on a lone
-    /// foot (our choice).
+    /// How often its shape is learnt, in seconds: often beside [`RESIDUAL_S`]. In every frame, it took a fifth of the tracker's
+    /// work on a crowd (our choice).
     pub(in crate::sense::track) const LEARN_EVERY_S: f64 = 0.004;
 
     /// How long only its heel may be down, which tells nothing of the rest, in seconds.

@@ -53,8 +53,8 @@ impl Fault {
             std::thread::sleep(Duration::from_millis(500));
             // The hold before it may have been released since the call.
             let is_over =
-                |line: &&Line| line.came > pressed.came && (is(line, "cancelled") || is(line, "released"));
-            if !self.hall.lines.all().iter().skip(from).any(|line| is_over(&line)) {
+                |line: &Line| line.came > pressed.came && (is(line, "cancelled") || is(line, "released"));
+            if !self.hall.lines.all().iter().skip(from).any(is_over) {
                 return;
             }
         }
