@@ -69,13 +69,16 @@ impl Person {
     }
 
     /// How far somebody of these `feet` would have stepped to `place`; `None` if none of them can have.
+    ///
+    /// Where somebody's foot was before it left says nothing while the other one stands further off than anybody steps.
     pub(super) fn reach_to(&self, place: Vec2, feet: &[FootHistory], now: Instant) -> Option<f32> {
         let mine = || feet.iter().filter(|foot| foot.person == self.id && !foot.is_object());
-        let nearest = mine().map(|foot| foot.place.distance(place)).fold(f32::INFINITY, f32::min);
+        let distances = || mine().map(|foot| foot.place.distance(place));
+        let nearest = distances().fold(f32::INFINITY, f32::min);
         if nearest <= ONE_FOOT_M {
             return Some(nearest);
         }
-        if self.has_both_down(feet) {
+        if self.has_both_down(feet) || distances().any(|distance| distance > STRIDE_M) {
             return None;
         }
         let left = self.left.iter().filter(|left| now.since(left.at) <= SWINGING);

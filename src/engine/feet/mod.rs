@@ -207,4 +207,18 @@ mod tests {
         assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
         assert!(foot.has_support, "beside a foot that stands");
     }
+
+    #[test]
+    fn a_foot_is_nobody_s_whose_other_foot_stands_further_off_than_anybody_steps() {
+        let mut feet = FootHistories::default();
+        let mut give = |contacts: &[Contact], ms: u64| feet.update(contacts, &[], Instant::from_millis(ms));
+        let (one, other) = (contact(1, (1.0, 1.6), 600.0, false), contact(2, (1.4, 2.1), 600.0, false));
+        // Somebody steps north; 0.4 s after the hind foot has left, a foot of somebody else lands a metre south of it.
+        give(std::slice::from_ref(&one), 0);
+        give(&[one, other.clone()], 500);
+        give(std::slice::from_ref(&other), 700);
+        give(&[other, contact(3, (1.2, 0.6), 300.0, false)], 1100);
+        let person = |id| feet.of(ContactId(id)).unwrap().person;
+        assert_ne!(person(2), person(3));
+    }
 }

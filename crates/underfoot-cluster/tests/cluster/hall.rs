@@ -18,6 +18,8 @@ use underfoot::schema::{self, Kinds};
 use underfoot::sim::{Scenario, Script, SimConfig, SimFloor, calibrated};
 use underfoot::sink::{EventSink, JsonSink, Rank, Report, claim_priority};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSource};
+use underfoot::units::Instant;
+use underfoot::widget::{EventKind, WidgetId};
 use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use crate::lines::Lines;
@@ -307,9 +309,15 @@ impl Hall {
     }
 }
 
-/// Every contact of every frame.
+/// Every contact of every frame, and every event.
 #[derive(Clone, Debug, Default)]
-pub(crate) struct Frames(Arc<Mutex<Tracks>>);
+pub(crate) struct Frames(Arc<Mutex<Seen>>);
+
+#[derive(Debug, Default)]
+struct Seen {
+    tracks: Tracks,
+    events: Vec<(Instant, WidgetId, EventKind)>,
+}
 
 /// When and where each contact was, by its name.
 pub(crate) type Tracks = BTreeMap<u64, Vec<(f64, f64, f64)>>;
@@ -317,17 +325,29 @@ pub(crate) type Tracks = BTreeMap<u64, Vec<(f64, f64, f64)>>;
 impl Frames {
     /// When and where each contact was.
     pub(crate) fn tracks(&self) -> Tracks {
-        self.0.lock().unwrap().clone()
+        self.0.lock().unwrap().tracks.clone()
+    }
+
+    /// What was done with each control when: control by control, of each in order.
+    pub(crate) fn events(&self) -> Vec<(Instant, WidgetId, EventKind)> {
+        let mut events = self.0.lock().unwrap().events.clone();
+        events.sort_by(|(_, one, _), (_, other, _)| one.cmp(other));
+        events
     }
 }
 
 impl EventSink for Frames {
     fn report(&mut self, report: Report<'_>) {
-        let Report::Contacts(at, contacts) = report else { return };
-        let mut tracks = self.0.lock().unwrap();
-        for contact in contacts {
-            let [x, y] = contact.centroid.to_array().map(f64::from);
-            tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
+        let mut seen = self.0.lock().unwrap();
+        match report {
+            Report::Event(event) => seen.events.push((event.at, event.id.clone(), event.kind)),
+            Report::Contacts(at, contacts) => {
+                for contact in contacts {
+                    let [x, y] = contact.centroid.to_array().map(f64::from);
+                    seen.tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
+                }
+            }
+            _ => {}
         }
     }
 }

@@ -90,30 +90,28 @@ fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMe
     message.filter(|message| message.frame.is_some()).collect()
 }
 
-/// Lets people walk about for `rounds`, and compares every contact of every frame.
+/// Lets people walk about for `rounds`, and compares every event, and every contact of every frame.
 fn compare(rounds: usize) {
     let floor = floor();
     let layout = layout(&floor);
     let hall = (&floor, &layout, rounds);
     let whole = Frames::default();
     serve(hall, &floor, layout.clone(), whole.clone());
-    let whole = whole.tracks();
+    let (events, whole) = (whole.events(), whole.tracks());
     let mut all: Vec<NodeMessage> =
         AREAS.iter().zip(1..).flat_map(|(area, node)| messages(hall, area, node)).collect();
     all.sort_by_key(|message| message.sent);
     let mut gateway = Gateway::new(&floor, 9).unwrap();
-    let mut tracks = BTreeMap::<u64, Vec<(f64, f64, f64)>>::new();
+    let mut joined = Frames::default();
     for message in all {
         let now = Instant::from_micros(message.sent + 200);
         gateway.take(message, now);
-        for told in gateway.advance(now) {
-            let Told::Contacts(at, contacts) = told else { continue };
-            for contact in contacts {
-                let [x, y] = contact.centroid.to_array().map(f64::from);
-                tracks.entry(contact.id.0.into()).or_default().push((at.secs(), x, y));
-            }
-        }
+        gateway.advance(now).iter().filter_map(Told::report).for_each(|report| joined.report(report));
     }
+    // The same moments, to the microsecond.
+    say(&format!("{} events", events.len()));
+    assert_eq!(joined.events(), events);
+    let tracks = joined.tracks();
     let mut pairs = BTreeMap::new();
     let (mut places, mut apart, mut worst) = (0, 0, 0.0_f64);
     for (id, track) in &tracks {
@@ -151,7 +149,7 @@ fn compare(rounds: usize) {
 }
 
 #[test]
-fn contacts_of_four_nodes_are_those_of_one_computer() {
+fn events_and_contacts_of_four_nodes_are_those_of_one_computer() {
     compare(1);
 }
 
