@@ -83,15 +83,38 @@ impl Limiter {
         true
     }
 
-    /// Takes direct current out of one sample of each channel, and holds it to `gain` at most, which it is multiplied
-    /// by.
+    /// Takes direct current out of a stretch of samples of each channel, and holds each to its gain at most, by which it
+    /// is multiplied.
+    ///
+    /// By fours: a sample's mean needs the one before it, but what four samples add to a mean does not.
     #[inline(always)]
-    pub(super) fn finish<const FUSED: bool>(&mut self, column: &mut [f32; LANES], gain: f32) {
-        for lane in 0..LANES {
-            let sample = column[lane];
-            let blocked = sample - self.mean[lane];
-            self.mean[lane] = multiply_add::<FUSED>(self.keep, self.mean[lane], (1.0 - self.keep) * sample);
-            column[lane] = -larger(-1.0, -larger(-1.0, blocked)) * gain;
+    pub(super) fn finish<const FUSED: bool>(&mut self, columns: &mut [[f32; LANES]], gains: &[f32]) {
+        let keep = self.keep;
+        let kept = [keep, keep.powi(2), keep.powi(3), keep.powi(4)];
+        let (fours, rest) = columns.as_chunks_mut::<4>();
+        let (gains, gains_of_rest) = gains.as_chunks::<4>();
+        for (four, gains) in fours.iter_mut().zip(gains) {
+            let mut added = [0.0; LANES];
+            let before = self.mean;
+            let mut mean = before;
+            for (n, column) in four.iter_mut().enumerate() {
+                for lane in 0..LANES {
+                    let sample = column[lane];
+                    let blocked = sample - mean[lane];
+                    added[lane] = multiply_add::<FUSED>(keep, added[lane], (1.0 - keep) * sample);
+                    mean[lane] = multiply_add::<FUSED>(kept[n], before[lane], added[lane]);
+                    column[lane] = within_full_scale(blocked) * gains[n];
+                }
+            }
+            self.mean = mean;
+        }
+        for (column, gain) in rest.iter_mut().zip(gains_of_rest) {
+            for lane in 0..LANES {
+                let sample = column[lane];
+                let blocked = sample - self.mean[lane];
+                self.mean[lane] = multiply_add::<FUSED>(keep, self.mean[lane], (1.0 - keep) * sample);
+                column[lane] = within_full_scale(blocked) * gain;
+            }
         }
     }
 
@@ -102,6 +125,11 @@ impl Limiter {
         settled(std::slice::from_mut(&mut self.envelope));
         settled(std::slice::from_mut(&mut self.mean))
     }
+}
+
+#[inline(always)]
+fn within_full_scale(sample: f32) -> f32 {
+    -larger(-1.0, -larger(-1.0, sample))
 }
 
 /// The larger of two numbers, in one instruction; [`f32::max`] takes three to do right by NaN, which never comes here.
@@ -175,7 +203,7 @@ mod tests {
         for columns in columns.chunks_mut(64) {
             let loudest = columns.iter().fold(0.0_f32, |most, column| most.max(column[5].abs()));
             limiter.hold_down(columns, loudest);
-            columns.iter_mut().for_each(|column| limiter.finish::<false>(column, 1.0));
+            limiter.finish::<false>(columns, &[1.0; 64][..columns.len()]);
             limiter.settle();
         }
         columns.into_iter().map(|column| column[5]).collect()

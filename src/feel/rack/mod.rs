@@ -258,20 +258,11 @@ impl Group {
             found = survey(columns);
         }
         faults.heated = self.heat.run::<FUSED>(columns, &found.energy);
-        if self.gate.is_open() {
-            for ((frame, column), gain) in out.chunks_mut(channels).zip(columns).zip(gains) {
-                self.limiter.finish::<FUSED>(column, *gain);
-                write(column, &mut frame[..width]);
-            }
-        } else {
-            for (column, gain) in columns.iter_mut().zip(gains) {
-                self.limiter.finish::<FUSED>(column, *gain);
-            }
+        self.limiter.finish::<FUSED>(columns, gains);
+        if !self.gate.is_open() {
             self.gate.run(columns);
-            for (frame, column) in out.chunks_mut(channels).zip(columns) {
-                write(column, &mut frame[..width]);
-            }
         }
+        write(columns, out, channels, width);
         faults
     }
 
@@ -319,14 +310,19 @@ struct Survey {
 
 #[inline(always)]
 fn survey(columns: &[[f32; LANES]]) -> Survey {
-    /// Numbers that are worked on together: so many that the compiler keeps the loop, and makes vectors of it.
-    const TOGETHER: usize = 8 * LANES;
+    /// Numbers that are worked on together: as many as sums of them fit into registers.
+    const TOGETHER: usize = 4 * LANES;
     let (mut most, mut energy) = ([0_u32; TOGETHER], [0.0_f32; TOGETHER]);
-    for numbers in columns.as_flattened().chunks(TOGETHER) {
-        for ((number, most), energy) in numbers.iter().zip(&mut most).zip(&mut energy) {
-            *most = (number.to_bits() & 0x7fff_ffff).max(*most);
-            *energy += number * number;
+    let (whole, rest) = columns.as_flattened().as_chunks::<TOGETHER>();
+    for numbers in whole {
+        for n in 0..TOGETHER {
+            most[n] = (numbers[n].to_bits() & 0x7fff_ffff).max(most[n]);
+            energy[n] += numbers[n] * numbers[n];
         }
+    }
+    for ((number, most), energy) in rest.iter().zip(&mut most).zip(&mut energy) {
+        *most = (number.to_bits() & 0x7fff_ffff).max(*most);
+        *energy += number * number;
     }
     let mut survey = Survey { most: [0; LANES], energy: [0.0; LANES] };
     for (most, energy) in most.as_chunks::<LANES>().0.iter().zip(energy.as_chunks::<LANES>().0) {
@@ -356,20 +352,25 @@ impl Survey {
     }
 }
 
-/// Writes a column into a group's part of a frame.
+/// Writes columns into a group's parts of frames, which are so many `channels` apart and begin with `out`.
 #[inline(always)]
-fn write(column: &[f32; LANES], frame: &mut [f32]) {
-    if let Some(frame) = frame.first_chunk_mut::<LANES>() {
-        *frame = *column;
-        return;
-    }
-    // The last group is seldom full. By fours, since a copy of any length is a call for each frame.
-    let (fours, rest) = frame.as_chunks_mut::<4>();
-    for (samples, from) in fours.iter_mut().zip(column.as_chunks::<4>().0) {
-        *samples = *from;
-    }
-    for (sample, from) in rest.iter_mut().zip(&column[4 * fours.len()..]) {
-        *sample = *from;
+fn write(columns: &[[f32; LANES]], mut out: &mut [f32], channels: usize, width: usize) {
+    for column in columns {
+        if width == LANES {
+            if let Some(frame) = out.first_chunk_mut::<LANES>() {
+                *frame = *column;
+            }
+        } else {
+            // The last group is seldom full. By fours, since a copy of any length is a call for each frame.
+            let (fours, rest) = out[..width].as_chunks_mut::<4>();
+            for (samples, from) in fours.iter_mut().zip(column.as_chunks::<4>().0) {
+                *samples = *from;
+            }
+            for (sample, from) in rest.iter_mut().zip(&column[4 * fours.len()..]) {
+                *sample = *from;
+            }
+        }
+        out = out.split_at_mut_checked(channels).map_or_else(Default::default, |(_, rest)| rest);
     }
 }
 
