@@ -36,42 +36,56 @@ struct Boards {
 /// The boards of a floor that is served over this machine's own network.
 #[derive(Debug)]
 pub struct BoardsLoad {
+    floor: Floor,
     boards: Boards,
     encoder: SensorEncoder,
     socket: UdpSocket,
-    to: SocketAddr,
+    /// Who takes the packets.
+    to: Option<SocketAddr>,
 }
 
 impl BoardsLoad {
-    /// Such a floor as [`ServeLoad`] has, what takes its packets, and what sends them.
+    /// The boards of such a floor as [`ServeLoad`] has, whose packets nobody takes yet.
     ///
     /// # Errors
     /// [`SourceError::Socket`] if there is no port.
-    pub fn new(side: u16, walkers: u16) -> Result<(Floor, UdpSource, Self), SourceError> {
+    pub fn new(side: u16, walkers: u16) -> Result<Self, SourceError> {
         let (floor, boards) = Boards::of(side, walkers);
-        let here = SocketAddr::from((Ipv4Addr::LOCALHOST, 0));
-        let failed = |source: std::io::Error| SourceError::Socket {
-            message: format!("packets can't be sent to this machine itself: {source}"),
-            source,
-        };
-        let source = UdpSource::bind(here, &floor)?;
-        let to = source.local_addr().map_err(failed)?;
-        let socket = UdpSocket::bind(here).map_err(failed)?;
+        let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).map_err(no_port)?;
         let encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
-        Ok((floor, source, Self { boards, encoder, socket, to }))
+        Ok(Self { floor, boards, encoder, socket, to: None })
     }
 
-    /// Sends the packets of the next millisecond.
-    pub fn send(&mut self) {
+    /// What takes the packets from now on, and the floor that they are of.
+    ///
+    /// # Errors
+    /// [`SourceError::Socket`] if there is no port.
+    pub fn source(&mut self) -> Result<(Floor, UdpSource), SourceError> {
+        let source = UdpSource::bind((Ipv4Addr::LOCALHOST, 0).into(), &self.floor)?;
+        self.to = Some(source.local_addr().map_err(no_port)?);
+        Ok((self.floor.clone(), source))
+    }
+
+    /// Sends the packets of the next millisecond; `pause` is called when about a half of them are sent.
+    pub fn send(&mut self, pause: impl Fn()) {
         let mut packets = VecDeque::new();
         self.boards.next(&mut packets);
-        for packet in &packets {
+        let half = packets.len() / 2;
+        for (number, packet) in packets.iter().enumerate() {
+            if number == half {
+                pause();
+            }
             if let Ok(datagram) = self.encoder.encode(packet) {
                 // What is lost here is missing there.
-                let _ = self.socket.send_to(datagram, self.to);
+                let _ = self.to.map(|to| self.socket.send_to(datagram, to));
             }
         }
     }
+}
+
+fn no_port(source: std::io::Error) -> SourceError {
+    let message = format!("packets can't be sent to this machine itself: {source}");
+    SourceError::Socket { message, source }
 }
 
 /// Packets that wait, and the time.

@@ -50,7 +50,8 @@ impl AreaArgs {
             };
             return Err(Failure::Other(format!("the floor has no area \"{id}\": {known}")));
         };
-        let (forwardings, forwarders) = (floor.forwardings(&area), floor.forwarders(&area).collect());
+        let (forwardings, forwarders) =
+            (floor.forwardings(&area), floor.forwarding_addresses(&area).collect());
         Ok((Served { geometry, area: Some(area), forwardings, forwarders }, part))
     }
 }

@@ -3,6 +3,7 @@
 //! A computer senses somewhat more than its own area ([`Area::sensed`]). Each board sends to one computer, its home;
 //! where others sense tiles of that board too, its home forwards the packets to them.
 
+use std::collections::BTreeSet;
 use std::net::{IpAddr, SocketAddr};
 
 use super::{Area, Board, Floor, SensorId, TileBlock};
@@ -47,13 +48,20 @@ impl Floor {
         forwardings.filter(|forwarding| !forwarding.to.is_empty()).collect()
     }
 
-    /// The computers that forward packets to that of `area`, as far as they are named; some perhaps several times.
-    pub fn forwarders(&self, area: &Area) -> impl Iterator<Item = IpAddr> + '_ {
-        let (sensed, id) = (area.sensed(&self.geometry), area.id.clone());
+    /// The areas whose computers forward packets to that of `area`; none if it does not say where it listens.
+    #[must_use]
+    pub fn forwarders(&self, area: &Area) -> Vec<&Area> {
+        let sensed = area.sensed(&self.geometry);
         let is_sensed =
-            move |board: &&Board| board.channels.iter().flatten().any(|sensor| sensed.contains(sensor.tile));
-        let homes = self.boards.iter().filter(is_sensed).filter_map(|board| self.home(board));
-        homes.filter(move |home| home.id != id).filter_map(|home| Some(home.listen?.ip()))
+            |board: &&Board| board.channels.iter().flatten().any(|sensor| sensed.contains(sensor.tile));
+        let boards = self.boards.iter().filter(|_| area.listen.is_some()).filter(is_sensed);
+        let homes: BTreeSet<&str> = boards.filter_map(|board| Some(self.home(board)?.id.as_str())).collect();
+        self.areas.iter().filter(|other| other.id != area.id && homes.contains(other.id.as_str())).collect()
+    }
+
+    /// The addresses of the computers that forward packets to that of `area`, as far as they are named.
+    pub fn forwarding_addresses(&self, area: &Area) -> impl Iterator<Item = IpAddr> {
+        self.forwarders(area).into_iter().filter_map(|home| Some(home.listen?.ip()))
     }
 }
 
@@ -88,7 +96,9 @@ mod tests {
         assert_eq!(from_east.len(), 2, "{from_east:?}");
         // Middle is sensed by both, but nobody knows where the east is.
         assert!(floor.forwardings(&floor.areas[1]).iter().all(|one| one.to.len() == 1));
-        assert_eq!(floor.forwarders(&floor.areas[0]).collect::<Vec<_>>(), [middle.ip(); 2]);
+        assert_eq!(floor.forwarders(&floor.areas[0]), [&floor.areas[1]]);
+        assert_eq!(floor.forwarding_addresses(&floor.areas[0]).collect::<Vec<_>>(), [middle.ip()]);
+        assert_eq!(floor.forwarders(&floor.areas[2]), [] as [&Area; 0], "nobody knows where it listens");
         // Half of a board here, half there: the area named first has it.
         let both = floor.boards[1].channels[..16].to_vec();
         floor.boards[0].channels.splice(..16, both);

@@ -37,6 +37,8 @@ pub struct AreaDemand {
     pub in_mbit: f64,
     /// Packets of boards that it forwards, one for each computer that each goes to, per second.
     pub forwards_per_s: f64,
+    /// Computers that forward packets to it.
+    pub forwarders: u32,
     /// Datagrams with contacts that go out, per second.
     pub out_packets_per_s: f64,
     /// What they, the forwarded packets and their headers take on its wire.
@@ -63,6 +65,8 @@ pub(super) struct Extent {
     /// Packets that it forwards each millisecond, and their bytes on the wire.
     pub(super) forwards: u32,
     pub(super) forwarded_bytes: f64,
+    /// Computers that forward packets to it.
+    pub(super) forwarders: u32,
     pub(super) channels: u32,
 }
 
@@ -82,6 +86,7 @@ impl AreaDemand {
             packets_per_s: f64::from(boards) * BOARD_HZ,
             in_mbit: mbit(bytes * BOARD_HZ),
             forwards_per_s: f64::from(extent.forwards) * BOARD_HZ,
+            forwarders: extent.forwarders,
             out_packets_per_s: f64::from(datagrams) * CONTACT_HZ,
             out_mbit: mbit(out_bytes * CONTACT_HZ + extent.forwarded_bytes * BOARD_HZ),
             channels,
@@ -122,6 +127,7 @@ impl AreaDemand {
             bytes: part.boards.iter().map(bytes).sum(),
             forwards: count(forwardings.iter().map(|forwarding| forwarding.to.len()).sum()),
             forwarded_bytes: forwardings.iter().map(forwarded).sum(),
+            forwarders: count(floor.forwarders(area).len()),
             channels: count(part.channel_count()),
         };
         Self::new(&area.id, &extent, floor.geometry.tile_count() as f64, crowd)
@@ -133,12 +139,14 @@ impl AreaDemand {
         f64::from(self.sensed_columns) * f64::from(self.sensed_rows)
     }
 
-    /// What its sensing thread takes of a core: packets, those it forwards, frames, contacts, controls.
+    /// What its sensing thread takes of a core: packets, those it forwards, waking for those that others forward, frames,
+    /// contacts, controls.
     #[must_use]
     pub fn sensing_cores(&self, machine: &Machine) -> f64 {
         let us = machine.base_us
             + self.packets_per_s / BOARD_HZ * machine.packet_us
             + self.forwards_per_s / BOARD_HZ * machine.forward_us
+            + f64::from(self.forwarders) * machine.wake_us
             + self.sensed_tiles() * (machine.assemble_tile_us + machine.sense_tile_us)
             + self.sensed_people * machine.person_us;
         us / 1000.0
@@ -230,8 +238,9 @@ mod tests {
             "{}",
             middle.out_mbit
         );
-        // 20 + 6 boards x 1 + 4 x 0.5 + 28 tiles x 0.2 us.
-        assert!(near(middle.sensing_cores(&ROUND), 0.0336), "{}", middle.sensing_cores(&ROUND));
+        assert_eq!((west.forwarders, middle.forwarders, east.forwarders), (1, 2, 1));
+        // 20 + 6 boards x 1 + 4 x 0.5 + 2 neighbours x 3 + 28 tiles x 0.2 us.
+        assert!(near(middle.sensing_cores(&ROUND), 0.0396), "{}", middle.sensing_cores(&ROUND));
     }
 
     #[test]

@@ -17,6 +17,8 @@ pub struct Machine {
     pub packet_us: f64,
     /// Forwarding one board's packet to one other computer.
     pub forward_us: f64,
+    /// Waking once more in a millisecond, for what one other computer forwards.
+    pub wake_us: f64,
     /// Putting one tile's readings into a frame, and looking after its sensors.
     pub assemble_tile_us: f64,
     /// Sensing a tile that carries nothing.
@@ -53,6 +55,7 @@ impl Machine {
             ("base_us", self.base_us),
             ("packet_us", self.packet_us),
             ("forward_us", self.forward_us),
+            ("wake_us", self.wake_us),
             ("assemble_tile_us", self.assemble_tile_us),
             ("sense_tile_us", self.sense_tile_us),
             ("person_us", self.person_us),
@@ -80,12 +83,13 @@ impl Machine {
 pub(super) mod tests {
     use super::*;
 
-    /// Round numbers, so that a reader can follow the sums: 1 us a packet, 0.1 a tile twice, 10 a person.
+    /// Round numbers, so that a reader can follow the sums: 1 us a packet, 3 to wake, 0.1 a tile twice, 10 a person.
     pub(in crate::plan) const ROUND: Machine = Machine {
         cores: 2,
         base_us: 20.0,
         packet_us: 1.0,
         forward_us: 0.5,
+        wake_us: 3.0,
         assemble_tile_us: 0.1,
         sense_tile_us: 0.1,
         person_us: 10.0,

@@ -7,12 +7,16 @@
 
 mod area_demand;
 mod assumptions;
+mod cores;
 mod datagram;
 mod limit;
+mod listener;
 mod machine;
 mod measure;
+mod round;
 mod split;
 mod whole;
+mod work_time;
 
 use serde::Serialize;
 use thiserror::Error;

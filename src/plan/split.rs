@@ -75,6 +75,8 @@ struct Along {
     /// The same, each once for each span that senses it.
     copies: u32,
     copied_bytes: f64,
+    /// Spans, itself among them, that are the homes of what measures something in it.
+    homes: u32,
 }
 
 /// `length` tiles in `parts` spans of nearly equal length.
@@ -108,12 +110,15 @@ fn covers(count: u32, spans: impl Iterator<Item = (u32, u32)>) -> Vec<u32> {
 
 /// What each of `up` spans takes of so many rows.
 fn rows(length: u32, up: u32) -> Vec<Along> {
-    let sensed = covers(length, spans(length, up).map(|span| span.sensed));
-    let row = |span: Span| {
+    let all: Vec<Span> = spans(length, up).collect();
+    let sensed = covers(length, all.iter().map(|span| span.sensed));
+    let row = |span: &Span| {
         let copies = sensed[span.first as usize..span.end as usize].iter().sum();
-        Along { home: span.end - span.first, copies, ..along(span) }
+        let before = all.partition_point(|other| other.end <= span.sensed.0);
+        let homes = all.partition_point(|other| other.first < span.sensed.1) - before;
+        Along { home: span.end - span.first, copies, homes: homes as u32, ..along(*span) }
     };
-    spans(length, up).map(row).collect()
+    all.iter().map(row).collect()
 }
 
 /// Boards of a floor of which each row has its own, eight tiles each.
@@ -154,12 +159,22 @@ impl Boards {
     fn along(&self, length: u32, across: u32) -> Vec<Along> {
         let mut all: Vec<Along> = spans(length, across).map(|span| self.span(span)).collect();
         let sensed = covers(length.div_ceil(BOARD_TILES), spans(length, across).map(sensing));
-        for (board, copies) in (0..).zip(sensed) {
+        let home = |board: u32| {
             let (west, east) = (board * BOARD_TILES, (board + 1) * BOARD_TILES);
             let tiles = |span: Span| span.end.min(east).saturating_sub(span.first.max(west));
             // Of spans that have as many of its tiles, the first is its home; of equals, `max_by_key` gives the last.
-            let spans = spans(length, across).zip(&mut all);
-            let Some((_, home)) = spans.rev().max_by_key(|(span, _)| tiles(*span)) else { continue };
+            let number = spans(length, across).enumerate().rev().max_by_key(|(_, span)| tiles(*span));
+            number.map(|(number, _)| number)
+        };
+        let homes: Vec<Option<usize>> = (0..).zip(&sensed).map(|(board, _)| home(board)).collect();
+        for (span, along) in spans(length, across).zip(&mut all) {
+            let (from, to) = sensing(span);
+            // Homes follow each other as boards do.
+            let of_boards = homes[from as usize..to as usize].chunk_by(|one, next| one == next);
+            along.homes = of_boards.count() as u32;
+        }
+        for ((board, copies), home) in (0..).zip(sensed).zip(&homes) {
+            let Some(home) = home.and_then(|home| all.get_mut(home)) else { continue };
             let bytes = self.bytes(board);
             home.home += 1;
             home.home_bytes += bytes;
@@ -183,6 +198,8 @@ fn demand(column: &Along, row: &Along, size: Size, crowd: &Crowd) -> AreaDemand 
         forwarded_bytes: (column.copied_bytes * f64::from(row.copies)
             - column.home_bytes * f64::from(row.home))
         .max(0.0),
+        // An area narrower than a board may be no board's home.
+        forwarders: (column.homes * row.homes).saturating_sub(u32::from(column.home * row.home > 0)),
         channels: if size.actuators { column.own * row.own } else { 0 },
     };
     AreaDemand::new("", &extent, f64::from(size.columns) * f64::from(size.rows), crowd)
@@ -200,6 +217,7 @@ fn most(all: &[Along]) -> Along {
         home_bytes: most.home_bytes.min(one.home_bytes),
         copies: most.copies.max(one.copies),
         copied_bytes: most.copied_bytes.max(one.copied_bytes),
+        homes: most.homes.max(one.homes),
     });
     all.unwrap_or_default()
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use crate::end_to_end::{said, underfoot};
 
 /// Constants of a computer of round numbers.
-const CONSTANTS: &str = r#"{"cores":2,"base_us":20,"packet_us":1,"forward_us":0.5,"assemble_tile_us":0.1,"sense_tile_us":0.1,
+const CONSTANTS: &str = r#"{"cores":2,"base_us":20,"packet_us":1,"forward_us":0.5,"wake_us":3,"assemble_tile_us":0.1,"sense_tile_us":0.1,
     "person_us":10,"channel_us":1,"active_channel_us":2,"channels":64,"link_mbit":1000}"#;
 
 fn planned(args: &[&str], floor: Option<&str>) -> (bool, String) {

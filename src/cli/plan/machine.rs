@@ -40,7 +40,7 @@ pub(super) fn measured(length: Duration) -> Result<Machine, Failure> {
 mod tests {
     use super::*;
 
-    const CONSTANTS: &str = r#"{"cores":2,"base_us":20,"packet_us":2,"forward_us":1,"assemble_tile_us":0.05,"sense_tile_us":0.05,
+    const CONSTANTS: &str = r#"{"cores":2,"base_us":20,"packet_us":2,"forward_us":1,"wake_us":3,"assemble_tile_us":0.05,"sense_tile_us":0.05,
         "person_us":5,"channel_us":0.1,"active_channel_us":0.2,"channels":64,"link_mbit":1000}"#;
 
     fn of(text: &str) -> Result<Machine, String> {

@@ -18,7 +18,7 @@ use super::number::{number, patience};
 /// What `underfoot plan` is asked to do.
 ///
 /// Says how many computers, links, packets, megabits and cores a floor and its people take, into which areas it is best
-/// cut, and what runs out first. What one computer does is measured on this one, which takes some fifteen seconds, or
+/// cut, and what runs out first. What one computer does is measured on this one, which takes some twenty seconds, or
 /// read from a file. Without a floor, plans the paper's 6 x 6 tiles.
 #[derive(clap::Args, Clone, Debug)]
 pub(crate) struct Args {

@@ -51,6 +51,7 @@ fn constants(machine: &Machine) -> Vec<String> {
         ("a floor at work, whatever its size", machine.base_us),
         ("a packet", machine.packet_us),
         ("forwarding a packet", machine.forward_us),
+        ("waking for what one neighbour forwards", machine.wake_us),
         ("assembling a tile", machine.assemble_tile_us),
         ("sensing a tile that carries nothing", machine.sense_tile_us),
         ("a person who walks", machine.person_us),

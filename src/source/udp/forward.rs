@@ -14,8 +14,8 @@ use std::time::Duration;
 use crate::floor::Forwarding;
 use crate::wire::each_message;
 
-/// How long a packet may have waited and still be forwarded: frames of a neighbour wait for it no longer than two
-/// milliseconds, and the way takes its part of five.
+/// How long a packet may have waited here and still be forwarded: frames of a neighbour wait for it no longer than six
+/// milliseconds, and the way takes its part of them.
 const WITHIN: Duration = Duration::from_millis(5);
 
 /// What was forwarded, and what was not; counted since the start.

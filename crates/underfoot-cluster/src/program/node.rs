@@ -98,7 +98,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let (notes, noted) = sync_channel(NOTES);
     let neighbours = Border::neighbours(&floor, area).filter_map(|area| Some(area.listen?.ip()));
     let source = UdpSource::bind(listen, &part)?
-        .also_allowing(floor.forwarders(area).chain(neighbours))
+        .also_allowing(floor.forwarding_addresses(area).chain(neighbours))
         .handing_notes_to(notes);
     let node = drawn();
     let border = Border::new(&floor, area, node, sender(&floor, area, listen)?, noted);

@@ -18,7 +18,7 @@ fn serve(floor: &Floor, id: &str) -> (Session, Arc<ForwardCounters>) {
     let area = floor.area(id).unwrap();
     let part = floor.part(area).unwrap();
     let source = UdpSource::bind(area.listen.unwrap(), &part).unwrap();
-    let source = source.also_allowing(floor.forwarders(area));
+    let source = source.also_allowing(floor.forwarding_addresses(area));
     let (source, forwarded) = source.forwarding(&floor.forwardings(area)).unwrap();
     let clock = source.clock();
     let session = Session::source(Box::new(source), clock).floor(part).layout(Layout::default());

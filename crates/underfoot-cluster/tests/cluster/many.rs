@@ -78,7 +78,8 @@ fn ran_ns(process: u32) -> (u64, u64) {
     (all, sensing)
 }
 
-/// Lets boards send for as many seconds of the floor, each millisecond of which takes `slow`; calls `at` at each.
+/// Lets boards send for as many seconds of the floor, each millisecond of which takes `slow`, all of a millisecond at
+/// once; calls `at` at each second.
 fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
     let layout = underfoot::layout::Layout::default();
     let people = script(&crowd(count), floor, &layout);
@@ -91,6 +92,7 @@ fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
     // Boards are punctual.
     claim_priority(Rank::Sensing);
     let (begun, mut second, mut behind) = (Instant::now(), 0, Duration::ZERO);
+    let (mut now, mut datagrams) = (0, Vec::<(Vec<u8>, SocketAddr)>::new());
     loop {
         let packet = match source.next(Duration::from_millis(1)) {
             Ok(Some(packet)) => packet,
@@ -98,15 +100,22 @@ fn send(floor: &Floor, count: u16, slow: u32, mut at: impl FnMut(u64)) {
             Err(SourceError::Ended) => break,
             Err(error) => panic!("{error}"),
         };
-        let due = Duration::from_micros(packet.received.micros()) * slow;
-        let elapsed = begun.elapsed();
-        match due.checked_sub(elapsed) {
-            Some(early) if early > Duration::from_micros(100) => thread::sleep(early),
-            _ => behind = behind.max(elapsed.saturating_sub(due)),
+        let time = packet.received.micros();
+        if time > now {
+            let due = Duration::from_micros(now) * slow;
+            let elapsed = begun.elapsed();
+            match due.checked_sub(elapsed) {
+                Some(early) => thread::sleep(early),
+                None => behind = behind.max(elapsed.saturating_sub(due)),
+            }
+            for (datagram, home) in datagrams.drain(..) {
+                socket.send_to(&datagram, home).unwrap();
+            }
+            now = time;
         }
-        socket.send_to(encoder.encode(&packet).unwrap(), homes[usize::from(packet.board)]).unwrap();
-        if packet.received.micros() / 1_000_000 > second {
-            second = packet.received.micros() / 1_000_000;
+        datagrams.push((encoder.encode(&packet).unwrap().to_vec(), homes[usize::from(packet.board)]));
+        if time / 1_000_000 > second {
+            second = time / 1_000_000;
             at(second);
             if second > WARM_UP + SECONDS {
                 break;
