@@ -117,6 +117,10 @@ pub(super) const FULL_WEIGHT: f32 = 2.0;
 ///
 /// Between nothing and all there is no jump, so that a foot sliding over a seam gains its next tile gradually.
 pub(super) fn counted(force: f32) -> f32 {
+    // Most loads count in full, and need no division.
+    if force >= FULL_WEIGHT {
+        return force;
+    }
     force * ((force - NO_WEIGHT) / (FULL_WEIGHT - NO_WEIGHT)).clamp(0.0, 1.0)
 }
 

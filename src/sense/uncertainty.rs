@@ -4,7 +4,7 @@ use glam::{Vec2, Vec4};
 
 use super::contact::Covariance;
 use super::tile::LoadedTile;
-use crate::floor::{Corner, Geometry};
+use crate::floor::Geometry;
 
 /// What is not known about the sensors, however well they are calibrated.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -103,9 +103,9 @@ impl SensorUncertainty {
         let scale = 1.0 / (force * force).max(LEAST_N * LEAST_N);
         let strayed = UNSEEN_N * UNSEEN_N * tile.strayed_m2() * scale;
         let reach = geometry.sensor_reach_m();
-        let arms = Corner::ALL.map(|corner| tile.centre + corner.direction() * reach - point);
-        let x = Vec4::from_array(arms.map(|arm| arm.x));
-        let y = Vec4::from_array(arms.map(|arm| arm.y));
+        // Of the south-western and the north-eastern sensor, and so of the other two.
+        let (sw, ne) = (tile.centre - reach - point, tile.centre + reach - point);
+        let (x, y) = (Vec4::new(sw.x, ne.x, sw.x, ne.x), Vec4::new(sw.y, sw.y, ne.y, ne.y));
         let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
         let extra = share * Vec4::from_array(tile.extra_sigma);
         let misplaced = share * self.misplaced * tile.wrench.force;
