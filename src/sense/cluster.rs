@@ -2,62 +2,82 @@
 
 use std::ops::Range;
 
-use super::loaded::{AROUND, LoadedTiles};
+use super::loaded::{LoadedTiles, TileSet};
+use crate::floor::Geometry;
 
 /// Groups of loaded tiles that touch along an edge or at a corner.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(super) struct Clusters {
     /// Positions in the list of loaded tiles, one cluster after the other.
     members: Vec<u32>,
     spans: Vec<Range<usize>>,
-    seen: Vec<bool>,
+    /// The cluster of each loaded tile, and of each of the last frame.
+    of: Vec<u32>,
+    of_last: Vec<u32>,
+    /// Loaded tiles that are in no cluster yet.
+    unassigned: TileSet,
+    /// The tiles of the cluster being found, by their places in tile-index order.
+    found: Vec<u32>,
 }
 
 impl Clusters {
     /// Room for every tile of a floor, so that finding clusters never allocates.
-    pub(super) fn with_capacity(tiles: usize) -> Self {
-        let tiles = tiles.min(4096);
+    pub(super) fn new(geometry: &Geometry) -> Self {
+        let tiles = geometry.tile_count().min(4096);
         Self {
             members: Vec::with_capacity(tiles),
             spans: Vec::with_capacity(tiles),
-            seen: Vec::with_capacity(tiles),
+            of: Vec::with_capacity(tiles),
+            of_last: Vec::with_capacity(tiles),
+            unassigned: TileSet::new(geometry),
+            found: Vec::with_capacity(tiles),
         }
     }
 
     /// Finds the clusters of `tiles`, in the order of their first tile.
     pub(super) fn update(&mut self, tiles: &LoadedTiles) {
-        let list = tiles.list();
-        self.members.clear();
-        self.spans.clear();
-        self.seen.clear();
-        self.seen.resize(list.len(), false);
-        for first in 0..list.len() {
-            if std::mem::replace(&mut self.seen[first], true) {
-                continue;
-            }
-            // The cluster's own members are the queue of tiles still to look around from.
-            let start = self.members.len();
-            self.members.push(first as u32);
-            let mut next = start;
-            while let Some(&member) = self.members.get(next) {
-                next += 1;
-                let tile = list[member as usize].tile;
-                for (east, north) in AROUND {
-                    let found = tiles.find(i32::from(tile.column) + east, i32::from(tile.row) + north);
-                    if let Some(neighbour) = found
-                        && !std::mem::replace(&mut self.seen[neighbour], true)
-                    {
-                        self.members.push(neighbour as u32);
+        let Self { members, spans, of, of_last, unassigned, found } = self;
+        std::mem::swap(of, of_last);
+        of.resize(tiles.list().len(), 0);
+        members.clear();
+        spans.clear();
+        unassigned.clone_from(tiles.listed());
+        for block in 0..unassigned.block_count() {
+            while let Some(first) = unassigned.pop(block) {
+                let (cluster, start) = (spans.len() as u32, members.len());
+                // What was found is the queue of tiles still to look around from.
+                found.clear();
+                found.push(first);
+                let mut next = 0;
+                while let Some(&index) = found.get(next) {
+                    next += 1;
+                    let Some(position) = tiles.position(index) else { continue };
+                    members.push(position);
+                    of[position as usize] = cluster;
+                    for neighbour in unassigned.around(index) {
+                        unassigned.remove(neighbour.index);
+                        found.push(neighbour.index);
                     }
                 }
+                spans.push(start..members.len());
             }
-            self.spans.push(start..self.members.len());
         }
+    }
+
+    /// The cluster of the last frame to which the tile at position `before` of its list belonged; `None` past its end.
+    #[inline]
+    pub(super) fn of_last(&self, before: u32) -> Option<u32> {
+        self.of_last.get(before as usize).copied()
+    }
+
+    /// Where the members of one cluster stand among those of all; `None` past the last.
+    pub(super) fn span(&self, cluster: usize) -> Option<Range<usize>> {
+        self.spans.get(cluster).cloned()
     }
 
     /// One cluster as positions in the list of loaded tiles; `None` past the last.
     pub(super) fn get(&self, cluster: usize) -> Option<&[u32]> {
-        self.members.get(self.spans.get(cluster)?.clone())
+        self.members.get(self.span(cluster)?)
     }
 
     /// Each cluster as positions in the list of loaded tiles.
@@ -81,7 +101,7 @@ mod tests {
         }
         let mut tiles = LoadedTiles::new(geometry, LoadThreshold::default());
         tiles.update(&frame);
-        let mut clusters = Clusters::with_capacity(geometry.tile_count());
+        let mut clusters = Clusters::new(&geometry);
         clusters.update(&tiles);
         clusters.iter().map(<[u32]>::len).collect()
     }

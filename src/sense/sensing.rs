@@ -64,7 +64,7 @@ impl Sensing {
             tiles: LoadedTiles::new(geometry, config.threshold),
             maker: match method {
                 Method::Eq4 => Maker::Eq4(
-                    Box::new(Clusters::with_capacity(tiles)),
+                    Box::new(Clusters::new(&geometry)),
                     Box::new(Eq4::new(tiles, config.uncertainty)),
                 ),
                 Method::Tracker => Maker::Tracker(Box::new(Tracker::new(&geometry, config.uncertainty))),

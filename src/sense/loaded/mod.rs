@@ -1,34 +1,22 @@
 //! Which tiles carry something.
 
 mod rims;
+mod survey;
 mod threshold;
+mod tile_set;
 
-use std::time::Duration;
-
-use multiversion::multiversion;
-
+use self::survey::Survey;
 use self::threshold::Thresholds;
+pub(super) use self::tile_set::TileSet;
+use self::tile_set::bits;
 use super::corners::is_possible;
-use super::tile::{LoadedTile, NO_WEIGHT, Place, TileReading};
+use super::tile::{LoadedTile, Place, TileReading};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap, TileId};
 use crate::units::{Instant, Newtons};
 
 /// Marks a tile without load in the map from tile to list position.
 const NONE: u32 = u32::MAX;
-
-/// Marks a block with a loaded tile.
-const LOADED: u8 = 1;
-
-/// The bit that tells [`Quality::Stale`] and [`Quality::Faulty`], of which one is estimated, from the better two.
-const LOST: u8 = 2;
-
-/// Marks a block with a tile that carries something, but too little to be loaded.
-const LIGHT: u8 = 4;
-
-/// From a tile to each of the eight around it, in columns and rows.
-pub(super) const AROUND: [(i32, i32); 8] =
-    [(-1, -1), (0, -1), (1, -1), (-1, 0), (1, 0), (-1, 1), (0, 1), (1, 1)];
 
 /// Tiles examined together.
 const BLOCK: usize = 16;
@@ -62,19 +50,23 @@ pub(super) struct LoadedTiles {
     places: Vec<Place>,
     /// Per tile of the floor; none for the tiles past the end.
     maps: Vec<Option<PositionMap>>,
-    sums: Vec<f32>,
+    survey: Survey,
     /// Position in `list` per tile of the floor, or `NONE`.
     place: Vec<u32>,
     list: Vec<LoadedTile>,
     /// The list of the last frame.
     last: Vec<LoadedTile>,
-    /// Per block of tiles, what there is: [`LOADED`], [`LOST`] where a sensor is, [`LIGHT`].
-    blocks: Vec<u8>,
-    /// Indices that pass the lower threshold, reused.
-    candidates: Vec<u32>,
+    /// Position in `last` of each tile of `list`, or `NONE`.
+    before: Vec<u32>,
+    /// The tiles of the list.
+    listed: TileSet,
+    /// Tiles with one beside them that carries something and is not listed.
+    near_light: TileSet,
+    /// Whether nothing of any tile's past has to be remembered.
+    is_settled: bool,
     at: Option<Instant>,
-    /// Since the last frame.
-    dt: Duration,
+    /// Since the last frame, in seconds.
+    dt: f32,
 }
 
 impl LoadedTiles {
@@ -85,14 +77,16 @@ impl LoadedTiles {
             thresholds: Thresholds::new(tiles, threshold),
             places: (0..tiles).map(|index| Place::of(&geometry, index)).collect(),
             maps: Vec::new(),
-            sums: vec![0.0; tiles],
+            survey: Survey::new(&geometry),
             place: vec![NONE; tiles],
             list: Vec::with_capacity(tiles.min(4096)),
             last: Vec::with_capacity(tiles.min(4096)),
-            blocks: vec![0; tiles.div_ceil(BLOCK)],
-            candidates: Vec::with_capacity(tiles),
+            before: Vec::with_capacity(tiles.min(4096)),
+            listed: TileSet::new(&geometry),
+            near_light: TileSet::new(&geometry),
+            is_settled: true,
             at: None,
-            dt: Duration::ZERO,
+            dt: 0.0,
         }
     }
 
@@ -110,6 +104,16 @@ impl LoadedTiles {
         &self.list
     }
 
+    /// Where each tile of [`Self::list`] stood in the list of the last frame; past its end for those that were not in it.
+    pub(super) fn before(&self) -> &[u32] {
+        &self.before
+    }
+
+    /// The tiles of [`Self::list`].
+    pub(super) fn listed(&self) -> &TileSet {
+        &self.listed
+    }
+
     /// Position in [`Self::list`] of the tile at `column`, `row`; `None` off the floor or without load.
     pub(super) fn find(&self, column: i32, row: i32) -> Option<usize> {
         let tile = TileId::new(column.try_into().ok()?, row.try_into().ok()?);
@@ -124,7 +128,7 @@ impl LoadedTiles {
 
     /// What the tile at `index` feels; nothing for an index past the last tile.
     pub(super) fn reading(&self, index: usize) -> TileReading {
-        let force = Newtons(self.sums.get(index).copied().unwrap_or_default());
+        let force = Newtons(self.survey.sums.get(index).copied().unwrap_or_default());
         match self.place.get(index).and_then(|&place| self.list.get(place as usize)) {
             Some(loaded) => loaded.reading(&self.geometry),
             None => TileReading { force, centroid: None, quality: Quality::Live },
@@ -134,49 +138,38 @@ impl LoadedTiles {
     /// Takes in a frame. Tiles the frame doesn't have carry no load; tiles it has too many are not examined.
     pub(super) fn update(&mut self, frame: &ForceFrame) {
         let is_first = self.at.is_none();
-        self.dt = self.at.map_or(Duration::ZERO, |last| frame.at.since(last));
+        self.dt = self.at.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
         self.at = Some(frame.at);
-        self.candidates.clear();
-        let off = self.thresholds.least();
-        let missing = frame.forces.len().min(frame.quality.len());
-        if let Some(rest) = self.sums.get_mut(missing..) {
-            rest.fill(0.0);
-        }
-        survey(&mut self.sums, &frame.forces, &frame.quality, off, &mut self.blocks);
+        self.survey.update(frame, self.thresholds.least());
         if is_first {
             self.thresholds.begin(&frame.forces);
         }
-        self.thresholds.smooth(&self.sums);
-        let mut is_any_light = false;
-        for (block, &worth) in self.blocks.iter().enumerate() {
-            is_any_light |= worth & LIGHT != 0;
-            let is_noisy = self.thresholds.is_noisy(block);
-            if worth & !LIGHT == 0 && !is_noisy {
-                continue;
-            }
-            let from = block * BLOCK;
-            let upto = (from + BLOCK).min(missing);
-            let sums = self.sums.get(from..upto).unwrap_or_default();
-            if worth & LOST == 0 && !is_noisy {
-                let loaded = (from as u32..).zip(sums).filter(|(_, sum)| **sum >= off);
-                self.candidates.extend(loaded.map(|(index, _)| index));
-                continue;
-            }
-            for (index, sum) in (from..).zip(sums) {
-                let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
-                if self.thresholds.deciding(index, *sum) >= off || is_lost {
-                    self.candidates.push(index as u32);
-                }
-            }
-        }
+        self.thresholds.smooth(&self.survey.sums);
+        self.reconsider(frame);
         self.sift(frame);
-        // Without tiles that carry something and are not listed, as in nearly every frame of a small floor, there is
-        // nothing to gather.
-        if is_any_light || self.candidates.len() > self.list.len() {
-            self.gather(frame);
-        }
+        self.gather(frame);
         let list = self.list.iter().map(|tile| tile.index);
-        self.thresholds.visit(&self.sums, &self.place, list, self.dt.as_secs_f32());
+        self.thresholds.visit(&self.survey.sums, &self.place, list, self.dt);
+    }
+
+    /// Finds the candidates of blocks in which it takes more than the sums: those that are noisy, and those with a
+    /// sensor out, of which one is estimated.
+    fn reconsider(&mut self, frame: &ForceFrame) {
+        let there = frame.forces.len().min(frame.quality.len()).min(self.survey.sums.len());
+        for block in 0..self.survey.worst.len() {
+            if !self.survey.has_lost(block) && !self.thresholds.is_noisy(block) {
+                continue;
+            }
+            let Survey { sums, candidates, .. } = &mut self.survey;
+            let candidates = &mut candidates.blocks_mut()[block];
+            *candidates = 0;
+            let from = block * BLOCK;
+            for index in from..(from + BLOCK).min(there) {
+                let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
+                let is_enough = self.thresholds.deciding(index, sums[index]) >= self.thresholds.least();
+                *candidates |= u16::from(is_enough || is_lost) << (index - from);
+            }
+        }
     }
 
     /// From candidates to loaded tiles.
@@ -184,87 +177,104 @@ impl LoadedTiles {
         // Which tiles were loaded in the last frame must be known until the new list stands.
         std::mem::swap(&mut self.list, &mut self.last);
         self.list.clear();
-        for &index in &self.candidates {
-            let index = index as usize;
-            let (forces, quality) = (&frame.forces[index], &frame.quality[index]);
-            let before = self.last.get(self.place[index] as usize);
-            let dt = self.dt.as_secs_f32();
-            let least = self.thresholds.least_of(index, self.sums[index], before.is_some(), dt);
-            let map = self.maps.get(index).and_then(Option::as_ref);
-            if *quality == [Quality::Live; 4] && before.is_none_or(LoadedTile::is_settled) {
-                if is_possible(forces) {
-                    self.list.extend(LoadedTile::new(self.places[index], &self.geometry, forces, least, map));
-                }
+        self.before.clear();
+        let was_settled = std::mem::replace(&mut self.is_settled, true);
+        let Self { survey, thresholds, place, listed, .. } = self;
+        for (block, (listed, &candidates)) in
+            listed.blocks_mut().iter_mut().zip(survey.candidates.blocks()).enumerate()
+        {
+            for gone in bits(*listed & !candidates) {
+                let index = block * BLOCK + gone;
+                place[index] = NONE;
+                thresholds.note(index, survey.sums[index]);
+            }
+            *listed = candidates;
+        }
+        for block in 0..self.survey.worst.len() {
+            let candidates = self.survey.candidates.blocks()[block];
+            if candidates == 0 {
                 continue;
             }
-            let may_start = frame.may_start.get(index) == Some(&true);
-            let (carried, tile) = LoadedTile::of_any_quality(
-                self.places[index],
-                &self.geometry,
-                (*forces, *quality, may_start),
-                least,
-                map,
-                before,
-                dt,
-            );
-            if let Some(carried) = carried {
-                // What a lost sensor reads is not a load.
-                self.sums[index] = carried;
-            }
-            self.list.extend(tile);
-        }
-        for old in &self.last {
-            let index = old.index as usize;
-            self.place[index] = NONE;
-            if self.sums[index] < self.thresholds.least() {
-                self.thresholds.note_low(index, self.sums[index]);
+            let is_plain = was_settled && self.survey.is_live(block);
+            for candidate in bits(candidates) {
+                let index = block * BLOCK + candidate;
+                let is_loaded = if is_plain { self.take(frame, index) } else { self.examine(frame, index) };
+                if !is_loaded {
+                    self.listed.remove(index as u32);
+                }
             }
         }
-        for (position, loaded) in self.list.iter_mut().enumerate() {
-            self.place[loaded.index as usize] = position as u32;
-            loaded.noise_n = self.thresholds.noise_n(loaded.index as usize);
-            loaded.left_n = self.thresholds.left_n(loaded.index as usize, loaded.wrench.force);
+        for (light, &listed) in self.survey.light.blocks_mut().iter_mut().zip(self.listed.blocks()) {
+            *light &= !listed;
         }
     }
-}
 
-/// Adds up each tile's forces, and says of each block of tiles whether one carries `off` or more ([`LOADED`]),
-/// lacks a sensor ([`LOST`]) or carries less than `off` but more than nothing ([`LIGHT`]).
-///
-/// Without branches, over plain arrays: compiled for what the processor offers.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw", "x86_64+avx2", "aarch64+neon"))]
-fn survey(sums: &mut [f32], forces: &[[f32; 4]], quality: &[[Quality; 4]], off: f32, blocks: &mut [u8]) {
-    blocks.fill(0);
-    let tiles = sums.chunks_mut(BLOCK).zip(forces.chunks(BLOCK).zip(quality.chunks(BLOCK)));
-    for (worth, (sums, (forces, quality))) in blocks.iter_mut().zip(tiles) {
-        if let (Ok(sums), Ok(forces), Ok(quality)) = (
-            <&mut [f32; BLOCK]>::try_from(&mut *sums),
-            <&[[f32; 4]; BLOCK]>::try_from(forces),
-            <&[[Quality; 4]; BLOCK]>::try_from(quality),
-        ) {
-            *worth = survey_block(sums, forces, quality, off);
-            continue;
+    /// Puts the tile at `index` into the list if it is loaded, and says whether it is; all its sensors are live, and
+    /// nothing of its past has to be remembered.
+    #[inline]
+    fn take(&mut self, frame: &ForceFrame, index: usize) -> bool {
+        let forces = &frame.forces[index];
+        let (before, least) = self.least_of(index);
+        let map = self.maps.get(index).and_then(Option::as_ref);
+        let tile = LoadedTile::new(self.places[index], &self.geometry, forces, least, map);
+        if before != NONE {
+            self.thresholds.note(index, self.survey.sums[index]);
         }
-        for (sum, (forces, quality)) in sums.iter_mut().zip(forces.iter().zip(quality)) {
-            *worth |= survey_block(std::array::from_mut(sum), &[*forces], &[*quality], off);
+        match tile {
+            Some(tile) if is_possible(forces) => self.enlist(tile, before),
+            _ => return false,
         }
+        true
     }
-}
 
-#[inline(always)]
-fn survey_block<const TILES: usize>(
-    sums: &mut [f32; TILES],
-    forces: &[[f32; 4]; TILES],
-    quality: &[[Quality; 4]; TILES],
-    off: f32,
-) -> u8 {
-    for (sum, [sw, se, nw, ne]) in sums.iter_mut().zip(forces) {
-        *sum = (sw + se) + (nw + ne);
+    /// As [`Self::take`], with sensors of any quality and past.
+    #[inline(never)]
+    fn examine(&mut self, frame: &ForceFrame, index: usize) -> bool {
+        let past = self.last.get(self.place[index] as usize);
+        let (forces, quality) = (frame.forces[index], frame.quality[index]);
+        if quality == [Quality::Live; 4] && past.is_none_or(LoadedTile::is_settled) {
+            return self.take(frame, index);
+        }
+        let (before, least) = self.least_of(index);
+        let (carried, tile) = LoadedTile::of_any_quality(
+            self.places[index],
+            &self.geometry,
+            (forces, quality, frame.may_start.get(index) == Some(&true)),
+            least,
+            self.maps.get(index).and_then(Option::as_ref),
+            self.last.get(before as usize),
+            self.dt,
+        );
+        if let Some(carried) = carried {
+            // What a lost sensor reads is not a load.
+            self.survey.sums[index] = carried;
+        }
+        if before != NONE {
+            self.thresholds.note(index, self.survey.sums[index]);
+        }
+        self.is_settled &= tile.as_ref().is_none_or(LoadedTile::is_settled);
+        tile.is_some_and(|tile| {
+            self.enlist(tile, before);
+            true
+        })
     }
-    let loaded = sums.iter().fold(0, |loaded, sum| loaded | u8::from(*sum >= off));
-    let light = sums.iter().fold(0, |light, sum| light | u8::from((*sum > NO_WEIGHT) & (*sum < off)));
-    let worst = quality.as_flattened().iter().fold(0, |seen, &quality| seen | quality as u8);
-    (loaded * LOADED) | (worst & LOST) | (light * LIGHT)
+
+    /// Where the tile at `index` stood in the list of the last frame, and what it must carry; it is in no list then.
+    #[inline(always)]
+    fn least_of(&mut self, index: usize) -> (u32, Newtons) {
+        let before = std::mem::replace(&mut self.place[index], NONE);
+        (before, self.thresholds.least_of(index, self.survey.sums[index], before != NONE, self.dt))
+    }
+
+    #[inline(always)]
+    fn enlist(&mut self, mut tile: LoadedTile, before: u32) {
+        let index = tile.index as usize;
+        tile.noise_n = self.thresholds.noise_n(index);
+        tile.left_n = self.thresholds.left_n(index, tile.wrench.force);
+        self.place[index] = self.list.len() as u32;
+        self.before.push(before);
+        self.list.push(tile);
+    }
 }
 
 #[cfg(test)]

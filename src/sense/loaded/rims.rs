@@ -2,7 +2,8 @@
 
 use glam::Vec2;
 
-use super::{AROUND, LoadedTiles, NONE};
+use super::tile_set::bits;
+use super::{BLOCK, LoadedTiles};
 use crate::sense::corners::known_corners;
 use crate::sense::tile::{LoadedTile, NO_WEIGHT, Wrench, counted};
 use crate::sense::{ForceFrame, Quality};
@@ -27,25 +28,23 @@ impl LoadedTiles {
     pub(super) fn gather(&mut self, frame: &ForceFrame) {
         // How far from its tile's centre a centroid may lie for load on the far side's neighbours to be its own.
         let astray_m = REACH_M - 0.5 * self.geometry.pitch_m();
-        let first = self.geometry.first();
-        let (columns, rows) = (i32::from(self.geometry.columns()), i32::from(self.geometry.rows()));
-        for position in 0..self.list.len() {
-            let tile = &self.list[position];
-            // Counted from the floor's first tile.
-            let (column, row) = (tile.tile.column - first.column, tile.tile.row - first.row);
-            let (column, row) = (i32::from(column), i32::from(row));
-            let arm = tile.centroid - tile.centre;
-            let sides = |arm: f32, at: i32, count: i32| {
-                let low = at - i32::from(arm < astray_m);
-                let high = at + i32::from(arm > -astray_m);
-                low.max(0)..(high + 1).min(count)
-            };
-            let (around, along) = (sides(arm.y, row, rows), sides(arm.x, column, columns));
-            for row in around {
-                for column in along.clone() {
-                    let index = (row * columns + column) as usize;
-                    if self.place[index] == NONE
-                        && self.sums[index] > NO_WEIGHT + self.thresholds.unsure(index)
+        let faces = |arm: f32, side: i32| match side {
+            -1 => arm < astray_m,
+            1 => arm > -astray_m,
+            _ => true,
+        };
+        self.near_light.surround(&self.survey.light);
+        for block in 0..self.listed.block_count() {
+            for place in bits(self.listed.blocks()[block] & self.near_light.blocks()[block]) {
+                let index = block * BLOCK + place;
+                let position = self.place[index] as usize;
+                let tile = &self.list[position];
+                let arm = tile.centroid - tile.centre;
+                for light in self.survey.light.around(index as u32) {
+                    let index = light.index as usize;
+                    if faces(arm.x, light.east)
+                        && faces(arm.y, light.north)
+                        && self.survey.sums[index] > NO_WEIGHT + self.thresholds.unsure(index)
                     {
                         self.give(index, position, frame);
                     }
@@ -61,22 +60,19 @@ impl LoadedTiles {
             return;
         }
         let Some((corners, _)) = known_corners(frame.forces[index], frame.quality[index]) else { return };
-        let stray = self.geometry.tile_at_index(index);
-        let (column, row) = (i32::from(stray.column), i32::from(stray.row));
-        let centre = self.geometry.centre(stray);
+        let centre = self.geometry.centre(self.geometry.tile_at_index(index));
         let half = 0.5 * self.geometry.pitch_m();
         let away = |listed: &LoadedTile| ((listed.centroid - centre).abs() - half).max(Vec2::ZERO).length();
         // A rim is the smaller part of a foot, and another rim's only if there is no foot that it can be of.
         let claim = |position: usize| {
             let listed = &self.list[position];
-            let (away, is_rim) = (away(listed), listed.wrench.force < FOOT_PER_RIM * self.sums[index]);
+            let (away, is_rim) = (away(listed), listed.wrench.force < FOOT_PER_RIM * self.survey.sums[index]);
             (away >= REACH_M, is_rim, away, position)
         };
         let mine = claim(position);
-        let beaten = AROUND.iter().any(|(east, north)| {
-            let other = self.find(column + east, row + north).filter(|&other| other != position);
-            other.is_some_and(|other| claim(other) < mine)
-        });
+        let mut others =
+            self.listed.around(index as u32).map(|other| self.place[other.index as usize] as usize);
+        let beaten = others.any(|other| other != position && claim(other) < mine);
         let share = ((REACH_M - mine.2) / REACH_FADE_M).clamp(0.0, 1.0);
         if beaten || share <= 0.0 {
             return;

@@ -83,15 +83,7 @@ pub(super) struct Thresholds {
     smoothed: Vec<f32>,
     /// Share of a new reading in it.
     gains: Vec<f32>,
-    /// The threshold that noise asks for.
-    on: Vec<f32>,
-    /// What may be left of each tile's recent load, in newtons.
-    residual: Vec<f32>,
-    /// The least that each tile has read since it was last clearly loaded: no more can be left of that load but for what
-    /// noise takes from it.
-    lowest: Vec<f32>,
-    /// For how long each loaded tile has carried no more than may be left of its recent load, in seconds.
-    left_s: Vec<f32>,
+    tiles: Vec<TileThreshold>,
     memories: Vec<[f32; TIMES_S.len()]>,
     /// Tiles with a memory.
     with_memory: Vec<u32>,
@@ -100,6 +92,35 @@ pub(super) struct Thresholds {
     visits: f32,
     /// The last time between two visits, and what each memory takes in over it.
     parts: (f32, [f32; TIMES_S.len()]),
+}
+
+/// What decides of one tile.
+#[derive(Clone, Copy, Debug)]
+struct TileThreshold {
+    /// The threshold that noise asks for.
+    on: f32,
+    /// What may be left of its recent load, in newtons.
+    residual: f32,
+    /// The least that it has read since it was last clearly loaded: no more can be left of that load but for what noise
+    /// takes from it.
+    lowest: f32,
+    /// For how long it has been loaded with no more than may be left of its recent load, in seconds.
+    left_s: f32,
+}
+
+impl TileThreshold {
+    /// What may be left of its recent load, in newtons, by the least that it has read since.
+    fn left(&self, is_noisy: bool) -> f32 {
+        let depth = if is_noisy { DEPTH / DEVIATIONS * self.on } else { 0.0 };
+        // Neither is NaN: a comparison does.
+        let most = self.lowest + depth;
+        if self.residual < most { self.residual } else { most }
+    }
+
+    /// Notes that it is not loaded while it reads `sum`.
+    fn note_low(&mut self, sum: f32) {
+        self.lowest = self.lowest.min(sum.max(0.0));
+    }
 }
 
 impl Thresholds {
@@ -115,10 +136,10 @@ impl Thresholds {
             smoothed_read: vec![f32::NAN; tiles],
             smoothed: vec![0.0; tiles],
             gains: vec![1.0; tiles],
-            on: vec![base.on.0; tiles],
-            residual: vec![0.0; tiles],
-            lowest: vec![f32::INFINITY; tiles],
-            left_s: vec![0.0; tiles],
+            tiles: vec![
+                TileThreshold { on: base.on.0, residual: 0.0, lowest: f32::INFINITY, left_s: 0.0 };
+                tiles
+            ],
             memories: vec![Default::default(); tiles],
             with_memory: Vec::with_capacity(tiles),
             since_s: 0.0,
@@ -136,31 +157,36 @@ impl Thresholds {
     /// last one.
     ///
     /// Where the smoothed force decides, that is as little as can be placed, or more than anything carries.
+    #[inline]
     pub(super) fn least_of(&mut self, index: usize, sum: f32, was_loaded: bool, dt: f32) -> Newtons {
         let LoadThreshold { on, off } = self.base;
-        let decides = self.deciding(index, sum);
-        let residual = self.left(index);
-        let least = if was_loaded { self.on[index] * (off.0 / on.0) } else { self.on[index] };
+        let is_noisy = self.is_noisy(index / BLOCK);
+        let decides = if is_noisy { self.smoothed[index] } else { sum };
+        let tile = &mut self.tiles[index];
+        let residual = tile.left(is_noisy);
+        let least = if was_loaded { tile.on * (off.0 / on.0) } else { tile.on };
         let is_left = decides < least + residual;
-        if decides >= least + self.residual[index] {
-            self.lowest[index] = f32::INFINITY;
+        if decides >= least + tile.residual {
+            tile.lowest = f32::INFINITY;
         } else if is_left {
-            self.note_low(index, decides);
+            tile.note_low(decides);
         }
-        self.left_s[index] = if was_loaded && is_left { self.left_s[index] + dt } else { 0.0 };
-        let is_held = was_loaded && self.left_s[index] < HOLD_S;
+        tile.left_s = if was_loaded && is_left { tile.left_s + dt } else { 0.0 };
+        let is_held = was_loaded && tile.left_s < HOLD_S;
         let least = if is_held { least } else { least + residual };
-        Newtons(match self.is_noisy(index / BLOCK) {
+        Newtons(match is_noisy {
             false => least,
             true if decides >= least => FULL_WEIGHT,
             true => f32::INFINITY,
         })
     }
 
-    /// Notes that the tile at `index`, which reads `sum`, is not loaded: what is left of its last load goes, and does
-    /// not grow again.
-    pub(super) fn note_low(&mut self, index: usize, sum: f32) {
-        self.lowest[index] = self.lowest[index].min(sum.max(0.0));
+    /// Notes that the tile at `index`, which was loaded, reads `sum`. If that is too little, what is left of its last
+    /// load goes, and does not grow again.
+    pub(super) fn note(&mut self, index: usize, sum: f32) {
+        if sum < self.least() {
+            self.tiles[index].note_low(sum);
+        }
     }
 
     /// Whether some tile of a block is noisy, so that [`Self::deciding`] is to be asked.
@@ -175,21 +201,18 @@ impl Thresholds {
 
     /// What of the deciding force of the tile at `index` may be noise or left by its recent load, in newtons.
     pub(super) fn unsure(&self, index: usize) -> f32 {
-        let noise = if self.is_noisy(index / BLOCK) { 0.5 * self.on[index] } else { 0.0 };
-        noise + self.left(index)
-    }
-
-    /// What may be left of the recent load of the tile at `index`, in newtons, by the least that it has read since.
-    fn left(&self, index: usize) -> f32 {
-        let depth = if self.is_noisy(index / BLOCK) { DEPTH / DEVIATIONS * self.on[index] } else { 0.0 };
-        self.residual[index].min(self.lowest[index] + depth)
+        let is_noisy = self.is_noisy(index / BLOCK);
+        let tile = &self.tiles[index];
+        let noise = if is_noisy { 0.5 * tile.on } else { 0.0 };
+        noise + tile.left(is_noisy)
     }
 
     /// What a recent load is taken to have left on the loaded tile at `index`, which carries `force`, in newtons: all
     /// of its residual load as long as that alone would keep it loaded, nothing from twice as much on.
     pub(super) fn left_n(&self, index: usize, force: f32) -> f32 {
-        let residual = self.left(index);
-        residual * (2.0 - force / (self.on[index] + residual)).clamp(0.0, 1.0)
+        let tile = &self.tiles[index];
+        let residual = tile.left(self.is_noisy(index / BLOCK));
+        residual * (2.0 - force / (tile.on + residual)).clamp(0.0, 1.0)
     }
 
     /// Standard deviation of the noise of each sensor of the tile at `index`, in newtons.
@@ -262,12 +285,13 @@ impl Thresholds {
         for block in 0..self.noisy.len() {
             let from = block * BLOCK;
             let upto = (from + BLOCK).min(self.differences.len());
-            let is_noisy = self.differences[from..upto].iter().any(|&difference| difference > limit);
+            let is_noisy =
+                self.differences[from..upto].iter().fold(false, |is, &difference| is | (difference > limit));
             let was_noisy = std::mem::replace(&mut self.noisy[block], is_noisy);
             self.is_any_noisy |= is_noisy;
             if !is_noisy {
                 if was_noisy {
-                    self.on[from..upto].fill(self.base.on.0);
+                    self.tiles[from..upto].iter_mut().for_each(|tile| tile.on = self.base.on.0);
                 }
                 continue;
             }
@@ -295,7 +319,7 @@ impl Thresholds {
             );
             for index in range {
                 let noise = DEVIATIONS / DIFFERENCE * self.smoothed_differences[index];
-                self.on[index] = noise.clamp(self.base.on.0, MOST_N.max(self.base.on.0));
+                self.tiles[index].on = noise.clamp(self.base.on.0, MOST_N.max(self.base.on.0));
             }
         }
     }
@@ -305,11 +329,12 @@ impl Thresholds {
         if self.parts.0 != elapsed {
             self.parts = (elapsed, TIMES_S.map(|time_s| 1.0 - (-elapsed / time_s).exp()));
         }
-        let Self { memories, residual, with_memory, parts, .. } = self;
+        let Self { memories, tiles, with_memory, parts, .. } = self;
         for index in list {
-            if residual[index as usize] == 0.0 {
+            let residual = &mut tiles[index as usize].residual;
+            if *residual == 0.0 {
                 // A trace marks it as followed.
-                residual[index as usize] = f32::MIN_POSITIVE;
+                *residual = f32::MIN_POSITIVE;
                 with_memory.push(index);
             }
         }
@@ -321,7 +346,7 @@ impl Thresholds {
             }
             let left = CREEP * memories[index].iter().sum::<f32>();
             let stays = left > NOTHING_N || sum > NOTHING_N;
-            residual[index] = if stays { left.max(f32::MIN_POSITIVE) } else { 0.0 };
+            tiles[index].residual = if stays { left.max(f32::MIN_POSITIVE) } else { 0.0 };
             if !stays {
                 memories[index] = Default::default();
             }
