@@ -2,16 +2,16 @@
 
 use glam::Vec2;
 
+use super::Quality;
 use super::cluster::Clusters;
 use super::contact::{Contact, ContactId, Covariance, TileLoad};
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
-use super::tile::LoadedTile;
 use super::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
-/// Marks a tile that no contact owned in the last frame.
-const NOBODY: u32 = u32::MAX;
+/// Marks a contact that has not gone on.
+const NONE: u32 = u32::MAX;
 
 /// How far a contact may have come in one frame without sharing a tile with its old self, in metres.
 const JUMP_M: f32 = 0.1;
@@ -29,35 +29,44 @@ const JUMP_M: f32 = 0.1;
 pub(super) struct Eq4 {
     uncertainty: SensorUncertainty,
     next: u32,
-    /// Per tile of the floor, which entry of `last` it carried.
-    owner: Vec<u32>,
-    /// The contacts of the last frame.
-    last: Vec<PreviousContact>,
-    now: Vec<PreviousContact>,
-    /// The clusters of this frame, heaviest first.
-    found: Vec<Found>,
-    owned: Vec<u32>,
-    /// Places in `found`, ordered by name.
-    order: Vec<u32>,
+    /// The contacts of the last frame and of this one, in the order of their clusters.
+    last: Vec<Named>,
+    now: Vec<Named>,
+    /// What each tile of this frame's clusters carries, in the order of their members.
+    loads: Vec<TileLoad>,
+    /// Clusters of this frame, heaviest first: the bits of its force, inverted, and its number.
+    by_force: Vec<u64>,
+    /// Clusters of this frame, and of the last one until those of this one are known, by name.
+    by_name: Vec<u32>,
+    /// Clusters that got a new name, in the order of names.
+    new: Vec<u32>,
     /// The last time between two frames, and the smoothing that goes with it.
     smoothing: (f32, f32),
 }
 
+/// A cluster, and what it is called.
 #[derive(Clone, Copy, Debug)]
-struct PreviousContact {
+struct Named {
     id: ContactId,
+    force: f32,
     centroid: Vec2,
     velocity: Vec2,
-    taken: bool,
-    /// Force of the cluster being named that lies on this contact's old tiles.
+    covariance: Covariance,
+    quality: Quality,
+    /// Which clusters of the last frame its tiles belonged to.
+    before: Before,
+    /// The cluster of the next frame that goes on under the name.
+    successor: u32,
+    /// Force of the cluster being named that lies on this one's tiles.
     claim: f32,
 }
 
+/// The clusters of the last frame to which a cluster's tiles belonged.
 #[derive(Clone, Copy, Debug)]
-struct Found {
-    cluster: u32,
-    force: f32,
-    centroid: Vec2,
+enum Before {
+    Nothing,
+    One(u32),
+    Several,
 }
 
 impl Eq4 {
@@ -66,12 +75,12 @@ impl Eq4 {
         Self {
             uncertainty,
             next: 1,
-            owner: vec![NOBODY; tiles],
             last: Vec::with_capacity(room),
             now: Vec::with_capacity(room),
-            found: Vec::with_capacity(room),
-            owned: Vec::with_capacity(room),
-            order: Vec::with_capacity(room),
+            loads: Vec::with_capacity(tiles.min(4096)),
+            by_force: Vec::with_capacity(room),
+            by_name: Vec::with_capacity(room),
+            new: Vec::with_capacity(room),
             smoothing: (0.0, 0.0),
         }
     }
@@ -84,145 +93,173 @@ impl Eq4 {
         dt: f32,
         pool: &mut ContactPool,
     ) {
-        self.weigh(tiles, clusters);
-        pool.clear();
         if self.smoothing.0 != dt {
             self.smoothing = (dt, smoothing(dt));
         }
-        self.now.clear();
-        for position in 0..self.found.len() {
-            let found = self.found[position];
-            let members = clusters.get(found.cluster as usize).unwrap_or_default();
-            let past = self.recognise(tiles.list(), members, &found);
-            let (id, velocity) = match past {
-                Some(past) => {
-                    let moved = (found.centroid - past.centroid) / dt.max(1e-6);
-                    let velocity = past.velocity + (moved - past.velocity) * self.smoothing.1;
-                    (past.id, if dt > 0.0 { velocity } else { past.velocity })
-                }
-                None => (self.name(), Vec2::ZERO),
-            };
-            self.now.push(PreviousContact {
-                id,
-                centroid: found.centroid,
-                velocity,
-                taken: false,
-                claim: 0.0,
-            });
+        std::mem::swap(&mut self.last, &mut self.now);
+        self.weigh(tiles, clusters);
+        self.name(tiles, clusters, dt);
+        self.put_in_order();
+        pool.clear();
+        for &cluster in &self.by_name {
+            let named = &self.now[cluster as usize];
+            let loads = clusters.span(cluster as usize).and_then(|span| self.loads.get(span));
+            named.describe(loads.unwrap_or_default(), pool.add(named.id));
         }
-        // Names are small, contacts are not: these are made in their order rather than put into it.
-        self.order.clear();
-        self.order.extend(0..self.now.len() as u32);
-        self.order.sort_unstable_by_key(|&position| self.now[position as usize].id);
-        for &position in &self.order {
-            let (found, now) = (&self.found[position as usize], &self.now[position as usize]);
-            let members = clusters.get(found.cluster as usize).unwrap_or_default();
-            self.describe(tiles, members, found, pool.add(now.id), now.velocity);
-        }
-        self.remember(tiles.list(), clusters);
-    }
-
-    fn name(&mut self) -> ContactId {
-        let id = ContactId(self.next);
-        self.next = self.next.wrapping_add(1);
-        id
     }
 
     /// Eq. 4 of every cluster.
     fn weigh(&mut self, tiles: &LoadedTiles, clusters: &Clusters) {
-        self.found.clear();
-        for (cluster, members) in clusters.iter().enumerate() {
+        self.now.clear();
+        self.loads.clear();
+        for members in clusters.iter() {
+            let members = members.iter().map(|&member| (member, &tiles.list()[member as usize]));
             let (mut force, mut weight) = (0.0, 0.0);
             let mut sum = Vec2::ZERO;
-            for &member in members {
-                let tile = &tiles.list()[member as usize];
+            let mut before = Before::Nothing;
+            for (member, tile) in members.clone() {
+                before = before.and(clusters.of_last(tiles.before()[member as usize]));
                 let weighed = tile.weight();
                 force += tile.wrench.force;
                 weight += weighed;
                 sum += tile.centroid * weighed;
             }
-            self.found.push(Found { cluster: cluster as u32, force, centroid: sum / weight });
+            let centroid = sum / weight;
+            let mut covariance = Covariance::default();
+            let mut quality = Quality::Live;
+            for (_, tile) in members {
+                self.loads.push(TileLoad {
+                    tile: tile.tile,
+                    index: tile.index as usize,
+                    force: Newtons(tile.wrench.force),
+                    centroid: tile.centroid,
+                });
+                quality = quality.max(tile.quality);
+                covariance += self.uncertainty.covariance(tiles.geometry(), tile, 1.0, centroid, force);
+            }
+            self.now.push(Named {
+                id: ContactId(0),
+                force,
+                centroid,
+                velocity: Vec2::ZERO,
+                covariance,
+                quality,
+                before,
+                successor: NONE,
+                claim: 0.0,
+            });
         }
-        self.found.sort_unstable_by(|a, b| b.force.total_cmp(&a.force).then(a.cluster.cmp(&b.cluster)));
+    }
+
+    /// Names every cluster, heavier ones first.
+    fn name(&mut self, tiles: &LoadedTiles, clusters: &Clusters, dt: f32) {
+        self.new.clear();
+        self.by_force.clear();
+        // Forces are positive: their bits are in their own order.
+        let key =
+            |(cluster, named): (u32, &Named)| u64::from(!named.force.to_bits()) << 32 | u64::from(cluster);
+        self.by_force.extend((0..).zip(&self.now).map(key));
+        self.by_force.sort_unstable();
+        for rank in 0..self.by_force.len() {
+            let cluster = self.by_force[rank] as u32;
+            let past = self.recognise(tiles, clusters, cluster);
+            let named = &mut self.now[cluster as usize];
+            let Some(past) = past else {
+                named.id = ContactId(self.next);
+                self.next = self.next.wrapping_add(1);
+                self.new.push(cluster);
+                continue;
+            };
+            let past = &mut self.last[past as usize];
+            past.successor = cluster;
+            named.id = past.id;
+            named.velocity = past.velocity;
+            if dt > 0.0 {
+                let moved = (named.centroid - past.centroid) / dt.max(1e-6);
+                named.velocity += (moved - past.velocity) * self.smoothing.1;
+            }
+        }
     }
 
     /// The contact of the last frame that goes on as this cluster.
-    fn recognise(&mut self, list: &[LoadedTile], members: &[u32], found: &Found) -> Option<PreviousContact> {
-        let mut best: Option<usize> = None;
-        for &member in members {
-            let tile = &list[member as usize];
-            let owner = self.owner[tile.index as usize] as usize;
-            if let Some(past) = self.last.get_mut(owner)
-                && !past.taken
-            {
-                past.claim += tile.wrench.force;
-                let claim = past.claim;
-                if best.is_none_or(|best| claim > self.last[best].claim) {
-                    best = Some(owner);
-                }
-            }
-        }
-        if best.is_none() {
-            // A point load may leave one tile for the next between two frames.
-            best = (0..self.last.len())
-                .filter(|&past| !self.last[past].taken)
-                .map(|past| (past, self.last[past].centroid.distance(found.centroid)))
-                .filter(|&(_, distance)| distance <= JUMP_M)
-                .min_by(|a, b| a.1.total_cmp(&b.1))
-                .map(|(past, _)| past);
-        }
-        for &member in members {
-            let owner = self.owner[list[member as usize].index as usize] as usize;
-            if let Some(past) = self.last.get_mut(owner) {
-                past.claim = 0.0;
-            }
-        }
-        let past = self.last.get_mut(best?)?;
-        past.taken = true;
-        Some(*past)
+    fn recognise(&mut self, tiles: &LoadedTiles, clusters: &Clusters, cluster: u32) -> Option<u32> {
+        let Named { before, centroid, .. } = self.now[cluster as usize];
+        let best = match before {
+            Before::Nothing => None,
+            Before::One(past) => (self.last[past as usize].successor == NONE).then_some(past),
+            Before::Several => self.strongest_claim(tiles, clusters, cluster),
+        };
+        best.or_else(|| self.nearest(centroid))
     }
 
-    fn describe(
-        &self,
-        tiles: &LoadedTiles,
-        members: &[u32],
-        found: &Found,
-        contact: &mut Contact,
-        velocity: Vec2,
-    ) {
-        contact.centroid = found.centroid;
-        contact.force = Newtons(found.force);
-        contact.velocity = velocity;
-        let mut covariance = Covariance::default();
+    /// Of the contacts that share tiles with this cluster, the one with most of its force.
+    #[cold]
+    fn strongest_claim(&mut self, tiles: &LoadedTiles, clusters: &Clusters, cluster: u32) -> Option<u32> {
+        let members = clusters.get(cluster as usize).unwrap_or_default();
+        let past = |member: u32| clusters.of_last(tiles.before()[member as usize]);
+        let mut best: Option<u32> = None;
         for &member in members {
-            let tile = &tiles.list()[member as usize];
-            contact.tiles.push(TileLoad {
-                tile: tile.tile,
-                index: tile.index as usize,
-                force: Newtons(tile.wrench.force),
-                centroid: tile.centroid,
-            });
-            contact.quality = contact.quality.max(tile.quality);
-            covariance +=
-                self.uncertainty.covariance(tiles.geometry(), tile, 1.0, found.centroid, found.force);
+            let Some(past) = past(member) else { continue };
+            if self.last[past as usize].successor != NONE {
+                continue;
+            }
+            self.last[past as usize].claim += tiles.list()[member as usize].wrench.force;
+            let claim = self.last[past as usize].claim;
+            if best.is_none_or(|best| claim > self.last[best as usize].claim) {
+                best = Some(past);
+            }
         }
-        contact.covariance = covariance;
+        for past in members.iter().filter_map(|&member| past(member)) {
+            self.last[past as usize].claim = 0.0;
+        }
+        best
+    }
+
+    /// The contact nearest to a point, if it is near: a point load may leave one tile for the next between two frames.
+    #[cold]
+    fn nearest(&self, point: Vec2) -> Option<u32> {
+        let away = |past: &Named| past.centroid.distance(point);
+        let left = (0..).zip(&self.last).filter(|(_, past)| past.successor == NONE && away(past) <= JUMP_M);
+        // Of two as near, the heavier one.
+        let nearer = |a: &Named, b: &Named| away(a).total_cmp(&away(b)).then(b.force.total_cmp(&a.force));
+        left.min_by(|(_, a), (_, b)| nearer(a, b)).map(|(past, _)| past)
+    }
+
+    /// Orders clusters by name: those that go on are in order, new names are higher.
+    fn put_in_order(&mut self) {
+        let Self { last, now, by_name, new, .. } = self;
+        by_name.retain_mut(|cluster| {
+            *cluster = last[*cluster as usize].successor;
+            *cluster != NONE
+        });
+        by_name.extend_from_slice(new);
+        // Names begin again after four billion. What is in order already is only looked through.
+        by_name.sort_unstable_by_key(|&cluster| now[cluster as usize].id);
+    }
+}
+
+impl Named {
+    /// Tells what is known of it; `loads` are its tiles'.
+    fn describe(&self, loads: &[TileLoad], contact: &mut Contact) {
+        contact.centroid = self.centroid;
+        contact.force = Newtons(self.force);
+        contact.velocity = self.velocity;
+        contact.covariance = self.covariance;
+        contact.quality = self.quality;
+        contact.tiles.extend_from_slice(loads);
         contact.finish();
     }
+}
 
-    fn remember(&mut self, list: &[LoadedTile], clusters: &Clusters) {
-        for &index in &self.owned {
-            self.owner[index as usize] = NOBODY;
+impl Before {
+    /// With one more tile, which belonged to `cluster`.
+    fn and(self, cluster: Option<u32>) -> Self {
+        match (self, cluster) {
+            (_, None) => self,
+            (Self::Nothing, Some(cluster)) => Self::One(cluster),
+            (Self::One(one), Some(cluster)) if one == cluster => self,
+            _ => Self::Several,
         }
-        self.owned.clear();
-        for (slot, found) in self.found.iter().enumerate() {
-            for &member in clusters.get(found.cluster as usize).unwrap_or_default() {
-                let index = list[member as usize].index;
-                self.owner[index as usize] = slot as u32;
-                self.owned.push(index);
-            }
-        }
-        std::mem::swap(&mut self.last, &mut self.now);
     }
 }
 

@@ -29,6 +29,7 @@ impl ContactPool {
     }
 
     /// A contact called `id` with nothing else known of it.
+    #[inline]
     pub(super) fn add(&mut self, id: ContactId) -> &mut Contact {
         if self.used == self.contacts.len() {
             self.contacts.push(roomy());
