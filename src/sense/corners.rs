@@ -195,9 +195,7 @@ pub(super) fn contradicted([sw, se, nw, ne]: [f32; 4]) -> [f32; 4] {
     let low = (place - ACROSS * whole).min(0.0);
     let high = (place + ACROSS * whole).max(0.0);
     let slack = UNEQUAL * whole;
-    // One decision, and nearly always the same: each of its parts would be hard to foresee.
-    let is_bent = (diagonal >= low - slack) & (diagonal <= high + slack);
-    if whole.is_nan() | (whole <= CONTRADICTS_N) | is_bent {
+    if whole.is_nan() || whole <= CONTRADICTS_N || (diagonal >= low - slack && diagonal <= high + slack) {
         return [0.0; 4];
     }
     let air = IN_THE_AIR * whole;

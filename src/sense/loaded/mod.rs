@@ -1,6 +1,7 @@
 //! Which tiles carry something.
 
 mod rims;
+mod sift;
 mod survey;
 mod threshold;
 mod tile_set;
@@ -8,8 +9,6 @@ mod tile_set;
 use self::survey::Survey;
 use self::threshold::Thresholds;
 pub(super) use self::tile_set::TileSet;
-use self::tile_set::bits;
-use super::corners::is_possible;
 use super::tile::{LoadedTile, Place, TileReading};
 use super::{ForceFrame, Quality};
 use crate::floor::{Geometry, PositionMap, TileId};
@@ -150,130 +149,6 @@ impl LoadedTiles {
         self.gather(frame);
         let list = self.list.iter().map(|tile| tile.index);
         self.thresholds.visit(&self.survey.sums, &self.place, list, self.dt);
-    }
-
-    /// Finds the candidates of blocks in which it takes more than the sums: those that are noisy, and those with a
-    /// sensor out, of which one is estimated.
-    fn reconsider(&mut self, frame: &ForceFrame) {
-        let there = frame.forces.len().min(frame.quality.len()).min(self.survey.sums.len());
-        for block in 0..self.survey.worst.len() {
-            if !self.survey.has_lost(block) && !self.thresholds.is_noisy(block) {
-                continue;
-            }
-            let Survey { sums, candidates, .. } = &mut self.survey;
-            let candidates = &mut candidates.blocks_mut()[block];
-            *candidates = 0;
-            let from = block * BLOCK;
-            for index in from..(from + BLOCK).min(there) {
-                let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
-                let is_enough = self.thresholds.deciding(index, sums[index]) >= self.thresholds.least();
-                *candidates |= u16::from(is_enough || is_lost) << (index - from);
-            }
-        }
-    }
-
-    /// From candidates to loaded tiles.
-    fn sift(&mut self, frame: &ForceFrame) {
-        // Which tiles were loaded in the last frame must be known until the new list stands.
-        std::mem::swap(&mut self.list, &mut self.last);
-        self.list.clear();
-        self.before.clear();
-        let was_settled = std::mem::replace(&mut self.is_settled, true);
-        let Self { survey, thresholds, place, listed, .. } = self;
-        for (block, (listed, &candidates)) in
-            listed.blocks_mut().iter_mut().zip(survey.candidates.blocks()).enumerate()
-        {
-            for gone in bits(*listed & !candidates) {
-                let index = block * BLOCK + gone;
-                place[index] = NONE;
-                thresholds.note(index, survey.sums[index]);
-            }
-            *listed = candidates;
-        }
-        for block in 0..self.survey.worst.len() {
-            let candidates = self.survey.candidates.blocks()[block];
-            if candidates == 0 {
-                continue;
-            }
-            let is_plain = was_settled && self.survey.is_live(block);
-            for candidate in bits(candidates) {
-                let index = block * BLOCK + candidate;
-                let is_loaded = if is_plain { self.take(frame, index) } else { self.examine(frame, index) };
-                if !is_loaded {
-                    self.listed.remove(index as u32);
-                }
-            }
-        }
-        for (light, &listed) in self.survey.light.blocks_mut().iter_mut().zip(self.listed.blocks()) {
-            *light &= !listed;
-        }
-    }
-
-    /// Puts the tile at `index` into the list if it is loaded, and says whether it is; all its sensors are live, and
-    /// nothing of its past has to be remembered.
-    #[inline]
-    fn take(&mut self, frame: &ForceFrame, index: usize) -> bool {
-        let forces = &frame.forces[index];
-        let (before, least) = self.least_of(index);
-        let map = self.maps.get(index).and_then(Option::as_ref);
-        let tile = LoadedTile::new(self.places[index], &self.geometry, forces, least, map);
-        if before != NONE {
-            self.thresholds.note(index, self.survey.sums[index]);
-        }
-        match tile {
-            Some(tile) if is_possible(forces) => self.enlist(tile, before),
-            _ => return false,
-        }
-        true
-    }
-
-    /// As [`Self::take`], with sensors of any quality and past.
-    #[inline(never)]
-    fn examine(&mut self, frame: &ForceFrame, index: usize) -> bool {
-        let past = self.last.get(self.place[index] as usize);
-        let (forces, quality) = (frame.forces[index], frame.quality[index]);
-        if quality == [Quality::Live; 4] && past.is_none_or(LoadedTile::is_settled) {
-            return self.take(frame, index);
-        }
-        let (before, least) = self.least_of(index);
-        let (carried, tile) = LoadedTile::of_any_quality(
-            self.places[index],
-            &self.geometry,
-            (forces, quality, frame.may_start.get(index) == Some(&true)),
-            least,
-            self.maps.get(index).and_then(Option::as_ref),
-            self.last.get(before as usize),
-            self.dt,
-        );
-        if let Some(carried) = carried {
-            // What a lost sensor reads is not a load.
-            self.survey.sums[index] = carried;
-        }
-        if before != NONE {
-            self.thresholds.note(index, self.survey.sums[index]);
-        }
-        self.is_settled &= tile.as_ref().is_none_or(LoadedTile::is_settled);
-        tile.is_some_and(|tile| {
-            self.enlist(tile, before);
-            true
-        })
-    }
-
-    /// Where the tile at `index` stood in the list of the last frame, and what it must carry; it is in no list then.
-    #[inline(always)]
-    fn least_of(&mut self, index: usize) -> (u32, Newtons) {
-        let before = std::mem::replace(&mut self.place[index], NONE);
-        (before, self.thresholds.least_of(index, self.survey.sums[index], before != NONE, self.dt))
-    }
-
-    #[inline(always)]
-    fn enlist(&mut self, mut tile: LoadedTile, before: u32) {
-        let index = tile.index as usize;
-        tile.noise_n = self.thresholds.noise_n(index);
-        tile.left_n = self.thresholds.left_n(index, tile.wrench.force);
-        self.place[index] = self.list.len() as u32;
-        self.before.push(before);
-        self.list.push(tile);
     }
 }
 

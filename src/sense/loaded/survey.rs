@@ -19,7 +19,7 @@ pub(super) struct Survey {
     marks: Vec<[u8; BLOCK]>,
     /// Tiles that carry enough to be looked at.
     pub candidates: TileSet,
-    /// Tiles that carry more than nothing.
+    /// Tiles that carry more than nothing; of these the listed ones are taken out later.
     pub light: TileSet,
     /// Per block of tiles, all its sensors' qualities, one over the other.
     pub worst: Vec<u8>,
