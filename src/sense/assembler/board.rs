@@ -1,7 +1,6 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
-use arrayvec::ArrayVec;
-
+use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
 use super::window::{NARROW, Trust, WIDE, Window, put_narrow, put_wide, windows};
@@ -28,9 +27,9 @@ pub(super) struct BoardTrack {
     narrow: Vec<Window<NARROW>>,
     /// Which of `kept` wait.
     waits: [bool; BUFFERS],
-    kept: [Readings; BUFFERS],
-    /// What its last packet read, and whether that was no news under a load.
-    last: Readings,
+    kept: [Sample; BUFFERS],
+    /// In which of `kept` its last packet is, and whether that was no news under a load.
+    last: Option<usize>,
     repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
     sends_counts: bool,
@@ -101,8 +100,8 @@ impl BoardTrack {
             wide,
             narrow,
             waits: [false; BUFFERS],
-            kept: std::array::from_fn(|_| Readings::Counts(ArrayVec::new())),
-            last: Readings::Counts(ArrayVec::new()),
+            kept: [const { Sample::EMPTY }; BUFFERS],
+            last: None,
             repeats: false,
             sends_counts: false,
             has_nominal,
@@ -119,25 +118,24 @@ impl BoardTrack {
         self.waits[buffer]
     }
 
-    /// Keeps `readings` until the frame of `buffer`'s slot is made.
-    pub(super) fn store(&mut self, buffer: usize, readings: &Readings) {
-        self.sends_counts = matches!(readings, Readings::Counts(_));
-        self.waits[buffer] = true;
-        copy(readings, &mut self.kept[buffer]);
-    }
-
-    /// Whether `readings` are, count for count, those of the packet before, although something rests on the
+    /// Keeps `readings` until the frame of `buffer`'s slot is made; true if they are news.
+    ///
+    /// They are not if they are, count for count, those of the packet before, although something rests on the
     /// board: a converter that works is noisy, and a foot never keeps still to a count.
     ///
     /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
     /// end of their range, nor of boards that send newtons, which may have smoothed them.
-    pub(super) fn note_repeats(&mut self, readings: &Readings, health: &Health) -> bool {
-        let is_same = self.last == *readings;
-        if !is_same {
-            copy(readings, &mut self.last);
-        }
-        self.repeats = is_same && !self.is_taring() && self.bears_load(readings, health);
-        self.repeats
+    pub(super) fn store(&mut self, buffer: usize, readings: &Readings, health: &Health) -> bool {
+        self.sends_counts = matches!(readings, Readings::Counts(_));
+        self.waits[buffer] = true;
+        let was_here = self.kept[buffer].replace(readings);
+        let is_same = match self.last.replace(buffer) {
+            Some(last) if last == buffer => was_here,
+            Some(last) => self.kept[last] == self.kept[buffer],
+            None => false,
+        };
+        self.repeats = is_same && !self.is_taring() && self.bears_load(&self.kept[buffer], health);
+        !self.repeats
     }
 
     /// Whether its last packet said nothing new under a load.
@@ -145,11 +143,11 @@ impl BoardTrack {
         self.repeats
     }
 
-    fn bears_load(&self, readings: &Readings, health: &Health) -> bool {
+    fn bears_load(&self, sample: &Sample, health: &Health) -> bool {
         let zero = |tile, corner| health.zero(tile, corner);
-        let wide = self.wide.iter().flat_map(|window| window.net(readings, zero));
-        let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(readings, zero)));
-        matches!(readings, Readings::Counts(_)) && all.any(|force| force > LOUD_N)
+        let wide = self.wide.iter().flat_map(|window| window.net(sample, zero));
+        let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(sample, zero)));
+        matches!(sample, Sample::Counts(_)) && all.any(|force| force > LOUD_N)
     }
 
     /// Forgets what waits in `buffer`; true if there was something.
@@ -180,7 +178,7 @@ impl BoardTrack {
 
     /// By how many newtons the middle one of this board's sensors would miss its tare if it read `mean`; `None` if that
     /// is not for its channels, or if it would miss it by no less than `below`. `misses` is space for sorting.
-    pub(super) fn misfit(&self, mean: &Readings, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
+    pub(super) fn misfit(&self, mean: &Sample, below: Option<f32>, misses: &mut Vec<f32>) -> Option<f32> {
         if mean.len() != self.channels.len() {
             return None;
         }
@@ -261,14 +259,14 @@ impl BoardTrack {
 
     /// Writes calibrated and tared forces; gives the number of bad readings.
     fn write(&self, buffer: usize, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
-        let (readings, is_foreign) = (&self.kept[buffer], health.is_foreign());
+        let (sample, is_foreign) = (&self.kept[buffer], health.is_foreign());
         let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign };
         let mut bad = 0;
         for window in &self.wide {
-            bad += put_wide(window, readings, trust, frame, health);
+            bad += put_wide(window, sample, trust, frame, health);
         }
         for window in &self.narrow {
-            bad += put_narrow(window, readings, trust, frame, health);
+            bad += put_narrow(window, sample, trust, frame, health);
         }
         bad
     }
@@ -282,15 +280,11 @@ impl BoardTrack {
 
     fn measure_tare(&mut self, buffer: usize, at_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
-        let readings = &self.kept[buffer];
-        let forces = self.channels.iter().enumerate().map(|(number, channel)| match (channel, readings) {
-            (None, _) => f32::NAN,
-            (Some(channel), Readings::Counts(counts)) => {
-                let count = counts.get(number).copied().flatten();
-                count.map_or(f32::NAN, |count| channel.calibration.force(count).0)
-            }
-            (Some(_), Readings::Newtons(forces)) => forces.get(number).copied().unwrap_or(f32::NAN),
-        });
+        let sample = &self.kept[buffer];
+        let force = |(number, channel): (usize, &Option<Channel>)| {
+            channel.map_or(f32::NAN, |channel| sample.force(number, &channel.calibration))
+        };
+        let forces = self.channels.iter().enumerate().map(force);
         match meter.add(at_ns, forces) {
             None => {}
             Some(Found::Quiet(means)) => {
@@ -312,17 +306,5 @@ impl BoardTrack {
                 });
             }
         }
-    }
-}
-
-/// Makes `to` what `from` is, without moving more than there is.
-fn copy(from: &Readings, to: &mut Readings) {
-    match (from, to) {
-        (Readings::Counts(from), Readings::Counts(to)) => {
-            to.clear();
-            // Both have the same room.
-            let _ = to.try_extend_from_slice(from);
-        }
-        (from, to) => *to = from.clone(),
     }
 }

@@ -3,6 +3,7 @@
 mod board;
 mod clock;
 mod presence;
+mod sample;
 mod sequence;
 mod stream;
 mod swap;
@@ -474,8 +475,7 @@ impl Assembler {
             // The board has just slipped back a slot: one of its samples is left out.
             return;
         }
-        board.store(waiting.buffer, &packet.readings);
-        if !board.note_repeats(&packet.readings, &self.health) {
+        if board.store(waiting.buffer, &packet.readings, &self.health) {
             board.stream.deliver(self.now_ns);
         }
         self.counters.packets += 1;

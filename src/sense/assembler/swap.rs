@@ -7,6 +7,7 @@
 use crate::wire::Readings;
 
 use super::board::BoardTrack;
+use super::sample::Sample;
 
 /// Packets whose mean is compared: a sixteenth of a second, in which 2 mV of noise become a few millinewtons.
 const BLOCK: u16 = 64;
@@ -47,7 +48,7 @@ struct Block {
     packets: u16,
     is_counts: bool,
     /// The means of the last whole block, for channels that gave anything.
-    mean: Option<Readings>,
+    mean: Option<Sample>,
     /// By how much it missed its own tares.
     own: f32,
     /// How many other places it has been compared with since it was last compared with all.
@@ -205,11 +206,12 @@ impl Block {
     fn finish(&mut self) {
         let packets = f32::from(self.packets);
         let means = self.sums.drain(..).map(|sum| sum / packets);
-        self.mean = Some(if self.is_counts {
+        let mean = if self.is_counts {
             Readings::Counts(means.map(|mean| mean.is_finite().then(|| mean.round() as u16)).collect())
         } else {
             Readings::Newtons(means.collect())
-        });
+        };
+        self.mean = Some(Sample::new(&mean));
         self.packets = 0;
     }
 }

@@ -6,10 +6,11 @@
 use multiversion::multiversion;
 
 use super::board::Channel;
+use super::sample::Sample;
 use crate::floor::{Calibration, LawKind, exp};
 use crate::sense::health::{End, Health, LOUD_N, Lanes};
 use crate::sense::{ForceFrame, Quality};
-use crate::wire::{MAX_CHANNELS, Readings};
+use crate::wire::MAX_CHANNELS;
 
 /// Sensors that are worked on together: those of as many tiles as most boards have.
 pub(super) const WIDE: usize = 32;
@@ -30,6 +31,8 @@ pub(super) struct Window<const LANES: usize> {
     first: usize,
     /// Which channel reads each sensor, if any does.
     channels: [u8; LANES],
+    /// The channel that reads the first sensor, where the others follow in the sensors' order.
+    run: Option<u8>,
     wired: [bool; LANES],
     /// Both numbers of exponential laws; of no meaning unless all are such.
     factors: [f32; LANES],
@@ -110,6 +113,7 @@ impl<const LANES: usize> Window<LANES> {
         let mut window = Self {
             first,
             channels: [0; LANES],
+            run: None,
             wired: [false; LANES],
             factors: [0.0; LANES],
             exponents: [0.0; LANES],
@@ -131,28 +135,42 @@ impl<const LANES: usize> Window<LANES> {
             window.bears[lane] = channel.bears;
             window.nominal[lane] = channel.is_nominal;
         }
+        window.run = window.run();
         window.laws = laws.iter().any(|law| law.kind() != LawKind::Exponential).then_some(laws);
         window
     }
 
+    /// The channel of the first lane, if those of all that are wired follow it.
+    fn run(&self) -> Option<u8> {
+        let lane = self.wired.iter().position(|wired| *wired)?;
+        let first = usize::from(self.channels[lane]).checked_sub(lane)?;
+        let follows = |lane: usize| !self.wired[lane] || usize::from(self.channels[lane]) == first + lane;
+        (0..LANES).all(follows).then_some(first as u8)
+    }
+
     /// What the sensors have read.
     #[inline(always)]
-    fn read(&self, readings: &Readings) -> Read<LANES> {
-        match readings {
-            Readings::Newtons(newtons) => {
+    fn read(&self, sample: &Sample) -> Read<LANES> {
+        match sample {
+            Sample::Newtons(newtons) => {
                 let force = |lane: usize| newtons.get(usize::from(self.channels[lane])).copied();
                 let forces = std::array::from_fn(|lane| force(lane).unwrap_or(f32::NAN));
                 Read { forces, ends: [End::Within; LANES], by_board: true }
             }
-            Readings::Counts(counts) => {
-                let mut all = [None; MAX_CHANNELS];
-                let length = counts.len().min(MAX_CHANNELS);
-                all[..length].copy_from_slice(&counts[..length]);
-                let counts = self.channels.map(|channel| all[usize::from(channel) % MAX_CHANNELS]);
-                let mut read = self.convert(&counts);
+            Sample::Counts(counts) => {
+                let run = self.run.and_then(|first| counts.run(first.into()));
+                let values = run.copied().unwrap_or_else(|| counts.pick(&self.channels));
+                let mut read = self.convert(&values);
                 if let Some(laws) = &self.laws {
                     for lane in 0..LANES {
-                        read.forces[lane] = counts[lane].map_or(f32::NAN, |count| laws[lane].force(count).0);
+                        read.forces[lane] = laws[lane].force(values[lane]).0;
+                    }
+                }
+                if counts.is_any_missing() {
+                    for lane in 0..LANES {
+                        if counts.is_missing(self.channels[lane].into()) {
+                            read.forces[lane] = f32::NAN;
+                        }
                     }
                 }
                 read
@@ -164,25 +182,16 @@ impl<const LANES: usize> Window<LANES> {
     ///
     /// A sensor on which next to nothing rests while the floor is empty is never missed: it may well read nothing.
     #[inline(always)]
-    fn convert(&self, counts: &[Option<u16>; LANES]) -> Read<LANES> {
+    fn convert(&self, counts: &[u16; LANES]) -> Read<LANES> {
         let mut read = Read { forces: [0.0; LANES], ends: [End::Within; LANES], by_board: false };
-        let raw = counts.map(|count| count.unwrap_or(NOTHING + 1));
         for lane in 0..LANES {
-            let volts = Calibration::volts(raw[lane]);
+            let volts = Calibration::volts(counts[lane]);
             read.forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
         }
         for lane in 0..LANES {
             let end = if self.bears[lane] { End::Low } else { End::Bare };
-            let end = if raw[lane] > NOTHING { End::Within } else { end };
-            read.ends[lane] = if raw[lane] >= self.saturated[lane] { End::High } else { end };
-        }
-        let is_any_missing = counts.iter().fold(false, |missing, count| missing | count.is_none());
-        if is_any_missing {
-            for lane in 0..LANES {
-                if counts[lane].is_none() {
-                    read.forces[lane] = f32::NAN;
-                }
-            }
+            let end = if counts[lane] > NOTHING { End::Within } else { end };
+            read.ends[lane] = if counts[lane] >= self.saturated[lane] { End::High } else { end };
         }
         read
     }
@@ -248,10 +257,10 @@ impl<const LANES: usize> Window<LANES> {
     /// The net force of each sensor that is within its range, with what is taken off its reading besides its tare.
     pub(super) fn net<'a>(
         &'a self,
-        readings: &Readings,
+        sample: &Sample,
         zero: impl Fn(usize, usize) -> f32 + 'a,
     ) -> impl Iterator<Item = f32> + 'a {
-        let read = self.read(readings);
+        let read = self.read(sample);
         (0..LANES).filter_map(move |lane| {
             let sensor = self.first + lane;
             let force = read.forces[lane] - (self.tares[lane] + zero(sensor / 4, sensor % 4));
@@ -261,8 +270,8 @@ impl<const LANES: usize> Window<LANES> {
     }
 
     /// By how much what each of the sensors has read misses its tare.
-    pub(super) fn misses<'a>(&'a self, readings: &Readings) -> impl Iterator<Item = f32> + 'a {
-        let read = self.read(readings);
+    pub(super) fn misses<'a>(&'a self, sample: &Sample) -> impl Iterator<Item = f32> + 'a {
+        let read = self.read(sample);
         (0..LANES).filter_map(move |lane| {
             let force = read.forces[lane];
             (self.wired[lane] && force.is_finite()).then(|| (force - self.tares[lane]).abs())
@@ -273,34 +282,29 @@ impl<const LANES: usize> Window<LANES> {
 /// Puts what the sensors of a wide window have read into `frame`; the answer is how many readings were no forces.
 pub(super) fn put_wide(
     window: &Window<WIDE>,
-    readings: &Readings,
+    sample: &Sample,
     trust: Trust,
     frame: &mut ForceFrame,
     health: &mut Health,
 ) -> u64 {
     let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, &write_wide(window, readings, trust, lanes), readings, health)
+    note(window.first, &write_wide(window, sample, trust, lanes), sample, health)
 }
 
 /// The same for a narrow one.
 pub(super) fn put_narrow(
     window: &Window<NARROW>,
-    readings: &Readings,
+    sample: &Sample,
     trust: Trust,
     frame: &mut ForceFrame,
     health: &mut Health,
 ) -> u64 {
     let Some(mut lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, &window.write(&window.read(readings), trust, &mut lanes), readings, health)
+    note(window.first, &window.write(&window.read(sample), trust, &mut lanes), sample, health)
 }
 
-fn note<const LANES: usize>(
-    first: usize,
-    found: &Found<LANES>,
-    readings: &Readings,
-    health: &mut Health,
-) -> u64 {
-    if found.is_used && matches!(readings, Readings::Newtons(_)) {
+fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample, health: &mut Health) -> u64 {
+    if found.is_used && matches!(sample, Sample::Newtons(_)) {
         health.note_newtons();
     }
     if found.is_any_loud {
@@ -314,9 +318,9 @@ fn note<const LANES: usize>(
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn write_wide<'a>(
     window: &Window<WIDE>,
-    readings: &Readings,
+    sample: &Sample,
     trust: Trust,
     mut into: Lanes<'a, WIDE>,
 ) -> Found<WIDE> {
-    window.write(&window.read(readings), trust, &mut into)
+    window.write(&window.read(sample), trust, &mut into)
 }

@@ -1,0 +1,162 @@
+//! What one board has read in one millisecond, kept until its frame is made.
+
+use arrayvec::ArrayVec;
+
+use crate::floor::Calibration;
+use crate::wire::{MAX_CHANNELS, Readings};
+
+/// The readings of one board, channel by channel, so that many are worked on side by side.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Sample {
+    Counts(Counts),
+    /// May hold NaN and infinities.
+    Newtons(ArrayVec<f32, MAX_CHANNELS>),
+}
+
+/// Counts apart from which of them are missing: half of what [`Readings`] take.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Counts {
+    length: u8,
+    /// Bit n says that channel n gave nothing, or that the board has not got it.
+    missing: u64,
+    /// Zero where nothing was given.
+    values: [u16; MAX_CHANNELS],
+}
+
+impl Sample {
+    /// Of no channels.
+    pub(super) const EMPTY: Self =
+        Self::Counts(Counts { length: 0, missing: u64::MAX, values: [0; MAX_CHANNELS] });
+
+    pub(super) fn new(readings: &Readings) -> Self {
+        let mut sample = Self::EMPTY;
+        sample.replace(readings);
+        sample
+    }
+
+    /// Number of channels read.
+    pub(super) fn len(&self) -> usize {
+        match self {
+            Self::Counts(counts) => counts.length.into(),
+            Self::Newtons(forces) => forces.len(),
+        }
+    }
+
+    /// Takes in `readings`; true if they are, count for count, what was here before.
+    pub(super) fn replace(&mut self, readings: &Readings) -> bool {
+        match (&mut *self, readings) {
+            (Self::Counts(kept), Readings::Counts(counts)) => kept.replace(counts),
+            (Self::Newtons(kept), Readings::Newtons(forces)) if kept == forces => true,
+            (_, Readings::Counts(_)) => {
+                *self = Self::new(readings);
+                false
+            }
+            (_, Readings::Newtons(forces)) => {
+                *self = Self::Newtons(forces.clone());
+                false
+            }
+        }
+    }
+
+    /// What a channel with this `law` has read, in newtons, tare not yet taken off; NaN if nothing.
+    pub(super) fn force(&self, channel: usize, law: &Calibration) -> f32 {
+        match self {
+            Self::Counts(counts) if counts.is_missing(channel) => f32::NAN,
+            Self::Counts(counts) => law.force(counts.values[channel % MAX_CHANNELS]).0,
+            Self::Newtons(forces) => forces.get(channel).copied().unwrap_or(f32::NAN),
+        }
+    }
+}
+
+impl Counts {
+    /// What the `LANES` channels from `first` on have read, zero where nothing; `None` if there are not so many.
+    #[inline(always)]
+    pub(super) fn run<const LANES: usize>(&self, first: usize) -> Option<&[u16; LANES]> {
+        self.values.get(first..)?.first_chunk()
+    }
+
+    /// What each of these channels has read, zero where nothing.
+    #[inline(always)]
+    pub(super) fn pick<const LANES: usize>(&self, channels: &[u8; LANES]) -> [u16; LANES] {
+        channels.map(|channel| self.values[usize::from(channel) % MAX_CHANNELS])
+    }
+
+    /// Whether any channel that the board has got gave nothing.
+    #[inline(always)]
+    pub(super) const fn is_any_missing(&self) -> bool {
+        self.missing != not_there(self.length)
+    }
+
+    /// Whether a channel gave nothing.
+    #[inline(always)]
+    pub(super) const fn is_missing(&self, channel: usize) -> bool {
+        channel >= MAX_CHANNELS || self.missing >> channel & 1 != 0
+    }
+
+    fn replace(&mut self, counts: &[Option<u16>]) -> bool {
+        let length = counts.len().min(MAX_CHANNELS) as u8;
+        let (mut is_any_new, mut is_any_missing) = (length != self.length, false);
+        for (value, count) in self.values.iter_mut().zip(counts) {
+            let given = count.unwrap_or(0);
+            is_any_new |= given != *value;
+            is_any_missing |= count.is_none();
+            *value = given;
+        }
+        let mut missing = not_there(length);
+        if is_any_missing {
+            let nothing = (0..MAX_CHANNELS).zip(counts).filter(|(_, count)| count.is_none());
+            missing |= nothing.fold(0, |bits, (channel, _)| bits | 1 << channel);
+        }
+        is_any_new |= missing != self.missing;
+        (self.length, self.missing) = (length, missing);
+        !is_any_new
+    }
+}
+
+/// The bits of the channels that a board with so many has not got.
+const fn not_there(length: u8) -> u64 {
+    match u64::MAX.checked_shl(length as u32) {
+        Some(bits) => bits,
+        None => 0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn counts(counts: &[Option<u16>]) -> Readings {
+        Readings::Counts(counts.iter().copied().collect())
+    }
+
+    #[test]
+    fn the_same_readings_again_are_no_news() {
+        let mut sample = Sample::EMPTY;
+        let newtons = Readings::Newtons([1.0, 2.0].into_iter().collect());
+        let all = [
+            counts(&[Some(7), Some(0)]),
+            counts(&[Some(7), None]),
+            counts(&[Some(7), Some(0), Some(0)]),
+            counts(&[None; MAX_CHANNELS]),
+            newtons,
+        ];
+        for readings in all {
+            assert!(!sample.replace(&readings), "{readings:?}");
+            assert!(sample.replace(&readings), "{readings:?}");
+            assert_eq!(sample, Sample::new(&readings));
+            assert_eq!(sample.len(), readings.len());
+        }
+        let nothing = Readings::Newtons([f32::NAN].into_iter().collect());
+        assert!(
+            !sample.replace(&nothing) && !sample.replace(&nothing),
+            "what is not a number is never the same"
+        );
+    }
+
+    #[test]
+    fn what_a_channel_did_not_give_is_not_a_force() {
+        let sample = Sample::new(&counts(&[Some(20_000), None]));
+        assert_eq!(sample.force(0, &Calibration::NOMINAL), Calibration::NOMINAL.force(20_000).0);
+        assert!([1, 2, 64].into_iter().all(|channel| sample.force(channel, &Calibration::NOMINAL).is_nan()));
+    }
+}
