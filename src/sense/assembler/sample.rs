@@ -95,21 +95,24 @@ impl Counts {
 
     fn replace(&mut self, counts: &[Option<u16>]) -> bool {
         let length = counts.len().min(MAX_CHANNELS) as u8;
-        let (mut is_any_new, mut is_any_missing) = (length != self.length, false);
+        let (mut changed, mut is_any_missing) = (0, false);
         for (value, count) in self.values.iter_mut().zip(counts) {
             let given = count.unwrap_or(0);
-            is_any_new |= given != *value;
-            is_any_missing |= count.is_none();
+            changed |= given ^ *value;
             *value = given;
+        }
+        // In a loop of its own: both together become no vector instructions.
+        for count in counts {
+            is_any_missing |= count.is_none();
         }
         let mut missing = not_there(length);
         if is_any_missing {
             let nothing = (0..MAX_CHANNELS).zip(counts).filter(|(_, count)| count.is_none());
             missing |= nothing.fold(0, |bits, (channel, _)| bits | 1 << channel);
         }
-        is_any_new |= missing != self.missing;
+        let is_same = changed == 0 && (length, missing) == (self.length, self.missing);
         (self.length, self.missing) = (length, missing);
-        !is_any_new
+        is_same
     }
 }
 

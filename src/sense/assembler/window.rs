@@ -287,8 +287,8 @@ pub(super) fn put_wide(
     frame: &mut ForceFrame,
     health: &mut Health,
 ) -> u64 {
-    let Some(lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, &write_wide(window, sample, trust, lanes), sample, health)
+    let Some(mut lanes) = health.lanes(window.first, frame) else { return 0 };
+    note(window.first, &write_wide(window, sample, trust, &mut lanes), sample, health)
 }
 
 /// The same for a narrow one.
@@ -320,7 +320,7 @@ fn write_wide<'a>(
     window: &Window<WIDE>,
     sample: &Sample,
     trust: Trust,
-    mut into: Lanes<'a, WIDE>,
+    into: &mut Lanes<'a, WIDE>,
 ) -> Found<WIDE> {
-    window.write(&window.read(sample), trust, &mut into)
+    window.write(&window.read(sample), trust, into)
 }

@@ -146,17 +146,16 @@ impl Creep {
 impl Memory {
     /// Lets some time pass under these forces; true if anything has changed.
     pub(super) fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
-        if !self.was_loaded && forces.iter().all(|&force| force < NOTHING_N) {
+        if !self.was_loaded && forces.iter().fold(true, |none, &force| none & (force < NOTHING_N)) {
             return false;
         }
+        let pressed = forces.map(|force| force.max(0.0));
         for (loads, part) in self.loads.iter_mut().zip(parts) {
-            for (load, force) in loads.iter_mut().zip(forces) {
-                if force.is_finite() {
-                    *load += part * (force.max(0.0) - *load);
-                }
+            for (load, force) in loads.iter_mut().zip(pressed) {
+                *load += part * (force - *load);
             }
         }
-        self.was_loaded = self.loads.iter().flatten().any(|&load| load > NOTHING_N);
+        self.was_loaded = self.loads.as_flattened().iter().fold(false, |any, &load| any | (load > NOTHING_N));
         if !self.was_loaded {
             self.loads = Default::default();
         }

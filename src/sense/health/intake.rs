@@ -18,6 +18,7 @@ pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
 
 impl Health {
     /// The sensors from number `first` on, in tile-index order; `None` if the floor has not got so many.
+    #[inline]
     pub(in crate::sense) fn lanes<'a, const LANES: usize>(
         &'a mut self,
         first: usize,

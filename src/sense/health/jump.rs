@@ -2,6 +2,8 @@
 
 use std::time::Duration;
 
+use multiversion::multiversion;
+
 use super::trouble::Sensor;
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Instant;
@@ -20,8 +22,9 @@ const MOST_N: f32 = 300.0;
 /// cut off and is back, and as long as a board may be silent).
 const SUSPECTED_FOR: Duration = Duration::from_millis(100);
 
-/// Less change than this is no jump, whichever of a tile's sensors are known to be out, however it is rounded.
-const CALM_N: f32 = 0.9 * MOST_N;
+/// If no sensor changes by more, its tile's load has not jumped, whichever of them are known to be out, however it is
+/// rounded.
+const CALM_N: f32 = 0.9 * MOST_N / 4.0;
 
 /// Tiles that are looked at together.
 const BLOCK: usize = 16;
@@ -29,8 +32,9 @@ const BLOCK: usize = 16;
 /// Watches every tile for loads that jump.
 #[derive(Clone, Debug)]
 pub(super) struct Jumps {
-    /// When each tile was read last; `None` before the first time.
+    /// When each tile was last read by itself, and each block of tiles at once; `None` before the first time.
     at: Vec<Option<Instant>>,
+    blocks_at: Vec<Option<Instant>>,
     /// What it read then.
     forces: Vec<[f32; 4]>,
     /// Which sensors have been read for the frame in the making.
@@ -47,6 +51,7 @@ impl Jumps {
     pub(super) fn new(tiles: usize) -> Self {
         Self {
             at: vec![None; tiles],
+            blocks_at: vec![None; tiles.div_ceil(BLOCK)],
             forces: vec![[0.0; 4]; tiles],
             news: vec![[false; 4]; tiles],
             suspected_until: vec![Instant::START; tiles],
@@ -66,16 +71,18 @@ impl Jumps {
     /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
     pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]]) {
         let now = frame.at;
-        for from in (0..self.forces.len()).step_by(BLOCK) {
-            let block = from..(from + BLOCK).min(self.forces.len());
-            let forces = &frame.forces[block.clone()];
-            if is_calm(&self.forces[block.clone()], forces, &self.news[block.clone()]) {
-                self.forces[block.clone()].copy_from_slice(forces);
-                self.at[block.clone()].fill(Some(now));
+        for block in 0..self.blocks_at.len() {
+            let tiles = BLOCK * block..(BLOCK * (block + 1)).min(self.forces.len());
+            let (before, forces) = (&mut self.forces[tiles.clone()], &frame.forces[tiles.clone()]);
+            let news = self.news[tiles.clone()].as_flattened_mut();
+            if is_calm(before.as_flattened(), forces.as_flattened(), news) {
+                before.copy_from_slice(forces);
+                self.blocks_at[block] = Some(now);
+                news.fill(false);
             } else {
-                block.clone().for_each(|tile| self.compare(tile, frame.forces[tile], &sensors[tile], now));
+                tiles.clone().for_each(|tile| self.compare(tile, frame.forces[tile], &sensors[tile], now));
+                self.news[tiles].fill([false; 4]);
             }
-            self.news[block].fill([false; 4]);
         }
         if now < self.any_until {
             for (quality, until) in frame.quality.iter_mut().zip(&self.suspected_until) {
@@ -92,7 +99,8 @@ impl Jumps {
             return;
         }
         let before = std::mem::replace(&mut self.forces[tile], forces);
-        let elapsed = self.at[tile].replace(now).map(|at| now.since(at));
+        let at = self.at[tile].replace(now).max(self.blocks_at[tile / BLOCK]);
+        let elapsed = at.map(|at| now.since(at));
         let changes = (0..4).filter(|&corner| !sensors[corner].is_out());
         let jump = changes.map(|corner| forces[corner] - before[corner]).sum::<f32>().abs();
         // After silence whatever was held is cancelled anyway, and anybody may have come.
@@ -111,17 +119,17 @@ impl Jumps {
     }
 }
 
-/// Whether all of some tiles have been read, and none of their loads can have jumped.
+/// Whether all of some sensors have been read, and no tile's load can have jumped.
 ///
-/// Without branches, over plain arrays.
-fn is_calm(before: &[[f32; 4]], forces: &[[f32; 4]], news: &[[bool; 4]]) -> bool {
+/// Without branches, over plain numbers: compiled for what the processor offers.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+fn is_calm(before: &[f32], forces: &[f32], news: &[bool]) -> bool {
     let mut calm = true;
     for (before, now) in before.iter().zip(forces) {
-        let [sw, se, nw, ne] = [0, 1, 2, 3].map(|corner| (now[corner] - before[corner]).abs());
-        calm &= (sw + se) + (nw + ne) < CALM_N;
+        calm &= (now - before).abs() < CALM_N;
     }
     for news in news {
-        calm &= news[0] | news[1] | news[2] | news[3];
+        calm &= news;
     }
     calm
 }
