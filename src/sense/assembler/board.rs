@@ -3,7 +3,7 @@
 use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use super::window::{NARROW, Trust, WIDE, Window, put_narrow, put_wide, windows};
+use super::window::{NARROW, Trust, WIDE, Window, misses_wide, put_narrow, put_wide, windows};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::health::{Health, LOUD_N};
 use crate::sense::{ForceFrame, Quality};
@@ -183,8 +183,9 @@ impl BoardTrack {
             return None;
         }
         misses.clear();
-        misses.extend(self.wide.iter().flat_map(|window| window.misses(mean)));
-        misses.extend(self.narrow.iter().flat_map(|window| window.misses(mean)));
+        let known = |miss: &f32| miss.is_finite();
+        misses.extend(self.wide.iter().flat_map(|window| misses_wide(window, mean)).filter(known));
+        misses.extend(self.narrow.iter().flat_map(|window| window.misses(mean)).filter(known));
         let middle = misses.len() / 2;
         // To count is far less work than to sort, and most places fit worse than the best so far.
         let is_less = |below: f32| misses.iter().filter(|miss| **miss < below).count() > middle;

@@ -479,7 +479,7 @@ impl Assembler {
             board.stream.deliver(self.now_ns);
         }
         self.counters.packets += 1;
-        self.swaps.note(number, &packet.readings, &self.boards);
+        self.swaps.note(number, slot, &packet.readings, &self.boards);
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
 

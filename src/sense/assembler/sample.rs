@@ -97,13 +97,11 @@ impl Counts {
         let length = counts.len().min(MAX_CHANNELS) as u8;
         let (mut changed, mut is_any_missing) = (0, false);
         for (value, count) in self.values.iter_mut().zip(counts) {
-            let given = count.unwrap_or(0);
-            changed |= given ^ *value;
-            *value = given;
-        }
-        // In a loop of its own: both together become no vector instructions.
-        for count in counts {
+            // What is read whether it is there or not is read side by side: `unwrap_or` asks first.
+            let given = count.map_or(0, u32::from);
+            changed |= given ^ u32::from(*value);
             is_any_missing |= count.is_none();
+            *value = given as u16;
         }
         let mut missing = not_there(length);
         if is_any_missing {

@@ -9,8 +9,11 @@ use crate::wire::Readings;
 use super::board::BoardTrack;
 use super::sample::Sample;
 
-/// Packets whose mean is compared: a sixteenth of a second, in which 2 mV of noise become a few millinewtons.
-const BLOCK: u16 = 64;
+/// Every how many milliseconds what a board reads is looked at: what rests there changes no faster.
+const EVERY: i64 = 8;
+
+/// Looks whose mean is compared: within a sixteenth of a second, in which 2 mV of noise become a few millinewtons.
+const BLOCK: i64 = 8;
 
 /// By how much the middle one of a board's sensors must miss its tare for the board to be suspected, in newtons: less
 /// than parts that differ by a quarter do under a plate of 6 N, more than one day's drift of the middle one (our
@@ -45,10 +48,8 @@ pub(super) struct Swaps {
 #[derive(Clone, Debug, Default)]
 struct Block {
     sums: Vec<f32>,
-    packets: u16,
+    packets: u32,
     is_counts: bool,
-    /// The means of the last whole block, for channels that gave anything.
-    mean: Option<Sample>,
     /// By how much it missed its own tares.
     own: f32,
     /// How many other places it has been compared with since it was last compared with all.
@@ -77,19 +78,22 @@ impl Swaps {
         }
     }
 
-    /// Takes what board `number` reads.
-    pub(super) fn note(&mut self, number: usize, readings: &Readings, boards: &[BoardTrack]) {
-        // There is nobody to change places with.
-        if boards.len() < 2 || !boards[number].has_known_tare() {
+    /// Takes what board `number` read in the millisecond of `slot`.
+    pub(super) fn note(&mut self, number: usize, slot: i64, readings: &Readings, boards: &[BoardTrack]) {
+        // Each board at a time of its own, for all at once would make one frame in 64 take twice as long.
+        let turn = slot.wrapping_add(number as i64);
+        // Alone, a board has no other to change places with.
+        if turn % EVERY != 0 || boards.len() < 2 || !boards[number].has_known_tare() {
             return;
         }
         let block = &mut self.blocks[number];
         block.add(readings);
-        if block.packets < BLOCK {
+        // A block whose last packet is lost goes on to the end of the next.
+        if turn / EVERY % BLOCK != 0 {
             return;
         }
-        block.finish();
-        if !self.compare(number, boards) {
+        let mean = block.finish();
+        if !self.compare(number, &mean, boards) {
             return;
         }
         let place = self.place(number);
@@ -103,12 +107,10 @@ impl Swaps {
 
     /// Compares what board `number` reads with some more places; whether it has been compared with all that it may be
     /// in.
-    fn compare(&mut self, number: usize, boards: &[BoardTrack]) -> bool {
+    fn compare(&mut self, number: usize, mean: &Sample, boards: &[BoardTrack]) -> bool {
         let Self { blocks, misses, .. } = self;
         let block = &mut blocks[number];
-        let mean = block.mean.take();
-        let mut misfit =
-            |place: usize, below: Option<f32>| boards[place].misfit(mean.as_ref()?, below, misses);
+        let mut misfit = |place: usize, below: Option<f32>| boards[place].misfit(mean, below, misses);
         block.own = misfit(number, None).unwrap_or(0.0);
         if block.own <= LEAST_N {
             (block.compared, block.nearest, block.best) = (0, None, None);
@@ -203,15 +205,16 @@ impl Block {
         }
     }
 
-    fn finish(&mut self) {
-        let packets = f32::from(self.packets);
+    /// What each channel has read on average, if it gave something every time.
+    fn finish(&mut self) -> Sample {
+        let packets = self.packets as f32;
         let means = self.sums.drain(..).map(|sum| sum / packets);
         let mean = if self.is_counts {
             Readings::Counts(means.map(|mean| mean.is_finite().then(|| mean.round() as u16)).collect())
         } else {
             Readings::Newtons(means.collect())
         };
-        self.mean = Some(Sample::new(&mean));
         self.packets = 0;
+        Sample::new(&mean)
     }
 }

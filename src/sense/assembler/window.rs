@@ -200,13 +200,13 @@ impl<const LANES: usize> Window<LANES> {
     #[inline(always)]
     fn write(&self, read: &Read<LANES>, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
         // All is read before anything is written: the compiler need not fear that it is the same.
-        let (zeros, crept, mut forces) = (*into.zeros, *into.crept, *into.forces);
+        let (offsets, mut forces) = (*into.offsets, *into.forces);
         let (mut quality, mut ends, mut guessed, mut news) =
             (*into.quality, *into.ends, *into.guessed, *into.news);
         let (mut is_force, mut is_used) = ([false; LANES], [false; LANES]);
         let mut loud = [false; LANES];
         for lane in 0..LANES {
-            let force = read.forces[lane] - self.tares[lane] - (zeros[lane] + crept[lane]);
+            let force = read.forces[lane] - self.tares[lane] - offsets[lane];
             // NaN is at most nothing.
             is_force[lane] = force.abs() <= MOST_N;
             is_used[lane] = is_force[lane] & self.wired[lane] & !trust.is_swapped;
@@ -269,13 +269,16 @@ impl<const LANES: usize> Window<LANES> {
         })
     }
 
-    /// By how much what each of the sensors has read misses its tare.
-    pub(super) fn misses<'a>(&'a self, sample: &Sample) -> impl Iterator<Item = f32> + 'a {
+    /// By how much what each of the sensors has read misses its tare; NaN where that is not known.
+    #[inline(always)]
+    pub(super) fn misses(&self, sample: &Sample) -> [f32; LANES] {
         let read = self.read(sample);
-        (0..LANES).filter_map(move |lane| {
-            let force = read.forces[lane];
-            (self.wired[lane] && force.is_finite()).then(|| (force - self.tares[lane]).abs())
-        })
+        let mut misses = [f32::NAN; LANES];
+        for lane in 0..LANES {
+            let miss = (read.forces[lane] - self.tares[lane]).abs();
+            misses[lane] = if self.wired[lane] { miss } else { f32::NAN };
+        }
+        misses
     }
 }
 
@@ -323,4 +326,10 @@ fn write_wide<'a>(
     into: &mut Lanes<'a, WIDE>,
 ) -> Found<WIDE> {
     window.write(&window.read(sample), trust, into)
+}
+
+/// [`Window::misses`] of a wide window, likewise.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+pub(super) fn misses_wide(window: &Window<WIDE>, sample: &Sample) -> [f32; WIDE] {
+    window.misses(sample)
 }

@@ -5,8 +5,8 @@ use crate::sense::{ForceFrame, Quality};
 
 /// What is known and what is to be written of `LANES` sensors that follow each other, four to a tile.
 pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
-    pub zeros: &'a [f32; LANES],
-    pub crept: &'a [f32; LANES],
+    /// What to take off each reading besides its tare.
+    pub offsets: &'a [f32; LANES],
     pub forces: &'a mut [f32; LANES],
     pub quality: &'a mut [Quality; LANES],
     pub ends: &'a mut [End; LANES],
@@ -25,8 +25,7 @@ impl Health {
         frame: &'a mut ForceFrame,
     ) -> Option<Lanes<'a, LANES>> {
         Some(Lanes {
-            zeros: self.zeros.as_flattened().get(first..)?.first_chunk()?,
-            crept: self.crept.as_flattened().get(first..)?.first_chunk()?,
+            offsets: self.offsets.as_flattened().get(first..)?.first_chunk()?,
             forces: frame.forces.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             quality: frame.quality.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             ends: self.ends.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,

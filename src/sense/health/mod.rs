@@ -82,6 +82,8 @@ pub(super) struct Health {
     zeros: Vec<[f32; 4]>,
     /// What each reads too much besides, for it creeps, and why.
     crept: Vec<[f32; 4]>,
+    /// Both together.
+    offsets: Vec<[f32; 4]>,
     memories: Vec<Memory>,
     creep: Creep,
     /// How far the floor's plates give way to twist.
@@ -143,6 +145,7 @@ impl Health {
             shares: shares(&floor.geometry),
             zeros: vec![[0.0; 4]; tiles],
             crept: vec![[0.0; 4]; tiles],
+            offsets: vec![[0.0; 4]; tiles],
             memories: vec![Memory::default(); tiles],
             creep: Creep::default(),
             twist: Twist::default(),
@@ -171,7 +174,7 @@ impl Health {
 
     /// What to take off a reading of this sensor besides its tare.
     pub(super) fn zero(&self, tile: usize, corner: usize) -> f32 {
-        self.zeros[tile][corner] + self.crept[tile][corner]
+        self.offsets[tile][corner]
     }
 
     /// Marks in `frame`, whose forces have all been taken, what cannot be trusted.
@@ -268,11 +271,17 @@ impl Health {
         self.creep.ease(dt / SHARES as f32);
         for tile in self.shares[share]..self.shares[share + 1] {
             let connected = is_connected(&frame.quality[tile], &self.sensors[tile]);
-            if self.slow[tile].add(frame.forces[tile], self.ends[tile], connected) {
+            let is_whole = self.slow[tile].add(frame.forces[tile], self.ends[tile], connected);
+            if is_whole {
                 self.finish_block(tile, frame.at);
             }
-            if connected && self.memories[tile].follow(frame.forces[tile], &parts) {
+            let has_crept = connected && self.memories[tile].follow(frame.forces[tile], &parts);
+            if has_crept {
                 self.crept[tile] = self.creep.of(&self.memories[tile]);
+            }
+            if is_whole || has_crept {
+                let (zeros, crept) = (self.zeros[tile], self.crept[tile]);
+                self.offsets[tile] = std::array::from_fn(|corner| zeros[corner] + crept[corner]);
             }
         }
     }
