@@ -18,6 +18,7 @@ pub use tare::{Tare, TareOutcome, TareRules};
 
 use self::board::{BUFFERS, BoardTrack};
 use self::clock::{SLOT_NS, SampleClock, nanos};
+use self::presence::SILENT_NS;
 use self::swap::Swaps;
 use super::health::{Health, SensorHealth, Trouble};
 use super::{ForceFrame, Quality};
@@ -95,6 +96,8 @@ pub struct Assembler {
     /// When the first packet came.
     first_packet_ns: Option<i64>,
     swept_ns: i64,
+    /// No board falls silent before this.
+    patient_until_ns: i64,
     aligned_ns: i64,
     /// Slots that wait for boards, earliest first.
     waiting: ArrayVec<Waiting, BUFFERS>,
@@ -169,6 +172,7 @@ impl Assembler {
             now_ns: 0,
             first_packet_ns: None,
             swept_ns: 0,
+            patient_until_ns: 0,
             aligned_ns: 0,
             waiting: ArrayVec::new(),
             awaited: 0,
@@ -386,7 +390,12 @@ impl Assembler {
             return;
         }
         self.swept_ns = self.now_ns;
+        if self.now_ns < self.patient_until_ns {
+            return;
+        }
         let mut gave_out = false;
+        // Whoever reports from now on has as much time again.
+        self.patient_until_ns = self.now_ns + SILENT_NS;
         for board in &mut self.boards {
             if board.stream.presence.pass(self.now_ns) {
                 self.counters.frozen += u64::from(board.repeats());
@@ -396,6 +405,7 @@ impl Assembler {
                 board.stream.awaited = false;
                 gave_out = true;
             }
+            self.patient_until_ns = self.patient_until_ns.min(board.stream.patient_until_ns());
         }
         if gave_out {
             self.count_awaited();

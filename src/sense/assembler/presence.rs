@@ -94,6 +94,12 @@ impl Presence {
         silent && self.interrupt(now_ns)
     }
 
+    /// When it goes silent unless something usable comes; `None` if it is not heard.
+    pub(super) fn silent_at_ns(&self) -> Option<i64> {
+        let is_heard = matches!(self.state, State::Live | State::Probation { .. });
+        self.used_ns.filter(|_| is_heard).map(|used| used + SILENT_NS)
+    }
+
     /// Makes the board silent now, because its stream broke off; true if it was not before.
     pub(super) fn interrupt(&mut self, now_ns: i64) -> bool {
         let flapping = match self.state {

@@ -56,6 +56,12 @@ impl Stream {
         self.awaited && now_ns - self.last_packet_ns >= SILENT_NS
     }
 
+    /// When it will next be silent or overdue if no packet comes; never if it is neither heard nor awaited.
+    pub(super) fn patient_until_ns(&self) -> i64 {
+        let overdue = if self.awaited { self.last_packet_ns + SILENT_NS } else { i64::MAX };
+        self.presence.silent_at_ns().map_or(overdue, |silent| silent.min(overdue))
+    }
+
     /// The furthest slot its packets have reached.
     pub(super) fn head_slot(&self) -> Option<i64> {
         self.sequence.position().map(|position| position + self.offset)

@@ -24,6 +24,15 @@ const NOTHING: u16 = 327;
 /// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
 const MOST_N: f32 = 50_000.0;
 
+/// Flag of a sensor that a channel reads.
+const WIRED: u8 = 1;
+
+/// Flag of a sensor on which so much rests while the floor is empty that it never reads nothing.
+const BEARS: u8 = 2;
+
+/// Flag of a sensor whose law is the nominal part's.
+const NOMINAL: u8 = 4;
+
 /// Sensors that follow each other, tile by tile and corner by corner, and the channels that read them.
 #[derive(Clone, Debug)]
 pub(super) struct Window<const LANES: usize> {
@@ -33,18 +42,22 @@ pub(super) struct Window<const LANES: usize> {
     channels: [u8; LANES],
     /// The channel that reads the first sensor, where the others follow in the sensors' order.
     run: Option<u8>,
-    wired: [bool; LANES],
+    /// What holds for each, of [`WIRED`], [`BEARS`] and [`NOMINAL`].
+    flags: [u8; LANES],
     /// Both numbers of exponential laws; of no meaning unless all are such.
     factors: [f32; LANES],
     exponents: [f32; LANES],
-    /// The laws, if some are not exponential.
-    laws: Option<Box<[Calibration; LANES]>>,
     tares: [f32; LANES],
+    /// The laws, if some are not exponential.
+    laws: Option<Box<Laws<LANES>>>,
+}
+
+/// The laws of some sensors, of any kind.
+#[derive(Clone, Debug)]
+struct Laws<const LANES: usize> {
+    laws: [Calibration; LANES],
     /// Counts from which on each reads "at least".
     saturated: [u16; LANES],
-    /// Whether so much rests on each while the floor is empty that it never reads nothing.
-    bears: [bool; LANES],
-    nominal: [bool; LANES],
 }
 
 /// What the sensors of a window have read, in newtons.
@@ -114,37 +127,40 @@ impl<const LANES: usize> Window<LANES> {
             first,
             channels: [0; LANES],
             run: None,
-            wired: [false; LANES],
+            flags: [0; LANES],
             factors: [0.0; LANES],
             exponents: [0.0; LANES],
-            laws: None,
             tares: [0.0; LANES],
-            saturated: [u16::MAX; LANES],
-            bears: [false; LANES],
-            nominal: [false; LANES],
+            laws: None,
         };
-        let mut laws = Box::new([Calibration::NOMINAL; LANES]);
+        let (mut laws, mut saturated) = ([Calibration::NOMINAL; LANES], [Calibration::SATURATED; LANES]);
         for (sensor, number, channel) in wired {
             let lane = sensor - first;
             window.channels[lane] = *number;
-            window.wired[lane] = true;
+            let [bears, nominal] = [(channel.bears, BEARS), (channel.is_nominal, NOMINAL)]
+                .map(|(holds, flag)| if holds { flag } else { 0 });
+            window.flags[lane] = WIRED | bears | nominal;
             [window.factors[lane], window.exponents[lane]] = channel.calibration.numbers();
             laws[lane] = channel.calibration;
             window.tares[lane] = channel.tare;
-            window.saturated[lane] = channel.saturated;
-            window.bears[lane] = channel.bears;
-            window.nominal[lane] = channel.is_nominal;
+            saturated[lane] = channel.saturated;
         }
         window.run = window.run();
-        window.laws = laws.iter().any(|law| law.kind() != LawKind::Exponential).then_some(laws);
+        let is_exponential = laws.iter().all(|law| law.kind() == LawKind::Exponential);
+        window.laws = (!is_exponential).then(|| Box::new(Laws { laws, saturated }));
         window
+    }
+
+    #[inline(always)]
+    const fn is_wired(&self, lane: usize) -> bool {
+        self.flags[lane] & WIRED != 0
     }
 
     /// The channel of the first lane, if those of all that are wired follow it.
     fn run(&self) -> Option<u8> {
-        let lane = self.wired.iter().position(|wired| *wired)?;
+        let lane = (0..LANES).find(|lane| self.is_wired(*lane))?;
         let first = usize::from(self.channels[lane]).checked_sub(lane)?;
-        let follows = |lane: usize| !self.wired[lane] || usize::from(self.channels[lane]) == first + lane;
+        let follows = |lane: usize| !self.is_wired(lane) || usize::from(self.channels[lane]) == first + lane;
         (0..LANES).all(follows).then_some(first as u8)
     }
 
@@ -163,7 +179,7 @@ impl<const LANES: usize> Window<LANES> {
                 let mut read = self.convert(&values);
                 if let Some(laws) = &self.laws {
                     for lane in 0..LANES {
-                        read.forces[lane] = laws[lane].force(values[lane]).0;
+                        read.forces[lane] = laws.laws[lane].force(values[lane]).0;
                     }
                 }
                 if counts.is_any_missing() {
@@ -188,10 +204,11 @@ impl<const LANES: usize> Window<LANES> {
             let volts = Calibration::volts(counts[lane]);
             read.forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
         }
+        let saturated = self.laws.as_ref().map_or([Calibration::SATURATED; LANES], |laws| laws.saturated);
         for lane in 0..LANES {
-            let end = if self.bears[lane] { End::Low } else { End::Bare };
+            let end = if self.flags[lane] & BEARS != 0 { End::Low } else { End::Bare };
             let end = if counts[lane] > NOTHING { End::Within } else { end };
-            read.ends[lane] = if counts[lane] >= self.saturated[lane] { End::High } else { end };
+            read.ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
         }
         read
     }
@@ -209,7 +226,7 @@ impl<const LANES: usize> Window<LANES> {
             let force = read.forces[lane] - self.tares[lane] - offsets[lane];
             // NaN is at most nothing.
             is_force[lane] = force.abs() <= MOST_N;
-            is_used[lane] = is_force[lane] & self.wired[lane] & !trust.is_swapped;
+            is_used[lane] = is_force[lane] & self.is_wired(lane) & !trust.is_swapped;
             loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
             forces[lane] = if is_used[lane] { force } else { forces[lane] };
         }
@@ -227,7 +244,7 @@ impl<const LANES: usize> Window<LANES> {
         }
         let mut is_nominal = [false; LANES];
         for lane in 0..LANES {
-            is_nominal[lane] = self.nominal[lane] & !read.by_board;
+            is_nominal[lane] = (self.flags[lane] & NOMINAL != 0) & !read.by_board;
         }
         for lane in 0..LANES {
             guessed[lane] |= is_used[lane] & is_nominal[lane];
@@ -241,11 +258,11 @@ impl<const LANES: usize> Window<LANES> {
             let is_uncertain = is_high[lane] | is_nominal[lane] | trust.is_foreign;
             let own = if is_uncertain { degraded } else { live };
             let own = if is_used[lane] { own } else { faulty };
-            quality[lane] = if self.wired[lane] { own } else { quality[lane] };
+            quality[lane] = if self.is_wired(lane) { own } else { quality[lane] };
         }
         let mut found = Found { bad: 0, is_used: false, is_any_loud: false, loud };
         for lane in 0..LANES {
-            found.bad += u32::from(self.wired[lane] & !is_force[lane]);
+            found.bad += u32::from(self.is_wired(lane) & !is_force[lane]);
             found.is_used |= is_used[lane];
             found.is_any_loud |= loud[lane];
         }
@@ -264,7 +281,7 @@ impl<const LANES: usize> Window<LANES> {
         (0..LANES).filter_map(move |lane| {
             let sensor = self.first + lane;
             let force = read.forces[lane] - (self.tares[lane] + zero(sensor / 4, sensor % 4));
-            let is_known = self.wired[lane] && read.ends[lane] == End::Within && force.is_finite();
+            let is_known = self.is_wired(lane) && read.ends[lane] == End::Within && force.is_finite();
             is_known.then_some(force)
         })
     }
@@ -276,7 +293,7 @@ impl<const LANES: usize> Window<LANES> {
         let mut misses = [f32::NAN; LANES];
         for lane in 0..LANES {
             let miss = (read.forces[lane] - self.tares[lane]).abs();
-            misses[lane] = if self.wired[lane] { miss } else { f32::NAN };
+            misses[lane] = if self.is_wired(lane) { miss } else { f32::NAN };
         }
         misses
     }

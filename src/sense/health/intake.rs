@@ -45,6 +45,8 @@ impl Health {
 
     /// Notes that boards make newtons themselves.
     pub(in crate::sense) fn note_newtons(&mut self) {
-        self.by_boards = true;
+        if !std::mem::replace(&mut self.by_boards, true) {
+            self.judge_floor();
+        }
     }
 }

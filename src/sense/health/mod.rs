@@ -100,6 +100,8 @@ pub(super) struct Health {
     guessed: Vec<[bool; 4]>,
     sensors: Vec<[Sensor; 4]>,
     slow: Vec<Slow>,
+    /// Which tiles carry something, by their last whole blocks.
+    loaded: Vec<bool>,
     /// Tiles with a reading to be examined in this frame.
     loud: Vec<u32>,
     /// Tiles with a sensor in trouble, or that may start nothing.
@@ -120,6 +122,7 @@ pub(super) struct Health {
     laden: usize,
     /// Whether boards make the newtons themselves: then the file says nothing of them.
     by_boards: bool,
+    is_foreign: bool,
     jumps: Jumps,
 }
 
@@ -155,6 +158,7 @@ impl Health {
             guessed: vec![[false; 4]; tiles],
             sensors: vec![[Sensor::default(); 4]; tiles],
             slow: vec![Slow::default(); tiles],
+            loaded: vec![false; tiles],
             loud: Vec::with_capacity(4 * tiles),
             watched: Vec::with_capacity(tiles),
             spare: Vec::with_capacity(tiles),
@@ -168,6 +172,7 @@ impl Health {
             seen: vec![false; tiles],
             laden: 0,
             by_boards: false,
+            is_foreign: false,
             jumps: Jumps::new(tiles),
         }
     }
@@ -289,11 +294,14 @@ impl Health {
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
         let foreign = self.is_foreign();
+        let is_first = !self.seen[tile];
         let Self { zeros, limits, guessed, sensors, slow, crept, memories, creep, twist, .. } = self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
         if let Some(block) = slow.finish(at) {
-            if !std::mem::replace(&mut self.seen[tile], true) {
+            self.loaded[tile] = block.is_loaded();
+            self.seen[tile] = true;
+            if is_first {
                 self.judged += 1;
                 let laden = block.means.iter().sum::<f32>().abs() > LADEN_N;
                 let strange = block.means.iter().filter(|mean| mean.abs() > STRANGE_N).count() > 1;
@@ -325,6 +333,9 @@ impl Health {
                 self.watched.push(tile as u32);
             }
         }
+        if is_first {
+            self.judge_floor();
+        }
     }
 
     /// Whether somebody may be standing with part of a foot on this tile, by what its neighbours carry.
@@ -332,7 +343,7 @@ impl Health {
         let first = self.geometry.tile_at_index(tile);
         let around = TileBlock { first, columns: 1, rows: 1 }.grown(1);
         let others = around.tiles().filter_map(|other| self.geometry.index(other));
-        others.filter(|&other| other != tile).any(|other| self.slow[other].is_loaded())
+        others.filter(|&other| other != tile).any(|other| self.loaded[other])
     }
 
     /// How often a sensor has fallen ill or got well.
@@ -352,10 +363,15 @@ impl Health {
     }
 
     /// Whether most tiles read what no empty tile of the file's floor should, at the start.
-    pub(super) fn is_foreign(&self) -> bool {
+    pub(super) const fn is_foreign(&self) -> bool {
+        self.is_foreign
+    }
+
+    fn judge_floor(&mut self) {
         let empty = self.judged - self.laden;
         let all_seen = self.judged == self.seen.len() && !self.by_boards;
-        all_seen && empty >= FEWEST_TILES && self.strange as f32 > MOST_TILES * empty as f32
+        self.is_foreign =
+            all_seen && empty >= FEWEST_TILES && self.strange as f32 > MOST_TILES * empty as f32;
     }
 
     /// The sensors in trouble.

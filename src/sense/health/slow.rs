@@ -51,7 +51,6 @@ pub(super) struct Slow {
     /// The end of its converter that each sensor was at last; the high one if it ever was there.
     ends: [End; 4],
     ended: Option<Instant>,
-    loaded: bool,
     tracks: [Track; 4],
     /// For how long one sensor alone has read a load.
     lone_s: f32,
@@ -71,6 +70,13 @@ pub(super) struct Block {
     pub(super) seconds: f32,
 }
 
+impl Block {
+    /// Whether the tile counts as loaded for its neighbours' sake.
+    pub(super) fn is_loaded(&self) -> bool {
+        self.means.iter().sum::<f32>().abs() > LOADED_N
+    }
+}
+
 /// A sensor's and its neighbours' extremes since the sensor last moved.
 #[derive(Clone, Copy, Debug, Default)]
 struct Track {
@@ -84,10 +90,6 @@ struct Track {
 }
 
 impl Slow {
-    pub(super) const fn is_loaded(&self) -> bool {
-        self.loaded
-    }
-
     /// Adds what the sensors read; true if the block is complete.
     pub(super) fn add(&mut self, forces: [f32; 4], ends: [End; 4], connected: bool) -> bool {
         if self.visits == 0 {
@@ -119,7 +121,6 @@ impl Slow {
         };
         let means = self.sums.map(|sum| sum / f32::from(VISITS));
         let spreads = std::array::from_fn(|corner| self.highs[corner] - self.lows[corner]);
-        self.loaded = means.iter().sum::<f32>().abs() > LOADED_N;
         Some(Block { means, lows: self.lows, spreads, ends: self.ends, seconds })
     }
 
