@@ -150,7 +150,7 @@ impl Tracker {
         if self.unassigned.is_empty() {
             return;
         }
-        for (which, foot) in (0..).zip(&self.tracks) {
+        for (which, foot) in (0..).zip(self.tracks.iter()) {
             let had = foot.smoothed.loads.iter().filter_map(|load| tiles.position(load.index));
             let unassigned = had.filter(|&position| self.owner[position as usize] == UNASSIGNED);
             self.previous_owners.extend(unassigned.map(|position| (position, which)));

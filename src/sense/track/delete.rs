@@ -15,13 +15,17 @@ impl Tracker {
     /// Takes away feet that are not there.
     pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
         let mut empty_s = std::mem::take(&mut self.empty_s);
-        empty_s.clear();
-        empty_s.extend(self.tracks.iter().map(|foot| foot.empty_s));
+        empty_s.resize(self.tracks.len(), 0.0);
+        let heaviest = self.tracks.iter().map(|foot| foot.force()).fold(0.0, f64::max);
         parallel::for_each(&mut empty_s, |which, empty_s| {
             let foot = &self.tracks[which];
-            let gone = if foot.shared { self.is_empty(foot, tiles) } else { self.is_rim(which) };
+            let gone = if foot.shared {
+                self.is_empty(foot, tiles)
+            } else {
+                foot.force() < RIM_SHARE * heaviest && self.is_rim(which)
+            };
             let change = if gone { 1.0 } else { -RECOVERS };
-            *empty_s = (*empty_s + change * dt).max(0.0);
+            *empty_s = (foot.empty_s + change * dt).max(0.0);
         });
         for (which, &empty_s) in empty_s.iter().enumerate() {
             let foot = &mut self.tracks[which];
@@ -93,7 +97,7 @@ impl Tracker {
     /// The other feet of its group.
     fn mates(&self, foot: &Track) -> impl Iterator<Item = &Track> {
         let id = foot.id;
-        self.mates.of(foot.group).map(|mate| &self.tracks[mate]).filter(move |mate| mate.id != id)
+        self.mates.of(foot.group).map(|mate| &*self.tracks[mate]).filter(move |mate| mate.id != id)
     }
 
     /// Whether foot `which` is all that is left of a foot that has gone: the rim of a heavy one, on a tile that both
@@ -102,7 +106,7 @@ impl Tracker {
         let foot = &self.tracks[which];
         let (place, force) = (foot.centre(), foot.force());
         foot.rest_point.distance(place).max(foot.landed.distance(place)) > FAR_M
-            && self.near.others(which).any(|(_, other)| {
+            && self.near.others(which).any(|other| {
                 let other = &self.tracks[other];
                 force < RIM_SHARE * other.force() && other.centre().distance(place) < RIM_M
             })

@@ -41,7 +41,7 @@ impl Tracker {
             if foot.enough_s < ENOUGH_S {
                 continue;
             }
-            let mut foot = self.tracks[which].clone();
+            let mut foot = Track::clone(&self.tracks[which]);
             let existing = &mut self.tracks[existing];
             foot.enough_s = 0.0;
             let from = existing.centre();
@@ -115,7 +115,7 @@ impl Tracker {
             foot.age = 0.0;
             let other = &mut self.tracks[existing];
             other.rest_at((1.0 - share) * all, from);
-            foot.reach(tiles, self.cells.pitch);
+            foot.reach(tiles, &self.cells);
             if foot.tiles.is_empty() {
                 foot.tiles.extend_from_slice(&self.tracks[existing].tiles);
             }

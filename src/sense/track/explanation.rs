@@ -27,14 +27,12 @@ use super::state::Track;
 use super::strips::{Whole, centroid_sigma};
 use crate::sense::tile::LoadedTile;
 
-/// How the loads of some tiles lie about their centroid.
+/// How the loads of some tiles lie about their centroid: the covariance of their places.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Spread {
-    /// Standard deviation along the widest direction, and across it, in metres.
-    pub along: f64,
-    pub across: f64,
-    /// Half the difference between the variances eastwards and northwards, and the covariance of the two: what tells
-    /// the widest direction.
+    /// The mean of the variances eastwards and northwards, in square metres.
+    mean: f64,
+    /// Half the difference between the two, and the covariance: what tells the widest direction.
     difference: f64,
     mixed: f64,
 }
@@ -46,6 +44,7 @@ impl Spread {
     }
 
     /// Of loads in newtons, each with its place from their centroid.
+    #[inline]
     fn of_arms(loads: impl Iterator<Item = (f64, DVec2)>) -> Self {
         let (mut xx, mut xy, mut yy, mut force) = (0.0, 0.0, 0.0, 0.0);
         for (load, arm) in loads {
@@ -54,14 +53,22 @@ impl Spread {
             yy += load * arm.y * arm.y;
             force += load;
         }
-        let (mean, difference, mixed) = (0.5 * (xx + yy) / force, 0.5 * (xx - yy) / force, xy / force);
-        let swing = difference.hypot(mixed);
-        Self {
-            along: (mean + swing).max(0.0).sqrt(),
-            across: (mean - swing).max(0.0).sqrt(),
-            difference,
-            mixed,
-        }
+        Self { mean: 0.5 * (xx + yy) / force, difference: 0.5 * (xx - yy) / force, mixed: xy / force }
+    }
+
+    /// By how much the variances along the widest direction and across it differ from their mean.
+    fn swing(&self) -> f64 {
+        self.difference.hypot(self.mixed)
+    }
+
+    /// Standard deviation along the widest direction, in metres.
+    fn along(&self) -> f64 {
+        (self.mean + self.swing()).max(0.0).sqrt()
+    }
+
+    /// The same across it.
+    fn across(&self) -> f64 {
+        (self.mean - self.swing()).max(0.0).sqrt()
     }
 
     /// The widest direction.
@@ -70,12 +77,28 @@ impl Spread {
     }
 
     /// Log odds for two feet.
+    #[inline]
     pub(super) fn evidence(&self) -> f64 {
-        self.evidence_along() + excess(self.across, ACROSS_M, ACROSS_SPREAD_M)
+        if self.is_narrow() {
+            return 0.0;
+        }
+        self.evidence_along() + excess(self.across(), ACROSS_M, ACROSS_SPREAD_M)
+    }
+
+    /// Whether it is narrower than one foot by more than rounding can tell: squares say so without a root.
+    #[inline]
+    fn is_narrow(&self) -> bool {
+        const SURELY: f64 = 1.0 - 1e-9;
+        let room_along = SURELY * ALONG_M * ALONG_M - self.mean;
+        let beyond_across = self.mean - SURELY * ACROSS_M * ACROSS_M;
+        let swing = self.difference * self.difference + self.mixed * self.mixed;
+        room_along > 0.0
+            && swing < SURELY * room_along * room_along
+            && (beyond_across < 0.0 || SURELY * swing > beyond_across * beyond_across)
     }
 
     fn evidence_along(&self) -> f64 {
-        excess(self.along, ALONG_M, ALONG_SPREAD_M)
+        excess(self.along(), ALONG_M, ALONG_SPREAD_M)
     }
 }
 
@@ -155,7 +178,7 @@ impl Explanation {
     }
 
     /// Probability of two feet.
-    pub(super) fn probability(&self) -> f64 {
+    fn probability(&self) -> f64 {
         1.0 / (1.0 + (-self.log_odds).exp())
     }
 
@@ -167,6 +190,10 @@ impl Explanation {
     /// Standard deviation of what a second foot may add to the place of the contact, in metres: its 95 % circle
     /// holds 95 % of both explanations together.
     pub(super) fn hidden_m(&self) -> f64 {
+        // Far less than one in twenty, as of nearly every foot: not worth an exponential.
+        if self.log_odds < -3.0 {
+            return 0.0;
+        }
         let two = self.probability();
         if two < 0.05 {
             return 0.0;
@@ -192,7 +219,7 @@ mod tests {
     #[test]
     fn the_spread_of_two_equal_loads_is_half_their_distance() {
         let apart = spread(&[(100.0, 0.0, 0.0), (100.0, 0.3, 0.0)]);
-        assert!((apart.along - 0.15).abs() < 1e-12 && apart.across < 1e-9);
+        assert!((apart.along() - 0.15).abs() < 1e-12 && apart.across() < 1e-9);
         assert!(apart.axis().y.abs() < 1e-12);
     }
 

@@ -61,7 +61,7 @@ impl Tracker {
         for first in (0..count).step_by(MOST_GROUPS) {
             let mut groups = ArrayVec::<Group<'_>, MOST_GROUPS>::new();
             groups.extend((first..count).take(MOST_GROUPS).map(|_| Group::new()));
-            for foot in &mut self.tracks {
+            for foot in self.tracks.iter_mut() {
                 let number = self.group_numbers[foot.group as usize].wrapping_sub(first);
                 let Some(group) = groups.get_mut(number as usize) else { continue };
                 if let Err(full) = group.try_push(foot) {

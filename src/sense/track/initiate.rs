@@ -4,7 +4,6 @@ use super::params::associate::NOISE_ARM_M;
 use super::params::initiate::{ADDED_N, APART_GUESS_M, APART_M, GUESSED_M, SLIDES_M_S, STANCE_M};
 use super::params::state::LANDS_S;
 use super::params::stillness::{SHARED_SPEED_M_S, STANDS_S};
-use super::params::tracker::STRIDE_M;
 use glam::DVec2;
 use smallvec::SmallVec;
 
@@ -79,7 +78,7 @@ impl Tracker {
             new_track.covariance[FORCE][FORCE] = (0.3 * candidate.force + 5.0).powi(2);
             new_track.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
             new_track.touchdown = touchdown;
-            new_track.reach(tiles, self.cells.pitch);
+            new_track.reach(tiles, &self.cells);
             for &position in &candidate.tiles {
                 if !new_track.tiles.contains(&position) {
                     new_track.tiles.push(position);
@@ -128,7 +127,7 @@ impl Track {
             self.on_quality_change(quality.unwrap_or_default(), lasts);
             return;
         }
-        let alone = || near.others(which).all(|(distance, _)| distance > STRIDE_M);
+        let alone = || !near.is_beside_any(which);
         let second = self.second(alone, list, cells.pitch, elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
         self.candidate = added.or(second);

@@ -42,8 +42,9 @@ mod strips;
 #[cfg(test)]
 mod tests;
 mod touchdown;
+mod tracks;
 
-use self::params::tracker::{LANDING_S, STRIDE_M};
+use self::params::tracker::LANDING_S;
 use glam::{DVec2, IVec2};
 
 use self::elapsed::Elapsed;
@@ -51,6 +52,7 @@ use self::groups::{BATCHES, GroupEstimator, Link};
 use self::neighbours::{Groups, Near};
 use self::state::Track;
 use self::strips::Axis;
+use self::tracks::Tracks;
 use super::contact::ContactId;
 use super::loaded::LoadedTiles;
 use super::pool::ContactPool;
@@ -66,7 +68,7 @@ pub(super) struct Tracker {
     cells: Cells,
     elapsed: Elapsed,
     next: u32,
-    tracks: Vec<Track>,
+    tracks: Tracks,
     dormant: Vec<dormant::Dormant>,
     estimators: Vec<GroupEstimator>,
     /// Covariances between feet after the last frame, one list per estimator.
@@ -75,6 +77,8 @@ pub(super) struct Tracker {
     group_numbers: Vec<u32>,
     /// Per loaded tile: the first foot that reaches it, or `UNASSIGNED`.
     owner: Vec<u32>,
+    /// Feet with a tile that another one reaches first, each with that one.
+    sharing: Vec<(u32, u32)>,
     unassigned: Vec<u32>,
     pending: Vec<associate::Pending>,
     /// Orphans, each with a foot that had it in the last frame.
@@ -112,6 +116,20 @@ impl Cells {
         (corner * self.pitch, (corner + size) * self.pitch)
     }
 
+    /// Calls `visit` with the index of each tile in the columns and rows from `low` to `high` that the floor has.
+    fn visit(&self, low: IVec2, high: IVec2, mut visit: impl FnMut(u32)) {
+        let TileBlock { first, columns, rows } = self.block;
+        let first = IVec2::new(first.column.into(), first.row.into());
+        let (columns, rows) = (i32::from(columns), i32::from(rows));
+        let low = low.saturating_sub(first).max(IVec2::ZERO);
+        let high = high.saturating_sub(first).min(IVec2::new(columns, rows) - 1);
+        for row in low.y..high.y + 1 {
+            for column in low.x..high.x + 1 {
+                visit((row * columns + column) as u32);
+            }
+        }
+    }
+
     fn of(&self, tile: &LoadedTile) -> (DVec2, DVec2) {
         let low = DVec2::new(tile.tile.column.into(), tile.tile.row.into()) * self.pitch;
         (low, low + self.pitch)
@@ -147,12 +165,13 @@ impl Tracker {
             cells,
             elapsed: Elapsed::new(0.0),
             next: 1,
-            tracks: Vec::with_capacity(room),
+            tracks: Tracks::with_capacity(room),
             dormant: Vec::with_capacity(room),
             estimators: (0..BATCHES).map(|number| GroupEstimator::new(number, room / BATCHES)).collect(),
             links: (0..BATCHES).map(|_| Vec::with_capacity(room / BATCHES)).collect(),
             group_numbers: Vec::with_capacity(room),
             owner: Vec::with_capacity(room),
+            sharing: Vec::with_capacity(room),
             unassigned: Vec::with_capacity(room),
             pending: Vec::with_capacity(room),
             previous_owners: Vec::with_capacity(room),
@@ -172,10 +191,10 @@ impl Tracker {
             self.elapsed = Elapsed::new(dt);
         }
         let elapsed = self.elapsed;
-        let pitch = self.cells.pitch;
+        let cells = &self.cells;
         parallel::for_each(&mut self.tracks, |_, foot| {
             foot.predict(dt);
-            foot.reach(tiles, pitch);
+            foot.reach(tiles, cells);
         });
         self.near.renew(&self.tracks);
         self.associate(tiles, &elapsed);
@@ -192,17 +211,15 @@ impl Tracker {
         self.describe(tiles, pool);
     }
 
-    /// Lets each foot remember where others near it are, and keep the tiles it was noticed on.
+    /// Lets each foot remember that others are near it, and keep the tiles it was noticed on.
     fn note_partners(&mut self, tiles: &LoadedTiles) {
         let near = &self.near;
         parallel::for_each(&mut self.tracks, |which, foot| {
-            let others =
-                near.others(which).filter(|&(distance, other)| distance < STRIDE_M && near.is_seen(other));
-            if let Some((_, other)) = others.min_by(first_of_least) {
-                if foot.age < LANDING_S {
-                    foot.body_n = near.body_n(other);
-                }
-                foot.partner = Some((near.place(other), 0.0));
+            if foot.age < LANDING_S {
+                foot.body_n = near.body_n_of_partner(which).unwrap_or(foot.body_n);
+            }
+            if near.has_partner(which) {
+                foot.partner_s = 0.0;
                 foot.accompanied = true;
             }
             foot.keep_noticed_tiles(tiles);
@@ -211,8 +228,8 @@ impl Tracker {
 
     fn delete_without_tiles(&mut self) {
         if self.tracks.iter().any(|foot| foot.tiles.is_empty()) {
+            self.near.retain(|which| !self.tracks[which].tiles.is_empty());
             self.tracks.retain(|foot| !foot.tiles.is_empty());
-            self.near.renew(&self.tracks);
         }
     }
 
@@ -226,29 +243,34 @@ impl Tracker {
     fn group(&mut self, tiles: usize) {
         self.owner.clear();
         self.owner.resize(tiles, UNASSIGNED);
-        self.mates.part(self.tracks.len());
-        for which in 0..self.tracks.len() {
-            self.tracks[which].group = which as u32;
-            self.tracks[which].crowded = false;
-            for at in 0..self.tracks[which].tiles.len() {
-                let position = self.tracks[which].tiles[at] as usize;
-                let owner = self.owner[position];
-                if owner == UNASSIGNED {
-                    self.owner[position] = which as u32;
-                    continue;
-                }
-                let (mine, theirs) = (self.tracks[which].group, self.tracks[owner as usize].group);
-                if mine != theirs {
-                    let (keep, drop) = (mine.min(theirs), mine.max(theirs));
-                    for mate in self.mates.of(drop) {
-                        self.tracks[mate].group = keep;
-                    }
-                    self.mates.unite(keep, drop);
-                    self.tracks[keep as usize].crowded = true;
+        self.sharing.clear();
+        for (which, foot) in (0..).zip(self.tracks.iter_mut()) {
+            foot.group = which;
+            foot.crowded = false;
+            for &position in &foot.tiles {
+                let owner = &mut self.owner[position as usize];
+                if *owner == UNASSIGNED {
+                    *owner = which;
+                } else {
+                    self.sharing.push((which, *owner));
                 }
             }
         }
-        self.renew_groups(self.tracks.len());
+        self.mates.part(self.tracks.len());
+        for &(foot, owner) in &self.sharing {
+            let (mine, theirs) = (self.tracks[foot as usize].group, self.tracks[owner as usize].group);
+            if mine != theirs {
+                let (keep, drop) = (mine.min(theirs), mine.max(theirs));
+                for mate in self.mates.of(drop) {
+                    self.tracks[mate].group = keep;
+                }
+                self.mates.unite(keep, drop);
+                self.tracks[keep as usize].crowded = true;
+            }
+        }
+        if !self.sharing.is_empty() {
+            self.renew_groups(self.tracks.len());
+        }
     }
 
     /// Takes down who belongs to which group; groups are numbered below `groups`.
@@ -280,23 +302,9 @@ impl Track {
         self.roll(elapsed);
         self.note_outline(list, elapsed);
         if !self.shared {
-            self.learn_shape(list, cells.pitch, elapsed.dt);
+            self.learn_shape(list, cells.pitch, elapsed);
         }
-        // A foot that has just come to stand alone starts from what is measured.
-        let fresh = !self.shared && self.smoothed.loads.is_empty();
-        let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
-        for at in 0..self.tiles.len() {
-            let tile = &list[self.tiles[at] as usize];
-            let (force, moment) = if self.shared {
-                let on = self.on(cells.of(tile));
-                (on.share() * self.force(), on.moment() * self.force())
-            } else {
-                let force = f64::from(tile.wrench.force);
-                (force, (tile.centroid - tile.centre).as_dvec2() * force)
-            };
-            self.learn_load(tile.index, force, moment, weight);
-        }
-        self.forget_loads();
+        self.learn_loads(list, cells, elapsed);
         self.judge();
     }
 }

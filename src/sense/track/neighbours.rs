@@ -4,7 +4,7 @@ use super::params::tracker::{SEEN_S, STRIDE_M};
 use glam::DVec2;
 
 use super::state::Track;
-use super::{Cells, UNASSIGNED, cell_of};
+use super::{Cells, UNASSIGNED, first_of_least};
 
 /// The feet by where they are, in squares of a stride.
 ///
@@ -14,8 +14,10 @@ use super::{Cells, UNASSIGNED, cell_of};
 pub(super) struct Near {
     /// The floor's south-west corner.
     corner: DVec2,
-    columns: i32,
-    rows: i32,
+    /// The place of its north-easternmost square, in squares.
+    last_square: DVec2,
+    /// Squares of a row, with the empty ones around the floor: each square of the floor has eight around it.
+    row: usize,
     /// Per square, the foot that was put there last.
     last: Vec<u32>,
     tracks: Vec<Neighbour>,
@@ -37,19 +39,19 @@ struct Neighbour {
 impl Near {
     pub(super) fn new(cells: &Cells, room: usize) -> Self {
         let (corner, end) = cells.bounds();
-        let count = |length: f64| (length / STRIDE_M).ceil().max(1.0) as i32;
-        let (columns, rows) = (count(end.x - corner.x), count(end.y - corner.y));
+        let count = ((end - corner) / STRIDE_M).ceil().max(DVec2::ONE);
+        let (columns, rows) = (count.x as usize, count.y as usize);
         Self {
             corner,
-            columns,
-            rows,
-            last: vec![UNASSIGNED; (columns * rows) as usize],
+            last_square: count - 1.0,
+            row: columns + 2,
+            last: vec![UNASSIGNED; (columns + 2) * (rows + 2)],
             tracks: Vec::with_capacity(room),
         }
     }
 
     /// Takes down where everybody is now, foot by foot in their order.
-    pub(super) fn renew(&mut self, tracks: &[Track]) {
+    pub(super) fn renew(&mut self, tracks: &[Box<Track>]) {
         for foot in &self.tracks {
             self.last[foot.square as usize] = UNASSIGNED;
         }
@@ -71,16 +73,22 @@ impl Near {
         });
     }
 
-    pub(super) fn place(&self, which: usize) -> DVec2 {
-        self.tracks[which].place
-    }
-
-    pub(super) fn is_seen(&self, which: usize) -> bool {
-        self.tracks[which].is_seen
-    }
-
-    pub(super) fn body_n(&self, which: usize) -> f64 {
-        self.tracks[which].body_n
+    /// Drops the feet that `stays` is false of; the others are numbered anew, in the same order.
+    pub(super) fn retain(&mut self, stays: impl Fn(usize) -> bool) {
+        for foot in &self.tracks {
+            self.last[foot.square as usize] = UNASSIGNED;
+        }
+        let feet = self.tracks.len();
+        let mut kept = 0;
+        for which in 0..feet {
+            if stays(which) {
+                let foot = self.tracks[which];
+                let before = std::mem::replace(&mut self.last[foot.square as usize], kept as u32);
+                self.tracks[kept] = Neighbour { before, ..foot };
+                kept += 1;
+            }
+        }
+        self.tracks.truncate(kept);
     }
 
     /// Foot `which` is elsewhere now.
@@ -106,15 +114,13 @@ impl Near {
 
     /// All feet within a stride of `place` and some that are farther away, in no order.
     pub(super) fn around(&self, place: DVec2) -> Around<'_> {
-        let (column, row) = self.column_and_row(place);
-        self.around_square(column, row)
+        self.around_square(self.square(place))
     }
 
-    fn around_square(&self, column: i32, row: i32) -> Around<'_> {
-        let (west, east) = ((column - 1).max(0), (column + 1).min(self.columns - 1));
-        let (south, north) = ((row - 1).max(0), (row + 1).min(self.rows - 1));
-        let first = self.last[(south * self.columns + west) as usize];
-        Around { near: self, west, east, north, column: west, row: south, next: first }
+    #[inline]
+    fn around_square(&self, square: usize) -> Around<'_> {
+        let first = square - self.row - 1;
+        Around { near: self, square: first, column: 0, rows: 2, next: self.last[first] }
     }
 
     /// The same, each with its distance from `place`, in metres.
@@ -122,34 +128,53 @@ impl Near {
         self.around(place).map(move |which| (self.tracks[which].place.distance(place), which))
     }
 
-    /// The feet around foot `which`, each with its distance from that one, in metres.
-    pub(super) fn others(&self, which: usize) -> impl Iterator<Item = (f64, usize)> {
-        let Neighbour { place, square, .. } = self.tracks[which];
-        let (column, row) = (square as i32 % self.columns, square as i32 / self.columns);
-        let others = self.around_square(column, row).filter(move |&other| other != which);
-        others.map(move |other| (self.tracks[other].place.distance(place), other))
+    /// All feet within a stride of foot `which` and some that are farther away, in no order, without that one.
+    pub(super) fn others(&self, which: usize) -> impl Iterator<Item = usize> {
+        self.around_square(self.tracks[which].square as usize).filter(move |&other| other != which)
+    }
+
+    /// Whether any other foot is within a stride of foot `which`.
+    pub(super) fn is_beside_any(&self, which: usize) -> bool {
+        let place = self.tracks[which].place;
+        self.others(which).any(|other| self.tracks[other].place.distance(place) <= STRIDE_M)
+    }
+
+    /// Whether foot `which` has a partner: another one within a stride that has been down for long enough.
+    pub(super) fn has_partner(&self, which: usize) -> bool {
+        self.others(which).any(|other| self.partner_distance(which, other).is_some())
+    }
+
+    /// From which force on the nearest partner of foot `which` bears its body, in newtons; `None` without one.
+    pub(super) fn body_n_of_partner(&self, which: usize) -> Option<f64> {
+        let partners =
+            self.others(which).filter_map(|other| Some((self.partner_distance(which, other)?, other)));
+        partners.min_by(first_of_least).map(|(_, nearest)| self.tracks[nearest].body_n)
+    }
+
+    /// How far `other` is from foot `which`, if it can be a partner.
+    #[inline]
+    fn partner_distance(&self, which: usize, other: usize) -> Option<f64> {
+        let Neighbour { place, is_seen, .. } = self.tracks[other];
+        if !is_seen {
+            return None;
+        }
+        Some(place.distance(self.tracks[which].place)).filter(|&distance| distance < STRIDE_M)
     }
 
     /// The square of a place; places beyond the floor belong to its outermost squares.
     fn square(&self, place: DVec2) -> usize {
-        let (column, row) = self.column_and_row(place);
-        (row * self.columns + column) as usize
-    }
-
-    fn column_and_row(&self, place: DVec2) -> (i32, i32) {
-        let at = cell_of(place - self.corner, STRIDE_M);
-        (at.x.clamp(0, self.columns - 1), at.y.clamp(0, self.rows - 1))
+        let at = ((place - self.corner) / STRIDE_M).clamp(DVec2::ZERO, self.last_square);
+        (at.y as usize + 1) * self.row + at.x as usize + 1
     }
 }
 
-/// The feet in some squares, square by square.
+/// The feet in nine squares, square by square.
 pub(super) struct Around<'a> {
     near: &'a Near,
-    west: i32,
-    east: i32,
-    north: i32,
-    column: i32,
-    row: i32,
+    square: usize,
+    column: usize,
+    /// How many rows of squares follow.
+    rows: usize,
     next: u32,
 }
 
@@ -159,14 +184,15 @@ impl Iterator for Around<'_> {
     #[inline]
     fn next(&mut self) -> Option<usize> {
         while self.next == UNASSIGNED {
-            if self.column < self.east {
-                self.column += 1;
-            } else if self.row < self.north {
-                (self.column, self.row) = (self.west, self.row + 1);
+            if self.column < 2 {
+                (self.square, self.column) = (self.square + 1, self.column + 1);
+            } else if self.rows > 0 {
+                (self.square, self.column) = (self.square + self.near.row - 2, 0);
+                self.rows -= 1;
             } else {
                 return None;
             }
-            self.next = self.near.last[(self.row * self.near.columns + self.column) as usize];
+            self.next = self.near.last[self.square];
         }
         let which = self.next as usize;
         self.next = self.near.tracks[which].before;
@@ -190,7 +216,10 @@ impl Groups {
 
     /// Starts over with `feet` feet, each a group of its own.
     pub(super) fn part(&mut self, tracks: usize) {
-        self.renew(0..tracks as u32, tracks);
+        self.ends.clear();
+        self.ends.extend((0..tracks as u32).map(|which| (which, which)));
+        self.next.clear();
+        self.next.resize(tracks, UNASSIGNED);
     }
 
     /// Takes down the group of each foot, in their order; groups are numbered below `groups`.
@@ -247,17 +276,22 @@ mod tests {
         for _ in 0..20 {
             let mut tracks: Vec<DVec2> = (0..40).map(|_| place()).collect();
             let at = |&place: &DVec2| Track::new(ContactId(1), 700.0, place, 0.01);
-            near.renew(&tracks[..30].iter().map(at).collect::<Vec<_>>());
+            let boxed = |place: &DVec2| Box::new(at(place));
+            near.renew(&tracks[..30].iter().map(boxed).collect::<Vec<_>>());
             tracks[30..].iter().for_each(|foot| near.add(&at(foot)));
             for which in [0, 7, 7, 39, 22] {
                 tracks[which] = place();
                 near.moved(which, tracks[which]);
             }
+            // One in three has ended.
+            near.retain(|which| which % 3 != 1);
+            let mut number = 0..;
+            tracks.retain(|_| number.next().is_none_or(|which: usize| which % 3 != 1));
             for here in (0..50).map(|_| place()) {
                 let mut found: Vec<usize> = near.around(here).collect();
                 found.sort_unstable();
                 assert!(found.windows(2).all(|pair| pair[0] != pair[1]), "each once: {found:?}");
-                let within = (0..40).filter(|&which| tracks[which].distance(here) <= STRIDE_M);
+                let within = (0..tracks.len()).filter(|&which| tracks[which].distance(here) <= STRIDE_M);
                 within.for_each(|which| assert!(found.contains(&which), "{which} near {here}"));
             }
         }

@@ -7,6 +7,7 @@
 use std::f64::consts::FRAC_1_SQRT_2;
 
 use glam::DVec2;
+use multiversion::multiversion;
 
 /// Directions of the fan, over half a turn: a shoe's breadth at 7.5 degrees off its heading is 4 mm too wide at most.
 const DIRECTIONS: usize = 12;
@@ -27,52 +28,83 @@ pub(super) struct Shoe {
 }
 
 /// The lesser of two numbers. `f64::min`, which ignores NaN, costs several times as much here.
+#[inline(always)]
 fn lesser(a: f64, b: f64) -> f64 {
     if b < a { b } else { a }
 }
 
 /// The greater of two numbers, as [`lesser`].
+#[inline(always)]
 fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
+#[inline(always)]
 fn projections(point: DVec2) -> [f64; DIRECTIONS] {
-    std::array::from_fn(|which| {
-        let (x, y) = FAN[which];
-        x * point.x + y * point.y
-    })
+    std::array::from_fn(|which| FAN_X[which] * point.x + FAN_Y[which] * point.y)
 }
 
 /// Unit vectors at 0, 15, ... 165 degrees.
-const FAN: [(f64, f64); DIRECTIONS] = [
-    (1.0, 0.0),
-    (0.965_925_826_289_068_3, 0.258_819_045_102_520_74),
-    (0.866_025_403_784_438_6, 0.5),
-    (FRAC_1_SQRT_2, FRAC_1_SQRT_2),
-    (0.5, 0.866_025_403_784_438_6),
-    (0.258_819_045_102_520_74, 0.965_925_826_289_068_3),
-    (0.0, 1.0),
-    (-0.258_819_045_102_520_63, 0.965_925_826_289_068_3),
-    (-0.5, 0.866_025_403_784_438_7),
-    (-FRAC_1_SQRT_2, FRAC_1_SQRT_2),
-    (-0.866_025_403_784_438_7, 0.5),
-    (-0.965_925_826_289_068_2, 0.258_819_045_102_521),
+const FAN_X: [f64; DIRECTIONS] = [
+    1.0,
+    0.965_925_826_289_068_3,
+    0.866_025_403_784_438_6,
+    FRAC_1_SQRT_2,
+    0.5,
+    0.258_819_045_102_520_74,
+    0.0,
+    -0.258_819_045_102_520_63,
+    -0.5,
+    -FRAC_1_SQRT_2,
+    -0.866_025_403_784_438_7,
+    -0.965_925_826_289_068_2,
 ];
+const FAN_Y: [f64; DIRECTIONS] = [
+    0.0,
+    0.258_819_045_102_520_74,
+    0.5,
+    FRAC_1_SQRT_2,
+    0.866_025_403_784_438_6,
+    0.965_925_826_289_068_3,
+    1.0,
+    0.965_925_826_289_068_3,
+    0.866_025_403_784_438_7,
+    FRAC_1_SQRT_2,
+    0.5,
+    0.258_819_045_102_521,
+];
+
+/// [`Outline::renew`], compiled for what the processor offers, with the same bits.
+#[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
+fn renew(outline: &mut Outline, centre: DVec2, others: &[DVec2], keep: f64) {
+    let mut now = Outline::new(centre);
+    others.iter().for_each(|&point| now.add(point));
+    outline.relax(&now, keep);
+    outline.unite(&now);
+}
 
 impl Outline {
     /// A foot that has pressed `point` only.
+    #[inline(always)]
     pub(super) fn new(point: DVec2) -> Self {
         let at = projections(point);
         Self { low: at, high: at }
     }
 
+    /// Takes in that `centre` and `others` are pressed now, keeping `keep` of what was known.
+    pub(super) fn renew(&mut self, centre: DVec2, others: &[DVec2], keep: f64) {
+        renew(self, centre, others, keep);
+    }
+
     /// Adds a pressed point.
-    pub(super) fn add(&mut self, point: DVec2) {
+    #[inline(always)]
+    fn add(&mut self, point: DVec2) {
         self.unite(&Self::new(point));
     }
 
     /// Adds all points of `other`.
-    pub(super) fn unite(&mut self, other: &Self) {
+    #[inline(always)]
+    fn unite(&mut self, other: &Self) {
         for (low, &other) in self.low.iter_mut().zip(&other.low) {
             *low = lesser(*low, other);
         }
@@ -82,7 +114,8 @@ impl Outline {
     }
 
     /// Draws the extents towards those of `now`, keeping `keep` of their distance.
-    pub(super) fn relax(&mut self, now: &Self, keep: f64) {
+    #[inline(always)]
+    fn relax(&mut self, now: &Self, keep: f64) {
         for which in 0..DIRECTIONS {
             self.low[which] = now.low[which] + keep * (self.low[which] - now.low[which]);
             self.high[which] = now.high[which] + keep * (self.high[which] - now.high[which]);

@@ -21,7 +21,7 @@ impl Tracker {
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
         let list = tiles.list();
         pool.clear();
-        for foot in &self.tracks {
+        for foot in self.tracks.iter() {
             pool.add(foot.id);
         }
         parallel::for_each(pool.contacts_mut(), |which, contact| {
@@ -90,27 +90,32 @@ impl Track {
         contact.velocity = self.velocity().as_vec2();
         // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
         // fit. That is told; the filter goes on by its own uncertainty.
-        let strayed_m = STRAYED_M * (self.misfit - FITS).max(0.0).sqrt().sqrt();
-        let is_guess = self.shared && self.inflated().sqrt().hypot(strayed_m) > AMBIGUOUS_M;
-        contact.ambiguous = self.ambiguous || is_guess;
-        let mut covariance = if self.shared {
+        let strayed_m = if self.misfit > FITS { STRAYED_M * (self.misfit - FITS).sqrt().sqrt() } else { 0.0 };
+        contact.ambiguous = self.ambiguous;
+        let mut covariance = Covariance::default();
+        if self.shared {
+            contact.ambiguous |= self.inflated().sqrt().hypot(strayed_m) > AMBIGUOUS_M;
             let inflation = self.inflation();
-            Covariance {
+            covariance = Covariance {
                 xx: (inflation * self.covariance[EAST][EAST]) as f32,
                 xy: (inflation * self.covariance[EAST][NORTH]) as f32,
                 yy: (inflation * self.covariance[NORTH][NORTH]) as f32,
-            }
+            };
         } else {
-            Covariance::default()
-        };
-        if !self.shared {
             let left: f32 = self.tiles.iter().map(|&position| list[position as usize].left_n).sum();
             contact.force = Newtons((contact.force.0 - left).max(LEAST_N));
         }
         for &position in &self.tiles {
             let tile = &list[position as usize];
-            let (mut share, load) = part_of(self, tile, cells);
+            let mut share = 1.0;
+            let mut load = TileLoad {
+                tile: tile.tile,
+                index: tile.index as usize,
+                force: Newtons(tile.wrench.force),
+                centroid: tile.centroid,
+            };
             if self.shared {
+                share = self.divide(tile, cells, &mut load);
                 // What the others' loads are misread by is known in part, from when they stood alone.
                 share += (1.0 - share) * OTHERS_MISREAD;
             }
@@ -139,22 +144,14 @@ impl Track {
         contact.covariance = covariance;
         contact.finish();
     }
-}
 
-/// What `foot` presses on `tile`: as a share of the tile's load, and in newtons.
-fn part_of(foot: &Track, tile: &LoadedTile, cells: &Cells) -> (f32, TileLoad) {
-    let whole = TileLoad {
-        tile: tile.tile,
-        index: tile.index as usize,
-        force: Newtons(tile.wrench.force),
-        centroid: tile.centroid,
-    };
-    if !foot.shared {
-        return (1.0, whole);
+    /// Leaves of `load`, all that `tile` carries, what this foot presses; gives its share.
+    fn divide(&self, tile: &LoadedTile, cells: &Cells, load: &mut TileLoad) -> f32 {
+        let on = self.on(cells.of(tile));
+        let force = (self.force() * on.share()) as f32;
+        let arm = if on.share() > 1e-6 { (on.moment() / on.share()).as_vec2() } else { Vec2::ZERO };
+        load.force = Newtons(force.min(tile.wrench.force));
+        load.centroid = tile.centre + arm;
+        (force / tile.wrench.force).min(1.0)
     }
-    let on = foot.on(cells.of(tile));
-    let force = (foot.force() * on.share()) as f32;
-    let share = (force / tile.wrench.force).min(1.0);
-    let arm = if on.share() > 1e-6 { (on.moment() / on.share()).as_vec2() } else { Vec2::ZERO };
-    (share, TileLoad { force: Newtons(force.min(tile.wrench.force)), centroid: tile.centre + arm, ..whole })
 }

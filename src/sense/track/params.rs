@@ -251,7 +251,7 @@ pub(super) mod state {
     /// How long its own sway is not taken for a newcomer after a companion has gone or a sensor was lost, in seconds.
     pub(in crate::sense::track) const CALM_S: f64 = 0.25;
 
-    /// How long a foot remembers where its partner was, in seconds: as long as a slow step takes.
+    /// How long a foot remembers its partner, in seconds: as long as a slow step takes.
     pub(in crate::sense::track) const PARTNER_S: f64 = 1.2;
 
     /// The force on a foot that slides, in newtons, at most.

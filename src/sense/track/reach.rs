@@ -5,13 +5,13 @@ use super::params::reach::{
     RIM, RIM_AHEAD, RIM_OF_SHARED, SHOE,
 };
 use super::params::state::{FLAT_S, LANDS_S, SHOE_M, SLIDING_N};
-use glam::DVec2;
+use arrayvec::ArrayVec;
+use glam::{DVec2, IVec2};
 
-use super::cell_of;
 use super::elapsed::Elapsed;
-use super::outline::Outline;
 use super::state::{EAST, NORTH, Track};
 use super::strips::Axis;
+use super::{Cells, cell_of};
 use crate::sense::loaded::LoadedTiles;
 use crate::sense::tile::LoadedTile;
 
@@ -33,21 +33,26 @@ impl Track {
 
     /// Adds what it presses now to what it has pressed of late.
     pub(super) fn note_outline(&mut self, list: &[LoadedTile], elapsed: &Elapsed) {
-        let mut now = Outline::new(self.centre());
+        let centre = self.centre();
+        let mut pressed: ArrayVec<DVec2, MOST_NOTED> = ArrayVec::new();
         if !self.shared {
             for &position in &self.tiles {
                 let tile = &list[position as usize];
-                let force = f64::from(tile.wrench.force);
-                if force > NOTED * self.force() && force > NOTED_PER_NOISE * tile.loaded_noise_n() {
-                    now.add(tile.centroid.as_dvec2());
+                let (force, point) = (f64::from(tile.wrench.force), tile.centroid.as_dvec2());
+                // On a single tile, it is the centre itself.
+                if point != centre
+                    && force > NOTED * self.force()
+                    && force > NOTED_PER_NOISE * tile.loaded_noise_n()
+                {
+                    // Never full: that many shares are more than the whole.
+                    let _ = pressed.try_push(point);
                 }
             }
         } else if self.covariance[EAST][EAST] + self.covariance[NORTH][NORTH] > NOTED_M * NOTED_M {
             return;
         }
         let kept = if self.bears() { elapsed.outline } else { elapsed.light_outline };
-        self.outline.relax(&now, kept);
-        self.outline.unite(&now);
+        self.outline.renew(centre, &pressed, kept);
     }
 
     /// How far `point` is beyond where a foot may press that has just landed, of which therefore only a part has
@@ -70,29 +75,36 @@ impl Track {
     }
 
     /// Lists the loaded tiles that its patch may press.
-    pub(super) fn reach(&mut self, tiles: &LoadedTiles, pitch: f64) {
+    pub(super) fn reach(&mut self, tiles: &LoadedTiles, cells: &Cells) {
         self.tiles.clear();
         let reach = self.half() * HALVES + BEYOND_M;
-        let mut low = cell_of(self.centre() - reach, pitch);
-        let mut high = cell_of(self.centre() + reach, pitch);
-        let (mut known_low, mut known_high) = (low, high);
-        for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
-            let (low, high) = match residual.axis {
-                Axis::East => (&mut known_low.x, &mut known_high.x),
-                Axis::North => (&mut known_low.y, &mut known_high.y),
-            };
-            (*low, *high) = ((*low).min(residual.number), (*high).max(residual.number));
-        }
+        let mut low = cell_of(self.centre() - reach, cells.pitch);
+        let mut high = cell_of(self.centre() + reach, cells.pitch);
+        let (borne_low, borne_high) = self.borne;
+        let (known_low, known_high) = (low.min(borne_low), high.max(borne_high));
         // Where it was alone, it also presses what it pressed then.
         if (known_low, known_high) != (low, high) && self.residual_weight() > KNOWN {
             (low, high) = (known_low, known_high);
         }
-        for row in low.y..=high.y {
-            for column in low.x..=high.x {
-                if let Some(position) = tiles.find(column, row) {
-                    self.tiles.push(position as u32);
-                }
-            }
+        cells.visit(low, high, |index| self.tiles.extend(tiles.position(index)));
+    }
+
+    /// Notes between which columns and rows it has borne something where it was alone.
+    pub(super) fn note_borne(&mut self) {
+        let (mut low, mut high) = NOTHING_BORNE;
+        for residual in self.residuals.iter().filter(|residual| residual.share > BORNE) {
+            let (low, high) = match residual.axis {
+                Axis::East => (&mut low.x, &mut high.x),
+                Axis::North => (&mut low.y, &mut high.y),
+            };
+            (*low, *high) = ((*low).min(residual.number), (*high).max(residual.number));
         }
+        self.borne = (low, high);
     }
 }
+
+/// The lowest and the highest column and row that a foot has borne something on which was never alone.
+pub(super) const NOTHING_BORNE: (IVec2, IVec2) = (IVec2::MAX, IVec2::MIN);
+
+/// Most tiles that carry more than [`NOTED`] of a foot each.
+const MOST_NOTED: usize = (1.0 / NOTED) as usize;

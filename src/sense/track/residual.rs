@@ -1,7 +1,7 @@
 //! The shape of a foot: what is learnt of it while it stands alone, and how long that holds.
 
+use super::elapsed::{Elapsed, ShapeFade};
 use super::number_of;
-use super::params::model::HALF_FADE_S;
 use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
@@ -10,8 +10,8 @@ use crate::sense::tile::LoadedTile;
 
 impl Track {
     /// Learns the patch's half widths from how seams divide a foot whose centre of pressure is known.
-    fn learn_halves(&mut self, strips: &Strips, pitch: f64, dt: f64) {
-        let decay = (-dt / HALF_FADE_S).exp();
+    fn learn_halves(&mut self, strips: &Strips, pitch: f64, fade: &ShapeFade) {
+        let ShapeFade { dt, half: decay, .. } = *fade;
         // The same error of the model is seen in many frames.
         let noise = 0.015_f64.powi(2) * (1.0_f64).max(0.02 / dt.max(1e-4));
         for axis in Axis::BOTH {
@@ -44,16 +44,17 @@ impl Track {
     }
 
     /// Notes how the foot, alone on its tiles, differs from its model patch, if it is time.
-    pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
-        self.unlearnt_s += dt;
-        if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * dt {
-            let since = std::mem::take(&mut self.unlearnt_s);
-            self.learn_residuals(list, pitch, since);
+    pub(super) fn learn_shape(&mut self, list: &[LoadedTile], pitch: f64, elapsed: &Elapsed) {
+        self.unlearnt_s += elapsed.dt;
+        if self.alone_at.is_none() || self.unlearnt_s >= LEARN_EVERY_S - 0.5 * elapsed.dt {
+            let fade = elapsed.shape_fade(std::mem::take(&mut self.unlearnt_s));
+            self.learn_residuals(list, pitch, &fade);
+            self.note_borne();
         }
     }
 
-    /// The same after `dt` seconds.
-    fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, dt: f64) {
+    /// The same, with what the time since it was last done makes of what was known.
+    fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, fade: &ShapeFade) {
         let (centre, half) = (self.centre(), self.half());
         let mut strips = Strips::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
         for axis in Axis::BOTH {
@@ -62,14 +63,10 @@ impl Track {
                 strips.strip(axis, number);
             }
         }
-        self.learn_halves(&strips, pitch, dt);
+        self.learn_halves(&strips, pitch, fade);
         let half = self.half();
         // Slowly, so that the first touch of a newcomer, not yet known as one, hardly enters.
-        let weight = if self.alone_at.is_none() || self.age < RESIDUAL_S {
-            1.0
-        } else {
-            1.0 - (-dt / RESIDUAL_S).exp()
-        };
+        let weight = if self.alone_at.is_none() || self.age < RESIDUAL_S { 1.0 } else { 1.0 - fade.residual };
         for residual in &mut self.residuals {
             residual.seen = false;
         }
@@ -89,7 +86,7 @@ impl Track {
         }
         self.residuals.retain(|residual| residual.seen);
         if self.age > TOUCHES_S {
-            self.alone_s += dt;
+            self.alone_s += fade.dt;
         }
         let before = self.alone_at.unwrap_or(centre);
         self.alone_at = Some(before + (centre - before) * weight);

@@ -3,8 +3,10 @@
 use glam::DVec2;
 use smallvec::SmallVec;
 
+use super::Cells;
 use super::elapsed::Elapsed;
 use super::state::{EAST, FORCE, NORTH, Track};
+use crate::sense::tile::LoadedTile;
 
 /// Force, place and rates of a foot as its last few hundredths of a second predict them.
 #[derive(Clone, Debug, Default)]
@@ -22,7 +24,6 @@ pub(super) struct SmoothedLoad {
     pub index: u32,
     pub force: f64,
     pub moment: DVec2,
-    pub seen: bool,
 }
 
 impl Track {
@@ -47,22 +48,42 @@ impl Track {
         self.smoothed = Smoothed { force: self.force(), centre: self.centre(), ..Smoothed::default() };
     }
 
-    /// Lets the slow load of one tile learn by `weight`; `force` and `moment` are the foot's own part of it.
-    pub(super) fn learn_load(&mut self, index: u32, force: f64, moment: DVec2, weight: f64) {
-        let loads = &mut self.smoothed.loads;
-        let position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
-            loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
-            loads.len() - 1
-        });
-        let load = &mut loads[position];
-        load.force += weight * (force - load.force);
-        load.moment += weight * (moment - load.moment);
-        load.seen = true;
+    /// Lets the slow loads of its tiles learn from what it presses now, and drops those of other tiles.
+    pub(super) fn learn_loads(&mut self, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
+        // A foot that has just come to stand alone starts from what is measured.
+        let fresh = !self.shared && self.smoothed.loads.is_empty();
+        let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
+        for at in 0..self.tiles.len() {
+            let tile = &list[self.tiles[at] as usize];
+            let (force, moment) = if self.shared {
+                let on = self.on(cells.of(tile));
+                (on.share() * self.force(), on.moment() * self.force())
+            } else {
+                let force = f64::from(tile.wrench.force);
+                (force, (tile.centroid - tile.centre).as_dvec2() * force)
+            };
+            let load = self.load_of(at, tile.index);
+            load.force += weight * (force - load.force);
+            load.moment += weight * (moment - load.moment);
+        }
+        if self.smoothed.loads.len() > self.tiles.len() {
+            let tiles = &self.tiles;
+            let is_pressed = |index: u32| tiles.iter().any(|&tile| list[tile as usize].index == index);
+            self.smoothed.loads.retain(|load| is_pressed(load.index));
+        }
     }
 
-    /// Drops the slow loads that were not learnt from since the last call.
-    pub(super) fn forget_loads(&mut self) {
-        self.smoothed.loads.retain(|load| std::mem::take(&mut load.seen));
+    /// The slow load of the tile `index`, which is number `at` of its tiles: mostly that of its loads, too.
+    fn load_of(&mut self, at: usize, index: u32) -> &mut SmoothedLoad {
+        let loads = &mut self.smoothed.loads;
+        let mut position = at;
+        if loads.get(at).is_none_or(|load| load.index != index) {
+            position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
+                loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
+                loads.len() - 1
+            });
+        }
+        &mut loads[position]
     }
 
     /// The slow load of one tile, nothing if it had none.

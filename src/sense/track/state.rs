@@ -1,10 +1,10 @@
 //! One foot: what is known of it, and how that changes with time.
 
 use super::params::explanation::ROLL_M;
-use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N, PARTNER_S};
+use super::params::state::{BODY_N, BODY_SHARE, CALM_S, HALF_REST, LEAST_BODY_N};
 use super::params::stillness::SWAY_MOST_M;
 use arrayvec::ArrayVec;
-use glam::DVec2;
+use glam::{DVec2, IVec2};
 use smallvec::SmallVec;
 
 use super::elapsed::Elapsed;
@@ -12,6 +12,7 @@ use super::explanation::Explanation;
 use super::initiate::Candidate;
 use super::outline::Outline;
 use super::patch::PatchOnTile;
+use super::reach::NOTHING_BORNE;
 use super::smoothed::Smoothed;
 use super::strips::Residual;
 use super::touchdown::Touchdown;
@@ -65,6 +66,8 @@ pub(super) struct Track {
     pub shared: bool,
     /// How its shape differs from the model patch, as last seen alone.
     pub residuals: SmallVec<[Residual; 8]>,
+    /// The lowest and the highest column and row on which these say that it has borne something.
+    pub borne: (IVec2, IVec2),
     /// How badly the joint filter's predictions have fitted lately: 0 for perfectly.
     pub nis: f64,
     /// How badly the loads fitted it and the other foot when one was last placed beside the other, which stood still; 0
@@ -84,8 +87,8 @@ pub(super) struct Track {
     /// Seconds for which it stood still there, and since when it has moved.
     pub still_s: f64,
     pub away_s: f64,
-    /// Where the other foot of the same person was last seen near it, and how long ago.
-    pub partner: Option<(DVec2, f64)>,
+    /// How long ago another foot was last near it, which may be of the same person; infinite if none was.
+    pub partner_s: f64,
     /// The worst quality of its tiles, and whether that has just changed.
     pub quality: Quality,
     pub quality_changed: bool,
@@ -133,6 +136,7 @@ impl Track {
             ambiguous: false,
             shared: false,
             residuals: SmallVec::new(),
+            borne: NOTHING_BORNE,
             nis: 0.0,
             misfit: 0.0,
             mean_speed: 0.4,
@@ -142,7 +146,7 @@ impl Track {
             rest_point: centre,
             still_s: 0.0,
             away_s: 0.0,
-            partner: None,
+            partner_s: f64::INFINITY,
             quality: Quality::Live,
             quality_changed: false,
             touchdown: None,
@@ -307,7 +311,7 @@ impl Track {
     pub(super) fn predict(&mut self, dt: f64) {
         self.age += dt;
         self.suppressed_s = (self.suppressed_s - dt).max(0.0);
-        self.partner = self.partner.map(|(place, ago)| (place, ago + dt)).filter(|&(_, ago)| ago < PARTNER_S);
+        self.partner_s += dt;
         self.smoothed.centre += self.smoothed.velocity * dt;
         self.smoothed.force = (self.smoothed.force + self.smoothed.force_rate * dt).max(0.0);
     }

@@ -1,6 +1,6 @@
 //! Where a foot rests, and whether it stands still, is_slow or rolls.
 
-use super::params::state::FLAT_S;
+use super::params::state::{FLAT_S, PARTNER_S};
 use super::params::stillness::{
     ANCHOR_M, ANCHOR_S, ASTRAY_S, AWAY_S, SHARED_SPEED_M_S, SLOW_M_S, SPEED_RISE_M_S2, STANDS_S, STILL_M_S,
     STILL_S, SWAY_LEAST_M, SWAY_MOST_M, SWAY_PER_SPEED_S,
@@ -51,7 +51,7 @@ impl Track {
 
     /// Notes for how long its centre of pressure has stayed in one place.
     fn stand_still(&mut self, dt: f64) {
-        if self.partner.is_some_and(|(_, ago)| ago <= dt) {
+        if self.partner_s <= dt && self.partner_s < PARTNER_S {
             // On two feet one stands otherwise.
             (self.anchor, self.anchored_s, self.astray_s) = (self.centre(), 0.0, 0.0);
             return;

@@ -1,0 +1,57 @@
+//! The list of feet.
+
+use std::ops::{Deref, DerefMut};
+
+use super::state::Track;
+
+/// Tracks in the order in which they began.
+///
+/// A track is two kilobytes, and in a crowd one ends in nearly every frame: so that those behind it need not be copied
+/// to close the gap, the list holds boxes. The box of a track that has ended is used again.
+#[derive(Clone, Debug)]
+#[expect(clippy::vec_box, reason = "what moves in the list is to be small")]
+pub(super) struct Tracks {
+    list: Vec<Box<Track>>,
+    spare: Vec<Box<Track>>,
+}
+
+impl Tracks {
+    pub(super) fn with_capacity(tracks: usize) -> Self {
+        Self { list: Vec::with_capacity(tracks), spare: Vec::with_capacity(tracks) }
+    }
+
+    pub(super) fn push(&mut self, track: Track) {
+        let boxed = match self.spare.pop() {
+            Some(mut spare) => {
+                *spare = track;
+                spare
+            }
+            None => Box::new(track),
+        };
+        self.list.push(boxed);
+    }
+
+    pub(super) fn remove(&mut self, which: usize) {
+        let ended = self.list.remove(which);
+        self.spare.push(ended);
+    }
+
+    /// Removes the tracks that `stays` is false of.
+    pub(super) fn retain(&mut self, stays: impl Fn(&Track) -> bool) {
+        self.spare.extend(self.list.extract_if(.., |track| !stays(track)));
+    }
+}
+
+impl Deref for Tracks {
+    type Target = [Box<Track>];
+
+    fn deref(&self) -> &Self::Target {
+        &self.list
+    }
+}
+
+impl DerefMut for Tracks {
+    fn deref_mut(&mut self) -> &mut Self::Target {
+        &mut self.list
+    }
+}
