@@ -103,9 +103,9 @@ impl SensorUncertainty {
         let scale = 1.0 / (force * force).max(LEAST_N * LEAST_N);
         let strayed = UNSEEN_N * UNSEEN_N * tile.strayed_m2() * scale;
         let reach = geometry.sensor_reach_m();
-        // Of the south-western and the north-eastern sensor, and so of the other two.
-        let (sw, ne) = (tile.centre - reach - point, tile.centre + reach - point);
-        let (x, y) = (Vec4::new(sw.x, ne.x, sw.x, ne.x), Vec4::new(sw.y, sw.y, ne.y, ne.y));
+        // In the order of `Corner::ALL`: those in the south first, of each two the western one.
+        let (low, high) = (tile.centre - reach - point, tile.centre + reach - point);
+        let (x, y) = (Vec4::new(low.x, high.x, low.x, high.x), Vec4::new(low.y, low.y, high.y, high.y));
         let misread = share * self.misread_n(Vec4::from_array(tile.corners), tile.mapped_m());
         let extra = share * Vec4::from_array(tile.extra_sigma);
         let misplaced = share * self.misplaced * tile.wrench.force;

@@ -150,8 +150,13 @@ impl Tracker {
         if self.unassigned.is_empty() {
             return;
         }
+        // One bit for each remainder of an index tells nearly all other tiles apart without a look at the floor.
+        let bit = |index: u32| 1_u64 << (index % u64::BITS);
+        let list = tiles.list();
+        let bits = self.unassigned.iter().fold(0, |bits, &at| bits | bit(list[at as usize].index));
         for (which, foot) in (0..).zip(self.tracks.iter()) {
-            let had = foot.smoothed.loads.iter().filter_map(|load| tiles.position(load.index));
+            let loads = foot.smoothed.loads.iter().filter(|load| bits & bit(load.index) != 0);
+            let had = loads.filter_map(|load| tiles.position(load.index));
             let unassigned = had.filter(|&position| self.owner[position as usize] == UNASSIGNED);
             self.previous_owners.extend(unassigned.map(|position| (position, which)));
         }

@@ -33,7 +33,9 @@ impl Tracker {
         for which in 0..self.tracks.len() {
             let foot = &self.tracks[which];
             let Some((existing, strips)) = self.enough_without(foot, tiles) else {
-                self.tracks[which].enough_s = 0.0;
+                if foot.enough_s != 0.0 {
+                    self.tracks[which].enough_s = 0.0;
+                }
                 continue;
             };
             let foot = &mut self.tracks[which];

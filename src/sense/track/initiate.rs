@@ -130,7 +130,10 @@ impl Track {
         let alone = || !near.is_beside_any(which);
         let second = self.second(alone, list, cells.pitch, elapsed);
         let added = if self.age > LANDS_S { self.added(list, cells) } else { None };
-        self.candidate = added.or(second);
+        // Taken away in every frame: most feet have none, before and now.
+        if let Some(candidate) = added.or(second) {
+            self.candidate = Some(candidate);
+        }
     }
 
     /// A foot whose load has been added to tiles where the track itself cannot have put it.
@@ -139,16 +142,20 @@ impl Track {
         if !self.bears() && self.velocity().length() > SLIDES_M_S {
             return None;
         }
-        for &position in &self.tiles {
+        for (at, &position) in self.tiles.iter().enumerate() {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
-            let slow = self.smoothed_load(tile.index);
-            let centre = tile.centre.as_dvec2();
+            let slow = self.smoothed_load(at, tile.index);
             let added = force - slow.force;
+            // So little that the noise need not be looked at.
+            if added < ADDED_N {
+                continue;
+            }
             let noise = tile.loaded_noise_n();
             if added < ADDED_N + 8.0 * noise {
                 continue;
             }
+            let centre = tile.centre.as_dvec2();
             let moment = (tile.centroid.as_dvec2() - centre) * force - slow.moment;
             // Moment of what was added about the foot's own centre of pressure.
             let about = moment + (centre - self.smoothed.centre) * added;

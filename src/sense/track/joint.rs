@@ -20,8 +20,13 @@ const LEAST_VARIANCE: f64 = 1e-9;
 pub(super) struct Joint {
     states: usize,
     pub(super) x: [f64; MOST],
-    p: [[f64; MOST]; MOST],
+    p: [Row; MOST],
 }
+
+/// A row of the covariance. Vectors of eight numbers do not lie across two lines of the cache.
+#[derive(Clone, Copy, Debug)]
+#[repr(align(64))]
+struct Row([f64; MOST]);
 
 /// One row of an observation's slopes: which state, how much.
 pub(super) type Derivative = (usize, f64);
@@ -45,7 +50,7 @@ const THREE: usize = 3 * STATES;
 fn update(joint: &mut Joint, n: usize, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
     let mut gain = [0.0; MOST];
     for &(state, derivative) in jacobian {
-        let row = &joint.p[state];
+        let row = &joint.p[state].0;
         for (gain, p) in gain[..n].iter_mut().zip(&row[..n]) {
             *gain += derivative * p;
         }
@@ -59,7 +64,7 @@ fn update(joint: &mut Joint, n: usize, innovation: f64, jacobian: &[Derivative],
     for row in 0..n {
         let step = gain[row] * scale;
         joint.x[row] += step * innovation;
-        for (p, gain) in joint.p[row][..n].iter_mut().zip(&gain[..n]) {
+        for (p, gain) in joint.p[row].0[..n].iter_mut().zip(&gain[..n]) {
             *p -= step * gain;
         }
     }
@@ -68,7 +73,7 @@ fn update(joint: &mut Joint, n: usize, innovation: f64, jacobian: &[Derivative],
 
 impl Joint {
     pub(super) fn new() -> Self {
-        Self { states: 0, x: [0.0; MOST], p: [[0.0; MOST]; MOST] }
+        Self { states: 0, x: [0.0; MOST], p: [Row([0.0; MOST]); MOST] }
     }
 
     /// Starts over with no feet.
@@ -85,10 +90,10 @@ impl Joint {
         self.states += STATES;
         self.x[at..at + STATES].copy_from_slice(&foot.state);
         for row in 0..STATES {
-            self.p[at + row][at..at + STATES].copy_from_slice(&foot.covariance[row]);
+            self.p[at + row].0[at..at + STATES].copy_from_slice(&foot.covariance[row]);
             for other in 0..at {
-                self.p[at + row][other] = 0.0;
-                self.p[other][at + row] = 0.0;
+                self.p[at + row].0[other] = 0.0;
+                self.p[other].0[at + row] = 0.0;
             }
         }
     }
@@ -97,8 +102,8 @@ impl Joint {
     pub(super) fn link(&mut self, first: usize, second: usize, cross: &[[f64; STATES]; STATES]) {
         for (row, values) in cross.iter().enumerate() {
             for (column, &value) in values.iter().enumerate() {
-                self.p[first * STATES + row][second * STATES + column] = value;
-                self.p[second * STATES + column][first * STATES + row] = value;
+                self.p[first * STATES + row].0[second * STATES + column] = value;
+                self.p[second * STATES + column].0[first * STATES + row] = value;
             }
         }
     }
@@ -106,7 +111,7 @@ impl Joint {
     /// The covariance between two feet that are in.
     pub(super) fn cross(&self, first: usize, second: usize) -> [[f64; STATES]; STATES] {
         std::array::from_fn(|row| {
-            std::array::from_fn(|column| self.p[first * STATES + row][second * STATES + column])
+            std::array::from_fn(|column| self.p[first * STATES + row].0[second * STATES + column])
         })
     }
 
@@ -116,7 +121,7 @@ impl Joint {
         foot.state.copy_from_slice(&self.x[at..at + STATES]);
         foot.has_lone_covariance = false;
         for row in 0..STATES {
-            foot.covariance[row].copy_from_slice(&self.p[at + row][at..at + STATES]);
+            foot.covariance[row].copy_from_slice(&self.p[at + row].0[at..at + STATES]);
         }
     }
 
@@ -128,14 +133,14 @@ impl Joint {
         self.x[value] += reach * self.x[rate];
         self.x[rate] *= decay;
         for column in 0..n {
-            self.p[value][column] += reach * self.p[rate][column];
-            self.p[rate][column] *= decay;
+            self.p[value].0[column] += reach * self.p[rate].0[column];
+            self.p[rate].0[column] *= decay;
         }
         for row in 0..n {
-            self.p[row][value] += reach * self.p[row][rate];
-            self.p[row][rate] *= decay;
+            self.p[row].0[value] += reach * self.p[row].0[rate];
+            self.p[row].0[rate] *= decay;
         }
-        self.p[rate][rate] += process_noise;
+        self.p[rate].0[rate] += process_noise;
     }
 
     /// Lets one state relax towards `rest`, keeping `fade` of its distance, stirred with variance `stir`.
@@ -143,12 +148,12 @@ impl Joint {
         let n = self.states;
         self.x[state] = rest + decay * (self.x[state] - rest);
         for column in 0..n {
-            self.p[state][column] *= decay;
+            self.p[state].0[column] *= decay;
         }
         for row in 0..n {
-            self.p[row][state] *= decay;
+            self.p[row].0[state] *= decay;
         }
-        self.p[state][state] += process_noise;
+        self.p[state].0[state] += process_noise;
     }
 
     /// Takes in one scalar observation: what is missing from its prediction, the slopes, its variance.
@@ -180,13 +185,13 @@ impl Joint {
         }
         let n = self.states;
         for state in 0..n {
-            if self.p[state][state] < LEAST_VARIANCE {
+            if self.p[state].0[state] < LEAST_VARIANCE {
                 // What rounding has left of it has nothing to do with the others any more.
                 for other in 0..n {
-                    self.p[state][other] = 0.0;
-                    self.p[other][state] = 0.0;
+                    self.p[state].0[other] = 0.0;
+                    self.p[other].0[state] = 0.0;
                 }
-                self.p[state][state] = LEAST_VARIANCE;
+                self.p[state].0[state] = LEAST_VARIANCE;
             }
         }
     }

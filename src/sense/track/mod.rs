@@ -87,6 +87,8 @@ pub(super) struct Tracker {
     empty_s: Vec<f64>,
     near: Near,
     mates: Groups,
+    /// Each foot and its number in `tracks`, the dormant ones behind, ordered by id.
+    by_id: Vec<(ContactId, u32)>,
 }
 
 const UNASSIGNED: u32 = u32::MAX;
@@ -124,9 +126,8 @@ impl Cells {
         let low = low.saturating_sub(first).max(IVec2::ZERO);
         let high = high.saturating_sub(first).min(IVec2::new(columns, rows) - 1);
         for row in low.y..high.y + 1 {
-            for column in low.x..high.x + 1 {
-                visit((row * columns + column) as u32);
-            }
+            let first = row * columns;
+            (first + low.x..first + high.x + 1).for_each(|index| visit(index as u32));
         }
     }
 
@@ -137,14 +138,19 @@ impl Cells {
 }
 
 /// Which of the cells of width `pitch` the place `along` is in, along one axis.
+#[inline]
 fn number_of(along: f64, pitch: f64) -> i32 {
+    // So large that a sum with it has no room for a fraction, and its last bits are those of the nearest whole number.
+    const WHOLE: f64 = 3.0 * (1_u64 << 51) as f64;
     let number = along / pitch;
     // The floor of it, as every processor can round: a call for each would cost more than all else here.
-    let towards_zero = number as i32;
-    towards_zero.saturating_sub(i32::from(f64::from(towards_zero) > number))
+    let sum = number + WHOLE;
+    let (nearest, is_above) = (sum.to_bits() as i32, sum - WHOLE > number);
+    nearest.wrapping_sub(i32::from(is_above))
 }
 
 /// The same, along both axes.
+#[inline]
 fn cell_of(place: DVec2, pitch: f64) -> IVec2 {
     IVec2::new(number_of(place.x, pitch), number_of(place.y, pitch))
 }
@@ -176,6 +182,7 @@ impl Tracker {
             pending: Vec::with_capacity(room),
             previous_owners: Vec::with_capacity(room),
             empty_s: Vec::with_capacity(room),
+            by_id: Vec::with_capacity(room),
         }
     }
 
@@ -215,10 +222,14 @@ impl Tracker {
     fn note_partners(&mut self, tiles: &LoadedTiles) {
         let near = &self.near;
         parallel::for_each(&mut self.tracks, |which, foot| {
-            if foot.age < LANDING_S {
-                foot.body_n = near.body_n_of_partner(which).unwrap_or(foot.body_n);
-            }
-            if near.has_partner(which) {
+            let has_partner = if foot.age < LANDING_S {
+                let body_n = near.body_n_of_partner(which);
+                foot.body_n = body_n.unwrap_or(foot.body_n);
+                body_n.is_some()
+            } else {
+                near.has_partner(which)
+            };
+            if has_partner {
                 foot.partner_s = 0.0;
                 foot.accompanied = true;
             }

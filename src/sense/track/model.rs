@@ -66,7 +66,9 @@ pub(super) fn observe(
             }
         }
     }
-    let mut strips = Strips::of(seen.iter().map(|&position| &list[position as usize]), cells.pitch);
+    let tiles = seen.iter().map(|&position| &list[position as usize]);
+    let mut strips = Strips::of(tiles.clone(), cells.pitch);
+    strips.add_noise(tiles);
     let (force, middle) = (strips.force, strips.middle);
     for foot in group {
         // Strips that a patch would reach but that carry nothing speak too.

@@ -36,6 +36,14 @@ struct Neighbour {
     body_n: f64,
 }
 
+impl Neighbour {
+    /// Whether it can be the partner of a foot from which its distance has this square.
+    #[inline]
+    fn is_partner_at(&self, square: f64) -> bool {
+        self.is_seen & (square < STRIDE_M * STRIDE_M)
+    }
+}
+
 impl Near {
     pub(super) fn new(cells: &Cells, room: usize) -> Self {
         let (corner, end) = cells.bounds();
@@ -136,29 +144,40 @@ impl Near {
     /// Whether any other foot is within a stride of foot `which`.
     pub(super) fn is_beside_any(&self, which: usize) -> bool {
         let place = self.tracks[which].place;
-        self.others(which).any(|other| self.tracks[other].place.distance(place) <= STRIDE_M)
+        self.is_any_other(which, |other| other.place.distance_squared(place) <= STRIDE_M * STRIDE_M)
     }
 
     /// Whether foot `which` has a partner: another one within a stride that has been down for long enough.
     pub(super) fn has_partner(&self, which: usize) -> bool {
-        self.others(which).any(|other| self.partner_distance(which, other).is_some())
+        let place = self.tracks[which].place;
+        self.is_any_other(which, |other| other.is_partner_at(other.place.distance_squared(place)))
     }
 
     /// From which force on the nearest partner of foot `which` bears its body, in newtons; `None` without one.
     pub(super) fn body_n_of_partner(&self, which: usize) -> Option<f64> {
-        let partners =
-            self.others(which).filter_map(|other| Some((self.partner_distance(which, other)?, other)));
-        partners.min_by(first_of_least).map(|(_, nearest)| self.tracks[nearest].body_n)
+        let place = self.tracks[which].place;
+        let all = self.others(which).map(|other| (self.tracks[other].place.distance_squared(place), other));
+        let partners = all.filter(|&(square, other)| self.tracks[other].is_partner_at(square));
+        let distances = partners.map(|(square, other)| (square.sqrt(), other));
+        distances.min_by(first_of_least).map(|(_, nearest)| self.tracks[nearest].body_n)
     }
 
-    /// How far `other` is from foot `which`, if it can be a partner.
+    /// Whether `is_it` is true of any other foot in the squares around foot `which`.
     #[inline]
-    fn partner_distance(&self, which: usize, other: usize) -> Option<f64> {
-        let Neighbour { place, is_seen, .. } = self.tracks[other];
-        if !is_seen {
-            return None;
+    fn is_any_other(&self, which: usize, is_it: impl Fn(&Neighbour) -> bool) -> bool {
+        let first = self.tracks[which].square as usize - self.row - 1;
+        for squares in [first, first + self.row, first + 2 * self.row] {
+            for &last in &self.last[squares..squares + 3] {
+                let mut next = last;
+                while let Some(other) = self.tracks.get(next as usize) {
+                    if (next != which as u32) & is_it(other) {
+                        return true;
+                    }
+                    next = other.before;
+                }
+            }
         }
-        Some(place.distance(self.tracks[which].place)).filter(|&distance| distance < STRIDE_M)
+        false
     }
 
     /// The square of a place; places beyond the floor belong to its outermost squares.

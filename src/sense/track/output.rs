@@ -6,6 +6,7 @@ use super::params::output::{
 };
 use glam::Vec2;
 
+use super::dormant::Dormant;
 use super::state::{EAST, NORTH, Track};
 use super::{Cells, Tracker};
 use crate::parallel;
@@ -17,34 +18,48 @@ use crate::sense::uncertainty::SensorUncertainty;
 use crate::units::Newtons;
 
 impl Tracker {
-    /// Fills `pool` with the feet as they are now.
+    /// Fills `pool` with the feet as they are now, ordered by id.
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
-        let list = tiles.list();
+        let feet = self.tracks.len();
+        let tracks = self.tracks.iter().map(|foot| foot.id);
+        self.by_id.clear();
+        self.by_id.extend(tracks.chain(self.dormant.iter().map(|dormant| dormant.foot.id)).zip(0..));
+        // A foot that has stood without weight is older than its place in the list.
+        self.by_id.sort_unstable();
+        let dormant = |which: u32| self.dormant.get((which as usize).checked_sub(feet)?);
+        let existing = |dormant: &Dormant| self.tracks.iter().find(|foot| foot.id == dormant.existing);
         pool.clear();
-        for foot in self.tracks.iter() {
-            pool.add(foot.id);
-        }
-        parallel::for_each(pool.contacts_mut(), |which, contact| {
-            self.tracks[which].describe(tiles, &self.cells, &self.uncertainty, contact);
+        let is_shown = |which: u32| dormant(which).is_none_or(|dormant| existing(dormant).is_some());
+        self.by_id.retain(|&(_, which)| is_shown(which));
+        self.by_id.iter().for_each(|&(id, _)| {
+            pool.add(id);
         });
-        for dormant in &self.dormant {
-            let Some(existing) = self.tracks.iter().find(|foot| foot.id == dormant.existing) else {
-                continue;
-            };
-            let contact = pool.add(dormant.foot.id);
-            contact.centroid = dormant.foot.centre().as_vec2();
-            contact.force = Newtons((REPORTED * existing.force()) as f32);
-            contact.velocity = Vec2::ZERO;
-            contact.ambiguous = true;
-            contact.covariance = Covariance::isotropic(PLACE_M as f32);
-            contact.tiles.extend(existing.tiles.iter().map(|&position| {
-                let tile = &list[position as usize];
-                let force = Newtons(tile.wrench.force * REPORTED as f32);
-                TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
-            }));
-            contact.finish();
-        }
-        pool.sort_by_id();
+        parallel::for_each(pool.contacts_mut(), |at, contact| {
+            let which = self.by_id[at].1;
+            if let Some(foot) = self.tracks.get(which as usize) {
+                foot.describe(tiles, &self.cells, &self.uncertainty, contact);
+            } else if let Some(dormant) = dormant(which)
+                && let Some(existing) = existing(dormant)
+            {
+                dormant.describe(existing, tiles.list(), contact);
+            }
+        });
+    }
+}
+
+impl Dormant {
+    /// Fills `contact`, which has nothing but its id yet; `existing` has the foot's weight.
+    fn describe(&self, existing: &Track, list: &[LoadedTile], contact: &mut Contact) {
+        contact.centroid = self.foot.centre().as_vec2();
+        contact.force = Newtons((REPORTED * existing.force()) as f32);
+        contact.velocity = Vec2::ZERO;
+        contact.ambiguous = true;
+        contact.covariance = Covariance::isotropic(PLACE_M as f32);
+        contact.tiles.extend(existing.tiles.iter().map(|&position| {
+            let tile = &list[position as usize];
+            TileLoad { force: Newtons(tile.wrench.force * REPORTED as f32), ..all_of(tile) }
+        }));
+        contact.finish();
     }
 }
 
@@ -108,12 +123,7 @@ impl Track {
         for &position in &self.tiles {
             let tile = &list[position as usize];
             let mut share = 1.0;
-            let mut load = TileLoad {
-                tile: tile.tile,
-                index: tile.index as usize,
-                force: Newtons(tile.wrench.force),
-                centroid: tile.centroid,
-            };
+            let mut load = all_of(tile);
             if self.shared {
                 share = self.divide(tile, cells, &mut load);
                 // What the others' loads are misread by is known in part, from when they stood alone.
@@ -130,8 +140,7 @@ impl Track {
             // Its patch has come to lie beside every tile that could carry it.
             contact.tiles.extend(self.tiles.first().map(|&position| {
                 let tile = &list[position as usize];
-                let force = Newtons(tile.wrench.force.min(contact.force.0));
-                TileLoad { tile: tile.tile, index: tile.index as usize, force, centroid: tile.centroid }
+                TileLoad { force: Newtons(tile.wrench.force.min(contact.force.0)), ..all_of(tile) }
             }));
         }
         covariance += Covariance::isotropic(strayed_m as f32);
@@ -153,5 +162,15 @@ impl Track {
         load.force = Newtons(force.min(tile.wrench.force));
         load.centroid = tile.centre + arm;
         (force / tile.wrench.force).min(1.0)
+    }
+}
+
+/// All that `tile` carries.
+fn all_of(tile: &LoadedTile) -> TileLoad {
+    TileLoad {
+        tile: tile.tile,
+        index: tile.index as usize,
+        force: Newtons(tile.wrench.force),
+        centroid: tile.centroid,
     }
 }

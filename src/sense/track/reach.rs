@@ -86,7 +86,11 @@ impl Track {
         if (known_low, known_high) != (low, high) && self.residual_weight() > KNOWN {
             (low, high) = (known_low, known_high);
         }
-        cells.visit(low, high, |index| self.tiles.extend(tiles.position(index)));
+        cells.visit(low, high, |index| {
+            if let Some(position) = tiles.position(index) {
+                self.tiles.push(position);
+            }
+        });
     }
 
     /// Notes between which columns and rows it has borne something where it was alone.

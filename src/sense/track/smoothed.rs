@@ -73,22 +73,30 @@ impl Track {
         }
     }
 
-    /// The slow load of the tile `index`, which is number `at` of its tiles: mostly that of its loads, too.
+    /// The slow load of the tile `index`, which is number `at` of its tiles, made if there is none.
     fn load_of(&mut self, at: usize, index: u32) -> &mut SmoothedLoad {
+        let known = self.position_of_load(at, index);
         let loads = &mut self.smoothed.loads;
-        let mut position = at;
-        if loads.get(at).is_none_or(|load| load.index != index) {
-            position = loads.iter().position(|load| load.index == index).unwrap_or_else(|| {
-                loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
-                loads.len() - 1
-            });
-        }
+        let position = known.unwrap_or_else(|| {
+            loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
+            loads.len() - 1
+        });
         &mut loads[position]
     }
 
-    /// The slow load of one tile, nothing if it had none.
-    pub(super) fn smoothed_load(&self, index: u32) -> SmoothedLoad {
-        self.smoothed.loads.iter().find(|load| load.index == index).copied().unwrap_or_default()
+    /// The slow load of the tile `index`, which is number `at` of its tiles; nothing if it had none.
+    pub(super) fn smoothed_load(&self, at: usize, index: u32) -> SmoothedLoad {
+        self.position_of_load(at, index).map(|position| self.smoothed.loads[position]).unwrap_or_default()
+    }
+
+    /// Where among the slow loads the one of tile `index` is: mostly where it is among the tiles.
+    #[inline]
+    fn position_of_load(&self, at: usize, index: u32) -> Option<usize> {
+        let loads = self.smoothed.loads.as_slice();
+        if loads.get(at).is_some_and(|load| load.index == index) {
+            return Some(at);
+        }
+        loads.iter().position(|load| load.index == index)
     }
 
     /// Goes back to where it was predicted: the difference belongs to another foot.

@@ -45,6 +45,14 @@ impl Axis {
         }
     }
 
+    /// The number of the column or row that `tile` is in.
+    fn number(self, tile: &LoadedTile) -> i32 {
+        match self {
+            Self::East => tile.tile.column.into(),
+            Self::North => tile.tile.row.into(),
+        }
+    }
+
     /// The component along the axis.
     pub(super) fn along(self, point: DVec2) -> f64 {
         match self {
@@ -156,34 +164,45 @@ pub(super) struct Strips {
 
 impl Strips {
     /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
+    #[inline]
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
         let Whole { force, middle } = Whole::of(tiles.clone());
         let mut sums = Self { strips: ArrayVec::new(), force, middle, pitch };
+        sums.add(tiles);
+        sums
+    }
+
+    fn add<'a>(&mut self, tiles: impl Iterator<Item = &'a LoadedTile>) {
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
-            let noise = tile.loaded_noise_n().powi(2);
-            let noise = [4.0 * noise, NOISE_ARM_M * NOISE_ARM_M * noise];
             for axis in Axis::BOTH {
-                let number = match axis {
-                    Axis::East => i32::from(tile.tile.column),
-                    Axis::North => i32::from(tile.tile.row),
-                };
-                let middle = (f64::from(number) + 0.5) * pitch;
-                let cross = axis.across(sums.middle);
-                if let Some(strip) = sums.strip(axis, number) {
+                let number = axis.number(tile);
+                let middle = (f64::from(number) + 0.5) * self.pitch;
+                let cross = axis.across(self.middle);
+                if let Some(strip) = self.strip(axis, number) {
                     strip.force += force;
-                    let offset = axis.across(tile.centre.as_dvec2()) - cross;
-                    let [own, arm] = noise;
-                    strip.noise[0] += own;
-                    strip.noise[1] += arm;
-                    strip.noise[2] += own * offset * offset + arm;
                     strip.moment += force * (axis.along(at) - middle);
                     strip.cross += force * (axis.across(at) - cross);
                 }
             }
         }
-        sums
+    }
+
+    /// Adds the variances that the noise of `tiles`' sensors gives each strip.
+    pub(super) fn add_noise<'a>(&mut self, tiles: impl Iterator<Item = &'a LoadedTile>) {
+        for tile in tiles {
+            let noise = tile.loaded_noise_n().powi(2);
+            let [own, arm] = [4.0 * noise, NOISE_ARM_M * NOISE_ARM_M * noise];
+            for axis in Axis::BOTH {
+                let offset = axis.across(tile.centre.as_dvec2()) - axis.across(self.middle);
+                if let Some(strip) = self.strip(axis, axis.number(tile)) {
+                    strip.noise[0] += own;
+                    strip.noise[1] += arm;
+                    strip.noise[2] += own * offset * offset + arm;
+                }
+            }
+        }
     }
 
     /// Variance that sensors' noise gives the force of all and its moments about their middle.
