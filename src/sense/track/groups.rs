@@ -11,7 +11,7 @@ use super::model::{observe, predict};
 use super::params::tracker::{FIRST_STEP_M, MOST_MORE_N, MOST_SHARE, THROWN_M};
 use super::state::{EAST, NORTH, STATES, Track};
 use super::strips::{Strips, centroid_sigma};
-use super::{Cells, Tracker, UNASSIGNED, touchdown};
+use super::{Cells, Tracker, touchdown};
 use crate::parallel;
 use crate::sense::contact::ContactId;
 use crate::sense::loaded::LoadedTiles;
@@ -48,22 +48,16 @@ impl Tracker {
         for estimator in &mut self.estimators {
             estimator.links.clear();
         }
-        self.group_numbers.clear();
-        let mut count = 0;
-        self.group_numbers.extend(self.tracks.iter().map(|foot| {
-            if !foot.crowded {
-                return UNASSIGNED;
-            }
-            count += 1;
-            count - 1
-        }));
+        let count = self.number_groups();
         let feet = self.tracks.len();
         for first in (0..count).step_by(MOST_GROUPS) {
             let mut groups = ArrayVec::<Group<'_>, MOST_GROUPS>::new();
             groups.extend((first..count).take(MOST_GROUPS).map(|_| Group::new()));
-            for foot in self.tracks.iter_mut() {
-                let number = self.group_numbers[foot.group as usize].wrapping_sub(first);
-                let Some(group) = groups.get_mut(number as usize) else { continue };
+            let (mut tracks, mut passed) = (self.tracks.iter_mut(), 0);
+            for (&which, number) in self.members.iter().zip(&self.group_numbers) {
+                let Some(foot) = tracks.nth((which - passed) as usize) else { break };
+                passed = which + 1;
+                let Some(group) = groups.get_mut(number.wrapping_sub(first) as usize) else { continue };
                 if let Err(full) = group.try_push(foot) {
                     // More feet than one filter holds: the rest go on as predicted, as guesses.
                     full.element().join(true);
@@ -85,6 +79,20 @@ impl Tracker {
         for (estimator, links) in self.estimators.iter_mut().zip(&mut self.links) {
             std::mem::swap(&mut estimator.links, links);
         }
+    }
+
+    /// Numbers the groups of several in the order of their first members; gives how many there are.
+    fn number_groups(&mut self) -> u32 {
+        let mut count = 0;
+        self.group_numbers.clear();
+        for &which in &self.members {
+            let first = self.tracks[which as usize].group;
+            let known = if first == which { None } else { self.members.binary_search(&first).ok() };
+            let number = known.map_or(count, |at| self.group_numbers[at]);
+            count = count.max(number + 1);
+            self.group_numbers.push(number);
+        }
+        count
     }
 }
 

@@ -36,39 +36,48 @@ pub(super) type Derivative = (usize, f64);
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
 fn take_in(joint: &mut Joint, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
     // Two or three feet are what is estimated nearly always, and loops of a known length need no count.
-    match joint.states {
-        TWO => update(joint, TWO, innovation, jacobian, variance),
-        THREE => update(joint, THREE, innovation, jacobian, variance),
-        states => update(joint, states, innovation, jacobian, variance),
+    match joint.states / STATES {
+        2 => update(joint, 2, innovation, jacobian, variance),
+        3 => update(joint, 3, innovation, jacobian, variance),
+        feet => update(joint, feet, innovation, jacobian, variance),
     }
 }
 
-const TWO: usize = 2 * STATES;
-const THREE: usize = 3 * STATES;
-
 #[inline(always)]
-fn update(joint: &mut Joint, n: usize, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
-    let mut gain = [0.0; MOST];
+fn update(joint: &mut Joint, feet: usize, innovation: f64, jacobian: &[Derivative], variance: f64) -> f64 {
+    // The numbers of one foot are one vector of the widest kind.
+    let mut gain = [[0.0; STATES]; MOST_FEET];
+    let gain = &mut gain[..feet];
     for &(state, derivative) in jacobian {
-        let row = &joint.p[state].0;
-        for (gain, p) in gain[..n].iter_mut().zip(&row[..n]) {
-            *gain += derivative * p;
+        let row = &joint.p[state].0.as_chunks().0[..feet];
+        for (gain, p) in gain.iter_mut().zip(row) {
+            add_scaled(gain, derivative, p);
         }
     }
-    let explained: f64 = jacobian.iter().map(|&(state, derivative)| derivative * gain[state]).sum();
+    let of = |state: usize| gain[state / STATES][state % STATES];
+    let explained: f64 = jacobian.iter().map(|&(state, derivative)| derivative * of(state)).sum();
     let total = explained + variance;
     if total.is_nan() || total <= 0.0 {
         return 0.0;
     }
     let scale = 1.0 / total;
-    for row in 0..n {
-        let step = gain[row] * scale;
+    for row in 0..feet * STATES {
+        let step = of(row) * scale;
         joint.x[row] += step * innovation;
-        for (p, gain) in joint.p[row].0[..n].iter_mut().zip(&gain[..n]) {
-            *p -= step * gain;
+        let row = &mut joint.p[row].0.as_chunks_mut().0[..feet];
+        for (p, gain) in row.iter_mut().zip(&*gain) {
+            add_scaled(p, -step, gain);
         }
     }
     innovation * innovation * scale
+}
+
+/// Adds `factor` times `other` to `sum`.
+#[inline(always)]
+fn add_scaled(sum: &mut [f64; STATES], factor: f64, other: &[f64; STATES]) {
+    for (sum, other) in sum.iter_mut().zip(other) {
+        *sum += factor * other;
+    }
 }
 
 impl Joint {

@@ -73,12 +73,14 @@ pub(super) struct Tracker {
     estimators: Vec<GroupEstimator>,
     /// Covariances between feet after the last frame, one list per estimator.
     links: Vec<Vec<Link>>,
-    /// Per track, the number of the group that it is the first member of, among groups of several.
+    /// Per foot that shares tiles, the number of its group among those of several.
     group_numbers: Vec<u32>,
     /// Per loaded tile: the first foot that reaches it, or `UNASSIGNED`.
     owner: Vec<u32>,
     /// Feet with a tile that another one reaches first, each with that one.
     sharing: Vec<(u32, u32)>,
+    /// All feet that share tiles, in their order.
+    members: Vec<u32>,
     unassigned: Vec<u32>,
     pending: Vec<associate::Pending>,
     /// Orphans, each with a foot that had it in the last frame.
@@ -123,8 +125,8 @@ impl Cells {
         let TileBlock { first, columns, rows } = self.block;
         let first = IVec2::new(first.column.into(), first.row.into());
         let (columns, rows) = (i32::from(columns), i32::from(rows));
-        let low = low.saturating_sub(first).max(IVec2::ZERO);
-        let high = high.saturating_sub(first).min(IVec2::new(columns, rows) - 1);
+        let low = low.wrapping_sub(first).max(IVec2::ZERO);
+        let high = high.wrapping_sub(first).min(IVec2::new(columns, rows) - 1);
         for row in low.y..high.y + 1 {
             let first = row * columns;
             (first + low.x..first + high.x + 1).for_each(|index| visit(index as u32));
@@ -178,6 +180,7 @@ impl Tracker {
             group_numbers: Vec::with_capacity(room),
             owner: Vec::with_capacity(room),
             sharing: Vec::with_capacity(room),
+            members: Vec::with_capacity(room),
             unassigned: Vec::with_capacity(room),
             pending: Vec::with_capacity(room),
             previous_owners: Vec::with_capacity(room),
@@ -268,7 +271,9 @@ impl Tracker {
             }
         }
         self.mates.part(self.tracks.len());
+        self.members.clear();
         for &(foot, owner) in &self.sharing {
+            self.members.extend([foot, owner]);
             let (mine, theirs) = (self.tracks[foot as usize].group, self.tracks[owner as usize].group);
             if mine != theirs {
                 let (keep, drop) = (mine.min(theirs), mine.max(theirs));
@@ -276,12 +281,14 @@ impl Tracker {
                     self.tracks[mate].group = keep;
                 }
                 self.mates.unite(keep, drop);
-                self.tracks[keep as usize].crowded = true;
             }
         }
-        if !self.sharing.is_empty() {
-            self.renew_groups(self.tracks.len());
+        self.members.sort_unstable();
+        self.members.dedup();
+        for &which in &self.members {
+            self.tracks[which as usize].crowded = true;
         }
+        self.mates.order(self.members.iter().map(|&which| (which, self.tracks[which as usize].group)));
     }
 
     /// Takes down who belongs to which group; groups are numbered below `groups`.
@@ -291,8 +298,8 @@ impl Tracker {
 
     /// Measures feet that are alone on their tiles, estimates those that are not.
     fn estimate(&mut self, tiles: &LoadedTiles, elapsed: &Elapsed) {
-        parallel::for_each(&mut self.tracks, |which, foot| {
-            if foot.group == which as u32 && !foot.crowded {
+        parallel::for_each(&mut self.tracks, |_, foot| {
+            if !foot.crowded {
                 foot.measure(tiles.list(), elapsed);
             }
         });

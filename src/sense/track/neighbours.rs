@@ -183,7 +183,7 @@ impl Near {
     /// The square of a place; places beyond the floor belong to its outermost squares.
     fn square(&self, place: DVec2) -> usize {
         let at = ((place - self.corner) / STRIDE_M).clamp(DVec2::ZERO, self.last_square);
-        (at.y as usize + 1) * self.row + at.x as usize + 1
+        (at.y as i32 as usize + 1) * self.row + at.x as i32 as usize + 1
     }
 }
 
@@ -247,17 +247,31 @@ impl Groups {
         self.ends.resize(groups, (UNASSIGNED, UNASSIGNED));
         self.next.clear();
         for (which, group) in (0..).zip(of_feet) {
-            let (first, last) = &mut self.ends[group as usize];
-            match self.next.get_mut(*last as usize) {
-                Some(next) => *next = which,
-                None => *first = which,
-            }
-            *last = which;
             self.next.push(UNASSIGNED);
+            self.append(which, group);
         }
     }
 
-    /// Lets the members of the group `drop` follow those of the group `keep`: in no order until the next `renew`.
+    /// Brings groups that were united into the order of their `members`, of which each is given with its group.
+    pub(super) fn order(&mut self, members: impl Iterator<Item = (u32, u32)> + Clone) {
+        for (which, group) in members.clone() {
+            self.ends[group as usize] = (UNASSIGNED, UNASSIGNED);
+            self.next[which as usize] = UNASSIGNED;
+        }
+        members.for_each(|(which, group)| self.append(which, group));
+    }
+
+    /// Lets foot `which` follow the members of a group.
+    fn append(&mut self, which: u32, group: u32) {
+        let (first, last) = &mut self.ends[group as usize];
+        match self.next.get_mut(*last as usize) {
+            Some(next) => *next = which,
+            None => *first = which,
+        }
+        *last = which;
+    }
+
+    /// Lets the members of the group `drop` follow those of the group `keep`: in no order until the next `order`.
     pub(super) fn unite(&mut self, keep: u32, drop: u32) {
         let (first, last) = std::mem::replace(&mut self.ends[drop as usize], (UNASSIGNED, UNASSIGNED));
         let end = &mut self.ends[keep as usize].1;
@@ -327,6 +341,8 @@ mod tests {
         all.sort_unstable();
         assert_eq!(all, [0, 1, 2, 3]);
         assert_eq!((mates.of(1).count(), mates.of(4).count(), mates.of(99).count()), (0, 1, 0));
+        mates.order((0..4).map(|which| (which, 0)));
+        assert_eq!(mates.of(0).collect::<Vec<_>>(), [0, 1, 2, 3]);
         // Two feet are gone since.
         mates.renew([0, 0, 4, 0].into_iter(), 6);
         assert_eq!(mates.of(0).collect::<Vec<_>>(), [0, 1, 3]);

@@ -21,11 +21,11 @@ impl Tracker {
     /// Fills `pool` with the feet as they are now, ordered by id.
     pub(super) fn describe(&mut self, tiles: &LoadedTiles, pool: &mut ContactPool) {
         let feet = self.tracks.len();
-        let tracks = self.tracks.iter().map(|foot| foot.id);
         self.by_id.clear();
-        self.by_id.extend(tracks.chain(self.dormant.iter().map(|dormant| dormant.foot.id)).zip(0..));
-        // A foot that has stood without weight is older than its place in the list.
-        self.by_id.sort_unstable();
+        self.by_id.extend(self.tracks.iter().map(|foot| (foot.id, 0)));
+        self.by_id.extend(self.dormant.iter().map(|dormant| (dormant.foot.id, 0)));
+        self.by_id.iter_mut().zip(0..).for_each(|(entry, which)| entry.1 = which);
+        sort_few(&mut self.by_id);
         let dormant = |which: u32| self.dormant.get((which as usize).checked_sub(feet)?);
         let existing = |dormant: &Dormant| self.tracks.iter().find(|foot| foot.id == dormant.existing);
         pool.clear();
@@ -155,6 +155,7 @@ impl Track {
     }
 
     /// Leaves of `load`, all that `tile` carries, what this foot presses; gives its share.
+    #[cold]
     fn divide(&self, tile: &LoadedTile, cells: &Cells, load: &mut TileLoad) -> f32 {
         let on = self.on(cells.of(tile));
         let force = (self.force() * on.share()) as f32;
@@ -172,5 +173,15 @@ fn all_of(tile: &LoadedTile) -> TileLoad {
         index: tile.index as usize,
         force: Newtons(tile.wrench.force),
         centroid: tile.centroid,
+    }
+}
+
+/// Sorts what is in order but for a few: feet that have stood without weight are older than their place in the list says.
+fn sort_few<T: Ord>(list: &mut [T]) {
+    for at in 1..list.len() {
+        if list[at] < list[at - 1] {
+            let to = list[..at].partition_point(|before| *before < list[at]);
+            list[to..=at].rotate_right(1);
+        }
     }
 }

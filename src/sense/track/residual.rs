@@ -5,7 +5,7 @@ use super::number_of;
 use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
-use super::strips::{Axis, Residual, Strips};
+use super::strips::{Axis, Residual, Strips, Whole};
 use crate::sense::tile::LoadedTile;
 
 impl Track {
@@ -56,7 +56,9 @@ impl Track {
     /// The same, with what the time since it was last done makes of what was known.
     fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, fade: &ShapeFade) {
         let (centre, half) = (self.centre(), self.half());
-        let mut strips = Strips::of(self.tiles.iter().map(|&position| &list[position as usize]), pitch);
+        let tiles = self.tiles.iter().map(|&position| &list[position as usize]);
+        let mut strips = Strips::about(&Whole::of(tiles.clone()), pitch);
+        strips.add(tiles);
         for axis in Axis::BOTH {
             let (c, h) = (axis.along(centre), axis.along(half));
             for number in number_of(c - h, pitch)..=number_of(c + h, pitch) {

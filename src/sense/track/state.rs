@@ -56,7 +56,7 @@ pub(super) struct Track {
     pub group: u32,
     /// Which estimator has its links to others, if it has any, and where they begin in its list.
     pub links_from: (usize, usize),
-    /// Whether this foot is the first of a group of several.
+    /// Whether it is one of a group of several.
     pub crowded: bool,
     /// Whether it is one more than the joint filter holds.
     pub beyond_filter: bool,

@@ -164,15 +164,21 @@ pub(super) struct Strips {
 
 impl Strips {
     /// Sums up `tiles`; what is beyond [`MOST_STRIPS`] is in `force` and `middle` only.
-    #[inline]
     pub(super) fn of<'a>(tiles: impl Iterator<Item = &'a LoadedTile> + Clone, pitch: f64) -> Self {
-        let Whole { force, middle } = Whole::of(tiles.clone());
-        let mut sums = Self { strips: ArrayVec::new(), force, middle, pitch };
+        let mut sums = Self::about(&Whole::of(tiles.clone()), pitch);
         sums.add(tiles);
         sums
     }
 
-    fn add<'a>(&mut self, tiles: impl Iterator<Item = &'a LoadedTile>) {
+    /// No strips yet, of tiles that carry `whole` together. What is added in place need not be copied.
+    #[inline]
+    pub(super) fn about(whole: &Whole, pitch: f64) -> Self {
+        Self { strips: ArrayVec::new(), force: whole.force, middle: whole.middle, pitch }
+    }
+
+    /// Adds the loads of `tiles`.
+    #[inline]
+    pub(super) fn add<'a>(&mut self, tiles: impl Iterator<Item = &'a LoadedTile>) {
         for tile in tiles {
             let force = f64::from(tile.wrench.force);
             let at = tile.centroid.as_dvec2();
