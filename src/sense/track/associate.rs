@@ -3,6 +3,7 @@
 use super::params::associate::{ASTRIDE_M, NOISE_ARM_M, PENDING_S};
 use super::params::state::LANDS_S;
 use glam::DVec2;
+use std::cmp::Reverse;
 
 use super::elapsed::Elapsed;
 use super::state::{EAST, FORCE, NORTH, Track};
@@ -22,6 +23,14 @@ pub(super) struct Pending {
     seen: bool,
 }
 
+/// A track that had an unassigned tile in the last frame.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PreviousOwner {
+    track: u32,
+    /// Which of these was found before it for the same tile, or `UNASSIGNED`.
+    before: u32,
+}
+
 impl Tracker {
     /// Finds which track reaches which tile, gives tiles out of reach to the nearest track that
     /// may have grown onto them, and lets new feet land on the rest.
@@ -35,18 +44,19 @@ impl Tracker {
             }
         }
         self.unassigned.clear();
-        self.unassigned
-            .extend((0..list.len() as u32).filter(|&position| self.owner[position as usize] == UNASSIGNED));
-        self.unassigned.sort_unstable_by(|&a, &b| {
-            let force = |position: u32| list[position as usize].wrench.force;
-            force(b).total_cmp(&force(a)).then(a.cmp(&b))
-        });
+        for (position, (tile, &owner)) in (0..).zip(list.iter().zip(&self.owner)) {
+            if owner == UNASSIGNED {
+                // Positive numbers are ordered as their bits.
+                self.unassigned.push((Reverse(tile.wrench.force.to_bits()), position));
+            }
+        }
+        self.unassigned.sort_unstable();
         self.find_previous_owners(tiles);
         for pending in &mut self.pending {
             pending.seen = false;
         }
         for which_tile in 0..self.unassigned.len() {
-            let position = self.unassigned[which_tile];
+            let position = self.unassigned[which_tile].1;
             let tile = &list[position as usize];
             let centroid = tile.centroid.as_dvec2();
             let force = f64::from(tile.wrench.force);
@@ -54,11 +64,11 @@ impl Tracker {
                 foot.beyond(centroid).min(foot.lands_about(centroid)).min(foot.rims(centroid, force))
             };
             // What was loaded already is no newcomer: it stays with the nearest of those who had it.
-            let from = self.previous_owners.partition_point(|&(kept, _)| kept < position);
-            let previous_owners =
-                self.previous_owners[from..].iter().take_while(|&&(kept, _)| kept == position);
-            let away_s = previous_owners.map(|&(_, which)| {
-                let which = which as usize;
+            let known = |which: u32| self.previous_owners.get(which as usize);
+            let last = known(self.last_previous_owner[position as usize]);
+            let previous_owners = std::iter::successors(last, |owner| known(owner.before));
+            let away_s = previous_owners.map(|owner| {
+                let which = owner.track as usize;
                 (self.tracks[which].centre().distance(centroid), which)
             });
             let nearest = away_s.min_by(first_of_least).or_else(|| {
@@ -150,17 +160,18 @@ impl Tracker {
         if self.unassigned.is_empty() {
             return;
         }
-        // One bit for each remainder of an index tells nearly all other tiles apart without a look at the floor.
-        let bit = |index: u32| 1_u64 << (index % u64::BITS);
-        let list = tiles.list();
-        let bits = self.unassigned.iter().fold(0, |bits, &at| bits | bit(list[at as usize].index));
-        for (which, foot) in (0..).zip(self.tracks.iter()) {
-            let loads = foot.smoothed.loads.iter().filter(|load| bits & bit(load.index) != 0);
-            let had = loads.filter_map(|load| tiles.position(load.index));
-            let unassigned = had.filter(|&position| self.owner[position as usize] == UNASSIGNED);
-            self.previous_owners.extend(unassigned.map(|position| (position, which)));
+        self.last_previous_owner.clear();
+        self.last_previous_owner.resize(self.owner.len(), UNASSIGNED);
+        for (track, foot) in (0..).zip(self.tracks.iter()) {
+            for load in &foot.smoothed.loads {
+                let Some(position) = tiles.position(load.index) else { continue };
+                if self.owner[position as usize] == UNASSIGNED {
+                    let last = &mut self.last_previous_owner[position as usize];
+                    let before = std::mem::replace(last, self.previous_owners.len() as u32);
+                    self.previous_owners.push(PreviousOwner { track, before });
+                }
+            }
         }
-        self.previous_owners.sort_unstable();
     }
 
     /// The standing foot beside which one lands at `place`, if there is one.

@@ -63,6 +63,10 @@ fn update(joint: &mut Joint, feet: usize, innovation: f64, jacobian: &[Derivativ
     let scale = 1.0 / total;
     for row in 0..feet * STATES {
         let step = of(row) * scale;
+        // Never so; but a loop that may end is not vectorised across the rows, which gathers each number by itself.
+        if step.is_nan() {
+            return 0.0;
+        }
         joint.x[row] += step * innovation;
         let row = &mut joint.p[row].0.as_chunks_mut().0[..feet];
         for (p, gain) in row.iter_mut().zip(&*gain) {

@@ -46,6 +46,7 @@ mod tracks;
 
 use self::params::tracker::LANDING_S;
 use glam::{DVec2, IVec2};
+use std::cmp::Reverse;
 
 use self::elapsed::Elapsed;
 use self::groups::{BATCHES, GroupEstimator, Link};
@@ -81,10 +82,12 @@ pub(super) struct Tracker {
     sharing: Vec<(u32, u32)>,
     /// All feet that share tiles, in their order.
     members: Vec<u32>,
-    unassigned: Vec<u32>,
+    /// Loaded tiles out of reach of all feet, heaviest first: the bits of the force, and the position in the list.
+    unassigned: Vec<(Reverse<u32>, u32)>,
     pending: Vec<associate::Pending>,
-    /// Orphans, each with a foot that had it in the last frame.
-    previous_owners: Vec<(u32, u32)>,
+    /// Who had the unassigned tiles in the last frame, and per loaded tile the one of them that was found last.
+    previous_owners: Vec<associate::PreviousOwner>,
+    last_previous_owner: Vec<u32>,
     /// Per foot, for how long its place has been empty.
     empty_s: Vec<f64>,
     near: Near,
@@ -184,6 +187,7 @@ impl Tracker {
             unassigned: Vec::with_capacity(room),
             pending: Vec::with_capacity(room),
             previous_owners: Vec::with_capacity(room),
+            last_previous_owner: Vec::with_capacity(room),
             empty_s: Vec::with_capacity(room),
             by_id: Vec::with_capacity(room),
         }

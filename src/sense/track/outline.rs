@@ -39,92 +39,90 @@ fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-#[inline(always)]
-fn projections(point: DVec2) -> [f64; DIRECTIONS] {
-    std::array::from_fn(|which| FAN_X[which] * point.x + FAN_Y[which] * point.y)
+/// Unit vectors at 0, 15, ... 165 degrees.
+struct Fan {
+    x: [f64; DIRECTIONS],
+    y: [f64; DIRECTIONS],
 }
 
-/// Unit vectors at 0, 15, ... 165 degrees.
-const FAN_X: [f64; DIRECTIONS] = [
-    1.0,
-    0.965_925_826_289_068_3,
-    0.866_025_403_784_438_6,
-    FRAC_1_SQRT_2,
-    0.5,
-    0.258_819_045_102_520_74,
-    0.0,
-    -0.258_819_045_102_520_63,
-    -0.5,
-    -FRAC_1_SQRT_2,
-    -0.866_025_403_784_438_7,
-    -0.965_925_826_289_068_2,
-];
-const FAN_Y: [f64; DIRECTIONS] = [
-    0.0,
-    0.258_819_045_102_520_74,
-    0.5,
-    FRAC_1_SQRT_2,
-    0.866_025_403_784_438_6,
-    0.965_925_826_289_068_3,
-    1.0,
-    0.965_925_826_289_068_3,
-    0.866_025_403_784_438_7,
-    FRAC_1_SQRT_2,
-    0.5,
-    0.258_819_045_102_521,
-];
+static FAN: Fan = Fan {
+    x: [
+        1.0,
+        0.965_925_826_289_068_3,
+        0.866_025_403_784_438_6,
+        FRAC_1_SQRT_2,
+        0.5,
+        0.258_819_045_102_520_74,
+        0.0,
+        -0.258_819_045_102_520_63,
+        -0.5,
+        -FRAC_1_SQRT_2,
+        -0.866_025_403_784_438_7,
+        -0.965_925_826_289_068_2,
+    ],
+    y: [
+        0.0,
+        0.258_819_045_102_520_74,
+        0.5,
+        FRAC_1_SQRT_2,
+        0.866_025_403_784_438_6,
+        0.965_925_826_289_068_3,
+        1.0,
+        0.965_925_826_289_068_3,
+        0.866_025_403_784_438_7,
+        FRAC_1_SQRT_2,
+        0.5,
+        0.258_819_045_102_521,
+    ],
+};
+
+impl Fan {
+    #[inline(always)]
+    fn projections(&self, point: DVec2) -> [f64; DIRECTIONS] {
+        std::array::from_fn(|which| self.x[which] * point.x + self.y[which] * point.y)
+    }
+}
 
 /// [`Outline::renew`], compiled for what the processor offers, with the same bits.
+///
+/// The fan is handed over: among numbers that it knows, the compiler spares single products and spoils the vectors.
 #[multiversion(targets("x86_64+avx512f+avx512vl", "x86_64+avx2", "aarch64+neon"))]
-fn renew(outline: &mut Outline, centre: DVec2, others: &[DVec2], keep: f64) {
-    let mut now = Outline::new(centre);
-    others.iter().for_each(|&point| now.add(point));
-    outline.relax(&now, keep);
-    outline.unite(&now);
+fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep: f64) {
+    let at = fan.projections(centre);
+    let (mut low, mut high) = (at, at);
+    for &point in others {
+        let at = fan.projections(point);
+        for which in 0..DIRECTIONS {
+            low[which] = lesser(low[which], at[which]);
+            high[which] = greater(high[which], at[which]);
+        }
+    }
+    for which in 0..DIRECTIONS {
+        let kept = low[which] + keep * (outline.low[which] - low[which]);
+        outline.low[which] = lesser(kept, low[which]);
+    }
+    for which in 0..DIRECTIONS {
+        let kept = high[which] + keep * (outline.high[which] - high[which]);
+        outline.high[which] = greater(kept, high[which]);
+    }
 }
 
 impl Outline {
     /// A foot that has pressed `point` only.
-    #[inline(always)]
     pub(super) fn new(point: DVec2) -> Self {
-        let at = projections(point);
+        let at = FAN.projections(point);
         Self { low: at, high: at }
     }
 
-    /// Takes in that `centre` and `others` are pressed now, keeping `keep` of what was known.
+    /// Takes in that a foot with its centre of pressure at `centre` presses `others` now: the extents are drawn towards
+    /// those of all these points, keeping `keep` of their distance, and hold them.
     pub(super) fn renew(&mut self, centre: DVec2, others: &[DVec2], keep: f64) {
-        renew(self, centre, others, keep);
-    }
-
-    /// Adds a pressed point.
-    #[inline(always)]
-    fn add(&mut self, point: DVec2) {
-        self.unite(&Self::new(point));
-    }
-
-    /// Adds all points of `other`.
-    #[inline(always)]
-    fn unite(&mut self, other: &Self) {
-        for (low, &other) in self.low.iter_mut().zip(&other.low) {
-            *low = lesser(*low, other);
-        }
-        for (high, &other) in self.high.iter_mut().zip(&other.high) {
-            *high = greater(*high, other);
-        }
-    }
-
-    /// Draws the extents towards those of `now`, keeping `keep` of their distance.
-    #[inline(always)]
-    fn relax(&mut self, now: &Self, keep: f64) {
-        for which in 0..DIRECTIONS {
-            self.low[which] = now.low[which] + keep * (self.low[which] - now.low[which]);
-            self.high[which] = now.high[which] + keep * (self.high[which] - now.high[which]);
-        }
+        renew(self, &FAN, centre, others, keep);
     }
 
     /// How far `point` is beyond what `shoe` covers besides all points so far, in metres; negative within.
     pub(super) fn beyond(&self, point: DVec2, shoe: Shoe) -> f64 {
-        let at = projections(point);
+        let at = FAN.projections(point);
         let extent = |which: usize| greater(self.high[which], at[which]) - lesser(self.low[which], at[which]);
         (0..DIRECTIONS)
             .map(|along| {
@@ -154,7 +152,7 @@ mod tests {
     #[test]
     fn a_foot_that_has_rolled_covers_nothing_far_beside_its_line() {
         let mut foot = Outline::new(DVec2::ZERO);
-        foot.add(DVec2::new(0.0, 0.2));
+        foot.renew(DVec2::new(0.0, 0.1), &[DVec2::new(0.0, 0.2)], 1.0);
         assert!(foot.beyond(DVec2::new(0.05, 0.1), SHOE) < 0.0, "the ball beside the strip");
         assert!(foot.beyond(DVec2::new(0.18, 0.1), SHOE) > 0.02, "the other foot");
         assert!(foot.beyond(DVec2::new(0.0, 0.31), SHOE) < 0.0, "the toes");
@@ -164,8 +162,7 @@ mod tests {
     #[test]
     fn what_was_pressed_long_ago_is_forgotten() {
         let mut foot = Outline::new(DVec2::ZERO);
-        foot.add(DVec2::new(0.3, 0.0));
-        foot.relax(&Outline::new(DVec2::new(0.3, 0.0)), 0.1);
+        foot.renew(DVec2::new(0.3, 0.0), &[], 0.1);
         assert!(foot.beyond(DVec2::new(0.55, 0.0), SHOE) < 0.0);
     }
 }
