@@ -48,11 +48,12 @@ fn update(joint: &mut Joint, feet: usize, innovation: f64, jacobian: &[Derivativ
     // The numbers of one foot are one vector of the widest kind.
     let mut gain = [[0.0; STATES]; MOST_FEET];
     let gain = &mut gain[..feet];
-    for &(state, derivative) in jacobian {
-        let row = &joint.p[state].0.as_chunks().0[..feet];
-        for (gain, p) in gain.iter_mut().zip(row) {
-            add_scaled(gain, derivative, p);
+    for (foot, gain) in gain.iter_mut().enumerate() {
+        let mut sum = [0.0; STATES];
+        for &(state, derivative) in jacobian {
+            add_scaled(&mut sum, derivative, &joint.p[state].0.as_chunks().0[foot]);
         }
+        *gain = sum;
     }
     let of = |state: usize| gain[state / STATES][state % STATES];
     let explained: f64 = jacobian.iter().map(|&(state, derivative)| derivative * of(state)).sum();
