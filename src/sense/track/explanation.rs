@@ -144,11 +144,12 @@ impl Explanation {
         // A light contact far from all others is a foot that taps; a body stands on one foot or on two.
         let lone = !foot.accompanied && (foot.bears() || seen.force > foot.body_n);
         let prior = if lone { LONE } else { ACCOMPANIED };
-        let mut spread = Spread::default();
+        let tiles = foot.tiles.as_slice().iter().map(|&position| &list[position as usize]);
+        let (mut evidence, mut spread) = (prior, Spread::default());
         if seen.force > SPREAD_N && foot.tiles.len() > 1 {
-            spread = Spread::of(foot.tiles.iter().map(|&position| &list[position as usize]), seen.middle);
+            spread = Spread::of(tiles.clone(), seen.middle);
+            evidence += spread.evidence();
         }
-        let mut evidence = prior + spread.evidence();
         let mut shift = DVec2::ZERO;
         if foot.anchored_s > 0.0 && seen.force > foot.body_n && alone() {
             if foot.anchored_s > STANDS_S {
@@ -156,7 +157,6 @@ impl Explanation {
                     if foot.accompanied { (STOPPED, STOPPED_S) } else { (STANDING, STANDING_S) };
                 evidence += standing * ((foot.anchored_s - STANDS_S) / after_s).min(1.0);
                 shift = seen.middle - foot.anchor;
-                let tiles = foot.tiles.iter().map(|&position| &list[position as usize]);
                 let deviation = SWAY_M.hypot(0.5 * centroid_sigma(tiles, seen.force, pitch));
                 evidence += (0.5 * (shift.length() / deviation).powi(2)).min(MOST);
             } else {

@@ -120,10 +120,11 @@ impl Track {
             return;
         }
         // A sensor whose quality changes moves what its tile says without any foot.
-        let quality = self.tiles.iter().map(|&position| list[position as usize].quality).max();
+        let tiles = self.tiles.as_slice();
+        let quality = tiles.iter().map(|&position| list[position as usize].quality).max();
         if quality.is_some_and(|quality| quality != self.quality) {
             // A sensor that is lost or found goes over to what the others say little by little.
-            let lasts = self.tiles.iter().any(|&position| !list[position as usize].is_settled());
+            let lasts = tiles.iter().any(|&position| !list[position as usize].is_settled());
             self.on_quality_change(quality.unwrap_or_default(), lasts);
             return;
         }
@@ -138,11 +139,11 @@ impl Track {
 
     /// A foot whose load has been added to tiles where the track itself cannot have put it.
     fn added(&self, list: &[LoadedTile], cells: &Cells) -> Option<Candidate> {
-        let mut found = Candidate::default();
         if !self.bears() && self.velocity().length() > SLIDES_M_S {
             return None;
         }
-        for (at, &position) in self.tiles.iter().enumerate() {
+        let mut found: Option<Candidate> = None;
+        for (at, &position) in self.tiles.as_slice().iter().enumerate() {
             let tile = &list[position as usize];
             let force = f64::from(tile.wrench.force);
             let slow = self.smoothed_load(at, tile.index);
@@ -165,6 +166,7 @@ impl Track {
             // What the foot's own sway may look like, at its own centre of pressure.
             let sway = slow.force * 0.012 + 3.5 * NOISE_ARM_M * noise;
             if inside && about.length() > added * 0.08 + sway && self.beyond(place) > sway / added {
+                let found = found.get_or_insert_default();
                 found.place =
                     (found.place * found.force + place.clamp(low, high) * added) / (found.force + added);
                 found.force += added;
@@ -172,7 +174,7 @@ impl Track {
                 found.tiles.push(position);
             }
         }
-        (found.force > 0.0).then_some(found)
+        found
     }
 
     /// A second foot that its load tells of: where it would be. `alone` says whether no other foot is within a stride.
@@ -183,7 +185,7 @@ impl Track {
         pitch: f64,
         elapsed: &Elapsed,
     ) -> Option<Candidate> {
-        let seen = Whole::of(self.tiles.iter().map(|&position| &list[position as usize]));
+        let seen = Whole::of(self.tiles.as_slice().iter().map(|&position| &list[position as usize]));
         let mut explanation = self.explanation;
         let second = explanation.update(self, &seen, list, pitch, alone, elapsed);
         self.explanation = explanation;

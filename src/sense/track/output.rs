@@ -28,12 +28,14 @@ impl Tracker {
         sort_few(&mut self.by_id);
         let dormant = |which: u32| self.dormant.get((which as usize).checked_sub(feet)?);
         let existing = |dormant: &Dormant| self.tracks.iter().find(|foot| foot.id == dormant.existing);
+        if !self.dormant.is_empty() {
+            let is_shown = |which| dormant(which).is_none_or(|dormant| existing(dormant).is_some());
+            self.by_id.retain(|&(_, which)| is_shown(which));
+        }
         pool.clear();
-        let is_shown = |which: u32| dormant(which).is_none_or(|dormant| existing(dormant).is_some());
-        self.by_id.retain(|&(_, which)| is_shown(which));
-        self.by_id.iter().for_each(|&(id, _)| {
+        for &(id, _) in &self.by_id {
             pool.add(id);
-        });
+        }
         parallel::for_each(pool.contacts_mut(), |at, contact| {
             let which = self.by_id[at].1;
             if let Some(foot) = self.tracks.get(which as usize) {
@@ -99,7 +101,7 @@ impl Track {
         uncertainty: &SensorUncertainty,
         contact: &mut Contact,
     ) {
-        let list = tiles.list();
+        let (list, pressed) = (tiles.list(), self.tiles.as_slice());
         contact.centroid = self.centre().as_vec2();
         contact.force = Newtons(self.force() as f32);
         contact.velocity = self.velocity().as_vec2();
@@ -117,10 +119,10 @@ impl Track {
                 yy: (inflation * self.covariance[NORTH][NORTH]) as f32,
             };
         } else {
-            let left: f32 = self.tiles.iter().map(|&position| list[position as usize].left_n).sum();
+            let left: f32 = pressed.iter().map(|&position| list[position as usize].left_n).sum();
             contact.force = Newtons((contact.force.0 - left).max(LEAST_N));
         }
-        for &position in &self.tiles {
+        for &position in pressed {
             let tile = &list[position as usize];
             let mut share = 1.0;
             let mut load = all_of(tile);
@@ -138,7 +140,7 @@ impl Track {
         }
         if contact.tiles.is_empty() {
             // Its patch has come to lie beside every tile that could carry it.
-            contact.tiles.extend(self.tiles.first().map(|&position| {
+            contact.tiles.extend(pressed.first().map(|&position| {
                 let tile = &list[position as usize];
                 TileLoad { force: Newtons(tile.wrench.force.min(contact.force.0)), ..all_of(tile) }
             }));

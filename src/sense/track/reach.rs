@@ -36,16 +36,16 @@ impl Track {
         let centre = self.centre();
         let mut pressed: ArrayVec<DVec2, MOST_NOTED> = ArrayVec::new();
         if !self.shared {
-            for &position in &self.tiles {
+            let tiles = self.tiles.as_slice();
+            // On a single tile, it is the centre itself.
+            let several = if tiles.len() > 1 { tiles } else { &[] };
+            let least = NOTED * self.force();
+            for &position in several {
                 let tile = &list[position as usize];
-                let (force, point) = (f64::from(tile.wrench.force), tile.centroid.as_dvec2());
-                // On a single tile, it is the centre itself.
-                if point != centre
-                    && force > NOTED * self.force()
-                    && force > NOTED_PER_NOISE * tile.loaded_noise_n()
-                {
+                let force = f64::from(tile.wrench.force);
+                if force > least && force > NOTED_PER_NOISE * tile.loaded_noise_n() {
                     // Never full: that many shares are more than the whole.
-                    let _ = pressed.try_push(point);
+                    let _ = pressed.try_push(tile.centroid.as_dvec2());
                 }
             }
         } else if self.covariance[EAST][EAST] + self.covariance[NORTH][NORTH] > NOTED_M * NOTED_M {

@@ -56,7 +56,7 @@ impl Track {
     /// The same, with what the time since it was last done makes of what was known.
     fn learn_residuals(&mut self, list: &[LoadedTile], pitch: f64, fade: &ShapeFade) {
         let (centre, half) = (self.centre(), self.half());
-        let tiles = self.tiles.iter().map(|&position| &list[position as usize]);
+        let tiles = self.tiles.as_slice().iter().map(|&position| &list[position as usize]);
         let mut strips = Strips::about(&Whole::of(tiles.clone()), pitch);
         strips.add(tiles);
         for axis in Axis::BOTH {

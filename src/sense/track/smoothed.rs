@@ -5,6 +5,7 @@ use smallvec::SmallVec;
 
 use super::Cells;
 use super::elapsed::Elapsed;
+use super::patch::PatchOnTile;
 use super::state::{EAST, FORCE, NORTH, Track};
 use crate::sense::tile::LoadedTile;
 
@@ -50,53 +51,42 @@ impl Track {
 
     /// Lets the slow loads of its tiles learn from what it presses now, and drops those of other tiles.
     pub(super) fn learn_loads(&mut self, list: &[LoadedTile], cells: &Cells, elapsed: &Elapsed) {
+        let (whole, centre, half) = (self.force(), self.centre(), self.half());
+        let tiles = self.tiles.as_slice();
+        let loads = &mut self.smoothed.loads;
         // A foot that has just come to stand alone starts from what is measured.
-        let fresh = !self.shared && self.smoothed.loads.is_empty();
+        let fresh = !self.shared && loads.is_empty();
         let weight = if fresh && self.age > 0.0 { 1.0 } else { 1.0 - elapsed.smoothed };
-        for at in 0..self.tiles.len() {
-            let tile = &list[self.tiles[at] as usize];
+        for (at, &position) in tiles.iter().enumerate() {
+            let tile = &list[position as usize];
             let (force, moment) = if self.shared {
-                let on = self.on(cells.of(tile));
-                (on.share() * self.force(), on.moment() * self.force())
+                let (low, high) = cells.of(tile);
+                let on = PatchOnTile::new(low, high, centre, half);
+                (on.share() * whole, on.moment() * whole)
             } else {
                 let force = f64::from(tile.wrench.force);
                 (force, (tile.centroid - tile.centre).as_dvec2() * force)
             };
-            let load = self.load_of(at, tile.index);
+            let known = position_of(loads, at, tile.index);
+            if known.is_none() {
+                loads.push(SmoothedLoad { index: tile.index, ..SmoothedLoad::default() });
+            }
+            let number = known.unwrap_or(loads.len() - 1);
+            let load = &mut loads.as_mut_slice()[number];
             load.force += weight * (force - load.force);
             load.moment += weight * (moment - load.moment);
         }
-        if self.smoothed.loads.len() > self.tiles.len() {
-            let tiles = &self.tiles;
+        if loads.len() > tiles.len() {
             let is_pressed = |index: u32| tiles.iter().any(|&tile| list[tile as usize].index == index);
-            self.smoothed.loads.retain(|load| is_pressed(load.index));
+            loads.retain(|load| is_pressed(load.index));
         }
-    }
-
-    /// The slow load of the tile `index`, which is number `at` of its tiles, made if there is none.
-    fn load_of(&mut self, at: usize, index: u32) -> &mut SmoothedLoad {
-        let known = self.position_of_load(at, index);
-        let loads = &mut self.smoothed.loads;
-        let position = known.unwrap_or_else(|| {
-            loads.push(SmoothedLoad { index, ..SmoothedLoad::default() });
-            loads.len() - 1
-        });
-        &mut loads[position]
     }
 
     /// The slow load of the tile `index`, which is number `at` of its tiles; nothing if it had none.
-    pub(super) fn smoothed_load(&self, at: usize, index: u32) -> SmoothedLoad {
-        self.position_of_load(at, index).map(|position| self.smoothed.loads[position]).unwrap_or_default()
-    }
-
-    /// Where among the slow loads the one of tile `index` is: mostly where it is among the tiles.
     #[inline]
-    fn position_of_load(&self, at: usize, index: u32) -> Option<usize> {
+    pub(super) fn smoothed_load(&self, at: usize, index: u32) -> SmoothedLoad {
         let loads = self.smoothed.loads.as_slice();
-        if loads.get(at).is_some_and(|load| load.index == index) {
-            return Some(at);
-        }
-        loads.iter().position(|load| load.index == index)
+        position_of(loads, at, index).map(|position| loads[position]).unwrap_or_default()
     }
 
     /// Goes back to where it was predicted: the difference belongs to another foot.
@@ -110,4 +100,13 @@ impl Track {
         self.reset_covariance(0.005);
         self.covariance[FORCE][FORCE] = 400.0;
     }
+}
+
+/// Where among slow loads the one of tile `index` is, which is number `at` of a foot's tiles: mostly number `at`, too.
+#[inline]
+fn position_of(loads: &[SmoothedLoad], at: usize, index: u32) -> Option<usize> {
+    if loads.get(at).is_some_and(|load| load.index == index) {
+        return Some(at);
+    }
+    loads.iter().position(|load| load.index == index)
 }

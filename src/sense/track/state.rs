@@ -280,7 +280,7 @@ impl Track {
         let dt = elapsed.dt;
         let (mut force, mut weight) = (0.0, 0.0);
         let mut sum = DVec2::ZERO;
-        for &position in &self.tiles {
+        for &position in self.tiles.as_slice() {
             let tile = &list[position as usize];
             let weighed = f64::from(tile.weight());
             force += f64::from(tile.wrench.force);
