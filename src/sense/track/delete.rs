@@ -16,7 +16,8 @@ impl Tracker {
     pub(super) fn delete_empty(&mut self, tiles: &LoadedTiles, dt: f64) {
         let mut empty_s = std::mem::take(&mut self.empty_s);
         empty_s.resize(self.tracks.len(), 0.0);
-        let heaviest = self.tracks.iter().map(|foot| foot.force()).fold(0.0, f64::max);
+        let heaviest = self.tracks.iter().map(|foot| foot.force());
+        let heaviest = heaviest.fold(0.0, |most, force| if force > most { force } else { most });
         parallel::for_each(&mut empty_s, |which, empty_s| {
             let foot = &self.tracks[which];
             let gone = if foot.shared {

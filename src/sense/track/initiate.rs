@@ -39,7 +39,7 @@ impl Tracker {
             foot.look_for_second(which, near, list, cells, elapsed);
         });
         for which in 0..self.tracks.len() {
-            let Some(candidate) = self.tracks[which].candidate.take() else { continue };
+            let Some(candidate) = self.tracks[which].candidate.take_if(|_| true) else { continue };
             let foot = &self.tracks[which];
             // A track that it may be a part of has its centre of pressure within a stride.
             let others = self.near.around(candidate.place).filter(|&other| other != which);

@@ -35,6 +35,7 @@ mod params;
 mod patch;
 mod reach;
 mod residual;
+mod sharing;
 mod smoothed;
 mod state;
 mod stillness;
@@ -50,7 +51,8 @@ use std::cmp::Reverse;
 
 use self::elapsed::Elapsed;
 use self::groups::{BATCHES, GroupEstimator, Link};
-use self::neighbours::{Groups, Near};
+use self::neighbours::Near;
+use self::sharing::Groups;
 use self::state::Track;
 use self::strips::Axis;
 use self::tracks::Tracks;
@@ -124,6 +126,7 @@ impl Cells {
     }
 
     /// Calls `visit` with the index of each tile in the columns and rows from `low` to `high` that the floor has.
+    #[inline(always)]
     fn visit(&self, low: IVec2, high: IVec2, mut visit: impl FnMut(u32)) {
         let TileBlock { first, columns, rows } = self.block;
         let first = IVec2::new(first.column.into(), first.row.into());
@@ -255,49 +258,6 @@ impl Tracker {
         let id = ContactId(self.next);
         self.next = self.next.wrapping_add(1);
         id
-    }
-
-    /// Numbers the groups of feet that share tiles: each foot's group is its first member's number.
-    fn group(&mut self, tiles: usize) {
-        self.owner.clear();
-        self.owner.resize(tiles, UNASSIGNED);
-        self.sharing.clear();
-        for (which, foot) in (0..).zip(self.tracks.iter_mut()) {
-            foot.group = which;
-            foot.crowded = false;
-            for &position in &foot.tiles {
-                let owner = &mut self.owner[position as usize];
-                if *owner == UNASSIGNED {
-                    *owner = which;
-                } else {
-                    self.sharing.push((which, *owner));
-                }
-            }
-        }
-        self.mates.part(self.tracks.len());
-        self.members.clear();
-        for &(foot, owner) in &self.sharing {
-            self.members.extend([foot, owner]);
-            let (mine, theirs) = (self.tracks[foot as usize].group, self.tracks[owner as usize].group);
-            if mine != theirs {
-                let (keep, drop) = (mine.min(theirs), mine.max(theirs));
-                for mate in self.mates.of(drop) {
-                    self.tracks[mate].group = keep;
-                }
-                self.mates.unite(keep, drop);
-            }
-        }
-        self.members.sort_unstable();
-        self.members.dedup();
-        for &which in &self.members {
-            self.tracks[which as usize].crowded = true;
-        }
-        self.mates.order(self.members.iter().map(|&which| (which, self.tracks[which as usize].group)));
-    }
-
-    /// Takes down who belongs to which group; groups are numbered below `groups`.
-    fn renew_groups(&mut self, groups: usize) {
-        self.mates.renew(self.tracks.iter().map(|foot| foot.group), groups);
     }
 
     /// Measures feet that are alone on their tiles, estimates those that are not.

@@ -113,6 +113,8 @@ pub(super) fn observe(
             0.09 + if axis == EAST { noise.east } else { noise.north },
         );
     }
+    // Exponentials: once for each foot, and not for each of its strips.
+    let strengths: ArrayVec<f64, MOST_FEET> = group.iter().map(|foot| foot.residual_weight()).collect();
     let mut nis = 0.0;
     for strip in &strips.strips {
         let axis = strip.axis;
@@ -124,8 +126,8 @@ pub(super) fn observe(
         let [force_noise, moment_noise, cross_noise] = strip.noise;
         let mut covariance =
             [[4.0 + force_noise, 0.0, 0.0], [0.0, 0.09 + moment_noise, 0.0], [0.0, 0.0, 0.09 + cross_noise]];
-        for (which, foot) in group.iter().enumerate() {
-            let residual = foot.residual(axis, strip.number);
+        for (which, (foot, &strength)) in group.iter().zip(&strengths).enumerate() {
+            let residual = foot.residual_at(axis, strip.number, strength);
             let place_along = axis.along(foot.centre());
             let width = foot.covariance[half][half].sqrt();
             let slice = strip.slice_with_sigma(cells.pitch, place_along, axis.along(foot.half()), width);
@@ -142,7 +144,6 @@ pub(super) fn observe(
             innovation[2] -= f * cross;
             // What the patch model leaves open: force that lies on the other side of the seam
             // through the foot, and how that force is spread along the seam.
-            let strength = foot.residual_weight();
             let straddle =
                 4.0 * (share * (1.0 - share)).max((1.0 - strength) * slice.share * (1.0 - slice.share));
             let shape_error = KNOWN_SHAPE + UNKNOWN_SHAPE * (1.0 - strength);

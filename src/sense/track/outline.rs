@@ -97,13 +97,11 @@ fn renew(outline: &mut Outline, fan: &Fan, centre: DVec2, others: &[DVec2], keep
             high[which] = greater(high[which], at[which]);
         }
     }
-    for which in 0..DIRECTIONS {
-        let kept = low[which] + keep * (outline.low[which] - low[which]);
-        outline.low[which] = lesser(kept, low[which]);
+    for (kept, now) in outline.low.iter_mut().zip(low) {
+        *kept = lesser(now + keep * (*kept - now), now);
     }
-    for which in 0..DIRECTIONS {
-        let kept = high[which] + keep * (outline.high[which] - high[which]);
-        outline.high[which] = greater(kept, high[which]);
+    for (kept, now) in outline.high.iter_mut().zip(high) {
+        *kept = greater(now + keep * (*kept - now), now);
     }
 }
 

@@ -1,8 +1,8 @@
 //! What can belong to a foot: where else one shoe may press.
 
 use super::params::reach::{
-    AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, KNOWN, NOTED, NOTED_M, NOTED_PER_NOISE,
-    RIM, RIM_AHEAD, RIM_OF_SHARED, SHOE,
+    AHEAD_M_S, AROUND_LIGHT_M, AROUND_M, BEYOND_M, BORNE, HALVES, NOTED, NOTED_M, NOTED_PER_NOISE, RIM,
+    RIM_AHEAD, RIM_OF_SHARED, SHOE,
 };
 use super::params::state::{FLAT_S, LANDS_S, SHOE_M, SLIDING_N};
 use arrayvec::ArrayVec;
@@ -83,7 +83,7 @@ impl Track {
         let (borne_low, borne_high) = self.borne;
         let (known_low, known_high) = (low.min(borne_low), high.max(borne_high));
         // Where it was alone, it also presses what it pressed then.
-        if (known_low, known_high) != (low, high) && self.residual_weight() > KNOWN {
+        if (known_low, known_high) != (low, high) && self.is_shape_known() {
             (low, high) = (known_low, known_high);
         }
         cells.visit(low, high, |index| {

@@ -2,6 +2,7 @@
 
 use super::elapsed::{Elapsed, ShapeFade};
 use super::number_of;
+use super::params::reach::KNOWN;
 use super::params::residual::{KNOWN_S, LEARN_EVERY_S, RESIDUAL_S, TOUCHES_S};
 use super::params::state::{HALF_LEAST, HALF_MOST, HALF_REST};
 use super::state::{HALF_EAST, HALF_NORTH, Track};
@@ -116,12 +117,22 @@ impl Track {
         })
     }
 
-    /// Its habit on one line, as far as it still holds; nothing where it has none.
-    pub(super) fn residual(&self, axis: Axis, number: i32) -> Residual {
-        self.residual_at(axis, number, self.residual_weight())
+    /// Whether its habits hold well enough for its tiles to be listed. For most feet, that needs no exponential.
+    pub(super) fn is_shape_known(&self) -> bool {
+        const { assert!(KNOWN > 0.3 - 1e-9 && KNOWN < 0.3 + 1e-9, "between the bounds below") };
+        let Some(place) = self.alone_at else { return false };
+        let moved = place.distance_squared(self.centre()) / (0.05 * 0.05);
+        // exp(-1.21) < 0.3, and exp(-0.7) (1 - exp(-1)) > 0.31.
+        if moved > 1.21 {
+            return false;
+        }
+        if moved < 0.7 && self.alone_s > KNOWN_S {
+            return true;
+        }
+        self.residual_weight() > KNOWN
     }
 
-    /// Its habit on one line, times `strength`.
+    /// Its habit on one line, times `strength`; nothing where it has none.
     pub(super) fn residual_at(&self, axis: Axis, number: i32, strength: f64) -> Residual {
         self.residuals
             .iter()
