@@ -9,6 +9,8 @@ use crate::floor::{Area, Board, Floor, Forwarding, TileBlock};
 /// Packets that a board sends in a second.
 pub(super) const BOARD_HZ: f64 = 1000.0;
 
+const MILLISECOND_US: f64 = 1000.0;
+
 /// Feet that a person has on the floor, at most.
 pub(super) const FEET: f64 = 2.0;
 
@@ -143,13 +145,14 @@ impl AreaDemand {
     /// contacts, controls.
     #[must_use]
     pub fn sensing_cores(&self, machine: &Machine) -> f64 {
-        let us = machine.base_us
+        let work = machine.base_us
             + self.packets_per_s / BOARD_HZ * machine.packet_us
             + self.forwards_per_s / BOARD_HZ * machine.forward_us
-            + f64::from(self.forwarders) * machine.wake_us
             + self.sensed_tiles() * (machine.assemble_tile_us + machine.sense_tile_us)
             + self.sensed_people * machine.person_us;
-        us / 1000.0
+        let wakes = f64::from(self.forwarders) * machine.wake_us;
+        // Who is at work when a neighbour's packets come need not wake: of each wake-up, the share of time that is left.
+        (work + wakes) / (MILLISECOND_US + wakes)
     }
 
     /// What its sound takes of a core.
@@ -239,8 +242,9 @@ mod tests {
             middle.out_mbit
         );
         assert_eq!((west.forwarders, middle.forwarders, east.forwarders), (1, 2, 1));
-        // 20 + 6 boards x 1 + 4 x 0.5 + 2 neighbours x 3 + 28 tiles x 0.2 us.
-        assert!(near(middle.sensing_cores(&ROUND), 0.0396), "{}", middle.sensing_cores(&ROUND));
+        // 20 + 6 boards x 1 + 4 x 0.5 + 28 tiles x 0.2 us, and 2 neighbours x 3 us in what is left of a millisecond.
+        let sensing = middle.sensing_cores(&ROUND);
+        assert!(near(sensing, 0.0336 + 0.006 * (1.0 - sensing)), "{sensing}");
     }
 
     #[test]

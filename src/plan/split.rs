@@ -237,14 +237,15 @@ pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Spl
         }
         let column = most(&boards.along(size.columns, across));
         let fits = |row: &Along| first(&limits(&demand(&column, row, size, crowd), machine, crowd.usable));
-        // More areas are smaller areas: they fit from some number on.
-        let up = rows.partition_point(|row| fits(row).share > 1.0);
-        let Some(row) = rows.get(up) else {
+        // More areas are smaller areas, but each has more neighbours: some number may fit, and a larger one not.
+        let most = best.map_or(rows.len(), |(count, ..)| rows.len().min((count / across) as usize));
+        let Some(up) = rows[..most].iter().position(|row| fits(row).share <= 1.0) else {
             if let Some(row) = rows.last() {
                 runs_out = fits(row).resource.name();
             }
             continue;
         };
+        let row = &rows[up];
         let split = Split { across, up: up as u32 + 1 };
         let key = (split.across.saturating_mul(split.up), column.own.abs_diff(row.own), split);
         if best.is_none_or(|(count, oblong, _)| (key.0, key.1) < (count, oblong)) {

@@ -7,7 +7,8 @@ use super::state::Track;
 /// Tracks in the order in which they began.
 ///
 /// A track is two kilobytes, and in a crowd one ends in nearly every frame: so that those behind it need not be copied
-/// to close the gap, the list holds boxes. The box of a track that has ended is used again.
+/// to close the gap, the list holds boxes. The box of a track that has ended is used again; when there are no more, as
+/// many are made as there are tracks, so that a floor that is nearly as full as ever takes no memory.
 #[derive(Clone, Debug)]
 #[expect(clippy::vec_box, reason = "what moves in the list is to be small")]
 pub(super) struct Tracks {
@@ -21,14 +22,13 @@ impl Tracks {
     }
 
     pub(super) fn push(&mut self, track: Track) {
-        let boxed = match self.spare.pop() {
-            Some(mut spare) => {
-                *spare = track;
-                spare
-            }
-            None => Box::new(track),
-        };
-        self.list.push(boxed);
+        if let Some(mut spare) = self.spare.pop() {
+            *spare = track;
+            self.list.push(spare);
+            return;
+        }
+        self.spare.extend(std::iter::repeat_n(&track, self.list.len()).cloned().map(Box::new));
+        self.list.push(Box::new(track));
     }
 
     pub(super) fn remove(&mut self, which: usize) {
