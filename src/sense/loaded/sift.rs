@@ -21,10 +21,13 @@ impl LoadedTiles {
             let candidates = &mut candidates.blocks_mut()[block];
             *candidates = 0;
             let from = block * BLOCK;
-            for index in from..(from + BLOCK).min(there) {
-                let is_lost = frame.quality[index].iter().any(|&quality| quality >= Quality::Stale);
-                let is_enough = self.thresholds.deciding(index, sums[index]) >= self.thresholds.least();
-                *candidates |= u16::from(is_enough || is_lost) << (index - from);
+            let here = from..(from + BLOCK).min(there);
+            let quality = frame.quality.get(here.clone()).unwrap_or_default();
+            let sums = sums.get(here).unwrap_or_default();
+            for (place, (&sum, quality)) in sums.iter().zip(quality).enumerate() {
+                let is_lost = quality.iter().any(|&quality| quality >= Quality::Stale);
+                let is_enough = self.thresholds.deciding(from + place, sum) >= self.thresholds.least();
+                *candidates |= u16::from(is_enough || is_lost) << place;
             }
         }
     }
