@@ -2,8 +2,9 @@
 //!
 //! A floor too large for one computer is cut into areas ([`crate::floor::Area`]). Each computer receives the packets of
 //! its area and of 0.9 m around it, assembles and senses those tiles, and moves its own. What that costs is linear in
-//! packets, tiles, people and channels, with the [`Machine`]'s constants; the fewest areas that stay within a share of
-//! every resource are the plan. What the calculation takes for granted is said in [`Plan::assumptions`].
+//! packets, tiles, people and channels, with the [`Machine`]'s constants, but for wake-ups, which cost no more than the
+//! time in which a thread would sleep; the fewest areas that stay within a share of every resource are the plan. What the
+//! calculation takes for granted is said in [`Plan::assumptions`].
 
 mod area_demand;
 mod assumptions;

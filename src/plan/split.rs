@@ -238,8 +238,9 @@ pub(super) fn fewest(size: Size, crowd: &Crowd, machine: &Machine) -> Result<Spl
         let column = most(&boards.along(size.columns, across));
         let fits = |row: &Along| first(&limits(&demand(&column, row, size, crowd), machine, crowd.usable));
         // More areas are smaller areas, but each has more neighbours: some number may fit, and a larger one not.
-        let most = best.map_or(rows.len(), |(count, ..)| rows.len().min((count / across) as usize));
-        let Some(up) = rows[..most].iter().position(|row| fits(row).share <= 1.0) else {
+        let no_more_than_best =
+            best.map_or(rows.len(), |(count, ..)| rows.len().min((count / across) as usize));
+        let Some(up) = rows[..no_more_than_best].iter().position(|row| fits(row).share <= 1.0) else {
             if let Some(row) = rows.last() {
                 runs_out = fits(row).resource.name();
             }

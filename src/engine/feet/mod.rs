@@ -213,7 +213,8 @@ mod tests {
         let mut feet = FootHistories::default();
         let mut give = |contacts: &[Contact], ms: u64| feet.update(contacts, &[], Instant::from_millis(ms));
         let (one, other) = (contact(1, (1.0, 1.6), 600.0, false), contact(2, (1.4, 2.1), 600.0, false));
-        // Somebody steps north; 0.4 s after the hind foot has left, a foot of somebody else lands a metre south of it.
+        // Somebody steps north; 0.4 s after the trailing foot has left, a foot of somebody else lands a metre south of
+        // where it was.
         give(std::slice::from_ref(&one), 0);
         give(&[one, other.clone()], 500);
         give(std::slice::from_ref(&other), 700);
