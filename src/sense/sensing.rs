@@ -1,5 +1,7 @@
 //! Frames in, contacts out, by either method.
 
+use std::time::Duration;
+
 use super::cluster::Clusters;
 use super::eq4::Eq4;
 use super::loaded::{LoadThreshold, LoadedTiles};
@@ -90,7 +92,7 @@ impl Sensing {
     /// # Real-time
     /// Allocates nothing once the floor has been as full as it gets.
     pub fn update(&mut self, frame: &ForceFrame) -> &[Contact] {
-        let dt = self.last.map_or(0.0, |last| frame.at.since(last).as_secs_f32());
+        let dt = self.last.map_or(0.0, |last| seconds(frame.at.since(last)));
         self.last = Some(frame.at);
         let Self { tiles, maker, pool, .. } = self;
         match maker {
@@ -118,6 +120,18 @@ impl Sensing {
     pub fn tiles(&self) -> impl ExactSizeIterator<Item = TileReading> + '_ {
         (0..self.tiles.geometry().tile_count()).map(|index| self.tiles.reading(index))
     }
+}
+
+/// The seconds that have passed from one frame to another one `elapsed` later.
+///
+/// Boards sample once a millisecond, and the clock that dates frames is steered by up to 500 ppm: to two computers the
+/// same frames are not equally far apart. Where times are that near to whole milliseconds, those have passed, so that
+/// both see the same.
+fn seconds(elapsed: Duration) -> f32 {
+    const STEERED_US: u128 = 2;
+    let millis = (elapsed.as_micros() + 500) / 1000;
+    let is_whole = elapsed.as_micros().abs_diff(1000 * millis) <= STEERED_US * millis;
+    if is_whole { Duration::from_millis(millis as u64).as_secs_f32() } else { elapsed.as_secs_f32() }
 }
 
 #[cfg(test)]
@@ -151,6 +165,25 @@ mod tests {
             assert_eq!(contacts.len(), 1);
             assert!(contacts[0].centroid.distance(at) < 1e-4, "{at}: {contacts:?}");
         }
+    }
+
+    #[test]
+    fn how_the_clock_is_steered_changes_nothing_that_is_sensed() {
+        let (geometry, heel) = (Geometry::default(), Vec2::new(0.30, 0.43));
+        let contacts_by = |at_us: &dyn Fn(u64) -> u64| {
+            let mut sensing = Sensing::new(geometry, Method::Tracker);
+            let roll = |milli: u64| {
+                let mut frame = ForceFrame::empty(&geometry);
+                frame.at = Instant::from_micros(at_us(milli));
+                press(&mut frame, &geometry, heel + Vec2::new(0.0, 0.0004 * milli as f32), 700.0);
+                sensing.update(&frame).to_vec()
+            };
+            (0..500).map(roll).collect::<Vec<_>>()
+        };
+        let exact = contacts_by(&|milli| 1000 * milli);
+        assert_eq!(contacts_by(&|milli| 1_000_500 * milli / 1000), exact);
+        assert_eq!(contacts_by(&|milli| 999_500 * milli / 1000), exact);
+        assert_ne!(contacts_by(&|milli| 1200 * milli), exact, "a board that samples less often is another matter");
     }
 
     #[test]

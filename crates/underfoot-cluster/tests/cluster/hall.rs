@@ -176,7 +176,7 @@ pub(crate) struct Hall {
     _gateway: Program,
     pub(crate) lines: Lines,
     /// Where nodes run, if each has a network of its own.
-    namespaces: Option<Namespaces>,
+    pub(crate) namespaces: Option<Namespaces>,
 }
 
 impl Hall {

@@ -1,7 +1,8 @@
 //! Network namespaces: each node with interfaces, addresses and routes of its own, as on a computer of its own.
 
+use std::io::Write;
 use std::net::Ipv4Addr;
-use std::process::Command;
+use std::process::{Command, Stdio};
 
 use crate::hall::AREAS;
 
@@ -18,6 +19,19 @@ fn ip(words: &str) -> Result<(), String> {
         Command::new("ip").args(words.split_whitespace()).output().map_err(|error| error.to_string())?;
     let why = || format!("ip {words}: {}", String::from_utf8_lossy(&done.stderr));
     done.status.success().then_some(()).ok_or_else(why)
+}
+
+/// Lets what arrives at `device` be lost so many times of a hundred, by a rule in a table of the device's name; `nft` is
+/// how nftables is run where the device is.
+fn lose(nft: &[&str], device: &str, table: &str, per_cent: u8) {
+    let rules = format!(
+        "add table netdev {table}\n\
+         add chain netdev {table} arriving {{ type filter hook ingress device \"{device}\" priority 0; }}\n\
+         add rule netdev {table} arriving numgen random mod 100 < {per_cent} drop\n"
+    );
+    let mut nft = Command::new(nft[0]).args(&nft[1..]).args(["-f", "-"]).stdin(Stdio::piped()).spawn().unwrap();
+    nft.stdin.take().unwrap().write_all(rules.as_bytes()).unwrap();
+    assert!(nft.wait().unwrap().success(), "nft refuses {rules}");
 }
 
 impl Namespaces {
@@ -50,6 +64,25 @@ impl Namespaces {
         format!("{}{area}", self.tag)
     }
 
+    /// Loses so many of a hundred packets on the cable of each area's node, both ways, by nftables.
+    pub(crate) fn lose(&self, per_cent: u8) {
+        for area in AREAS {
+            let name = self.name(area);
+            lose(&["nft"], &name, &name, per_cent);
+            lose(&["ip", "netns", "exec", &name, "nft"], "eth0", &name, per_cent);
+        }
+    }
+
+    /// Loses none any more.
+    pub(crate) fn mend(&self) {
+        for area in AREAS {
+            let name = self.name(area);
+            // There is none unless some were lost.
+            let _ = Command::new("nft").args(["delete", "table", "netdev", &name]).output();
+            let _ = ip(&format!("netns exec {name} nft delete table netdev {name}"));
+        }
+    }
+
     /// Where the gateway and the boards are.
     pub(crate) fn here(&self) -> Ipv4Addr {
         Ipv4Addr::new(10, 213, self.net, 1)
@@ -64,6 +97,7 @@ impl Namespaces {
 
 impl Drop for Namespaces {
     fn drop(&mut self) {
+        self.mend();
         for area in AREAS {
             // Its interfaces, on both sides, go with it.
             let _ = ip(&format!("netns del {}", self.name(area)));
