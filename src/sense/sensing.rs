@@ -183,7 +183,11 @@ mod tests {
         let exact = contacts_by(&|milli| 1000 * milli);
         assert_eq!(contacts_by(&|milli| 1_000_500 * milli / 1000), exact);
         assert_eq!(contacts_by(&|milli| 999_500 * milli / 1000), exact);
-        assert_ne!(contacts_by(&|milli| 1200 * milli), exact, "a board that samples less often is another matter");
+        assert_ne!(
+            contacts_by(&|milli| 1200 * milli),
+            exact,
+            "a board that samples less often is another matter"
+        );
     }
 
     #[test]

@@ -40,7 +40,8 @@ impl Fault {
     fn new(holds: usize) -> Self {
         let hall = Hall::open();
         // Relays are on this machine; nodes with a network of their own don't reach them.
-        let node = |area: &&str| if hall.namespaces.is_some() { hall.node(area) } else { hall.frail_node(area) };
+        let node =
+            |area: &&str| if hall.namespaces.is_some() { hall.node(area) } else { hall.frail_node(area) };
         let nodes = AREAS.iter().map(node).collect();
         let boards = hall.boards(hall.script(&holding(holds)), &[]);
         AREAS.iter().for_each(|area| hall.await_live(area, 0));

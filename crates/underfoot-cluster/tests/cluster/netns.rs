@@ -29,7 +29,8 @@ fn lose(nft: &[&str], device: &str, table: &str, per_cent: u8) {
          add chain netdev {table} arriving {{ type filter hook ingress device \"{device}\" priority 0; }}\n\
          add rule netdev {table} arriving numgen random mod 100 < {per_cent} drop\n"
     );
-    let mut nft = Command::new(nft[0]).args(&nft[1..]).args(["-f", "-"]).stdin(Stdio::piped()).spawn().unwrap();
+    let mut nft =
+        Command::new(nft[0]).args(&nft[1..]).args(["-f", "-"]).stdin(Stdio::piped()).spawn().unwrap();
     nft.stdin.take().unwrap().write_all(rules.as_bytes()).unwrap();
     assert!(nft.wait().unwrap().success(), "nft refuses {rules}");
 }

@@ -160,7 +160,9 @@ impl Difference {
                 let near = times.clone().filter_map(|(t_s, place)| distance(other, t_s, place));
                 near.filter(|apart| *apart < 0.05).count()
             };
-            let Some((other, most)) = there.tracks.iter().max_by_key(|(_, track)| shared(track)) else { continue };
+            let Some((other, most)) = there.tracks.iter().max_by_key(|(_, track)| shared(track)) else {
+                continue;
+            };
             pairs.insert(*id, *other);
             let apart: Vec<_> = times.clone().map(|(t_s, place)| (t_s, distance(most, t_s, place))).collect();
             let further = |&&(_, apart): &&(f64, Option<f64>)| apart.is_none_or(|apart| apart > 0.001);
@@ -180,7 +182,11 @@ impl Difference {
         // Those that are there for some milliseconds only may not be told of, 100 times a second.
         let lasting = there.tracks.iter().filter(|(_, track)| track.len() > 30);
         for (id, track) in lasting.clone().filter(|(id, _)| !others.contains(id)) {
-            say(&format!("{id} there, from {:.3?} to {:.3?}, is nobody here", track[0], track[track.len() - 1]));
+            say(&format!(
+                "{id} there, from {:.3?} to {:.3?}, is nobody here",
+                track[0],
+                track[track.len() - 1]
+            ));
         }
         Self {
             apart_s,
