@@ -171,23 +171,28 @@ impl StepWatch {
 
     /// Whether the foot has carried about half of the body for longer than a press lasts (line 4).
     pub(super) fn stands(&self, now: Instant) -> bool {
-        self.stands.0.is_some_and(|since| now.since(since) >= STANDS_FOR)
+        self.stands.lasts(now) >= Some(STANDS_FOR)
     }
 
     /// Whether the foot has been at rest for longer than anybody taps.
     pub(super) fn rests(&self, now: Instant) -> bool {
-        self.rests.0.is_some_and(|since| now.since(since) >= RESTS_FOR)
+        self.rests.lasts(now) >= Some(RESTS_FOR)
     }
 }
 
 /// Since when something has been so without a break.
 #[derive(Clone, Copy, Debug, Default)]
-struct Since(Option<Instant>);
+pub(super) struct Since(Option<Instant>);
 
 impl Since {
-    /// For how long it has been so; `None` if it is not.
-    fn note(&mut self, is: bool, now: Instant) -> Option<Duration> {
+    /// Notes whether it is so now. For how long it has been so; `None` if it is not.
+    pub(super) fn note(&mut self, is: bool, now: Instant) -> Option<Duration> {
         self.0 = is.then(|| self.0.unwrap_or(now));
+        self.lasts(now)
+    }
+
+    /// For how long it has been so; `None` if it is not.
+    pub(super) fn lasts(&self, now: Instant) -> Option<Duration> {
         self.0.map(|since| now.since(since))
     }
 }

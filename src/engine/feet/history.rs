@@ -6,7 +6,7 @@ use glam::Vec2;
 
 use super::super::people::{Person, SAME_FOOT_M, STANCE_M};
 use super::super::snapshot::FootRole;
-use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, StepWatch, Support};
+use super::super::step::{CARRIES, Landing, Loading, RESTS, RESTS_N, Since, StepWatch, Support};
 use super::super::still::Stillness;
 use crate::sense::{Contact, ContactId};
 use crate::units::Instant;
@@ -57,6 +57,12 @@ const TOLD_APART: Duration = Duration::from_millis(100);
 /// [`super::super::step`]).
 const TOLD_APART_SHARE: f32 = 0.1;
 
+/// Share of what somebody carried when a further foot landed that both this foot and the others carry if it is somebody
+/// else's, and for how long (our choices: who stands on both feet has half on each, and who jumps with both carries more
+/// than a body for a tenth of a second).
+const ANOTHER_BODY: f32 = 0.8;
+const ANOTHER_FOR: Duration = Duration::from_millis(300);
+
 /// Where a foot was, with which force, and what the person's other feet carried.
 #[derive(Clone, Copy, Debug, Default)]
 struct PastLoad {
@@ -105,6 +111,9 @@ pub(in crate::engine) struct FootHistory {
     early: Option<f32>,
     /// What the person's other feet carried when this one was last examined.
     others: f32,
+    /// What the person carried when it landed, and since when it and the others each have carried about as much.
+    before: f32,
+    another: Since,
     past: [PastLoad; PLACES],
     next: usize,
     kept: usize,
@@ -132,6 +141,8 @@ impl FootHistory {
             share: None,
             early: None,
             others: 0.0,
+            before: person.sum,
+            another: Since::default(),
             // The latest is at `next` - 1.
             past: [PastLoad { place, force, others: 0.0 }; PLACES],
             next: 0,
@@ -285,11 +296,14 @@ impl FootHistory {
         if self.force < AS_GOOD_AS_LIFTED_N {
             (self.landed, self.landed_at) = (now, self.place);
             (self.step, self.watch, self.early) = (false, StepWatch::default(), None);
+            (self.before, self.another) = (person.sum, Since::default());
             return;
         }
         let of_weight = person.weight().map(|weight| self.force / weight.0);
         let others = (person.sum - self.force).max(0.0);
         self.others = others;
+        let body = (ANOTHER_BODY * self.before).max(SUM_N);
+        self.another.note(self.force.min(others) >= body, now);
         let of_sum = (person.sum >= SUM_N && others >= OTHERS_N).then(|| self.force / person.sum);
         let share = match (of_weight, of_sum) {
             (Some(weight), Some(sum)) => Some(weight.max(sum)),
@@ -307,6 +321,17 @@ impl FootHistory {
             has_support: self.has_support,
         };
         self.step |= self.watch.is_step(&loading, now);
+    }
+
+    /// Whether it bears a body besides the one that stood there when it landed, and stands there still.
+    pub(super) fn bears_another_body(&self, now: Instant) -> bool {
+        self.another.lasts(now) >= Some(ANOTHER_FOR)
+    }
+
+    /// Is the foot of this person from now on.
+    pub(super) fn give_to(&mut self, person: u32) {
+        self.person = person;
+        (self.others, self.before, self.another) = (0.0, 0.0, Since::default());
     }
 
     pub(super) fn role(&self, now: Instant) -> FootRole {

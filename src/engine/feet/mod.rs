@@ -73,6 +73,7 @@ impl FootHistories {
                 foot.judge(person, now);
             }
         }
+        self.take_apart(now);
     }
 
     /// The foot of a contact.
@@ -152,6 +153,17 @@ impl FootHistories {
         }
     }
 
+    /// Makes two people of one on whose further foot another body stands.
+    fn take_apart(&mut self, now: Instant) {
+        for at in 0..self.feet.len() {
+            if self.feet[at].bears_another_body(now) {
+                let person = self.newcomer(now);
+                let id = self.people[person].id;
+                self.feet[at].give_to(id);
+            }
+        }
+    }
+
     /// The position of the person to whom a foot that lands at `place` belongs; a new person if no known one can have
     /// put it there.
     fn whose(&mut self, place: Vec2, now: Instant) -> usize {
@@ -161,9 +173,11 @@ impl FootHistories {
             .enumerate()
             .filter_map(|(at, person)| Some((at, person.reach_to(place, &self.feet, now)?)))
             .min_by(|a, b| a.1.total_cmp(&b.1));
-        if let Some((at, _)) = near {
-            return at;
-        }
+        near.map(|(at, _)| at).unwrap_or_else(|| self.newcomer(now))
+    }
+
+    /// The position of a new person.
+    fn newcomer(&mut self, now: Instant) -> usize {
         self.people.push(Person::new(self.next_person, now));
         self.next_person = self.next_person.wrapping_add(1);
         self.people.len() - 1
@@ -206,6 +220,26 @@ mod tests {
         let foot = feet.of(ContactId(3)).unwrap();
         assert!(!foot.is_step_on(PressMode::Tap, now), "it presses");
         assert!(foot.has_support, "beside a foot that stands");
+    }
+
+    #[test]
+    fn a_foot_on_which_a_further_body_stands_bears_another_body() {
+        let person_of_second = |first_n: f32, second_n: f32, ms: u64| {
+            let mut feet = FootHistories::default();
+            // Somebody stands on one foot; another one lands a step away.
+            let standing = contact(1, (1.8, 0.6), 700.0, false);
+            (0..500).for_each(|ms| {
+                feet.update(std::slice::from_ref(&standing), &[], Instant::from_millis(ms));
+            });
+            let both = [contact(1, (1.8, 0.6), first_n, false), contact(2, (1.4, 1.3), second_n, false)];
+            (500..500 + ms).for_each(|ms| feet.update(&both, &[], Instant::from_millis(ms)));
+            (feet.of(ContactId(1)).unwrap().person, feet.of(ContactId(2)).unwrap().person)
+        };
+        let is_one = |(one, other)| one == other;
+        assert!(is_one(person_of_second(350.0, 350.0, 3000)), "stands on both");
+        assert!(is_one(person_of_second(700.0, 98.0, 3000)), "somebody heavy presses");
+        assert!(is_one(person_of_second(800.0, 700.0, 150)), "both feet of somebody who jumps");
+        assert!(!is_one(person_of_second(700.0, 690.0, 400)));
     }
 
     #[test]
