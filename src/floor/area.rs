@@ -18,9 +18,9 @@ pub struct Area {
     pub listen: Option<SocketAddr>,
 }
 
-/// How far beyond its area a computer senses, in metres: a step (0.7 m) and the half of a foot, so that both feet of
-/// whoever has one foot in the area are seen whole.
-pub const SENSED_BEYOND_M: f32 = 0.9;
+/// How far beyond its area a computer senses, in metres: as far as anybody steps (1.1 m) and the half of a foot, so that
+/// whoever may put a foot into the area is seen with the other one.
+pub const SENSED_BEYOND_M: f32 = 1.2;
 
 impl Area {
     /// The area called `id` of these `tiles`, whose computer may be anywhere.
@@ -138,10 +138,10 @@ mod tests {
     }
 
     #[test]
-    fn a_part_has_a_margin_of_three_tiles_and_moves_none_of_them() {
+    fn a_part_has_a_margin_of_four_tiles_and_moves_none_of_them() {
         let floor = hall();
         let part = floor.part(floor.area("ne").unwrap()).unwrap();
-        assert_eq!(part.geometry.block(), TileBlock { first: TileId::new(3, 3), columns: 9, rows: 9 });
+        assert_eq!(part.geometry.block(), TileBlock { first: TileId::new(2, 2), columns: 10, rows: 10 });
         assert_eq!(part.actuators.iter().flatten().count(), 36);
         for (index, tile) in part.geometry.tiles().enumerate() {
             let whole = floor.geometry.index(tile).unwrap();
@@ -156,8 +156,8 @@ mod tests {
     fn boards_keep_their_addresses_and_their_channels_places() {
         let floor = hall();
         let part = floor.part(floor.area("nw").unwrap()).unwrap();
-        // Each row has a board of eight tiles and one of four; the part has nine columns.
-        assert_eq!(part.boards.len(), 18);
+        // Each row has a board of eight tiles and one of four; the part has ten columns and rows.
+        assert_eq!(part.boards.len(), 20);
         let far = part.boards.iter().find(|board| board.address == "/underfoot/board/7").unwrap();
         let sensor = SensorId { tile: TileId::new(8, 3), corner: Corner::SouthWest };
         assert_eq!((far.channels.len(), far.channels[0], far.channels[4]), (16, Some(sensor), None));

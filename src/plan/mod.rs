@@ -1,7 +1,7 @@
 //! How many computers a floor takes: from its size, its crowd and what one machine does, which [`measure`] finds out.
 //!
 //! A floor too large for one computer is cut into areas ([`crate::floor::Area`]). Each computer receives the packets of
-//! its area and of 0.9 m around it, assembles and senses those tiles, and moves its own. What that costs is linear in
+//! its area and of 1.2 m around it, assembles and senses those tiles, and moves its own. What that costs is linear in
 //! packets, tiles, people and channels, with the [`Machine`]'s constants, but for wake-ups, which cost no more than the
 //! time in which a thread would sleep; the fewest areas that stay within a share of every resource are the plan. What the
 //! calculation takes for granted is said in [`Plan::assumptions`].
@@ -270,11 +270,11 @@ mod tests {
 
     #[test]
     fn of_areas_with_as_many_channels_the_one_that_senses_most_is_the_fullest() {
-        // Nine areas of 8 x 8 with full cards; the one in the middle senses three tiles more on every side.
+        // Nine areas of 8 x 8 with full cards; the one in the middle senses four tiles more on every side.
         let size = Size { columns: 24, rows: 24, actuators: true };
         let plan = plan_size(size, &Crowd::of(4), &ROUND).unwrap();
         assert_eq!(plan.split, Some(Split { across: 3, up: 3 }));
-        assert_eq!((plan.fullest.sensed_columns, plan.fullest.sensed_rows), (14, 14));
+        assert_eq!((plan.fullest.sensed_columns, plan.fullest.sensed_rows), (16, 16));
     }
 
     #[test]
