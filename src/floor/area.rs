@@ -160,7 +160,7 @@ mod tests {
         assert_eq!(part.boards.len(), 20);
         let far = part.boards.iter().find(|board| board.address == "/underfoot/board/7").unwrap();
         let sensor = SensorId { tile: TileId::new(8, 3), corner: Corner::SouthWest };
-        assert_eq!((far.channels.len(), far.channels[0], far.channels[4]), (16, Some(sensor), None));
+        assert_eq!((far.channels.len(), far.channels[0], far.channels[8]), (16, Some(sensor), None));
     }
 
     #[test]

@@ -44,7 +44,7 @@ fn areas_of_a_floor_file_are_planned_by_name() {
     let (is_done, text) = planned(&["--floor", "hall.ron", "--people", "4"], Some(hall));
     assert!(is_done, "{text}");
     for expected in
-        ["2 areas, as the floor file names them", "\"east\": 8 x 6 tiles, senses 11 x 6", "48 of 64"]
+        ["2 areas, as the floor file names them", "\"east\": 8 x 6 tiles, senses 12 x 6", "48 of 64"]
     {
         assert!(text.contains(expected), "no {expected:?} in\n{text}");
     }

@@ -302,8 +302,8 @@ impl FootHistory {
         let of_weight = person.weight().map(|weight| self.force / weight.0);
         let others = (person.sum - self.force).max(0.0);
         self.others = others;
-        let body = (ANOTHER_BODY * self.before).max(SUM_N);
-        self.another.note(self.force.min(others) >= body, now);
+        let is_another = self.before >= SUM_N && self.force.min(others) >= ANOTHER_BODY * self.before;
+        self.another.note(is_another, now);
         let of_sum = (person.sum >= SUM_N && others >= OTHERS_N).then(|| self.force / person.sum);
         let share = match (of_weight, of_sum) {
             (Some(weight), Some(sum)) => Some(weight.max(sum)),

@@ -223,7 +223,7 @@ mod tests {
     }
 
     #[test]
-    fn a_foot_on_which_a_further_body_stands_bears_another_body() {
+    fn a_foot_on_which_another_body_stands_is_another_person_s() {
         let person_of_second = |first_n: f32, second_n: f32, ms: u64| {
             let mut feet = FootHistories::default();
             // Somebody stands on one foot; another one lands a step away.

@@ -411,9 +411,9 @@ mod tests {
         }
     }
 
-    /// A click on tile (5, 2) of the west and (6, 2) of the east, of a control of the west, whose part has 9 columns.
+    /// A click on tile (5, 2) of the west and (6, 2) of the east, of a control of the west, whose part has 10 columns.
     fn click(at_ms: u64) -> Cue {
-        let spots = [5, 6].map(|column| Spot { tile: 2 * 9 + column, weight: 0.5 });
+        let spots = [5, 6].map(|column| Spot { tile: 2 * 10 + column, weight: 0.5 });
         let mode = Mode { frequency_hz: 150.0, decay_s: 0.02, amplitude: 1.0 };
         Cue {
             at: Instant::from_millis(at_ms),
@@ -431,9 +431,9 @@ mod tests {
         pair.borders[0].give(&[click(1300)], &SustainedCues::new(), Instant::from_millis(1300));
         pair.deliver(0, true);
         let (cues, _) = pair.take(1, 1302);
-        // The east senses from column 3 on: column 6 is its fourth of nine.
+        // The east senses from column 2 on: column 6 is its fifth of ten.
         let cue = Cue { at: Instant::from_millis(1302 + AHEAD_MS), ..click(0) };
-        let here = Spot { tile: 2 * 9 + 3, weight: 0.5 };
+        let here = Spot { tile: 2 * 10 + 4, weight: 0.5 };
         assert_eq!(
             cues,
             [Cue { received: cue.at, spots: [here].into_iter().collect(), audio_gain: 0.0, ..cue }]
