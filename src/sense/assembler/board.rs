@@ -1,5 +1,8 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
+use smallvec::SmallVec;
+
+use super::buffers::{BUFFERS, Buffers};
 use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
@@ -10,9 +13,6 @@ use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
 
-/// How many slots may wait for their boards at once.
-pub(super) const BUFFERS: usize = 8;
-
 /// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
 const RESTS_N: f32 = 1.0;
 
@@ -20,15 +20,17 @@ const RESTS_N: f32 = 1.0;
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
     pub(super) stream: Stream,
+    /// Its number on the floor.
+    number: usize,
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
-    /// The same, as sensors are worked on side by side.
-    wide: Vec<Window<WIDE>>,
+    /// The same, as sensors are worked on side by side. Most boards have one wide window, which lies here: frames are
+    /// made board by board, and what is next in memory is fetched ahead.
+    wide: SmallVec<[Window<WIDE>; 1]>,
     narrow: Vec<Window<NARROW>>,
-    /// Which of `kept` wait.
+    /// In which buffers a packet of it waits.
     waits: [bool; BUFFERS],
-    kept: [Sample; BUFFERS],
-    /// In which of `kept` its last packet is, and whether that was no news under a load.
+    /// In which buffer its last packet is, and whether that was no news under a load.
     last: Option<usize>,
     repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
@@ -95,12 +97,12 @@ impl BoardTrack {
         let (wide, narrow) = windows(&channels, 4 * floor.geometry.tile_count());
         Self {
             stream: Stream::default(),
+            number,
             geometry: floor.geometry,
             channels,
             wide,
             narrow,
             waits: [false; BUFFERS],
-            kept: [const { Sample::EMPTY }; BUFFERS],
             last: None,
             repeats: false,
             sends_counts: false,
@@ -125,16 +127,23 @@ impl BoardTrack {
     ///
     /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
     /// end of their range, nor of boards that send newtons, which may have smoothed them.
-    pub(super) fn store(&mut self, buffer: usize, readings: &Readings, health: &Health) -> bool {
+    pub(super) fn store(
+        &mut self,
+        buffer: usize,
+        readings: &Readings,
+        buffers: &mut Buffers,
+        health: &Health,
+    ) -> bool {
         self.sends_counts = matches!(readings, Readings::Counts(_));
         self.waits[buffer] = true;
-        let was_here = self.kept[buffer].replace(readings);
+        let was_here = buffers.sample_mut(buffer, self.number).replace(readings);
+        let sample = |buffer: usize| buffers.sample(buffer, self.number);
         let is_same = match self.last.replace(buffer) {
             Some(last) if last == buffer => was_here,
-            Some(last) => self.kept[last] == self.kept[buffer],
+            Some(last) => sample(last) == sample(buffer),
             None => false,
         };
-        self.repeats = is_same && !self.is_taring() && self.bears_load(&self.kept[buffer], health);
+        self.repeats = is_same && !self.is_taring() && self.bears_load(sample(buffer), health);
         !self.repeats
     }
 
@@ -234,24 +243,26 @@ impl BoardTrack {
             .map(|channel| (channel.tile as usize, channel.corner, Newtons(channel.tare)))
     }
 
-    /// Writes what it read in `buffer` into `frame` and frees the buffer; without a sample there,
+    /// Writes what it read in `buffer` into `frame` and frees its place there; without a sample there,
     /// what it read last stays.
     pub(super) fn apply(
         &mut self,
         buffer: Option<usize>,
         at_ns: i64,
+        buffers: &Buffers,
         frame: &mut ForceFrame,
         health: &mut Health,
         counters: &mut LinkCounters,
     ) {
-        let buffer = buffer.filter(|&buffer| self.clear(buffer));
-        if let Some(buffer) = buffer {
-            self.measure_tare(buffer, at_ns);
+        let waits = buffer.filter(|&buffer| self.clear(buffer));
+        let sample = waits.map(|buffer| buffers.sample(buffer, self.number));
+        if let Some(sample) = sample {
+            self.measure_tare(sample, at_ns);
         }
         let quality = self.quality();
-        match buffer {
-            Some(buffer) if !self.is_taring() => {
-                counters.bad_readings += self.write(buffer, quality, frame, health);
+        match sample {
+            Some(sample) if !self.is_taring() => {
+                counters.bad_readings += self.write(sample, quality, frame, health);
             }
             _ if quality == Quality::Stale => self.mark_stale(frame),
             _ => {}
@@ -259,9 +270,8 @@ impl BoardTrack {
     }
 
     /// Writes calibrated and tared forces; gives the number of bad readings.
-    fn write(&self, buffer: usize, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
-        let (sample, is_foreign) = (&self.kept[buffer], health.is_foreign());
-        let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign };
+    fn write(&self, sample: &Sample, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
+        let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign: health.is_foreign() };
         let mut bad = 0;
         for window in &self.wide {
             bad += put_wide(window, sample, trust, frame, health);
@@ -279,9 +289,8 @@ impl BoardTrack {
         }
     }
 
-    fn measure_tare(&mut self, buffer: usize, at_ns: i64) {
+    fn measure_tare(&mut self, sample: &Sample, at_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
-        let sample = &self.kept[buffer];
         let force = |(number, channel): (usize, &Option<Channel>)| {
             channel.map_or(f32::NAN, |channel| sample.force(number, &channel.calibration))
         };

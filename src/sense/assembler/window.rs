@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 use multiversion::multiversion;
+use smallvec::SmallVec;
 
 use super::board::Channel;
 use super::sample::Sample;
@@ -96,13 +97,13 @@ struct Found<const LANES: usize> {
 pub(super) fn windows(
     channels: &[Option<Channel>],
     sensors: usize,
-) -> (Vec<Window<WIDE>>, Vec<Window<NARROW>>) {
+) -> (SmallVec<[Window<WIDE>; 1]>, Vec<Window<NARROW>>) {
     let sensor = |channel: &Channel| 4 * channel.tile as usize + channel.corner.index();
     let wired = channels.iter().take(MAX_CHANNELS).enumerate();
     let mut wired: Vec<(usize, u8, Channel)> =
         wired.filter_map(|(number, channel)| channel.map(|it| (sensor(&it), number as u8, it))).collect();
     wired.sort_by_key(|(sensor, number, _)| (*sensor, *number));
-    let (mut wide, mut narrow) = (Vec::new(), Vec::new());
+    let (mut wide, mut narrow) = (SmallVec::new(), Vec::new());
     let mut rest = wired.as_slice();
     while let Some((first, ..)) = rest.first() {
         let first = first - first % NARROW;
