@@ -6,7 +6,9 @@ use super::buffers::{BUFFERS, Buffers};
 use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use super::window::{NARROW, Trust, WIDE, Window, misses_wide, put_narrow, put_wide, windows};
+use super::window::{
+    NARROW, Trust, WIDE, Window, count_misses_wide, misses_wide, put_narrow, put_wide, windows,
+};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::health::{Health, LOUD_N};
 use crate::sense::{ForceFrame, Quality};
@@ -116,6 +118,11 @@ impl BoardTrack {
         self.channels.len()
     }
 
+    /// Number of lanes of all its windows, whether a channel reads them or not.
+    pub(super) fn lane_count(&self) -> usize {
+        WIDE * self.wide.len() + NARROW * self.narrow.len()
+    }
+
     pub(super) const fn has(&self, buffer: usize) -> bool {
         self.waits[buffer]
     }
@@ -191,17 +198,27 @@ impl BoardTrack {
         if mean.len() != self.channels.len() {
             return None;
         }
-        misses.clear();
-        let known = |miss: &f32| miss.is_finite();
-        misses.extend(self.wide.iter().flat_map(|window| misses_wide(window, mean)).filter(known));
-        misses.extend(self.narrow.iter().flat_map(|window| window.misses(mean)).filter(known));
-        let middle = misses.len() / 2;
         // To count is far less work than to sort, and most places fit worse than the best so far.
-        let is_less = |below: f32| misses.iter().filter(|miss| **miss < below).count() > middle;
-        if misses.is_empty() || !below.is_none_or(is_less) {
+        if below.is_some_and(|below| !self.misses_by_less(mean, below)) {
+            return None;
+        }
+        misses.clear();
+        self.wide.iter().for_each(|window| misses.extend_from_slice(&misses_wide(window, mean)));
+        self.narrow.iter().for_each(|window| misses.extend_from_slice(&window.misses(mean)));
+        misses.retain(|miss| miss.is_finite());
+        let middle = misses.len() / 2;
+        if misses.is_empty() {
             return None;
         }
         Some(*misses.select_nth_unstable_by(middle, f32::total_cmp).1)
+    }
+
+    /// Whether the middle one of this board's sensors would miss its tare by less than `below` if it read `mean`.
+    fn misses_by_less(&self, mean: &Sample, below: f32) -> bool {
+        let wide = self.wide.iter().map(|window| count_misses_wide(window, mean, below));
+        let counts = wide.chain(self.narrow.iter().map(|window| window.count_misses(mean, below)));
+        let (known, less) = counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+        less > known / 2
     }
 
     /// How far all of its values can be trusted.

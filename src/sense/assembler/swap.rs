@@ -64,7 +64,7 @@ struct Block {
 
 impl Swaps {
     pub(super) fn new(boards: &[BoardTrack]) -> Self {
-        let most = boards.iter().map(BoardTrack::channel_count).max().unwrap_or(0);
+        let most = boards.iter().map(BoardTrack::lane_count).max().unwrap_or(0);
         let block = |board: &BoardTrack| Block {
             sums: Vec::with_capacity(board.channel_count()),
             ..Block::default()

@@ -287,6 +287,19 @@ impl<const LANES: usize> Window<LANES> {
         })
     }
 
+    /// Of how many of the sensors it is known by how much what they have read misses their tares, and of how many it is
+    /// by less than `below`.
+    #[inline(always)]
+    pub(super) fn count_misses(&self, sample: &Sample, below: f32) -> (u32, u32) {
+        let misses = self.misses(sample);
+        let (mut known, mut less) = (0, 0);
+        for lane in 0..LANES {
+            known += u32::from(misses[lane].is_finite());
+            less += u32::from(misses[lane] < below);
+        }
+        (known, less)
+    }
+
     /// By how much what each of the sensors has read misses its tare; NaN where that is not known.
     #[inline(always)]
     pub(super) fn misses(&self, sample: &Sample) -> [f32; LANES] {
@@ -350,4 +363,10 @@ fn write_wide<'a>(
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 pub(super) fn misses_wide(window: &Window<WIDE>, sample: &Sample) -> [f32; WIDE] {
     window.misses(sample)
+}
+
+/// [`Window::count_misses`] of a wide window, likewise.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+pub(super) fn count_misses_wide(window: &Window<WIDE>, sample: &Sample, below: f32) -> (u32, u32) {
+    window.count_misses(sample, below)
 }
