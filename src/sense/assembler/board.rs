@@ -6,9 +6,8 @@ use super::buffers::{BUFFERS, Buffers};
 use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use super::window::{
-    NARROW, Trust, WIDE, Window, count_misses_wide, misses_wide, put_narrow, put_wide, windows,
-};
+use super::window::{NARROW, WIDE, Window, count_misses_wide, misses_wide, windows};
+use super::write::{Trust, put_narrow, put_wide};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::health::{Health, LOUD_N};
 use crate::sense::{ForceFrame, Quality};

@@ -10,6 +10,7 @@ mod stream;
 mod swap;
 mod tare;
 mod window;
+mod write;
 
 use std::time::Duration;
 
