@@ -499,11 +499,12 @@ impl Assembler {
             // The board has just slipped back a slot: one of its samples is left out.
             return;
         }
-        if board.store(waiting.buffer, &packet.readings, &mut self.buffers, &self.health) {
+        let buffer = waiting.buffer;
+        if board.store(buffer, &packet.readings, &mut self.buffers, &self.health) {
             board.stream.deliver(self.now_ns);
         }
         self.counters.packets += 1;
-        self.swaps.note(number, slot, &packet.readings, &self.boards);
+        self.swaps.note(number, slot, self.buffers.sample(buffer, number), &self.boards);
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
 
