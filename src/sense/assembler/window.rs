@@ -158,25 +158,38 @@ impl<const LANES: usize> Window<LANES> {
     pub(super) fn read(&self, sample: &Sample) -> Read<LANES> {
         match sample {
             Sample::Newtons(newtons) => {
-                let force = |lane: usize| newtons.get(usize::from(self.channels[lane])).copied();
-                let forces = std::array::from_fn(|lane| force(lane).unwrap_or(f32::NAN));
+                let mut forces = [f32::NAN; LANES];
+                for lane in 0..LANES {
+                    forces[lane] = newtons.get(usize::from(self.channels[lane])).copied().unwrap_or(f32::NAN);
+                }
                 Read { forces, ends: [End::Within; LANES], by_board: true }
             }
             Sample::Counts(counts) => {
                 let run = self.run.and_then(|first| counts.run(first.into()));
-                let values = run.copied().unwrap_or_else(|| counts.pick(&self.channels));
-                let mut read = self.convert(&values);
+                let picked;
+                let values = if let Some(values) = run {
+                    values
+                } else {
+                    picked = counts.pick(&self.channels);
+                    &picked
+                };
+                let mut read = self.convert(values);
+                // Lists of their own, lest that of all windows is kept in memory rather than in registers.
                 if let Some(laws) = &self.laws {
+                    let mut forces = [0.0; LANES];
                     for lane in 0..LANES {
-                        read.forces[lane] = laws.laws[lane].force(values[lane]).0;
+                        forces[lane] = laws.laws[lane].force(values[lane]).0;
                     }
+                    read.forces = forces;
                 }
                 if counts.is_any_missing() {
+                    let mut forces = read.forces;
                     for lane in 0..LANES {
                         if counts.is_missing(self.channels[lane].into()) {
-                            read.forces[lane] = f32::NAN;
+                            forces[lane] = f32::NAN;
                         }
                     }
+                    read.forces = forces;
                 }
                 read
             }
@@ -188,18 +201,18 @@ impl<const LANES: usize> Window<LANES> {
     /// A sensor on which next to nothing rests while the floor is empty is never missed: it may well read nothing.
     #[inline(always)]
     fn convert(&self, counts: &[u16; LANES]) -> Read<LANES> {
-        let mut read = Read { forces: [0.0; LANES], ends: [End::Within; LANES], by_board: false };
+        let (mut forces, mut ends) = ([0.0; LANES], [End::Within; LANES]);
         for lane in 0..LANES {
             let volts = Calibration::volts(counts[lane]);
-            read.forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
+            forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
         }
         let saturated = self.laws.as_ref().map_or([Calibration::SATURATED; LANES], |laws| laws.saturated);
         for lane in 0..LANES {
             let end = if self.flags[lane] & BEARS != 0 { End::Low } else { End::Bare };
             let end = if counts[lane] > NOTHING { End::Within } else { end };
-            read.ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
+            ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
         }
-        read
+        Read { forces, ends, by_board: false }
     }
 
     /// The net force of each sensor that is within its range, with what is taken off its reading besides its tare.
