@@ -174,7 +174,7 @@ impl<const LANES: usize> Window<LANES> {
                     &picked
                 };
                 let mut read = self.convert(values);
-                // Lists of their own, lest that of all windows is kept in memory rather than in registers.
+                // Written elsewhere first, for a list that is written one by one is kept in memory, not in registers.
                 if let Some(laws) = &self.laws {
                     let mut forces = [0.0; LANES];
                     for lane in 0..LANES {

@@ -170,7 +170,7 @@ fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample,
     found.bad.into()
 }
 
-/// Without branches, over plain arrays: compiled for what the processor offers.
+/// Over plain arrays, with one branch for all lanes: compiled for what the processor offers.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 fn write_wide<'a>(
     window: &Window<WIDE>,
