@@ -1,17 +1,18 @@
 //! One board: its packets that wait, its sensors' calibration and tare.
 
+use smallvec::SmallVec;
+
+use super::buffers::{BUFFERS, Buffers};
 use super::sample::Sample;
 use super::stream::Stream;
 use super::tare::{Found, Tare, TareMeter, TareOutcome};
-use super::window::{NARROW, Trust, WIDE, Window, misses_wide, put_narrow, put_wide, windows};
+use super::window::{NARROW, WIDE, Window, count_misses_wide, misses_wide, windows};
+use super::write::{Trust, put_narrow, put_wide};
 use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId};
 use crate::sense::health::{Health, LOUD_N};
 use crate::sense::{ForceFrame, Quality};
 use crate::units::Newtons;
 use crate::wire::{LinkCounters, Readings};
-
-/// How many slots may wait for their boards at once.
-pub(super) const BUFFERS: usize = 8;
 
 /// How much more than nothing a sensor must read on the empty floor to be missed there, in newtons.
 const RESTS_N: f32 = 1.0;
@@ -20,15 +21,17 @@ const RESTS_N: f32 = 1.0;
 #[derive(Clone, Debug)]
 pub(super) struct BoardTrack {
     pub(super) stream: Stream,
+    /// Its number on the floor.
+    number: usize,
     geometry: Geometry,
     channels: Vec<Option<Channel>>,
-    /// The same, as sensors are worked on side by side.
-    wide: Vec<Window<WIDE>>,
+    /// The same, as sensors are worked on side by side. Most boards have one wide window, which lies here: frames are
+    /// made board by board, and what is next in memory is fetched ahead.
+    wide: SmallVec<[Window<WIDE>; 1]>,
     narrow: Vec<Window<NARROW>>,
-    /// Which of `kept` wait.
+    /// In which buffers a packet of it waits.
     waits: [bool; BUFFERS],
-    kept: [Sample; BUFFERS],
-    /// In which of `kept` its last packet is, and whether that was no news under a load.
+    /// In which buffer its last packet is, and whether that was no news under a load.
     last: Option<usize>,
     repeats: bool,
     /// Whether it sends counts, whose meaning only the floor's calibration tells.
@@ -95,12 +98,12 @@ impl BoardTrack {
         let (wide, narrow) = windows(&channels, 4 * floor.geometry.tile_count());
         Self {
             stream: Stream::default(),
+            number,
             geometry: floor.geometry,
             channels,
             wide,
             narrow,
             waits: [false; BUFFERS],
-            kept: [const { Sample::EMPTY }; BUFFERS],
             last: None,
             repeats: false,
             sends_counts: false,
@@ -114,6 +117,11 @@ impl BoardTrack {
         self.channels.len()
     }
 
+    /// Number of lanes of all its windows, whether a channel reads them or not.
+    pub(super) fn lane_count(&self) -> usize {
+        WIDE * self.wide.len() + NARROW * self.narrow.len()
+    }
+
     pub(super) const fn has(&self, buffer: usize) -> bool {
         self.waits[buffer]
     }
@@ -125,16 +133,23 @@ impl BoardTrack {
     ///
     /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
     /// end of their range, nor of boards that send newtons, which may have smoothed them.
-    pub(super) fn store(&mut self, buffer: usize, readings: &Readings, health: &Health) -> bool {
+    pub(super) fn store(
+        &mut self,
+        buffer: usize,
+        readings: &Readings,
+        buffers: &mut Buffers,
+        health: &Health,
+    ) -> bool {
         self.sends_counts = matches!(readings, Readings::Counts(_));
         self.waits[buffer] = true;
-        let was_here = self.kept[buffer].replace(readings);
+        let was_here = buffers.sample_mut(buffer, self.number).replace(readings);
+        let sample = |buffer: usize| buffers.sample(buffer, self.number);
         let is_same = match self.last.replace(buffer) {
             Some(last) if last == buffer => was_here,
-            Some(last) => self.kept[last] == self.kept[buffer],
+            Some(last) => sample(last) == sample(buffer),
             None => false,
         };
-        self.repeats = is_same && !self.is_taring() && self.bears_load(&self.kept[buffer], health);
+        self.repeats = is_same && !self.is_taring() && self.bears_load(sample(buffer), health);
         !self.repeats
     }
 
@@ -182,17 +197,27 @@ impl BoardTrack {
         if mean.len() != self.channels.len() {
             return None;
         }
-        misses.clear();
-        let known = |miss: &f32| miss.is_finite();
-        misses.extend(self.wide.iter().flat_map(|window| misses_wide(window, mean)).filter(known));
-        misses.extend(self.narrow.iter().flat_map(|window| window.misses(mean)).filter(known));
-        let middle = misses.len() / 2;
         // To count is far less work than to sort, and most places fit worse than the best so far.
-        let is_less = |below: f32| misses.iter().filter(|miss| **miss < below).count() > middle;
-        if misses.is_empty() || !below.is_none_or(is_less) {
+        if below.is_some_and(|below| !self.misses_by_less(mean, below)) {
+            return None;
+        }
+        misses.clear();
+        self.wide.iter().for_each(|window| misses.extend_from_slice(&misses_wide(window, mean)));
+        self.narrow.iter().for_each(|window| misses.extend_from_slice(&window.misses(mean)));
+        misses.retain(|miss| miss.is_finite());
+        let middle = misses.len() / 2;
+        if misses.is_empty() {
             return None;
         }
         Some(*misses.select_nth_unstable_by(middle, f32::total_cmp).1)
+    }
+
+    /// Whether the middle one of this board's sensors would miss its tare by less than `below` if it read `mean`.
+    fn misses_by_less(&self, mean: &Sample, below: f32) -> bool {
+        let wide = self.wide.iter().map(|window| count_misses_wide(window, mean, below));
+        let counts = wide.chain(self.narrow.iter().map(|window| window.count_misses(mean, below)));
+        let (known, less) = counts.fold((0, 0), |sum, count| (sum.0 + count.0, sum.1 + count.1));
+        less > known / 2
     }
 
     /// How far all of its values can be trusted.
@@ -234,24 +259,26 @@ impl BoardTrack {
             .map(|channel| (channel.tile as usize, channel.corner, Newtons(channel.tare)))
     }
 
-    /// Writes what it read in `buffer` into `frame` and frees the buffer; without a sample there,
+    /// Writes what it read in `buffer` into `frame` and frees its place there; without a sample there,
     /// what it read last stays.
     pub(super) fn apply(
         &mut self,
         buffer: Option<usize>,
         at_ns: i64,
+        buffers: &Buffers,
         frame: &mut ForceFrame,
         health: &mut Health,
         counters: &mut LinkCounters,
     ) {
-        let buffer = buffer.filter(|&buffer| self.clear(buffer));
-        if let Some(buffer) = buffer {
-            self.measure_tare(buffer, at_ns);
+        let waits = buffer.filter(|&buffer| self.clear(buffer));
+        let sample = waits.map(|buffer| buffers.sample(buffer, self.number));
+        if let Some(sample) = sample {
+            self.measure_tare(sample, at_ns);
         }
         let quality = self.quality();
-        match buffer {
-            Some(buffer) if !self.is_taring() => {
-                counters.bad_readings += self.write(buffer, quality, frame, health);
+        match sample {
+            Some(sample) if !self.is_taring() => {
+                counters.bad_readings += self.write(sample, quality, frame, health);
             }
             _ if quality == Quality::Stale => self.mark_stale(frame),
             _ => {}
@@ -259,9 +286,8 @@ impl BoardTrack {
     }
 
     /// Writes calibrated and tared forces; gives the number of bad readings.
-    fn write(&self, buffer: usize, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
-        let (sample, is_foreign) = (&self.kept[buffer], health.is_foreign());
-        let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign };
+    fn write(&self, sample: &Sample, quality: Quality, frame: &mut ForceFrame, health: &mut Health) -> u64 {
+        let trust = Trust { quality, is_swapped: self.is_swapped, is_foreign: health.is_foreign() };
         let mut bad = 0;
         for window in &self.wide {
             bad += put_wide(window, sample, trust, frame, health);
@@ -279,9 +305,8 @@ impl BoardTrack {
         }
     }
 
-    fn measure_tare(&mut self, buffer: usize, at_ns: i64) {
+    fn measure_tare(&mut self, sample: &Sample, at_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
-        let sample = &self.kept[buffer];
         let force = |(number, channel): (usize, &Option<Channel>)| {
             channel.map_or(f32::NAN, |channel| sample.force(number, &channel.calibration))
         };

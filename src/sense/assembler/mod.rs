@@ -1,6 +1,7 @@
 //! Packets of boards in, frames of the whole floor out.
 
 mod board;
+mod buffers;
 mod clock;
 mod presence;
 mod sample;
@@ -9,6 +10,7 @@ mod stream;
 mod swap;
 mod tare;
 mod window;
+mod write;
 
 use std::time::Duration;
 
@@ -16,7 +18,8 @@ use arrayvec::ArrayVec;
 
 pub use tare::{Tare, TareOutcome, TareRules};
 
-use self::board::{BUFFERS, BoardTrack};
+use self::board::BoardTrack;
+use self::buffers::{BUFFERS, Buffers};
 use self::clock::{SLOT_NS, SampleClock, nanos};
 use self::presence::SILENT_NS;
 use self::swap::Swaps;
@@ -90,6 +93,7 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 pub struct Assembler {
     floor_tiles: usize,
     boards: Vec<BoardTrack>,
+    buffers: Buffers,
     /// `None` before the first packet.
     clock: Option<SampleClock>,
     now_ns: i64,
@@ -103,12 +107,16 @@ pub struct Assembler {
     waiting: ArrayVec<Waiting, BUFFERS>,
     /// How many boards frames wait for.
     awaited: usize,
+    /// No board had reached a later slot before the packet that is sorted in.
+    front: i64,
     /// By how many slots one board must be ahead for them to wait no longer.
     ahead: i64,
     /// The last slot made into a frame.
     done: i64,
     /// Whether the waiting slots are taken for complete.
     flush: bool,
+    /// Whether a board fell silent and no frame has said so yet.
+    has_news: bool,
     /// Whether frames are passed on: not before the tare is known.
     started: bool,
     frame: ForceFrame,
@@ -166,6 +174,7 @@ impl Assembler {
         Self {
             floor_tiles: floor.geometry.tile_count(),
             delays: Vec::with_capacity(boards.len()),
+            buffers: Buffers::new(boards.len()),
             swaps: Swaps::new(&boards),
             boards,
             clock: None,
@@ -176,9 +185,11 @@ impl Assembler {
             aligned_ns: 0,
             waiting: ArrayVec::new(),
             awaited: 0,
+            front: i64::MIN,
             ahead: if floor.geometry.is_part() { AHEAD_OF_PART } else { AHEAD },
             done: i64::MIN,
             flush: false,
+            has_news: false,
             started: false,
             frame,
             health: Health::new(floor),
@@ -219,7 +230,7 @@ impl Assembler {
             let (slot, buffer, received) = if self.is_due() {
                 let first = self.waiting.remove(0);
                 (first.slot, Some(first.buffer), first.received)
-            } else if self.started && self.waiting.is_empty() && self.has_news() {
+            } else if self.started && self.waiting.is_empty() && self.has_news {
                 // Nobody delivers: only the news that boards fell silent. Before the first frame it is news to nobody.
                 let clock = self.clock.as_ref()?;
                 let slot = clock.slot_before(self.now_ns).max(self.done.saturating_add(1));
@@ -400,6 +411,7 @@ impl Assembler {
             if board.stream.presence.pass(self.now_ns) {
                 self.counters.frozen += u64::from(board.repeats());
                 board.interrupt_tare();
+                self.has_news = true;
             }
             if board.stream.is_overdue(self.now_ns) {
                 board.stream.awaited = false;
@@ -433,6 +445,7 @@ impl Assembler {
         };
         if place.restarted {
             board.interrupt_tare();
+            self.has_news |= board.stream.presence.has_news();
         }
         if place.restarted || !board.stream.awaited {
             board.stream.awaited = true;
@@ -449,6 +462,7 @@ impl Assembler {
         } else {
             self.counters.late += 1;
         }
+        self.front = self.front.max(place.slot);
         self.align();
     }
 
@@ -476,7 +490,7 @@ impl Assembler {
     fn store(&mut self, number: usize, slot: i64, packet: &SensorPacket) {
         let place = self.waiting.partition_point(|waiting| waiting.slot < slot);
         if self.waiting.get(place).is_none_or(|waiting| waiting.slot != slot) {
-            self.open(place, slot);
+            self.open(place, slot, number);
         }
         let Some(waiting) = self.waiting.iter_mut().find(|waiting| waiting.slot == slot) else { return };
         waiting.received = waiting.received.max(packet.received);
@@ -485,16 +499,17 @@ impl Assembler {
             // The board has just slipped back a slot: one of its samples is left out.
             return;
         }
-        if board.store(waiting.buffer, &packet.readings, &self.health) {
+        let buffer = waiting.buffer;
+        if board.store(buffer, &packet.readings, &mut self.buffers, &self.health) {
             board.stream.deliver(self.now_ns);
         }
         self.counters.packets += 1;
-        self.swaps.note(number, slot, &packet.readings, &self.boards);
+        self.swaps.note(number, slot, self.buffers.sample(buffer, number), &self.boards);
         self.boards[number].set_swapped(self.swaps.of(number).is_some());
     }
 
-    /// Makes room for `slot` at `place` among the waiting ones.
-    fn open(&mut self, mut place: usize, slot: i64) {
+    /// Makes room for `slot`, which board `number` has reached, at `place` among the waiting ones.
+    fn open(&mut self, mut place: usize, slot: i64, number: usize) {
         if self.waiting.is_full() {
             // Only if the caller left frames unread.
             let oldest = self.waiting.remove(0);
@@ -504,11 +519,11 @@ impl Assembler {
         }
         let taken = |buffer: &usize| self.waiting.iter().any(|waiting| waiting.buffer == *buffer);
         let Some(buffer) = (0..BUFFERS).find(|buffer| !taken(buffer)) else { return };
-        let passed = self
-            .boards
-            .iter()
-            .filter(|board| board.stream.awaited && board.stream.head_slot() >= Some(slot))
-            .count();
+        let has_passed = |board: &&BoardTrack| board.stream.awaited && board.stream.head_slot() >= Some(slot);
+        // Whoever opens a slot is mostly the first to reach it: no need to ask all the others.
+        let may_have_passed =
+            if slot > self.front { &self.boards[number..=number] } else { self.boards.as_slice() };
+        let passed = may_have_passed.iter().filter(has_passed).count();
         self.waiting.insert(place, Waiting { slot, buffer, passed, received: Instant::START });
     }
 
@@ -518,20 +533,16 @@ impl Assembler {
         }
     }
 
-    fn has_news(&self) -> bool {
-        self.boards.iter().any(|board| board.stream.presence.has_news())
-    }
-
     /// Makes the frame of `slot`; false if the tare is still being measured.
     fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
         self.done = slot;
-        let (mut is_taring, mut may_be_wrong, mut has_news) = (false, false, false);
-        for board in &mut self.boards {
-            board.apply(buffer, at_ns, &mut self.frame, &mut self.health, &mut self.counters);
+        let (mut is_taring, mut may_be_wrong) = (false, false);
+        let Self { boards, buffers, frame, health, counters, .. } = self;
+        for board in boards {
+            board.apply(buffer, at_ns, buffers, frame, health, counters);
             is_taring |= board.stream.awaited && board.is_taring();
             may_be_wrong |= board.may_be_wrong();
-            has_news |= board.stream.presence.has_news();
         }
         self.started |= !is_taring;
         if self.started {
@@ -540,7 +551,7 @@ impl Assembler {
             self.frame.received = received;
             self.health.inspect(&mut self.frame);
             self.frame.calibrated = !self.health.is_foreign() && !may_be_wrong;
-            if has_news {
+            if std::mem::take(&mut self.has_news) {
                 self.boards.iter_mut().for_each(|board| board.stream.presence.show());
             }
         }
@@ -573,6 +584,8 @@ impl Assembler {
         }
         if slipped != 0 {
             self.counters.slips += slipped;
+            self.front =
+                self.boards.iter().filter_map(|board| board.stream.head_slot()).max().unwrap_or(i64::MIN);
             self.count_awaited();
         }
     }

@@ -94,6 +94,17 @@ impl Counts {
         channel >= MAX_CHANNELS || self.missing >> channel & 1 != 0
     }
 
+    /// Adds what each channel has read to its sum, which becomes NaN where nothing was read.
+    pub(super) fn add_to(&self, sums: &mut [f32]) {
+        for (sum, value) in sums.iter_mut().zip(&self.values) {
+            *sum += f32::from(*value);
+        }
+        if self.is_any_missing() {
+            let missing = sums.iter_mut().enumerate().filter(|(channel, _)| self.is_missing(*channel));
+            missing.for_each(|(_, sum)| *sum = f32::NAN);
+        }
+    }
+
     fn replace(&mut self, counts: &[Option<u16>]) -> bool {
         let length = counts.len().min(MAX_CHANNELS) as u8;
         let (is_any_new, is_any_missing) = take_in(&mut self.values, counts);

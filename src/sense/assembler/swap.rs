@@ -64,7 +64,7 @@ struct Block {
 
 impl Swaps {
     pub(super) fn new(boards: &[BoardTrack]) -> Self {
-        let most = boards.iter().map(BoardTrack::channel_count).max().unwrap_or(0);
+        let most = boards.iter().map(BoardTrack::lane_count).max().unwrap_or(0);
         let block = |board: &BoardTrack| Block {
             sums: Vec::with_capacity(board.channel_count()),
             ..Block::default()
@@ -79,7 +79,7 @@ impl Swaps {
     }
 
     /// Takes what board `number` read in the millisecond of `slot`.
-    pub(super) fn note(&mut self, number: usize, slot: i64, readings: &Readings, boards: &[BoardTrack]) {
+    pub(super) fn note(&mut self, number: usize, slot: i64, sample: &Sample, boards: &[BoardTrack]) {
         // Each board at a time of its own, for all at once would make one frame in 64 take twice as long.
         let turn = slot.wrapping_add(number as i64);
         // Alone, a board has no other to change places with.
@@ -87,7 +87,7 @@ impl Swaps {
             return;
         }
         let block = &mut self.blocks[number];
-        block.add(readings);
+        block.add(sample);
         // A block whose last packet is lost goes on to the end of the next.
         if turn / EVERY % BLOCK != 0 {
             return;
@@ -188,18 +188,13 @@ impl Swaps {
 }
 
 impl Block {
-    fn add(&mut self, readings: &Readings) {
-        self.sums.resize(readings.len(), 0.0);
+    fn add(&mut self, sample: &Sample) {
+        self.sums.resize(sample.len(), 0.0);
         self.packets += 1;
-        match readings {
-            Readings::Counts(counts) => {
-                self.is_counts = true;
-                for (sum, count) in self.sums.iter_mut().zip(counts) {
-                    *sum += count.map_or(f32::NAN, f32::from);
-                }
-            }
-            Readings::Newtons(forces) => {
-                self.is_counts = false;
+        self.is_counts = matches!(sample, Sample::Counts(_));
+        match sample {
+            Sample::Counts(counts) => counts.add_to(&mut self.sums),
+            Sample::Newtons(forces) => {
                 self.sums.iter_mut().zip(forces).for_each(|(sum, force)| *sum += force);
             }
         }

@@ -4,12 +4,12 @@
 #![allow(clippy::needless_range_loop)]
 
 use multiversion::multiversion;
+use smallvec::SmallVec;
 
 use super::board::Channel;
 use super::sample::Sample;
 use crate::floor::{Calibration, LawKind, exp};
-use crate::sense::health::{End, Health, LOUD_N, Lanes};
-use crate::sense::{ForceFrame, Quality};
+use crate::sense::health::End;
 use crate::wire::MAX_CHANNELS;
 
 /// Sensors that are worked on together: those of as many tiles as most boards have.
@@ -20,9 +20,6 @@ pub(super) const NARROW: usize = 4;
 
 /// Counts up to which a sensor reads nothing (0.5 %: the converter's offset and noise).
 const NOTHING: u16 = 327;
-
-/// More than any corner of a tile can carry, in newtons: 70 people of 70 kg on one corner. Chosen by us.
-const MOST_N: f32 = 50_000.0;
 
 /// Flag of a sensor that a channel reads.
 const WIRED: u8 = 1;
@@ -37,7 +34,7 @@ const NOMINAL: u8 = 4;
 #[derive(Clone, Debug)]
 pub(super) struct Window<const LANES: usize> {
     /// Number of the first sensor, four to a tile.
-    first: usize,
+    pub(super) first: usize,
     /// Which channel reads each sensor, if any does.
     channels: [u8; LANES],
     /// The channel that reads the first sensor, where the others follow in the sensors' order.
@@ -47,7 +44,9 @@ pub(super) struct Window<const LANES: usize> {
     /// Both numbers of exponential laws; of no meaning unless all are such.
     factors: [f32; LANES],
     exponents: [f32; LANES],
-    tares: [f32; LANES],
+    pub(super) tares: [f32; LANES],
+    /// Whether channels read all of them, and either all or none go by the nominal law.
+    pub(super) is_uniform: bool,
     /// The laws, if some are not exponential.
     laws: Option<Box<Laws<LANES>>>,
 }
@@ -64,30 +63,10 @@ struct Laws<const LANES: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Read<const LANES: usize> {
     /// Tare not yet taken off; NaN where nothing was read.
-    forces: [f32; LANES],
-    ends: [End; LANES],
-    by_board: bool,
-}
-
-/// How far a packet can be believed.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Trust {
-    pub quality: Quality,
-    /// Whether it may be another board's.
-    pub is_swapped: bool,
-    /// Whether the floor may be another one.
-    pub is_foreign: bool,
-}
-
-/// What was found while it was written.
-struct Found<const LANES: usize> {
-    /// Number of readings that were no forces.
-    bad: u32,
-    /// Whether any sensor's newtons were used.
-    is_used: bool,
-    /// Whether any sensor asks for its tile to be examined, and which.
-    is_any_loud: bool,
-    loud: [bool; LANES],
+    pub(super) forces: [f32; LANES],
+    pub(super) ends: [End; LANES],
+    /// Whether the board made them of what it read.
+    pub(super) by_board: bool,
 }
 
 /// The windows that `channels` are read through, on a floor with so many `sensors`.
@@ -96,13 +75,13 @@ struct Found<const LANES: usize> {
 pub(super) fn windows(
     channels: &[Option<Channel>],
     sensors: usize,
-) -> (Vec<Window<WIDE>>, Vec<Window<NARROW>>) {
+) -> (SmallVec<[Window<WIDE>; 1]>, Vec<Window<NARROW>>) {
     let sensor = |channel: &Channel| 4 * channel.tile as usize + channel.corner.index();
     let wired = channels.iter().take(MAX_CHANNELS).enumerate();
     let mut wired: Vec<(usize, u8, Channel)> =
         wired.filter_map(|(number, channel)| channel.map(|it| (sensor(&it), number as u8, it))).collect();
     wired.sort_by_key(|(sensor, number, _)| (*sensor, *number));
-    let (mut wide, mut narrow) = (Vec::new(), Vec::new());
+    let (mut wide, mut narrow) = (SmallVec::new(), Vec::new());
     let mut rest = wired.as_slice();
     while let Some((first, ..)) = rest.first() {
         let first = first - first % NARROW;
@@ -131,6 +110,7 @@ impl<const LANES: usize> Window<LANES> {
             factors: [0.0; LANES],
             exponents: [0.0; LANES],
             tares: [0.0; LANES],
+            is_uniform: false,
             laws: None,
         };
         let (mut laws, mut saturated) = ([Calibration::NOMINAL; LANES], [Calibration::SATURATED; LANES]);
@@ -146,14 +126,23 @@ impl<const LANES: usize> Window<LANES> {
             saturated[lane] = channel.saturated;
         }
         window.run = window.run();
+        let first_flags = window.flags[0] & (WIRED | NOMINAL);
+        window.is_uniform =
+            window.is_wired(0) && window.flags.iter().all(|flags| flags & (WIRED | NOMINAL) == first_flags);
         let is_exponential = laws.iter().all(|law| law.kind() == LawKind::Exponential);
         window.laws = (!is_exponential).then(|| Box::new(Laws { laws, saturated }));
         window
     }
 
     #[inline(always)]
-    const fn is_wired(&self, lane: usize) -> bool {
+    pub(super) const fn is_wired(&self, lane: usize) -> bool {
         self.flags[lane] & WIRED != 0
+    }
+
+    /// Whether a sensor's law is the nominal part's.
+    #[inline(always)]
+    pub(super) const fn is_nominal(&self, lane: usize) -> bool {
+        self.flags[lane] & NOMINAL != 0
     }
 
     /// The channel of the first lane, if those of all that are wired follow it.
@@ -166,28 +155,41 @@ impl<const LANES: usize> Window<LANES> {
 
     /// What the sensors have read.
     #[inline(always)]
-    fn read(&self, sample: &Sample) -> Read<LANES> {
+    pub(super) fn read(&self, sample: &Sample) -> Read<LANES> {
         match sample {
             Sample::Newtons(newtons) => {
-                let force = |lane: usize| newtons.get(usize::from(self.channels[lane])).copied();
-                let forces = std::array::from_fn(|lane| force(lane).unwrap_or(f32::NAN));
+                let mut forces = [f32::NAN; LANES];
+                for lane in 0..LANES {
+                    forces[lane] = newtons.get(usize::from(self.channels[lane])).copied().unwrap_or(f32::NAN);
+                }
                 Read { forces, ends: [End::Within; LANES], by_board: true }
             }
             Sample::Counts(counts) => {
                 let run = self.run.and_then(|first| counts.run(first.into()));
-                let values = run.copied().unwrap_or_else(|| counts.pick(&self.channels));
-                let mut read = self.convert(&values);
+                let picked;
+                let values = if let Some(values) = run {
+                    values
+                } else {
+                    picked = counts.pick(&self.channels);
+                    &picked
+                };
+                let mut read = self.convert(values);
+                // Written elsewhere first, for a list that is written one by one is kept in memory, not in registers.
                 if let Some(laws) = &self.laws {
+                    let mut forces = [0.0; LANES];
                     for lane in 0..LANES {
-                        read.forces[lane] = laws.laws[lane].force(values[lane]).0;
+                        forces[lane] = laws.laws[lane].force(values[lane]).0;
                     }
+                    read.forces = forces;
                 }
                 if counts.is_any_missing() {
+                    let mut forces = read.forces;
                     for lane in 0..LANES {
                         if counts.is_missing(self.channels[lane].into()) {
-                            read.forces[lane] = f32::NAN;
+                            forces[lane] = f32::NAN;
                         }
                     }
+                    read.forces = forces;
                 }
                 read
             }
@@ -199,76 +201,18 @@ impl<const LANES: usize> Window<LANES> {
     /// A sensor on which next to nothing rests while the floor is empty is never missed: it may well read nothing.
     #[inline(always)]
     fn convert(&self, counts: &[u16; LANES]) -> Read<LANES> {
-        let mut read = Read { forces: [0.0; LANES], ends: [End::Within; LANES], by_board: false };
+        let (mut forces, mut ends) = ([0.0; LANES], [End::Within; LANES]);
         for lane in 0..LANES {
             let volts = Calibration::volts(counts[lane]);
-            read.forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
+            forces[lane] = self.factors[lane] * exp(self.exponents[lane] * volts);
         }
         let saturated = self.laws.as_ref().map_or([Calibration::SATURATED; LANES], |laws| laws.saturated);
         for lane in 0..LANES {
             let end = if self.flags[lane] & BEARS != 0 { End::Low } else { End::Bare };
             let end = if counts[lane] > NOTHING { End::Within } else { end };
-            read.ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
+            ends[lane] = if counts[lane] >= saturated[lane] { End::High } else { end };
         }
-        read
-    }
-
-    /// Writes tared forces and their qualities.
-    #[inline(always)]
-    fn write(&self, read: &Read<LANES>, trust: Trust, into: &mut Lanes<'_, LANES>) -> Found<LANES> {
-        // All is read before anything is written: the compiler need not fear that it is the same.
-        let (offsets, mut forces) = (*into.offsets, *into.forces);
-        let (mut quality, mut ends, mut guessed, mut news) =
-            (*into.quality, *into.ends, *into.guessed, *into.news);
-        let (mut is_force, mut is_used) = ([false; LANES], [false; LANES]);
-        let mut loud = [false; LANES];
-        for lane in 0..LANES {
-            let force = read.forces[lane] - self.tares[lane] - offsets[lane];
-            // NaN is at most nothing.
-            is_force[lane] = force.abs() <= MOST_N;
-            is_used[lane] = is_force[lane] & self.is_wired(lane) & !trust.is_swapped;
-            loud[lane] = is_used[lane] & (force.abs() > LOUD_N);
-            forces[lane] = if is_used[lane] { force } else { forces[lane] };
-        }
-        // One loop for each list: what does much at once becomes no vector instructions.
-        for lane in 0..LANES {
-            ends[lane] = if is_used[lane] { read.ends[lane] } else { ends[lane] };
-        }
-        let mut is_high = [false; LANES];
-        for lane in 0..LANES {
-            is_high[lane] = read.ends[lane] as u8 == End::High as u8;
-        }
-        for lane in 0..LANES {
-            let is_low = read.ends[lane] as u8 == End::Low as u8;
-            loud[lane] |= is_used[lane] & (is_low | is_high[lane]);
-        }
-        let mut is_nominal = [false; LANES];
-        for lane in 0..LANES {
-            is_nominal[lane] = (self.flags[lane] & NOMINAL != 0) & !read.by_board;
-        }
-        for lane in 0..LANES {
-            guessed[lane] |= is_used[lane] & is_nominal[lane];
-        }
-        for lane in 0..LANES {
-            news[lane] |= is_used[lane];
-        }
-        let [degraded, live] = [Quality::Degraded, Quality::Live].map(|own| own.max(trust.quality));
-        let faulty = Quality::Faulty.max(trust.quality);
-        for lane in 0..LANES {
-            let is_uncertain = is_high[lane] | is_nominal[lane] | trust.is_foreign;
-            let own = if is_uncertain { degraded } else { live };
-            let own = if is_used[lane] { own } else { faulty };
-            quality[lane] = if self.is_wired(lane) { own } else { quality[lane] };
-        }
-        let mut found = Found { bad: 0, is_used: false, is_any_loud: false, loud };
-        for lane in 0..LANES {
-            found.bad += u32::from(self.is_wired(lane) & !is_force[lane]);
-            found.is_used |= is_used[lane];
-            found.is_any_loud |= loud[lane];
-        }
-        (*into.forces, *into.quality, *into.ends) = (forces, quality, ends);
-        (*into.guessed, *into.news) = (guessed, news);
-        found
+        Read { forces, ends, by_board: false }
     }
 
     /// The net force of each sensor that is within its range, with what is taken off its reading besides its tare.
@@ -286,6 +230,19 @@ impl<const LANES: usize> Window<LANES> {
         })
     }
 
+    /// Of how many of the sensors it is known by how much what they have read misses their tares, and of how many it is
+    /// by less than `below`.
+    #[inline(always)]
+    pub(super) fn count_misses(&self, sample: &Sample, below: f32) -> (u32, u32) {
+        let misses = self.misses(sample);
+        let (mut known, mut less) = (0, 0);
+        for lane in 0..LANES {
+            known += u32::from(misses[lane].is_finite());
+            less += u32::from(misses[lane] < below);
+        }
+        (known, less)
+    }
+
     /// By how much what each of the sensors has read misses its tare; NaN where that is not known.
     #[inline(always)]
     pub(super) fn misses(&self, sample: &Sample) -> [f32; LANES] {
@@ -299,54 +256,14 @@ impl<const LANES: usize> Window<LANES> {
     }
 }
 
-/// Puts what the sensors of a wide window have read into `frame`; the answer is how many readings were no forces.
-pub(super) fn put_wide(
-    window: &Window<WIDE>,
-    sample: &Sample,
-    trust: Trust,
-    frame: &mut ForceFrame,
-    health: &mut Health,
-) -> u64 {
-    let Some(mut lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, &write_wide(window, sample, trust, &mut lanes), sample, health)
-}
-
-/// The same for a narrow one.
-pub(super) fn put_narrow(
-    window: &Window<NARROW>,
-    sample: &Sample,
-    trust: Trust,
-    frame: &mut ForceFrame,
-    health: &mut Health,
-) -> u64 {
-    let Some(mut lanes) = health.lanes(window.first, frame) else { return 0 };
-    note(window.first, &window.write(&window.read(sample), trust, &mut lanes), sample, health)
-}
-
-fn note<const LANES: usize>(first: usize, found: &Found<LANES>, sample: &Sample, health: &mut Health) -> u64 {
-    if found.is_used && matches!(sample, Sample::Newtons(_)) {
-        health.note_newtons();
-    }
-    if found.is_any_loud {
-        let loud = (first..).zip(&found.loud).filter(|(_, loud)| **loud);
-        loud.for_each(|(sensor, _)| health.note_loud(sensor));
-    }
-    found.bad.into()
-}
-
-/// Without branches, over plain arrays: compiled for what the processor offers.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
-fn write_wide<'a>(
-    window: &Window<WIDE>,
-    sample: &Sample,
-    trust: Trust,
-    into: &mut Lanes<'a, WIDE>,
-) -> Found<WIDE> {
-    window.write(&window.read(sample), trust, into)
-}
-
-/// [`Window::misses`] of a wide window, likewise.
+/// [`Window::misses`] of a wide window, without branches, over plain arrays: compiled for what the processor offers.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
 pub(super) fn misses_wide(window: &Window<WIDE>, sample: &Sample) -> [f32; WIDE] {
     window.misses(sample)
+}
+
+/// [`Window::count_misses`] of a wide window, likewise.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+pub(super) fn count_misses_wide(window: &Window<WIDE>, sample: &Sample, below: f32) -> (u32, u32) {
+    window.count_misses(sample, below)
 }

@@ -7,6 +7,8 @@
 //! left of them, over m, is c, a moment later and a second later. What a foot leaves that goes on resting there
 //! does not fade with the memory, what comes and goes jumps: they teach nothing.
 
+use multiversion::multiversion;
+
 /// Over which times loads are remembered, in seconds: a decade apart.
 const TIMES_S: [f32; 4] = [0.1, 1.0, 10.0, 100.0];
 
@@ -137,15 +139,42 @@ impl Creep {
         self.share
     }
 
-    /// What each sensor of a tile reads too much, in newtons.
-    pub(super) fn of(&self, memory: &Memory) -> [f32; 4] {
-        memory.sums().map(|sum| self.used * sum)
+    /// Lets the time of these `parts` pass under the `forces` of some tiles, of which some are connected, and notes
+    /// what each sensor then has `crept`, in newtons.
+    pub(super) fn follow(
+        &self,
+        parts: &Parts,
+        forces: &[[f32; 4]],
+        connected: &[bool],
+        memories: &mut [Memory],
+        crept: &mut [[f32; 4]],
+    ) {
+        follow(self.used, parts, forces, connected, memories, crept);
+    }
+}
+
+/// [`Creep::follow`] for sensors that creep by `share`, compiled for what the processor offers.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+fn follow(
+    share: f32,
+    parts: &Parts,
+    forces: &[[f32; 4]],
+    connected: &[bool],
+    memories: &mut [Memory],
+    crept: &mut [[f32; 4]],
+) {
+    let tiles = memories.iter_mut().zip(crept).zip(forces.iter().zip(connected));
+    for ((memory, crept), (forces, connected)) in tiles {
+        if *connected && memory.follow(*forces, parts) {
+            *crept = memory.sums().map(|sum| share * sum);
+        }
     }
 }
 
 impl Memory {
     /// Lets some time pass under these forces; true if anything has changed.
-    pub(super) fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
+    #[inline(always)]
+    fn follow(&mut self, forces: [f32; 4], Parts(parts): &Parts) -> bool {
         if !self.was_loaded && forces.iter().fold(true, |none, &force| none & (force < NOTHING_N)) {
             return false;
         }
@@ -163,7 +192,8 @@ impl Memory {
     }
 
     /// How well each sensor's load is remembered, all times together, in newtons.
-    pub(super) fn sums(&self) -> [f32; 4] {
+    #[inline(always)]
+    fn sums(&self) -> [f32; 4] {
         std::array::from_fn(|corner| self.loads.iter().map(|loads| loads[corner]).sum())
     }
 }
@@ -182,7 +212,7 @@ mod tests {
             let force = if step % 375 < 125 { 150.0 } else { left_n };
             truth.follow([force; 4], &parts);
             let reads = force + creep * truth.sums()[0];
-            let off = known.of(&memory)[0];
+            let off = known.used * memory.sums()[0];
             memory.follow([reads - off; 4], &parts);
             known.ease(0.008);
             if step % 8 == 0 {

@@ -39,6 +39,8 @@ pub(super) struct Jumps {
     forces: Vec<[f32; 4]>,
     /// Which sensors have been read for the frame in the making.
     news: Vec<[bool; 4]>,
+    /// Blocks of which some load may have jumped, or some sensor has not been read.
+    stirred: Vec<usize>,
     /// Until when each tile is not believed, and until when any is not.
     suspected_until: Vec<Instant>,
     any_until: Instant,
@@ -54,6 +56,7 @@ impl Jumps {
             blocks_at: vec![None; tiles.div_ceil(BLOCK)],
             forces: vec![[0.0; 4]; tiles],
             news: vec![[false; 4]; tiles],
+            stirred: Vec::with_capacity(tiles.div_ceil(BLOCK)),
             suspected_until: vec![Instant::START; tiles],
             any_until: Instant::START,
             count: 0,
@@ -71,17 +74,13 @@ impl Jumps {
     /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
     pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]]) {
         let now = frame.at;
-        for block in 0..self.blocks_at.len() {
-            let tiles = BLOCK * block..(BLOCK * (block + 1)).min(self.forces.len());
-            let (before, forces) = (&mut self.forces[tiles.clone()], &frame.forces[tiles.clone()]);
-            let news = self.news[tiles.clone()].as_flattened_mut();
-            if is_calm(before.as_flattened(), forces.as_flattened(), news) {
-                before.copy_from_slice(forces);
-                self.blocks_at[block] = Some(now);
-                news.fill(false);
-            } else {
-                tiles.clone().for_each(|tile| self.compare(tile, frame.forces[tile], &sensors[tile], now));
-                self.news[tiles].fill([false; 4]);
+        self.stirred.clear();
+        settle(&mut self.forces, &frame.forces, &mut self.news, &mut self.blocks_at, now, &mut self.stirred);
+        for place in 0..self.stirred.len() {
+            let first = BLOCK * self.stirred[place];
+            for tile in first..(first + BLOCK).min(self.forces.len()) {
+                self.compare(tile, frame.forces[tile], &sensors[tile], now);
+                self.news[tile] = [false; 4];
             }
         }
         if now < self.any_until {
@@ -119,10 +118,33 @@ impl Jumps {
     }
 }
 
-/// Whether all of some sensors have been read, and no tile's load can have jumped.
+/// Notes what each block of tiles reads `now`, if all of its sensors have been read and no tile's load can have jumped;
+/// the other blocks go to `stirred`.
 ///
-/// Without branches, over plain numbers: compiled for what the processor offers.
+/// Compiled for what the processor offers.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512bw+avx512dq", "x86_64+avx2", "aarch64+neon"))]
+fn settle(
+    before: &mut [[f32; 4]],
+    forces: &[[f32; 4]],
+    news: &mut [[bool; 4]],
+    at: &mut [Option<Instant>],
+    now: Instant,
+    stirred: &mut Vec<usize>,
+) {
+    let blocks = before.chunks_mut(BLOCK).zip(forces.chunks(BLOCK)).zip(news.chunks_mut(BLOCK)).zip(at);
+    for (block, (((before, forces), news), at)) in blocks.enumerate() {
+        if is_calm(before.as_flattened(), forces.as_flattened(), news.as_flattened()) {
+            before.copy_from_slice(forces);
+            news.fill([false; 4]);
+            *at = Some(now);
+        } else {
+            stirred.push(block);
+        }
+    }
+}
+
+/// Whether all of some sensors have been read, and no tile's load can have jumped.
+#[inline(always)]
 fn is_calm(before: &[f32], forces: &[f32], news: &[bool]) -> bool {
     let mut calm = true;
     for (before, now) in before.iter().zip(forces) {

@@ -6,11 +6,12 @@
 //!              +------------ zero -----------------+   (only on an empty, quiet tile)
 //! ```
 //!
-//! [`plate`] knows what a rigid plate allows, [`slow`] averages each tile over
-//! 64 ms and looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
+//! [`plate`] knows what a rigid plate allows, [`averages`] are those of each tile over
+//! 64 ms, in which [`slow`] looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
 //! lingers of a load, [`jump`] what no body does. What must be known before a control could be pressed is decided here,
 //! in the same frame.
 
+mod averages;
 mod creep;
 mod drift;
 mod intake;
@@ -30,10 +31,11 @@ pub(super) use intake::Lanes;
 pub use report::SensorHealth;
 pub use trouble::Trouble;
 
+use self::averages::{Averages, SHARES};
 use self::creep::{Creep, Memory, Parts};
 use self::jump::Jumps;
 use self::plate::Twist;
-use self::slow::{GAP_S, SHARES, Slow};
+use self::slow::{GAP_S, Slow};
 use self::trouble::Sensor;
 
 /// Force beside zero from which on a tile is examined in every frame: the least that counts as load.
@@ -99,7 +101,10 @@ pub(super) struct Health {
     /// third.
     guessed: Vec<[bool; 4]>,
     sensors: Vec<[Sensor; 4]>,
+    averages: Averages,
     slow: Vec<Slow>,
+    /// Which tiles' sensors were all connected when they were last visited.
+    connected: Vec<bool>,
     /// Which tiles carry something, by their last whole blocks.
     loaded: Vec<bool>,
     /// Tiles with a reading to be examined in this frame.
@@ -157,7 +162,9 @@ impl Health {
             ends: vec![[End::Within; 4]; tiles],
             guessed: vec![[false; 4]; tiles],
             sensors: vec![[Sensor::default(); 4]; tiles],
+            averages: Averages::new(tiles),
             slow: vec![Slow::default(); tiles],
+            connected: vec![false; tiles],
             loaded: vec![false; tiles],
             loud: Vec::with_capacity(4 * tiles),
             watched: Vec::with_capacity(tiles),
@@ -274,31 +281,36 @@ impl Health {
         let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32().min(GAP_S));
         let parts = Parts::of(dt);
         self.creep.ease(dt / SHARES as f32);
-        for tile in self.shares[share]..self.shares[share + 1] {
-            let connected = is_connected(&frame.quality[tile], &self.sensors[tile]);
-            let is_whole = self.slow[tile].add(frame.forces[tile], self.ends[tile], connected);
-            if is_whole {
-                self.finish_block(tile, frame.at);
-            }
-            let has_crept = connected && self.memories[tile].follow(frame.forces[tile], &parts);
-            if has_crept {
-                self.crept[tile] = self.creep.of(&self.memories[tile]);
-            }
-            if is_whole || has_crept {
-                let (zeros, crept) = (self.zeros[tile], self.crept[tile]);
-                self.offsets[tile] = std::array::from_fn(|corner| zeros[corner] + crept[corner]);
-            }
+        let tiles = self.shares[share]..self.shares[share + 1];
+        for tile in tiles.clone() {
+            self.connected[tile] = is_connected(&frame.quality[tile], &self.sensors[tile]);
         }
+        let Self { averages, ends, connected, .. } = self;
+        if averages.add(share, tiles.clone(), &frame.forces, ends, connected) {
+            tiles.clone().for_each(|tile| self.finish_block(tile, frame.at));
+        }
+        self.creep.follow(
+            &parts,
+            &frame.forces[tiles.clone()],
+            &self.connected[tiles.clone()],
+            &mut self.memories[tiles.clone()],
+            &mut self.crept[tiles.clone()],
+        );
+        let (zeros, crept) = (&self.zeros[tiles.clone()], &self.crept[tiles.clone()]);
+        let both = zeros.as_flattened().iter().zip(crept.as_flattened());
+        let offsets = self.offsets[tiles].as_flattened_mut();
+        offsets.iter_mut().zip(both).for_each(|(offset, (zero, crept))| *offset = zero + crept);
     }
 
     fn finish_block(&mut self, tile: usize, at: Instant) {
         let alone = !self.has_loaded_neighbour(tile);
         let foreign = self.is_foreign();
         let is_first = !self.seen[tile];
-        let Self { zeros, limits, guessed, sensors, slow, crept, memories, creep, twist, .. } = self;
+        let Self { zeros, limits, guessed, sensors, averages, slow, crept, memories, creep, twist, .. } =
+            self;
         let (slow, sensors) = (&mut slow[tile], &mut sensors[tile]);
         let had_trouble = sensors.map(|sensor| sensor.trouble());
-        if let Some(block) = slow.finish(at) {
+        if let Some(block) = slow.finish(averages.block(tile), at) {
             self.loaded[tile] = block.is_loaded();
             self.seen[tile] = true;
             if is_first {

@@ -1,16 +1,11 @@
 //! The sensors of one tile, averaged over 64 ms: what changes too slowly for a single frame to show.
 
+use super::averages::Readings;
 use super::drift::Drift;
 use super::trouble::{Sensor, Trouble};
 use super::{End, plate};
 use crate::sense::corners::{Told, has_lifted};
 use crate::units::Instant;
-
-/// Every how many frames a tile is visited.
-pub(super) const SHARES: usize = 8;
-
-/// Visits averaged into one block: 64 ms.
-const VISITS: u8 = 8;
 
 /// Longest time between blocks that says something of change, in seconds; after a gap everything starts afresh.
 pub(super) const GAP_S: f32 = 0.5;
@@ -39,17 +34,9 @@ const RIGHT_N: f32 = 3.0;
 /// From which sum on a tile counts as loaded for its neighbours' sake, in newtons.
 const LOADED_N: f32 = 6.0;
 
-/// One tile's averages over the block that is under way, and what follows from those before.
+/// What follows from the blocks of one tile so far.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Slow {
-    visits: u8,
-    /// Whether all sensors were connected at every visit.
-    broken: bool,
-    sums: [f32; 4],
-    lows: [f32; 4],
-    highs: [f32; 4],
-    /// The end of its converter that each sensor was at last; the high one if it ever was there.
-    ends: [End; 4],
     ended: Option<Instant>,
     tracks: [Track; 4],
     /// For how long one sensor alone has read a load.
@@ -90,38 +77,16 @@ struct Track {
 }
 
 impl Slow {
-    /// Adds what the sensors read; true if the block is complete.
-    pub(super) fn add(&mut self, forces: [f32; 4], ends: [End; 4], connected: bool) -> bool {
-        if self.visits == 0 {
-            (self.sums, self.lows, self.highs, self.broken) = ([0.0; 4], forces, forces, false);
-            self.ends = ends;
-        }
-        self.visits += 1;
-        self.broken |= !connected;
-        for (corner, force) in forces.into_iter().enumerate() {
-            self.sums[corner] += force;
-            self.lows[corner] = self.lows[corner].min(force);
-            self.highs[corner] = self.highs[corner].max(force);
-            if self.ends[corner] != End::High {
-                self.ends[corner] = ends[corner];
-            }
-        }
-        self.visits == VISITS
-    }
-
     /// The block that is complete; `None` if it has gaps, after which nothing earlier counts either.
-    pub(super) fn finish(&mut self, at: Instant) -> Option<Block> {
-        self.visits = 0;
+    pub(super) fn finish(&mut self, readings: Option<Readings>, at: Instant) -> Option<Block> {
         let seconds = self.ended.replace(at).map(|ended| at.since(ended).as_secs_f32());
-        let seconds = seconds.filter(|&seconds| !self.broken && seconds <= GAP_S);
-        let Some(seconds) = seconds else {
+        let seconds = seconds.filter(|&seconds| seconds <= GAP_S);
+        let Some((seconds, Readings { means, lows, spreads, ends })) = seconds.zip(readings) else {
             self.tracks = Default::default();
             self.drift.interrupt();
             return None;
         };
-        let means = self.sums.map(|sum| sum / f32::from(VISITS));
-        let spreads = std::array::from_fn(|corner| self.highs[corner] - self.lows[corner]);
-        Some(Block { means, lows: self.lows, spreads, ends: self.ends, seconds })
+        Some(Block { means, lows, spreads, ends, seconds })
     }
 
     /// Finds stuck sensors, on plates whose twist lies in this range, and gives those in trouble the chance to be found
