@@ -264,7 +264,7 @@ impl BoardTrack {
     pub(super) fn apply(
         &mut self,
         buffer: Option<usize>,
-        at_ns: i64,
+        sampled_ns: i64,
         buffers: &Buffers,
         frame: &mut ForceFrame,
         health: &mut Health,
@@ -273,7 +273,7 @@ impl BoardTrack {
         let waits = buffer.filter(|&buffer| self.clear(buffer));
         let sample = waits.map(|buffer| buffers.sample(buffer, self.number));
         if let Some(sample) = sample {
-            self.measure_tare(sample, at_ns);
+            self.measure_tare(sample, sampled_ns);
         }
         let quality = self.quality();
         match sample {
@@ -305,13 +305,13 @@ impl BoardTrack {
         }
     }
 
-    fn measure_tare(&mut self, sample: &Sample, at_ns: i64) {
+    fn measure_tare(&mut self, sample: &Sample, sampled_ns: i64) {
         let TareState::Measuring(meter) = &mut self.tare else { return };
         let force = |(number, channel): (usize, &Option<Channel>)| {
             channel.map_or(f32::NAN, |channel| sample.force(number, &channel.calibration))
         };
         let forces = self.channels.iter().enumerate().map(force);
-        match meter.add(at_ns, forces) {
+        match meter.add(sampled_ns, forces) {
             None => {}
             Some(Found::Quiet(means)) => {
                 for (channel, mean) in self.channels.iter_mut().zip(means) {

@@ -536,11 +536,14 @@ impl Assembler {
     /// Makes the frame of `slot`; false if the tare is still being measured.
     fn complete(&mut self, slot: i64, buffer: Option<usize>, received: Instant) -> bool {
         let at_ns = self.clock.as_ref().map_or(0, |clock| clock.at_ns(slot));
+        // When it was sampled by the boards' own count: how this computer's clock is steered changes nothing of what is
+        // found of sensors, which two computers that sense the same would else find differently.
+        let sampled_ns = slot.max(0).saturating_mul(SLOT_NS);
         self.done = slot;
         let (mut is_taring, mut may_be_wrong) = (false, false);
         let Self { boards, buffers, frame, health, counters, .. } = self;
         for board in boards {
-            board.apply(buffer, at_ns, buffers, frame, health, counters);
+            board.apply(buffer, sampled_ns, buffers, frame, health, counters);
             is_taring |= board.stream.awaited && board.is_taring();
             may_be_wrong |= board.may_be_wrong();
         }
@@ -549,7 +552,7 @@ impl Assembler {
             let next = self.frame.at + Duration::from_micros(u64::from(self.counters.frames > 0));
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
-            self.health.inspect(&mut self.frame);
+            self.health.inspect(&mut self.frame, instant(sampled_ns));
             self.frame.calibrated = !self.health.is_foreign() && !may_be_wrong;
             if std::mem::take(&mut self.has_news) {
                 self.boards.iter_mut().for_each(|board| board.stream.presence.show());

@@ -72,8 +72,7 @@ impl Jumps {
     /// Takes from tiles whose load has jumped, for a while, whatever quality they had.
     ///
     /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.
-    pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]]) {
-        let now = frame.at;
+    pub(super) fn mark(&mut self, frame: &mut ForceFrame, sensors: &[[Sensor; 4]], now: Instant) {
         self.stirred.clear();
         settle(&mut self.forces, &frame.forces, &mut self.news, &mut self.blocks_at, now, &mut self.stirred);
         for place in 0..self.stirred.len() {
@@ -167,13 +166,12 @@ mod tests {
         let (mut jumps, mut frame) = (Jumps::new(1), ForceFrame::empty(&geometry));
         let mut suspected = Vec::new();
         for (ms, newtons) in newtons.into_iter().enumerate() {
-            frame.at = Instant::from_millis(ms as u64);
             frame.quality.fill([Quality::Live; 4]);
             if let Some(newtons) = newtons {
                 frame.forces[0] = [0.25 * newtons; 4];
                 jumps.news().fill(true);
             }
-            jumps.mark(&mut frame, &[[Sensor::default(); 4]]);
+            jumps.mark(&mut frame, &[[Sensor::default(); 4]], Instant::from_millis(ms as u64));
             if frame.quality[0] == [Quality::Faulty; 4] {
                 suspected.push(ms);
             }

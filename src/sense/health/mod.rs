@@ -189,8 +189,8 @@ impl Health {
         self.offsets[tile][corner]
     }
 
-    /// Marks in `frame`, whose forces have all been taken, what cannot be trusted.
-    pub(super) fn inspect(&mut self, frame: &mut ForceFrame) {
+    /// Marks in `frame`, whose forces have all been taken and which was `sampled` then, what cannot be trusted.
+    pub(super) fn inspect(&mut self, frame: &mut ForceFrame, sampled: Instant) {
         self.number = self.number.wrapping_add(1);
         let mut loud = std::mem::take(&mut self.loud);
         let mut watched = std::mem::take(&mut self.watched);
@@ -211,8 +211,8 @@ impl Health {
         }
         self.loud = loud;
         self.watched = std::mem::replace(&mut self.spare, watched);
-        self.visit_share(frame);
-        self.jumps.mark(frame, &self.sensors);
+        self.visit_share(frame, sampled);
+        self.jumps.mark(frame, &self.sensors, sampled);
     }
 
     /// Looks at one tile; true if it must be examined again in the next frame.
@@ -275,10 +275,10 @@ impl Health {
     }
 
     /// Adds this frame to the averages of every [`SHARES`]th part of the floor in turn.
-    fn visit_share(&mut self, frame: &ForceFrame) {
+    fn visit_share(&mut self, frame: &ForceFrame, sampled: Instant) {
         let share = self.number as usize % SHARES;
-        let last = self.visited[share].replace(frame.at);
-        let dt = last.map_or(0.0, |last| frame.at.since(last).as_secs_f32().min(GAP_S));
+        let last = self.visited[share].replace(sampled);
+        let dt = last.map_or(0.0, |last| sampled.since(last).as_secs_f32().min(GAP_S));
         let parts = Parts::of(dt);
         self.creep.ease(dt / SHARES as f32);
         let tiles = self.shares[share]..self.shares[share + 1];
@@ -287,7 +287,7 @@ impl Health {
         }
         let Self { averages, ends, connected, .. } = self;
         if averages.add(share, tiles.clone(), &frame.forces, ends, connected) {
-            tiles.clone().for_each(|tile| self.finish_block(tile, frame.at));
+            tiles.clone().for_each(|tile| self.finish_block(tile, sampled));
         }
         self.creep.follow(
             &parts,

@@ -1,7 +1,5 @@
 //! Walks over plates from rigid to limp: sound sensors are not accused, broken ones are found within two steps.
 
-use std::time::Duration;
-
 use glam::Vec2;
 use rand::{RngExt, SeedableRng};
 use rand_distr::StandardNormal;
@@ -10,6 +8,7 @@ use rand_pcg::Pcg64Mcg;
 use super::{Health, LOUD_N, Trouble};
 use crate::floor::{Corner, Floor};
 use crate::sense::ForceFrame;
+use crate::units::Instant;
 
 /// How far plates give way to twist: a steel tile; 20 mm and 12 mm of plywood on soft feet; 12 mm on stiff ones; limp.
 const TWISTS: [f32; 5] = [0.0, 0.2, 0.45, 0.7, 0.95];
@@ -84,7 +83,6 @@ impl Walk {
     fn millisecond(&mut self) {
         self.now += 1;
         let geometry = self.floor.geometry;
-        self.frame.at = self.frame.at + Duration::from_millis(1);
         self.frame.quality.fill([crate::sense::Quality::Live; 4]);
         let mut forces = vec![[0.0_f32; 4]; geometry.tile_count()];
         for (force, at) in self.steps.iter().flat_map(|step| step.points(self.now)) {
@@ -122,7 +120,7 @@ impl Walk {
                 }
             }
         }
-        self.health.inspect(&mut self.frame);
+        self.health.inspect(&mut self.frame, Instant::from_millis(self.now.into()));
     }
 
     /// A step with its middle at `at`, until it has given its weight to the next.
