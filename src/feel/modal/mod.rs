@@ -4,24 +4,18 @@
 #![allow(clippy::needless_range_loop)]
 
 mod basis;
+mod eight;
 #[cfg(test)]
 mod tests;
-
-use std::f64::consts::TAU;
 
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
 use super::mix::{LANES, transposed};
 use basis::{Basis, TERMS};
+use eight::{EIGHT, Eight, SUMS, product, tune};
 
 pub(super) use basis::SPAN;
-
-/// Modes that are moved on together: as many double-precision numbers as the widest register holds.
-const EIGHT: usize = 8;
-
-/// Sums that are kept apart, so that no addition has to wait for the one before.
-const SUMS: usize = 4;
 
 /// Below this rate a span lasts too long for its terms; there is little to compute then, and it is computed plainly.
 const SLOW: f64 = 44_000.0;
@@ -65,36 +59,6 @@ pub struct ModalBank {
 struct Key {
     frequency_hz: f32,
     decay_s: f32,
-}
-
-/// Eight modes side by side.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Eight {
-    /// The state one sample before the next one to be rendered.
-    state: Complexes,
-    /// `r`.
-    turn: Complexes,
-    /// `r` to the power of [`SPAN`].
-    pole_power: Complexes,
-    power_terms: [PowerTerms; EIGHT],
-    /// The state once more, as precise as the power_terms.
-    rounded_re: [f32; EIGHT],
-    rounded_im: [f32; EIGHT],
-}
-
-/// The terms of `r` to the power of 1 to [`SPAN`].
-#[derive(Clone, Copy, Debug)]
-struct PowerTerms {
-    re: [f32; TERMS],
-    im: [f32; TERMS],
-}
-
-/// One complex number per mode.
-#[derive(Clone, Copy, Debug)]
-struct Complexes {
-    re: [f64; EIGHT],
-    im: [f64; EIGHT],
 }
 
 impl ModalBank {
@@ -295,124 +259,6 @@ pub(super) fn ring_side_by_side(
     for (bank, _) in banks.iter_mut().zip(rings).filter(|(_, rings)| **rings) {
         bank.grow_older(samples);
     }
-}
-
-impl Eight {
-    const SILENT: Self = Self {
-        state: Complexes::ZERO,
-        turn: Complexes::ZERO,
-        pole_power: Complexes::ZERO,
-        power_terms: [PowerTerms { re: [0.0; TERMS], im: [0.0; TERMS] }; EIGHT],
-        rounded_re: [0.0; EIGHT],
-        rounded_im: [0.0; EIGHT],
-    };
-
-    /// Makes `lane` the mode that `from` holds in another lane.
-    fn copy(&mut self, lane: usize, from: &Self, other: usize) {
-        self.power_terms[lane] = from.power_terms[other];
-        self.turn.set(lane, from.turn.get(other));
-        self.pole_power.set(lane, from.pole_power.get(other));
-        self.set_state(lane, from.state.get(other));
-    }
-
-    /// Adds the terms of its modes; a lane that holds none adds nothing.
-    #[inline(always)]
-    fn add_terms<const FUSED: bool>(&self, sums: &mut [[f32; TERMS]; SUMS]) {
-        for lane in 0..EIGHT {
-            let (of_re, of_im) = (2 * (lane % 2), 2 * (lane % 2) + 1);
-            for term in 0..TERMS {
-                sums[of_re][term] = multiply_add::<FUSED>(
-                    self.rounded_re[lane],
-                    self.power_terms[lane].im[term],
-                    sums[of_re][term],
-                );
-                sums[of_im][term] = multiply_add::<FUSED>(
-                    self.rounded_im[lane],
-                    self.power_terms[lane].re[term],
-                    sums[of_im][term],
-                );
-            }
-        }
-    }
-
-    /// Moves on by up to a span.
-    #[inline(always)]
-    fn advance(&mut self, samples: usize) {
-        if samples == SPAN {
-            self.state = self.state.times(&self.pole_power);
-        } else {
-            let mut power = self.turn;
-            for exponent in 0..SPAN.ilog2() {
-                if samples & (1 << exponent) != 0 {
-                    self.state = self.state.times(&power);
-                }
-                power = power.times(&power);
-            }
-        }
-        for lane in 0..EIGHT {
-            self.rounded_re[lane] = self.state.re[lane] as f32;
-            self.rounded_im[lane] = self.state.im[lane] as f32;
-        }
-    }
-
-    fn set_state(&mut self, lane: usize, state: (f64, f64)) {
-        self.state.set(lane, state);
-        (self.rounded_re[lane], self.rounded_im[lane]) = (state.0 as f32, state.1 as f32);
-    }
-}
-
-/// Makes `lane` a silent mode of this frequency and decay.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
-fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, basis: &Basis) {
-    let angle = TAU * f64::from(key.frequency_hz) / sample_rate;
-    let shrink = (-1.0 / (f64::from(key.decay_s) * sample_rate)).exp();
-    let turn = (shrink * angle.cos(), shrink * angle.sin());
-
-    // r; then r^2; then r^3 and r^4 as r^2 times both, and so on.
-    let (mut re, mut im) = ([turn.0; SPAN], [turn.1; SPAN]);
-    let mut known = 1;
-    while known < SPAN {
-        let power = (re[known - 1], im[known - 1]);
-        for n in known..2 * known {
-            (re[n], im[n]) = product((re[n - known], im[n - known]), power);
-        }
-        known *= 2;
-    }
-    // What is next to nothing is nothing, lest faint modes end in denormal numbers.
-    let rounded = |x: f64| if x.abs() < 1e-11 { 0.0 } else { x as f32 };
-    let [of_re, of_im] = basis.terms_of(&re, &im);
-    eight.power_terms[lane] = PowerTerms { re: of_re.map(rounded), im: of_im.map(rounded) };
-    eight.turn.set(lane, turn);
-    eight.pole_power.set(lane, (re[SPAN - 1], im[SPAN - 1]));
-    eight.set_state(lane, (0.0, 0.0));
-}
-
-impl Complexes {
-    const ZERO: Self = Self { re: [0.0; EIGHT], im: [0.0; EIGHT] };
-
-    fn get(&self, lane: usize) -> (f64, f64) {
-        (self.re[lane], self.im[lane])
-    }
-
-    fn set(&mut self, lane: usize, (re, im): (f64, f64)) {
-        self.re[lane] = re;
-        self.im[lane] = im;
-    }
-
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        let mut result = Self::ZERO;
-        for lane in 0..EIGHT {
-            result.re[lane] = self.re[lane] * other.re[lane] - self.im[lane] * other.im[lane];
-            result.im[lane] = self.re[lane] * other.im[lane] + self.im[lane] * other.re[lane];
-        }
-        result
-    }
-}
-
-#[inline(always)]
-fn product(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
 /// `a * b + c`, in one instruction where there is one: without it, `mul_add` is a slow library call.

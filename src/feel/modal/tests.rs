@@ -1,5 +1,7 @@
 //! Modal banks against double precision.
 
+use std::f64::consts::TAU;
+
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 
