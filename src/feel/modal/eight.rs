@@ -3,11 +3,9 @@
 // Loops over lanes stay plain indexed loops: those are the ones that become vector instructions.
 #![allow(clippy::needless_range_loop)]
 
-use std::f64::consts::TAU;
-
 use multiversion::multiversion;
 
-use super::basis::{Basis, SPAN, TERMS};
+use super::basis::{Basis, FEW, SPAN, TERMS};
 use super::{Key, multiply_add};
 
 /// Modes that are moved on together: as many double-precision numbers as the widest register holds.
@@ -26,18 +24,17 @@ pub(super) struct Eight {
     pub(super) turn: Complexes,
     /// `r` to the power of [`SPAN`].
     pole_power: Complexes,
-    pub(super) power_terms: [PowerTerms; EIGHT],
-    /// The state once more, as precise as the power_terms.
-    rounded_re: [f32; EIGHT],
-    rounded_im: [f32; EIGHT],
+    /// The first [`FEW`] terms of each mode, then the others: smooth modes don't read those.
+    pub(super) power_terms: [[PowerTerms; EIGHT]; 2],
+    /// The states once more, as precise as the terms: real part, imaginary part.
+    rounded: [[f32; 2]; EIGHT],
 }
 
-/// The terms of `r` to the power of 1 to [`SPAN`].
-#[derive(Clone, Copy, Debug)]
-pub(super) struct PowerTerms {
-    pub(super) re: [f32; TERMS],
-    pub(super) im: [f32; TERMS],
-}
+/// Terms of `r` to the power of 1 to [`SPAN`]: of the imaginary part, of the real one, and so on.
+///
+/// Side by side with what each is multiplied with, the state's real and its imaginary part, since a pair of numbers
+/// is spread over a vector as it is read.
+pub(super) type PowerTerms = [f32; 2 * FEW];
 
 /// One complex number per mode.
 #[derive(Clone, Copy, Debug)]
@@ -51,35 +48,28 @@ impl Eight {
         state: Complexes::ZERO,
         turn: Complexes::ZERO,
         pole_power: Complexes::ZERO,
-        power_terms: [PowerTerms { re: [0.0; TERMS], im: [0.0; TERMS] }; EIGHT],
-        rounded_re: [0.0; EIGHT],
-        rounded_im: [0.0; EIGHT],
+        power_terms: [[[0.0; 2 * FEW]; EIGHT]; 2],
+        rounded: [[0.0; 2]; EIGHT],
     };
 
     /// Makes `lane` the mode that `from` holds in another lane.
     pub(super) fn copy(&mut self, lane: usize, from: &Self, other: usize) {
-        self.power_terms[lane] = from.power_terms[other];
+        for (terms, from) in self.power_terms.iter_mut().zip(&from.power_terms) {
+            terms[lane] = from[other];
+        }
         self.turn.set(lane, from.turn.get(other));
         self.pole_power.set(lane, from.pole_power.get(other));
         self.set_state(lane, from.state.get(other));
     }
 
-    /// Adds the terms of its modes; a lane that holds none adds nothing.
+    /// Adds the first or the other terms of its modes, each in two parts; a lane that holds none adds nothing.
     #[inline(always)]
-    pub(super) fn add_terms<const FUSED: bool>(&self, sums: &mut [[f32; TERMS]; SUMS]) {
+    pub(super) fn add_terms<const FUSED: bool>(&self, part: usize, sums: &mut [PowerTerms; SUMS]) {
         for lane in 0..EIGHT {
-            let (of_re, of_im) = (2 * (lane % 2), 2 * (lane % 2) + 1);
-            for term in 0..TERMS {
-                sums[of_re][term] = multiply_add::<FUSED>(
-                    self.rounded_re[lane],
-                    self.power_terms[lane].im[term],
-                    sums[of_re][term],
-                );
-                sums[of_im][term] = multiply_add::<FUSED>(
-                    self.rounded_im[lane],
-                    self.power_terms[lane].re[term],
-                    sums[of_im][term],
-                );
+            let (terms, sums) = (&self.power_terms[part][lane], &mut sums[lane % SUMS]);
+            let state = self.rounded[lane];
+            for n in 0..2 * FEW {
+                sums[n] = multiply_add::<FUSED>(state[n % 2], terms[n], sums[n]);
             }
         }
     }
@@ -99,22 +89,21 @@ impl Eight {
             }
         }
         for lane in 0..EIGHT {
-            self.rounded_re[lane] = self.state.re[lane] as f32;
-            self.rounded_im[lane] = self.state.im[lane] as f32;
+            self.rounded[lane] = [self.state.re[lane] as f32, self.state.im[lane] as f32];
         }
     }
 
     pub(super) fn set_state(&mut self, lane: usize, state: (f64, f64)) {
         self.state.set(lane, state);
-        (self.rounded_re[lane], self.rounded_im[lane]) = (state.0 as f32, state.1 as f32);
+        self.rounded[lane] = [state.0 as f32, state.1 as f32];
     }
 }
 
 /// Makes `lane` a silent mode of this frequency and decay.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 pub(super) fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, basis: &Basis) {
-    let angle = TAU * f64::from(key.frequency_hz) / sample_rate;
-    let shrink = (-1.0 / (f64::from(key.decay_s) * sample_rate)).exp();
+    let (angle, fade) = key.per_sample(sample_rate);
+    let shrink = (-fade).exp();
     let turn = (shrink * angle.cos(), shrink * angle.sin());
 
     // r; then r^2; then r^3 and r^4 as r^2 times both, and so on.
@@ -130,7 +119,10 @@ pub(super) fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, b
     // What is next to nothing is nothing, lest faint modes end in denormal numbers.
     let rounded = |x: f64| if x.abs() < 1e-11 { 0.0 } else { x as f32 };
     let [of_re, of_im] = basis.terms_of(&re, &im);
-    eight.power_terms[lane] = PowerTerms { re: of_re.map(rounded), im: of_im.map(rounded) };
+    for term in 0..TERMS {
+        let pairs = eight.power_terms[term / FEW][lane].as_chunks_mut::<2>().0;
+        pairs[term % FEW] = [rounded(of_im[term]), rounded(of_re[term])];
+    }
     eight.turn.set(lane, turn);
     eight.pole_power.set(lane, (re[SPAN - 1], im[SPAN - 1]));
     eight.set_state(lane, (0.0, 0.0));

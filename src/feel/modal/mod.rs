@@ -8,12 +8,14 @@ mod eight;
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::TAU;
+
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
-use super::mix::{LANES, transposed};
-use basis::{Basis, TERMS};
-use eight::{EIGHT, Eight, SUMS, product, tune};
+use super::mix::{LANES, LaneSet, transpose};
+use basis::{Basis, FEW, TERMS};
+use eight::{EIGHT, Eight, PowerTerms, SUMS, product, tune};
 
 pub(super) use basis::SPAN;
 
@@ -32,7 +34,7 @@ const CHECK: usize = 512;
 /// `r` per sample; its output is the imaginary part. The state advances in
 /// double precision once per span of 64 samples. What lies in between is a sum of
 /// the same 16 polynomials for every mode: the bank adds up what its modes
-/// give to each, and draws the sum once. That is faster than a recurrence per
+/// give to each, and draws the sum once; smooth modes, those below 460 Hz at 96 kHz, need the first 8 only. That is faster than a recurrence per
 /// sample, and without its rounding (a single-precision two-pole filter is off
 /// by -23 dB for a 60 Hz mode at 96 kHz, this by less than -120 dB).
 ///
@@ -48,6 +50,9 @@ pub struct ModalBank {
     keys: Vec<Key>,
     eights: Vec<Eight>,
     active: usize,
+    /// Whether all modes of each eight are smooth, and whether all modes of the bank are.
+    smooth: Vec<bool>,
+    all_smooth: bool,
     /// Samples since the last look for modes that have rung out.
     unchecked: usize,
     /// Where the last strike landed: clicks strike their modes in the same order every time.
@@ -59,6 +64,14 @@ pub struct ModalBank {
 struct Key {
     frequency_hz: f32,
     decay_s: f32,
+}
+
+impl Key {
+    /// By how much the mode turns, in radians, and fades, in shares, from one sample to the next.
+    fn per_sample(&self, sample_rate: f64) -> (f64, f64) {
+        let angle = TAU * f64::from(self.frequency_hz) / sample_rate;
+        (angle, (f64::from(self.decay_s) * sample_rate).recip())
+    }
 }
 
 impl ModalBank {
@@ -75,6 +88,8 @@ impl ModalBank {
             keys: vec![Key::default(); eights * EIGHT],
             eights: vec![Eight::SILENT; eights],
             active: 0,
+            smooth: vec![true; eights],
+            all_smooth: true,
             unchecked: 0,
             last: 0,
         }
@@ -108,6 +123,8 @@ impl ModalBank {
     pub fn clear(&mut self) {
         self.eights[..self.active.div_ceil(EIGHT)].fill(Eight::SILENT);
         self.active = 0;
+        self.smooth.fill(true);
+        self.all_smooth = true;
     }
 
     /// Strikes a mode, so that the very next sample rendered is the first that moves.
@@ -174,30 +191,45 @@ impl ModalBank {
         }
     }
 
-    /// The terms of the next span; the bank moves on by its first `samples`.
+    /// The first or the other terms of the next span, each in two parts to be added.
     #[inline(always)]
-    fn terms<const FUSED: bool>(&mut self, samples: usize) -> [f32; TERMS] {
-        let mut sums = [[0.0; TERMS]; SUMS];
-        for eight in &mut self.eights[..self.active.div_ceil(EIGHT)] {
-            eight.add_terms::<FUSED>(&mut sums);
-            eight.advance(samples);
+    fn terms<const FUSED: bool>(&self, part: usize) -> PowerTerms {
+        let mut sums = [[0.0; 2 * FEW]; SUMS];
+        for (eight, smooth) in self.eights[..self.active.div_ceil(EIGHT)].iter().zip(&self.smooth) {
+            if part == 0 || !smooth {
+                eight.add_terms::<FUSED>(part, &mut sums);
+            }
         }
-        let mut terms = [0.0; TERMS];
-        for term in 0..TERMS {
-            terms[term] = (sums[0][term] + sums[1][term]) + (sums[2][term] + sums[3][term]);
+        let mut terms = [0.0; 2 * FEW];
+        for n in 0..2 * FEW {
+            terms[n] = (sums[0][n] + sums[1][n]) + (sums[2][n] + sums[3][n]);
         }
         terms
     }
 
+    /// Moves on by up to a span.
+    #[inline(always)]
+    fn advance(&mut self, samples: usize) {
+        for eight in &mut self.eights[..self.active.div_ceil(EIGHT)] {
+            eight.advance(samples);
+        }
+    }
+
     /// Counts samples, and looks for modes that have rung out now and then.
+    #[inline(always)]
     fn grow_older(&mut self, samples: usize) {
         self.unchecked += samples;
         if self.unchecked >= CHECK {
             self.unchecked = 0;
-            for slot in (0..self.active).rev() {
-                if self.energy(slot) < SILENCE * SILENCE {
-                    self.release(slot);
-                }
+            self.release_silent();
+        }
+    }
+
+    #[inline(never)]
+    fn release_silent(&mut self) {
+        for slot in (0..self.active).rev() {
+            if self.energy(slot) < SILENCE * SILENCE {
+                self.release(slot);
             }
         }
     }
@@ -219,8 +251,19 @@ impl ModalBank {
             self.active += 1;
         }
         self.keys[slot] = key;
+        self.note_smooth(slot / EIGHT);
         tune(&mut self.eights[slot / EIGHT], slot % EIGHT, key, self.sample_rate, Basis::get());
         (slot, stolen)
+    }
+
+    /// Notes whether the modes of an eight are smooth, after one has come or gone.
+    fn note_smooth(&mut self, eight: usize) {
+        let (first, last) = (eight * EIGHT, self.active.min((eight + 1) * EIGHT));
+        self.smooth[eight] = self.keys[first..last.max(first)].iter().all(|key| {
+            let (angle, fade) = key.per_sample(self.sample_rate);
+            Basis::is_smooth(angle, fade)
+        });
+        self.all_smooth = self.smooth.iter().all(|smooth| *smooth);
     }
 
     fn weakest(&self) -> usize {
@@ -240,25 +283,34 @@ impl ModalBank {
         let moved = self.eights[last / EIGHT];
         self.eights[slot / EIGHT].copy(slot % EIGHT, &moved, last % EIGHT);
         self.eights[last / EIGHT].set_state(last % EIGHT, (0.0, 0.0));
+        self.note_smooth(slot / EIGHT);
+        self.note_smooth(last / EIGHT);
     }
 }
 
 /// Writes the next `samples` of several banks, at most a span, to the columns of `out`, and silence to the other lanes.
 ///
-/// `rings` says which of up to [`LANES`] banks are asked. Columns beyond `samples` are of no meaning.
-///
-/// # Panics
-/// If more than [`LANES`] banks are given.
+/// `ringing` says which of up to [`LANES`] banks are asked; the answer is which of them ring on. Columns beyond
+/// `samples` are of no meaning.
 pub(super) fn ring_side_by_side(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
-) {
-    draw_banks(banks, rings, samples, out, Basis::get());
-    for (bank, _) in banks.iter_mut().zip(rings).filter(|(_, rings)| **rings) {
-        bank.grow_older(samples);
+) -> LaneSet {
+    draw_banks(banks, ringing, samples, out, Basis::get());
+    let mut silent = 0;
+    for (lane, bank) in banks.iter_mut().enumerate() {
+        if has(ringing, lane) {
+            bank.grow_older(samples);
+        }
+        silent |= LaneSet::from(bank.is_silent()) << lane;
     }
+    ringing & !silent
+}
+
+fn has(set: LaneSet, lane: usize) -> bool {
+    set >> lane & 1 == 1
 }
 
 /// `a * b + c`, in one instruction where there is one: without it, `mul_add` is a slow library call.
@@ -281,46 +333,98 @@ fn render_spans(bank: &mut ModalBank, out: &mut [f32], basis: &Basis) {
 fn render_spans_with<const FUSED: bool>(bank: &mut ModalBank, out: &mut [f32], basis: &Basis) {
     let (spans, rest) = out.as_chunks_mut::<SPAN>();
     for span in spans {
-        basis.draw::<FUSED>(&bank.terms::<FUSED>(SPAN), span);
+        render_span::<FUSED>(bank, SPAN, span, basis);
     }
     if !rest.is_empty() {
         let mut span = [0.0; SPAN];
-        basis.draw::<FUSED>(&bank.terms::<FUSED>(rest.len()), &mut span);
+        render_span::<FUSED>(bank, rest.len(), &mut span, basis);
         for (sample, more) in rest.iter_mut().zip(&span) {
             *sample += more;
         }
     }
 }
 
+#[inline(always)]
+fn render_span<const FUSED: bool>(
+    bank: &mut ModalBank,
+    samples: usize,
+    span: &mut [f32; SPAN],
+    basis: &Basis,
+) {
+    let mut terms = [0.0; TERMS];
+    let parts = if bank.all_smooth { 1 } else { 2 };
+    for (part, terms) in terms.as_chunks_mut::<FEW>().0[..parts].iter_mut().enumerate() {
+        let parts = bank.terms::<FUSED>(part);
+        for (term, [re, im]) in terms.iter_mut().zip(parts.as_chunks::<2>().0) {
+            *term = re + im;
+        }
+    }
+    basis.draw::<FUSED>(&terms[..parts * FEW], span);
+    bank.advance(samples);
+}
+
 /// Writes the banks' next samples side by side with the widest registers this processor has.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn draw_banks(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
     basis: &Basis,
 ) {
     if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
-        draw_banks_with::<true>(banks, rings, samples, out, basis);
+        draw_banks_with::<true>(banks, ringing, samples, out, basis);
     } else {
-        draw_banks_with::<false>(banks, rings, samples, out, basis);
+        draw_banks_with::<false>(banks, ringing, samples, out, basis);
     }
 }
 
 #[inline(always)]
 fn draw_banks_with<const FUSED: bool>(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
     basis: &Basis,
 ) {
-    let mut terms = [[0.0; TERMS]; LANES];
-    for ((bank, rings), terms) in banks.iter_mut().zip(rings).zip(&mut terms) {
-        if *rings {
-            *terms = bank.terms::<FUSED>(samples);
+    let mut terms = [[0.0; LANES]; TERMS];
+    let (few, others) = terms.split_at_mut(FEW);
+    let smooth = add_side_by_side::<FUSED>(banks, ringing, 0, few);
+    if !smooth {
+        add_side_by_side::<FUSED>(banks, ringing, 1, others);
+    }
+    for (lane, bank) in banks.iter_mut().enumerate() {
+        if has(ringing, lane) {
+            bank.advance(samples);
         }
     }
-    basis.draw_side_by_side::<FUSED, LANES>(&transposed(&terms.each_ref()), out);
+    match terms.first_chunk::<FEW>() {
+        Some(few) if smooth => basis.draw_side_by_side::<FUSED, LANES, FEW>(few, out),
+        _ => basis.draw_side_by_side::<FUSED, LANES, TERMS>(&terms, out),
+    }
+}
+
+/// Adds the first or the other terms of the banks, one bank per lane; the answer is whether all are smooth.
+#[inline(always)]
+fn add_side_by_side<const FUSED: bool>(
+    banks: &[ModalBank],
+    ringing: LaneSet,
+    part: usize,
+    terms: &mut [[f32; LANES]],
+) -> bool {
+    let (mut rows, mut smooth) = ([[0.0; 2 * FEW]; LANES], true);
+    for (lane, (bank, row)) in banks.iter().zip(&mut rows).enumerate() {
+        if has(ringing, lane) {
+            *row = bank.terms::<FUSED>(part);
+            smooth &= bank.all_smooth;
+        }
+    }
+    let mut columns = [[0.0; LANES]; 2 * FEW];
+    transpose(&rows.each_ref(), &mut columns);
+    for (term, [re, im]) in terms.iter_mut().zip(columns.as_chunks::<2>().0) {
+        for lane in 0..LANES {
+            term[lane] += re[lane] + im[lane];
+        }
+    }
+    smooth
 }
