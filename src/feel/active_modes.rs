@@ -1,7 +1,7 @@
 //! The modal banks of all channels, computed in groups.
 
 use super::ModalBank;
-use super::mix::{LANES, Mix};
+use super::mix::{LANES, LaneSet, Mix};
 use super::modal::{SPAN, ring_side_by_side};
 use super::push::Pushes;
 
@@ -17,10 +17,20 @@ pub(super) struct ActiveModes {
     pushes: Vec<Pushes>,
     /// Modes that had to make room since somebody asked.
     stolen: u32,
-    /// Samples of the block at hand that are in the mix's row; `None` for a bank that was not struck.
-    in_row: Vec<Option<usize>>,
-    /// Banks that ring and are not in the mix's row.
-    side_by_side: Vec<bool>,
+    /// Samples of the block at hand that are in the mix's row, of each bank that is rendered there.
+    in_row: Vec<usize>,
+    groups: Vec<Group>,
+}
+
+/// What the banks of a group do.
+#[derive(Clone, Copy, Debug, Default)]
+struct Group {
+    /// Those that ring on.
+    ringing: LaneSet,
+    /// Those that are rendered into the mix's rows: struck in the block at hand, still being struck, or slow.
+    in_rows: LaneSet,
+    /// Those that are rendered side by side in the block at hand.
+    side_by_side: LaneSet,
 }
 
 impl ActiveModes {
@@ -30,8 +40,8 @@ impl ActiveModes {
             banks: vec![ModalBank::new(f64::from(sample_rate), modes); channels],
             pushes: vec![Pushes::new(sample_rate as f32); channels],
             stolen: 0,
-            in_row: vec![None; channels],
-            side_by_side: vec![false; channels],
+            in_row: vec![0; channels],
+            groups: vec![Group::default(); channels.div_ceil(LANES)],
         }
     }
 
@@ -39,6 +49,7 @@ impl ActiveModes {
     pub(super) fn clear(&mut self) {
         self.banks.iter_mut().for_each(ModalBank::clear);
         self.pushes.iter_mut().for_each(Pushes::clear);
+        self.groups.fill(Group::default());
     }
 
     /// Stops one channel at once.
@@ -58,6 +69,7 @@ impl ActiveModes {
         at: usize,
         mix: &mut Mix,
     ) -> (&mut ModalBank, &mut Pushes) {
+        self.groups[channel / LANES].in_rows |= 1 << (channel % LANES);
         self.render_row(channel, at, mix);
         (&mut self.banks[channel], &mut self.pushes[channel])
     }
@@ -65,14 +77,17 @@ impl ActiveModes {
     /// Renders what must go through the mix's rows to the block's end, `frames`; the answer is how many
     /// modes had to make room meanwhile.
     pub(super) fn finish_rows(&mut self, frames: usize, mix: &mut Mix) -> u32 {
-        for channel in 0..self.banks.len() {
-            let bank = &self.banks[channel];
-            if self.in_row[channel].is_some() || bank.is_slow() || !self.pushes[channel].is_empty() {
+        for number in 0..self.groups.len() {
+            let Group { ringing, in_rows, .. } = self.groups[number];
+            self.groups[number].side_by_side = ringing & !in_rows;
+            for lane in lanes(in_rows) {
+                let channel = number * LANES + lane;
                 self.render_row(channel, frames, mix);
-                self.in_row[channel] = None;
-                self.side_by_side[channel] = false;
-            } else {
-                self.side_by_side[channel] = !bank.is_silent();
+                self.in_row[channel] = 0;
+                let (bank, struck) = (&self.banks[channel], !self.pushes[channel].is_empty());
+                let group = &mut self.groups[number];
+                group.ringing = with(group.ringing, lane, !bank.is_silent());
+                group.in_rows = with(group.in_rows, lane, struck || (bank.is_slow() && !bank.is_silent()));
             }
         }
         std::mem::take(&mut self.stolen)
@@ -82,26 +97,40 @@ impl ActiveModes {
     pub(super) fn draw(&mut self, group: usize, samples: usize, columns: &mut [[f32; LANES]; SPAN]) -> bool {
         let first = group * LANES;
         let last = self.banks.len().min(first + LANES);
-        let rings = &self.side_by_side[first..last];
-        let any = rings.contains(&true);
-        if any {
-            ring_side_by_side(&mut self.banks[first..last], rings, samples, columns);
+        let (banks, group) = (&mut self.banks[first..last], &mut self.groups[group]);
+        if group.side_by_side == 0 {
+            return false;
         }
-        any
+        let ring_on = ring_side_by_side(banks, group.side_by_side, samples, columns);
+        group.ringing &= !group.side_by_side | ring_on;
+        true
     }
 
     /// Whether a group has any bank to draw.
     pub(super) fn has_more(&self, group: usize) -> bool {
-        let first = group * LANES;
-        self.side_by_side[first..self.banks.len().min(first + LANES)].contains(&true)
+        self.groups[group].side_by_side != 0
     }
 
     fn render_row(&mut self, channel: usize, end: usize, mix: &mut Mix) {
         let (bank, pushes) = (&mut self.banks[channel], &mut self.pushes[channel]);
-        let start = self.in_row[channel].unwrap_or(0);
+        let start = self.in_row[channel];
         if !(bank.is_silent() && pushes.is_empty()) && end > start {
             self.stolen += pushes.render(bank, &mut mix.row(channel)[start..end]);
         }
-        self.in_row[channel] = Some(end);
+        self.in_row[channel] = end;
     }
+}
+
+/// The lanes of a set, from the lowest on.
+fn lanes(mut set: LaneSet) -> impl Iterator<Item = usize> {
+    std::iter::from_fn(move || {
+        let lane = (set != 0).then(|| set.trailing_zeros() as usize);
+        set &= set.wrapping_sub(1);
+        lane
+    })
+}
+
+/// The set with a lane, or without it.
+fn with(set: LaneSet, lane: usize, is_in: bool) -> LaneSet {
+    set & !(1 << lane) | LaneSet::from(is_in) << lane
 }

@@ -83,44 +83,31 @@ impl Limiter {
         true
     }
 
-    /// Takes direct current out of a stretch of samples of each channel, and holds each to its gain at most, by which it
-    /// is multiplied.
+    /// Takes direct current out of up to four samples of each channel, holds each to its gain at most, by which it is
+    /// multiplied.
     ///
-    /// By fours: a sample's mean needs the one before it, but what four samples add to a mean does not.
+    /// Four together, since a sample's mean needs the one before it, but what four samples add to a mean does not.
     #[inline(always)]
     pub(super) fn finish<const FUSED: bool>(&mut self, columns: &mut [[f32; LANES]], gains: &[f32]) {
         let keep = self.keep;
-        let kept = [keep, keep.powi(2), keep.powi(3), keep.powi(4)];
-        let (fours, rest) = columns.as_chunks_mut::<4>();
-        let (gains, gains_of_rest) = gains.as_chunks::<4>();
-        for (four, gains) in fours.iter_mut().zip(gains) {
-            let mut added = [0.0; LANES];
-            let before = self.mean;
-            let mut mean = before;
-            for (n, column) in four.iter_mut().enumerate() {
-                for lane in 0..LANES {
-                    let sample = column[lane];
-                    let blocked = sample - mean[lane];
-                    added[lane] = multiply_add::<FUSED>(keep, added[lane], (1.0 - keep) * sample);
-                    mean[lane] = multiply_add::<FUSED>(kept[n], before[lane], added[lane]);
-                    column[lane] = within_full_scale(blocked) * gains[n];
-                }
-            }
-            self.mean = mean;
-        }
-        for (column, gain) in rest.iter_mut().zip(gains_of_rest) {
+        let before = self.mean;
+        let (mut mean, mut added, mut kept) = (before, [0.0; LANES], 1.0);
+        for (column, gain) in columns.iter_mut().zip(gains) {
+            kept *= keep;
             for lane in 0..LANES {
                 let sample = column[lane];
-                let blocked = sample - self.mean[lane];
-                self.mean[lane] = multiply_add::<FUSED>(keep, self.mean[lane], (1.0 - keep) * sample);
-                column[lane] = within_full_scale(blocked) * gain;
+                column[lane] = within_full_scale(sample - mean[lane]) * gain;
+                added[lane] = multiply_add::<FUSED>(keep, added[lane], (1.0 - keep) * sample);
+                mean[lane] = multiply_add::<FUSED>(kept, before[lane], added[lane]);
             }
         }
+        self.mean = mean;
     }
 
     /// Makes exact zeros of trifles; the answer is the largest number that could still be heard.
     ///
     /// The peak that is held alone moves nothing: with silence coming in it only decays.
+    #[inline(always)]
     pub(super) fn settle(&mut self) -> f32 {
         settled(std::slice::from_mut(&mut self.envelope));
         settled(std::slice::from_mut(&mut self.mean))
@@ -129,7 +116,13 @@ impl Limiter {
 
 #[inline(always)]
 fn within_full_scale(sample: f32) -> f32 {
-    -larger(-1.0, -larger(-1.0, sample))
+    smaller(larger(sample, -1.0), 1.0)
+}
+
+/// The smaller of two numbers, in one instruction.
+#[inline(always)]
+fn smaller(a: f32, b: f32) -> f32 {
+    if a < b { a } else { b }
 }
 
 /// The larger of two numbers, in one instruction; [`f32::max`] takes three to do right by NaN, which never comes here.
@@ -203,7 +196,9 @@ mod tests {
         for columns in columns.chunks_mut(64) {
             let loudest = columns.iter().fold(0.0_f32, |most, column| most.max(column[5].abs()));
             limiter.hold_down(columns, loudest);
-            limiter.finish::<false>(columns, &[1.0; 64][..columns.len()]);
+            for columns in columns.chunks_mut(4) {
+                limiter.finish::<false>(columns, &[1.0; 4]);
+            }
             limiter.settle();
         }
         columns.into_iter().map(|column| column[5]).collect()

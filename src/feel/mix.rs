@@ -7,6 +7,9 @@ use crate::floor::Actuator;
 /// Channels that the output stage works on side by side.
 pub(super) const LANES: usize = 16;
 
+/// Some of a group's channels: bit by bit, lane 0 the lowest.
+pub(super) type LaneSet = u16;
+
 /// A share of a sound below this (-100 dB) counts as zero.
 pub(super) const FAINT: f32 = 1e-5;
 
@@ -53,8 +56,8 @@ pub(super) struct Mix {
     samples: Vec<f32>,
     stride: usize,
     frames: usize,
-    /// Which rows hold this block's samples; the others hold old ones.
-    is_open: Vec<bool>,
+    /// Which rows of each group hold this block's samples; the others hold old ones.
+    open: Vec<LaneSet>,
 }
 
 impl Mix {
@@ -63,29 +66,30 @@ impl Mix {
         let rows = channels.next_multiple_of(LANES);
         // An odd number of cache lines: rows at a power of two apart would share the same cache sets.
         let stride = max_frames.next_multiple_of(LANES) + 16;
-        Self { samples: vec![0.0; rows * stride], stride, frames: 0, is_open: vec![false; rows] }
+        Self { samples: vec![0.0; rows * stride], stride, frames: 0, open: vec![0; rows / LANES] }
     }
 
     /// Starts a block of `frames` silent samples per channel.
     pub(super) fn begin(&mut self, frames: usize) {
         self.frames = frames;
-        self.is_open.fill(false);
+        self.open.fill(0);
     }
 
     /// The block of one channel, to add to.
     pub(super) fn row(&mut self, channel: usize) -> &mut [f32] {
         let start = channel * self.stride;
         let row = &mut self.samples[start..start + self.frames];
-        if !self.is_open[channel] {
+        let (open, lane) = (&mut self.open[channel / LANES], 1 << (channel % LANES));
+        if *open & lane == 0 {
             row.fill(0.0);
-            self.is_open[channel] = true;
+            *open |= lane;
         }
         row
     }
 
     /// Whether anybody has written to the channels of this group.
     pub(super) fn is_open(&self, group: usize) -> bool {
-        self.is_open[group * LANES..(group + 1) * LANES].contains(&true)
+        self.open[group] != 0
     }
 
     /// Adds samples `from` up to `from + samples` of a group's rows to `columns`, of which at least as many are given.
@@ -102,15 +106,15 @@ impl Mix {
         {
             let mut rows = [&NOTHING; LANES];
             for (lane, row) in rows.iter_mut().enumerate() {
-                let number = group * LANES + lane;
-                let start = number * self.stride + from + square * LANES;
-                if self.is_open[number]
+                let start = (group * LANES + lane) * self.stride + from + square * LANES;
+                if self.open[group] >> lane & 1 == 1
                     && let Some(samples) = self.samples[start..].first_chunk()
                 {
                     *row = samples;
                 }
             }
-            let across: [[f32; LANES]; LANES] = transposed(&rows);
+            let mut across = [[0.0; LANES]; LANES];
+            transpose(&rows, &mut across);
             // As one flat run of numbers: nested loops over both would be made slow gathers of.
             for (sample, more) in columns.as_flattened_mut().iter_mut().zip(across.as_flattened()) {
                 *sample += more;
@@ -121,13 +125,12 @@ impl Mix {
 
 const NOTHING: [f32; LANES] = [0.0; LANES];
 
-/// Makes columns of rows, in squares of four by four.
+/// Writes rows to columns, in squares of four by four.
 // Not inlined: wider instructions would make slow gathers of these shuffles.
 #[inline(never)]
-pub(super) fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES] {
-    let mut columns = [[0.0; LANES]; LANES];
+pub(super) fn transpose<const N: usize>(rows: &[&[f32; N]; LANES], columns: &mut [[f32; LANES]; N]) {
     for lane in (0..LANES).step_by(4) {
-        for n in (0..LANES).step_by(4) {
+        for n in (0..N).step_by(4) {
             let square = Mat4::from_cols(
                 Vec4::from_slice(&rows[lane][n..]),
                 Vec4::from_slice(&rows[lane + 1][n..]),
@@ -141,22 +144,21 @@ pub(super) fn transposed(rows: &[&[f32; LANES]; LANES]) -> [[f32; LANES]; LANES]
             square.w_axis.write_to_slice(&mut columns[n + 3][lane..]);
         }
     }
-    columns
 }
 
 /// Below this a number is as good as zero, and far above the denormal numbers, which are slow to compute with.
 const TRIFLE: f32 = 1e-12;
 
 /// Makes exact zeros of trifles; the answer is the largest absolute number that is left.
+#[inline(always)]
 pub(super) fn settled(numbers: &mut [[f32; LANES]]) -> f32 {
-    let mut largest = 0.0;
+    // Without a sign, the bits of numbers are in the order of the numbers.
+    let mut largest = 0;
     for number in numbers.as_flattened_mut() {
-        if number.abs() < TRIFLE {
-            *number = 0.0;
-        }
-        largest = if number.abs() > largest { number.abs() } else { largest };
+        *number = if number.abs() < TRIFLE { 0.0 } else { *number };
+        largest = number.abs().to_bits().max(largest);
     }
-    largest
+    f32::from_bits(largest)
 }
 
 #[cfg(test)]

@@ -14,6 +14,15 @@ pub(crate) const SPAN: usize = 64;
 /// rate by less.
 pub(crate) const TERMS: usize = 16;
 
+/// Terms that describe a span of a smooth mode.
+pub(crate) const FEW: usize = TERMS / 2;
+
+/// How far a smooth mode may turn and shrink in half a span, in radians.
+///
+/// Of `exp(x t)`, t from -1 to 1, the first eight terms leave out a share of about `sqrt(17) |x|^8 / 17!!`: -140 dB.
+/// At 96 kHz that makes modes up to 460 Hz smooth, at 48 kHz up to 230 Hz.
+const SMOOTH: f64 = 0.97;
+
 const HALF: usize = SPAN / 2;
 
 /// Shapes of which every span of every mode is a sum.
@@ -75,6 +84,12 @@ impl Basis {
         }
     }
 
+    /// Whether the first [`FEW`] terms describe a mode that turns by `angle` and shrinks by the factor `exp(-fade)` per
+    /// sample.
+    pub(super) fn is_smooth(angle: f64, fade: f64) -> bool {
+        angle.hypot(fade) * HALF as f64 <= SMOOTH
+    }
+
     /// The terms of a span of samples given as (real, imaginary) pairs, both parts.
     #[inline(always)]
     pub(super) fn terms_of(&self, re: &[f64; SPAN], im: &[f64; SPAN]) -> [[f64; TERMS]; 2] {
@@ -88,14 +103,14 @@ impl Basis {
         terms
     }
 
-    /// Adds the span that `terms` describe to `out`.
+    /// Adds the span that the first terms describe to `out`.
     #[inline(always)]
-    pub(super) fn draw<const FUSED: bool>(&self, terms: &[f32; TERMS], out: &mut [f32; SPAN]) {
+    pub(super) fn draw<const FUSED: bool>(&self, terms: &[f32], out: &mut [f32; SPAN]) {
         let (mut even, mut odd) = ([0.0; HALF], [0.0; HALF]);
-        for pair in 0..TERMS / 2 {
+        for (shapes, terms) in self.later.as_chunks::<2>().0.iter().zip(terms.as_chunks::<2>().0) {
             for n in 0..HALF {
-                even[n] = multiply_add::<FUSED>(terms[2 * pair], self.later[2 * pair][n], even[n]);
-                odd[n] = multiply_add::<FUSED>(terms[2 * pair + 1], self.later[2 * pair + 1][n], odd[n]);
+                even[n] = multiply_add::<FUSED>(terms[0], shapes[0][n], even[n]);
+                odd[n] = multiply_add::<FUSED>(terms[1], shapes[1][n], odd[n]);
             }
         }
         for n in 0..HALF {
@@ -104,18 +119,18 @@ impl Basis {
         }
     }
 
-    /// Writes the spans that `terms` describe, one per lane, to the columns of `out`.
+    /// Writes the spans that the first terms describe, one per lane, to the columns of `out`.
     #[inline(always)]
-    pub(super) fn draw_side_by_side<const FUSED: bool, const LANES: usize>(
+    pub(super) fn draw_side_by_side<const FUSED: bool, const LANES: usize, const FIRST: usize>(
         &self,
-        terms: &[[f32; LANES]; TERMS],
+        terms: &[[f32; LANES]; FIRST],
         out: &mut [[f32; LANES]; SPAN],
     ) {
         /// Samples that are worked on together, so that none has to wait for another's sum.
         const TOGETHER: usize = 4;
         for first in (0..HALF).step_by(TOGETHER) {
             let (mut even, mut odd) = ([[0.0; LANES]; TOGETHER], [[0.0; LANES]; TOGETHER]);
-            for pair in 0..TERMS / 2 {
+            for pair in 0..FIRST / 2 {
                 for n in 0..TOGETHER {
                     let share = &self.by_sample[first + n];
                     for lane in 0..LANES {
@@ -160,7 +175,7 @@ mod tests {
         let terms: [[f32; 4]; TERMS] =
             std::array::from_fn(|term| std::array::from_fn(|lane| ((term * 7 + lane * 5) % 11) as f32 - 5.0));
         let mut columns = [[f32::NAN; 4]; SPAN];
-        basis.draw_side_by_side::<false, 4>(&terms, &mut columns);
+        basis.draw_side_by_side::<false, 4, TERMS>(&terms, &mut columns);
         for lane in 0..4 {
             let mut row = [0.0; SPAN];
             basis.draw::<false>(&terms.map(|term| term[lane]), &mut row);

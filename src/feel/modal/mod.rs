@@ -4,6 +4,7 @@
 #![allow(clippy::needless_range_loop)]
 
 mod basis;
+mod eight;
 #[cfg(test)]
 mod tests;
 
@@ -12,16 +13,11 @@ use std::f64::consts::TAU;
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 
-use super::mix::{LANES, transposed};
-use basis::{Basis, TERMS};
+use super::mix::{LANES, LaneSet, transpose};
+use basis::{Basis, FEW, TERMS};
+use eight::{EIGHT, Eight, PowerTerms, SUMS, product, tune};
 
 pub(super) use basis::SPAN;
-
-/// Modes that are moved on together: as many double-precision numbers as the widest register holds.
-const EIGHT: usize = 8;
-
-/// Sums that are kept apart, so that no addition has to wait for the one before.
-const SUMS: usize = 4;
 
 /// Below this rate a span lasts too long for its terms; there is little to compute then, and it is computed plainly.
 const SLOW: f64 = 44_000.0;
@@ -38,7 +34,7 @@ const CHECK: usize = 512;
 /// `r` per sample; its output is the imaginary part. The state advances in
 /// double precision once per span of 64 samples. What lies in between is a sum of
 /// the same 16 polynomials for every mode: the bank adds up what its modes
-/// give to each, and draws the sum once. That is faster than a recurrence per
+/// give to each, and draws the sum once; smooth modes, those below 460 Hz at 96 kHz, need the first 8 only. That is faster than a recurrence per
 /// sample, and without its rounding (a single-precision two-pole filter is off
 /// by -23 dB for a 60 Hz mode at 96 kHz, this by less than -120 dB).
 ///
@@ -54,6 +50,9 @@ pub struct ModalBank {
     keys: Vec<Key>,
     eights: Vec<Eight>,
     active: usize,
+    /// Whether all modes of each eight are smooth, and whether all modes of the bank are.
+    smooth: Vec<bool>,
+    all_smooth: bool,
     /// Samples since the last look for modes that have rung out.
     unchecked: usize,
     /// Where the last strike landed: clicks strike their modes in the same order every time.
@@ -67,34 +66,12 @@ struct Key {
     decay_s: f32,
 }
 
-/// Eight modes side by side.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(64))]
-struct Eight {
-    /// The state one sample before the next one to be rendered.
-    state: Complexes,
-    /// `r`.
-    turn: Complexes,
-    /// `r` to the power of [`SPAN`].
-    pole_power: Complexes,
-    power_terms: [PowerTerms; EIGHT],
-    /// The state once more, as precise as the power_terms.
-    rounded_re: [f32; EIGHT],
-    rounded_im: [f32; EIGHT],
-}
-
-/// The terms of `r` to the power of 1 to [`SPAN`].
-#[derive(Clone, Copy, Debug)]
-struct PowerTerms {
-    re: [f32; TERMS],
-    im: [f32; TERMS],
-}
-
-/// One complex number per mode.
-#[derive(Clone, Copy, Debug)]
-struct Complexes {
-    re: [f64; EIGHT],
-    im: [f64; EIGHT],
+impl Key {
+    /// By how much the mode turns, in radians, and fades, in shares, from one sample to the next.
+    fn per_sample(&self, sample_rate: f64) -> (f64, f64) {
+        let angle = TAU * f64::from(self.frequency_hz) / sample_rate;
+        (angle, (f64::from(self.decay_s) * sample_rate).recip())
+    }
 }
 
 impl ModalBank {
@@ -111,6 +88,8 @@ impl ModalBank {
             keys: vec![Key::default(); eights * EIGHT],
             eights: vec![Eight::SILENT; eights],
             active: 0,
+            smooth: vec![true; eights],
+            all_smooth: true,
             unchecked: 0,
             last: 0,
         }
@@ -144,6 +123,8 @@ impl ModalBank {
     pub fn clear(&mut self) {
         self.eights[..self.active.div_ceil(EIGHT)].fill(Eight::SILENT);
         self.active = 0;
+        self.smooth.fill(true);
+        self.all_smooth = true;
     }
 
     /// Strikes a mode, so that the very next sample rendered is the first that moves.
@@ -210,30 +191,45 @@ impl ModalBank {
         }
     }
 
-    /// The terms of the next span; the bank moves on by its first `samples`.
+    /// The first or the other terms of the next span, each in two parts to be added.
     #[inline(always)]
-    fn terms<const FUSED: bool>(&mut self, samples: usize) -> [f32; TERMS] {
-        let mut sums = [[0.0; TERMS]; SUMS];
-        for eight in &mut self.eights[..self.active.div_ceil(EIGHT)] {
-            eight.add_terms::<FUSED>(&mut sums);
-            eight.advance(samples);
+    fn terms<const FUSED: bool>(&self, part: usize) -> PowerTerms {
+        let mut sums = [[0.0; 2 * FEW]; SUMS];
+        for (eight, smooth) in self.eights[..self.active.div_ceil(EIGHT)].iter().zip(&self.smooth) {
+            if part == 0 || !smooth {
+                eight.add_terms::<FUSED>(part, &mut sums);
+            }
         }
-        let mut terms = [0.0; TERMS];
-        for term in 0..TERMS {
-            terms[term] = (sums[0][term] + sums[1][term]) + (sums[2][term] + sums[3][term]);
+        let mut terms = [0.0; 2 * FEW];
+        for n in 0..2 * FEW {
+            terms[n] = (sums[0][n] + sums[1][n]) + (sums[2][n] + sums[3][n]);
         }
         terms
     }
 
+    /// Moves on by up to a span.
+    #[inline(always)]
+    fn advance(&mut self, samples: usize) {
+        for eight in &mut self.eights[..self.active.div_ceil(EIGHT)] {
+            eight.advance(samples);
+        }
+    }
+
     /// Counts samples, and looks for modes that have rung out now and then.
+    #[inline(always)]
     fn grow_older(&mut self, samples: usize) {
         self.unchecked += samples;
         if self.unchecked >= CHECK {
             self.unchecked = 0;
-            for slot in (0..self.active).rev() {
-                if self.energy(slot) < SILENCE * SILENCE {
-                    self.release(slot);
-                }
+            self.release_silent();
+        }
+    }
+
+    #[inline(never)]
+    fn release_silent(&mut self) {
+        for slot in (0..self.active).rev() {
+            if self.energy(slot) < SILENCE * SILENCE {
+                self.release(slot);
             }
         }
     }
@@ -255,8 +251,19 @@ impl ModalBank {
             self.active += 1;
         }
         self.keys[slot] = key;
+        self.note_smooth(slot / EIGHT);
         tune(&mut self.eights[slot / EIGHT], slot % EIGHT, key, self.sample_rate, Basis::get());
         (slot, stolen)
+    }
+
+    /// Notes whether the modes of an eight are smooth, after one has come or gone.
+    fn note_smooth(&mut self, eight: usize) {
+        let (first, last) = (eight * EIGHT, self.active.min((eight + 1) * EIGHT));
+        self.smooth[eight] = self.keys[first..last.max(first)].iter().all(|key| {
+            let (angle, fade) = key.per_sample(self.sample_rate);
+            Basis::is_smooth(angle, fade)
+        });
+        self.all_smooth = self.smooth.iter().all(|smooth| *smooth);
     }
 
     fn weakest(&self) -> usize {
@@ -276,143 +283,34 @@ impl ModalBank {
         let moved = self.eights[last / EIGHT];
         self.eights[slot / EIGHT].copy(slot % EIGHT, &moved, last % EIGHT);
         self.eights[last / EIGHT].set_state(last % EIGHT, (0.0, 0.0));
+        self.note_smooth(slot / EIGHT);
+        self.note_smooth(last / EIGHT);
     }
 }
 
 /// Writes the next `samples` of several banks, at most a span, to the columns of `out`, and silence to the other lanes.
 ///
-/// `rings` says which of up to [`LANES`] banks are asked. Columns beyond `samples` are of no meaning.
-///
-/// # Panics
-/// If more than [`LANES`] banks are given.
+/// `ringing` says which of up to [`LANES`] banks are asked; the answer is which of them ring on. Columns beyond
+/// `samples` are of no meaning.
 pub(super) fn ring_side_by_side(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
-) {
-    draw_banks(banks, rings, samples, out, Basis::get());
-    for (bank, _) in banks.iter_mut().zip(rings).filter(|(_, rings)| **rings) {
-        bank.grow_older(samples);
+) -> LaneSet {
+    draw_banks(banks, ringing, samples, out, Basis::get());
+    let mut silent = 0;
+    for (lane, bank) in banks.iter_mut().enumerate() {
+        if has(ringing, lane) {
+            bank.grow_older(samples);
+        }
+        silent |= LaneSet::from(bank.is_silent()) << lane;
     }
+    ringing & !silent
 }
 
-impl Eight {
-    const SILENT: Self = Self {
-        state: Complexes::ZERO,
-        turn: Complexes::ZERO,
-        pole_power: Complexes::ZERO,
-        power_terms: [PowerTerms { re: [0.0; TERMS], im: [0.0; TERMS] }; EIGHT],
-        rounded_re: [0.0; EIGHT],
-        rounded_im: [0.0; EIGHT],
-    };
-
-    /// Makes `lane` the mode that `from` holds in another lane.
-    fn copy(&mut self, lane: usize, from: &Self, other: usize) {
-        self.power_terms[lane] = from.power_terms[other];
-        self.turn.set(lane, from.turn.get(other));
-        self.pole_power.set(lane, from.pole_power.get(other));
-        self.set_state(lane, from.state.get(other));
-    }
-
-    /// Adds the terms of its modes; a lane that holds none adds nothing.
-    #[inline(always)]
-    fn add_terms<const FUSED: bool>(&self, sums: &mut [[f32; TERMS]; SUMS]) {
-        for lane in 0..EIGHT {
-            let (of_re, of_im) = (2 * (lane % 2), 2 * (lane % 2) + 1);
-            for term in 0..TERMS {
-                sums[of_re][term] = multiply_add::<FUSED>(
-                    self.rounded_re[lane],
-                    self.power_terms[lane].im[term],
-                    sums[of_re][term],
-                );
-                sums[of_im][term] = multiply_add::<FUSED>(
-                    self.rounded_im[lane],
-                    self.power_terms[lane].re[term],
-                    sums[of_im][term],
-                );
-            }
-        }
-    }
-
-    /// Moves on by up to a span.
-    #[inline(always)]
-    fn advance(&mut self, samples: usize) {
-        if samples == SPAN {
-            self.state = self.state.times(&self.pole_power);
-        } else {
-            let mut power = self.turn;
-            for exponent in 0..SPAN.ilog2() {
-                if samples & (1 << exponent) != 0 {
-                    self.state = self.state.times(&power);
-                }
-                power = power.times(&power);
-            }
-        }
-        for lane in 0..EIGHT {
-            self.rounded_re[lane] = self.state.re[lane] as f32;
-            self.rounded_im[lane] = self.state.im[lane] as f32;
-        }
-    }
-
-    fn set_state(&mut self, lane: usize, state: (f64, f64)) {
-        self.state.set(lane, state);
-        (self.rounded_re[lane], self.rounded_im[lane]) = (state.0 as f32, state.1 as f32);
-    }
-}
-
-/// Makes `lane` a silent mode of this frequency and decay.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
-fn tune(eight: &mut Eight, lane: usize, key: Key, sample_rate: f64, basis: &Basis) {
-    let angle = TAU * f64::from(key.frequency_hz) / sample_rate;
-    let shrink = (-1.0 / (f64::from(key.decay_s) * sample_rate)).exp();
-    let turn = (shrink * angle.cos(), shrink * angle.sin());
-
-    // r; then r^2; then r^3 and r^4 as r^2 times both, and so on.
-    let (mut re, mut im) = ([turn.0; SPAN], [turn.1; SPAN]);
-    let mut known = 1;
-    while known < SPAN {
-        let power = (re[known - 1], im[known - 1]);
-        for n in known..2 * known {
-            (re[n], im[n]) = product((re[n - known], im[n - known]), power);
-        }
-        known *= 2;
-    }
-    // What is next to nothing is nothing, lest faint modes end in denormal numbers.
-    let rounded = |x: f64| if x.abs() < 1e-11 { 0.0 } else { x as f32 };
-    let [of_re, of_im] = basis.terms_of(&re, &im);
-    eight.power_terms[lane] = PowerTerms { re: of_re.map(rounded), im: of_im.map(rounded) };
-    eight.turn.set(lane, turn);
-    eight.pole_power.set(lane, (re[SPAN - 1], im[SPAN - 1]));
-    eight.set_state(lane, (0.0, 0.0));
-}
-
-impl Complexes {
-    const ZERO: Self = Self { re: [0.0; EIGHT], im: [0.0; EIGHT] };
-
-    fn get(&self, lane: usize) -> (f64, f64) {
-        (self.re[lane], self.im[lane])
-    }
-
-    fn set(&mut self, lane: usize, (re, im): (f64, f64)) {
-        self.re[lane] = re;
-        self.im[lane] = im;
-    }
-
-    #[inline(always)]
-    fn times(&self, other: &Self) -> Self {
-        let mut result = Self::ZERO;
-        for lane in 0..EIGHT {
-            result.re[lane] = self.re[lane] * other.re[lane] - self.im[lane] * other.im[lane];
-            result.im[lane] = self.re[lane] * other.im[lane] + self.im[lane] * other.re[lane];
-        }
-        result
-    }
-}
-
-#[inline(always)]
-fn product(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
-    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
+fn has(set: LaneSet, lane: usize) -> bool {
+    set >> lane & 1 == 1
 }
 
 /// `a * b + c`, in one instruction where there is one: without it, `mul_add` is a slow library call.
@@ -435,46 +333,98 @@ fn render_spans(bank: &mut ModalBank, out: &mut [f32], basis: &Basis) {
 fn render_spans_with<const FUSED: bool>(bank: &mut ModalBank, out: &mut [f32], basis: &Basis) {
     let (spans, rest) = out.as_chunks_mut::<SPAN>();
     for span in spans {
-        basis.draw::<FUSED>(&bank.terms::<FUSED>(SPAN), span);
+        render_span::<FUSED>(bank, SPAN, span, basis);
     }
     if !rest.is_empty() {
         let mut span = [0.0; SPAN];
-        basis.draw::<FUSED>(&bank.terms::<FUSED>(rest.len()), &mut span);
+        render_span::<FUSED>(bank, rest.len(), &mut span, basis);
         for (sample, more) in rest.iter_mut().zip(&span) {
             *sample += more;
         }
     }
 }
 
+#[inline(always)]
+fn render_span<const FUSED: bool>(
+    bank: &mut ModalBank,
+    samples: usize,
+    span: &mut [f32; SPAN],
+    basis: &Basis,
+) {
+    let mut terms = [0.0; TERMS];
+    let parts = if bank.all_smooth { 1 } else { 2 };
+    for (part, terms) in terms.as_chunks_mut::<FEW>().0[..parts].iter_mut().enumerate() {
+        let parts = bank.terms::<FUSED>(part);
+        for (term, [re, im]) in terms.iter_mut().zip(parts.as_chunks::<2>().0) {
+            *term = re + im;
+        }
+    }
+    basis.draw::<FUSED>(&terms[..parts * FEW], span);
+    bank.advance(samples);
+}
+
 /// Writes the banks' next samples side by side with the widest registers this processor has.
 #[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
 fn draw_banks(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
     basis: &Basis,
 ) {
     if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
-        draw_banks_with::<true>(banks, rings, samples, out, basis);
+        draw_banks_with::<true>(banks, ringing, samples, out, basis);
     } else {
-        draw_banks_with::<false>(banks, rings, samples, out, basis);
+        draw_banks_with::<false>(banks, ringing, samples, out, basis);
     }
 }
 
 #[inline(always)]
 fn draw_banks_with<const FUSED: bool>(
     banks: &mut [ModalBank],
-    rings: &[bool],
+    ringing: LaneSet,
     samples: usize,
     out: &mut [[f32; LANES]; SPAN],
     basis: &Basis,
 ) {
-    let mut terms = [[0.0; TERMS]; LANES];
-    for ((bank, rings), terms) in banks.iter_mut().zip(rings).zip(&mut terms) {
-        if *rings {
-            *terms = bank.terms::<FUSED>(samples);
+    let mut terms = [[0.0; LANES]; TERMS];
+    let (few, others) = terms.split_at_mut(FEW);
+    let smooth = add_side_by_side::<FUSED>(banks, ringing, 0, few);
+    if !smooth {
+        add_side_by_side::<FUSED>(banks, ringing, 1, others);
+    }
+    for (lane, bank) in banks.iter_mut().enumerate() {
+        if has(ringing, lane) {
+            bank.advance(samples);
         }
     }
-    basis.draw_side_by_side::<FUSED, LANES>(&transposed(&terms.each_ref()), out);
+    match terms.first_chunk::<FEW>() {
+        Some(few) if smooth => basis.draw_side_by_side::<FUSED, LANES, FEW>(few, out),
+        _ => basis.draw_side_by_side::<FUSED, LANES, TERMS>(&terms, out),
+    }
+}
+
+/// Adds the first or the other terms of the banks, one bank per lane; the answer is whether all are smooth.
+#[inline(always)]
+fn add_side_by_side<const FUSED: bool>(
+    banks: &[ModalBank],
+    ringing: LaneSet,
+    part: usize,
+    terms: &mut [[f32; LANES]],
+) -> bool {
+    let (mut rows, mut smooth) = ([[0.0; 2 * FEW]; LANES], true);
+    for (lane, (bank, row)) in banks.iter().zip(&mut rows).enumerate() {
+        if has(ringing, lane) {
+            *row = bank.terms::<FUSED>(part);
+            smooth &= bank.all_smooth;
+        }
+    }
+    let mut columns = [[0.0; LANES]; 2 * FEW];
+    transpose(&rows.each_ref(), &mut columns);
+    for (term, [re, im]) in terms.iter_mut().zip(columns.as_chunks::<2>().0) {
+        for lane in 0..LANES {
+            term[lane] += re[lane] + im[lane];
+        }
+    }
+    smooth
 }

@@ -50,12 +50,14 @@ impl Gate {
         first
     }
 
+    /// Whether any channel was tripped and has not been opened again.
+    pub(super) fn is_tripped(&self) -> bool {
+        self.tripped.iter().fold(false, |any, tripped| any | tripped)
+    }
+
     /// Opens tripped channels that have closed, and says which: their voices may be forgotten now.
     pub(super) fn reset(&mut self) -> [bool; LANES] {
         let mut closed = [false; LANES];
-        if !self.tripped.contains(&true) {
-            return closed;
-        }
         for lane in 0..LANES {
             closed[lane] = self.tripped[lane] && self.level[lane] == 0.0;
             if closed[lane] {

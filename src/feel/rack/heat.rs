@@ -85,25 +85,32 @@ impl Heat {
         let samples = columns.len() as f32;
         let (short, long) =
             (samples / (samples + self.power_samples), samples / (samples + self.coil_samples));
-        let mut wanted = [1.0; LANES];
-        let mut calm = true;
+        let (mut power, mut allowed, mut calm) = ([0.0; LANES], [0.0; LANES], true);
         for lane in 0..LANES {
-            let power = energy[lane] / samples * self.watts[lane];
-            self.power[lane] += (power - self.power[lane]) * short;
-            let allowed = self.ceiling[lane] + CREDIT * (self.ceiling[lane] - self.heat[lane]);
-            let over = self.power[lane] > allowed;
-            let share = if allowed > 0.0 { allowed / self.power[lane] } else { 0.0 };
-            wanted[lane] = if over { share.sqrt() } else { 1.0 };
-            calm &= !over & (self.gain[lane] == 1.0);
-            let mean_gain = 0.5 * (self.gain[lane] + wanted[lane]);
-            self.heat[lane] += (power * mean_gain * mean_gain - self.heat[lane]) * long;
+            power[lane] = energy[lane] / samples * self.watts[lane];
+            self.power[lane] += (power[lane] - self.power[lane]) * short;
+            allowed[lane] = self.ceiling[lane] + CREDIT * (self.ceiling[lane] - self.heat[lane]);
+            calm &= (self.power[lane] <= allowed[lane]) & (self.gain[lane] == 1.0);
         }
+        let wanted = if calm { [1.0; LANES] } else { self.wanted(&allowed) };
         for lane in 0..LANES {
+            let mean_gain = 0.5 * (self.gain[lane] + wanted[lane]);
+            self.heat[lane] += (power[lane] * mean_gain * mean_gain - self.heat[lane]) * long;
             // What comes and goes while the coil stays hot is one and the same trouble.
             self.down[lane] &= (wanted[lane] < 1.0) | (self.heat[lane] > COOL * self.ceiling[lane]);
         }
         self.warm = true;
         if calm { 0 } else { self.turn::<FUSED>(columns, &wanted) }
+    }
+
+    /// The gains that bring the power down to what is allowed.
+    fn wanted(&self, allowed: &[f32; LANES]) -> [f32; LANES] {
+        let mut wanted = [1.0; LANES];
+        for lane in 0..LANES {
+            let share = if allowed[lane] > 0.0 { allowed[lane] / self.power[lane] } else { 0.0 };
+            wanted[lane] = if self.power[lane] > allowed[lane] { share.sqrt() } else { 1.0 };
+        }
+        wanted
     }
 
     /// Applies the gains that are wanted, going there evenly.

@@ -53,8 +53,8 @@ pub(super) struct Rack {
     channels: usize,
     sample_rate: f32,
     groups: Vec<Group>,
-    /// The samples at hand.
-    columns: Box<[[f32; LANES]; SPAN]>,
+    /// Each group's samples at hand.
+    columns: Vec<[[f32; LANES]; SPAN]>,
     /// The response that filters were fitted to last.
     fitted: Option<(Response, Vec<Filter>)>,
 }
@@ -85,7 +85,7 @@ impl Rack {
             channels,
             sample_rate,
             groups: vec![group; channels.div_ceil(LANES)],
-            columns: Box::new([[0.0; LANES]; SPAN]),
+            columns: vec![[[0.0; LANES]; SPAN]; channels.div_ceil(LANES)],
             fitted: None,
         }
     }
@@ -147,32 +147,31 @@ impl Rack {
         gains: &[f32],
         out: &mut [f32],
     ) -> Faults {
-        let mut faults = Faults::default();
         let is_fed = |group: usize, modes: &ActiveModes| mix.is_open(group) || modes.has_more(group);
-        if self.groups.iter().enumerate().any(|(number, group)| group.idle && !is_fed(number, modes)) {
+        if self.groups.iter().enumerate().all(|(number, group)| group.idle && !is_fed(number, modes)) {
             out.fill(0.0);
+            self.groups.iter_mut().for_each(|group| group.rest(gains.len()));
+            return Faults::default();
         }
-        let columns = &mut *self.columns;
-        for (number, group) in self.groups.iter_mut().enumerate() {
-            let first = number * LANES;
-            let in_rows = mix.is_open(number);
-            let fed = is_fed(number, modes);
-            if !fed && group.idle {
-                group.rest(gains.len());
-                continue;
-            }
-            let widths = Widths { channels: self.channels, width: LANES.min(self.channels - first) };
-            for from in (0..gains.len()).step_by(SPAN) {
-                let gains = &gains[from..gains.len().min(from + SPAN)];
+        let mut faults = Faults::default();
+        for (span, (gains, out)) in gains.chunks(SPAN).zip(out.chunks_mut(SPAN * self.channels)).enumerate() {
+            for (number, (group, columns)) in self.groups.iter_mut().zip(&mut self.columns).enumerate() {
+                let fed = is_fed(number, modes);
                 if !modes.draw(number, gains.len(), columns) {
                     *columns = [[0.0; LANES]; SPAN];
                 }
-                let rows = in_rows.then_some(Rows { mix, group: number, from });
-                let out = &mut out[from * self.channels + first..];
-                faults += run(group, rows, columns, gains, out, widths);
+                if group.idle && !fed {
+                    group.rest(gains.len());
+                    continue;
+                }
+                let rows = mix.is_open(number).then_some(Rows { mix, group: number, from: span * SPAN });
+                faults += run(group, rows, columns, gains, fed);
             }
-            group.settle(fed);
-            for (channel, spent) in (first..).zip(group.gate.reset()) {
+            write(&self.columns, out, self.channels);
+        }
+        for (number, group) in self.groups.iter_mut().enumerate().filter(|(_, group)| group.gate.is_tripped())
+        {
+            for (channel, spent) in (number * LANES..).zip(group.gate.reset()) {
                 if spent {
                     modes.clear_channel(channel);
                 }
@@ -180,13 +179,6 @@ impl Rack {
         }
         faults
     }
-}
-
-/// Channels of a frame, and of a group.
-#[derive(Clone, Copy)]
-struct Widths {
-    channels: usize,
-    width: usize,
 }
 
 /// Where in the mix a stretch of a group's samples is.
@@ -204,13 +196,12 @@ fn run<'a>(
     rows: Option<Rows<'a>>,
     columns: &mut [[f32; LANES]; SPAN],
     gains: &[f32],
-    out: &mut [f32],
-    widths: Widths,
+    fed: bool,
 ) -> Faults {
     if target_cfg_f!(any(target_feature = "fma", target_arch = "aarch64")) {
-        group.run::<true>(rows, columns, gains, out, widths)
+        group.run::<true>(rows, columns, gains, fed)
     } else {
-        group.run::<false>(rows, columns, gains, out, widths)
+        group.run::<false>(rows, columns, gains, fed)
     }
 }
 
@@ -236,8 +227,7 @@ impl Group {
         rows: Option<Rows<'_>>,
         columns: &mut [[f32; LANES]; SPAN],
         gains: &[f32],
-        out: &mut [f32],
-        Widths { channels, width }: Widths,
+        fed: bool,
     ) -> Faults {
         let mut faults = Faults::default();
         if let Some(Rows { mix, group, from }) = rows {
@@ -258,11 +248,16 @@ impl Group {
             found = survey(columns);
         }
         faults.heated = self.heat.run::<FUSED>(columns, &found.energy);
-        self.limiter.finish::<FUSED>(columns, gains);
+        let (fours, rest) = columns.as_chunks_mut::<4>();
+        let (gains, gains_of_rest) = gains.as_chunks::<4>();
+        for (four, gains) in fours.iter_mut().zip(gains) {
+            self.limiter.finish::<FUSED>(four, gains);
+        }
+        self.limiter.finish::<FUSED>(rest, gains_of_rest);
         if !self.gate.is_open() {
             self.gate.run(columns);
         }
-        write(columns, out, channels, width);
+        self.settle(fed);
         faults
     }
 
@@ -287,6 +282,7 @@ impl Group {
     }
 
     /// Makes exact zeros of what has become too small to matter, long before it would become a denormal number.
+    #[inline(always)]
     fn settle(&mut self, fed: bool) {
         let mut left = self.limiter.settle();
         for section in &mut self.sections {
@@ -352,25 +348,26 @@ impl Survey {
     }
 }
 
-/// Writes columns into a group's parts of frames, which are so many `channels` apart and begin with `out`.
-#[inline(always)]
-fn write(columns: &[[f32; LANES]], mut out: &mut [f32], channels: usize, width: usize) {
-    for column in columns {
-        if width == LANES {
-            if let Some(frame) = out.first_chunk_mut::<LANES>() {
-                *frame = *column;
-            }
-        } else {
-            // The last group is seldom full. By fours, since a copy of any length is a call for each frame.
-            let (fours, rest) = out[..width].as_chunks_mut::<4>();
-            for (samples, from) in fours.iter_mut().zip(column.as_chunks::<4>().0) {
-                *samples = *from;
-            }
-            for (sample, from) in rest.iter_mut().zip(&column[4 * fours.len()..]) {
-                *sample = *from;
-            }
+/// Writes the columns of all groups into frames.
+///
+/// Frame by frame rather than group by group: a group's part of a frame mostly lies across two cache lines, and what is
+/// written in order is written once.
+#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq+avx2+fma", "x86_64+avx2+fma", "aarch64+neon"))]
+fn write(groups: &[[[f32; LANES]; SPAN]], out: &mut [f32], channels: usize) {
+    for (n, frame) in out.chunks_exact_mut(channels).enumerate() {
+        let (parts, last) = frame.as_chunks_mut::<LANES>();
+        for (part, columns) in parts.iter_mut().zip(groups) {
+            *part = columns[n];
         }
-        out = out.split_at_mut_checked(channels).map_or_else(Default::default, |(_, rest)| rest);
+        // The last group is seldom full. By fours, since a copy of any length is a call for each frame.
+        let Some(columns) = groups.get(parts.len()) else { continue };
+        let (fours, rest) = last.as_chunks_mut::<4>();
+        for (samples, from) in fours.iter_mut().zip(columns[n].as_chunks::<4>().0) {
+            *samples = *from;
+        }
+        for (sample, from) in rest.iter_mut().zip(&columns[n][4 * fours.len()..]) {
+            *sample = *from;
+        }
     }
 }
 
