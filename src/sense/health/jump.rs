@@ -77,8 +77,9 @@ impl Jumps {
         settle(&mut self.forces, &frame.forces, &mut self.news, &mut self.blocks_at, now, &mut self.stirred);
         for place in 0..self.stirred.len() {
             let first = BLOCK * self.stirred[place];
-            for tile in first..(first + BLOCK).min(self.forces.len()) {
-                self.compare(tile, frame.forces[tile], &sensors[tile], now);
+            let tiles = frame.forces.iter().zip(sensors).enumerate().skip(first).take(BLOCK);
+            for (tile, (&forces, sensors)) in tiles {
+                self.compare(tile, forces, sensors, now);
                 self.news[tile] = [false; 4];
             }
         }

@@ -143,9 +143,10 @@ fn compare(rounds: usize) {
     ));
     let others: BTreeSet<u64> = pairs.values().copied().collect();
     assert_eq!((tracks.len(), others.len()), (whole.len(), whole.len()));
-    // How two feet that share tiles divide their load can be decided some milliseconds earlier or later where the noise
-    // of tiles that a node does not sense has a say. Measured over eight rounds: 36 places of 10,000.
-    assert!(apart * 100 <= places, "{apart} of {places}");
+    // How two feet that share tiles divide their load can be decided a millisecond earlier or later: a node looks after the
+    // sensors of its tiles in another order. Measured over eight rounds: 4 of 821,479, by 1.5 mm.
+    assert!(apart * 10_000 <= places, "{apart} of {places}");
+    assert!(worst <= 0.01, "{worst} m");
 }
 
 #[test]
