@@ -17,6 +17,8 @@ pub(super) fn of(crowd: &Crowd, machine: &Machine, densest: f64) -> Vec<String> 
     };
     let mut all = vec![
         format!("Each board sends {format} 1000 times a second, one datagram each time, to one computer, which forwards it to the others that need it."),
+        "The boards of one computer send at the same moment, and each neighbour that forwards wakes it once a millisecond at most."
+            .to_owned(),
         "On the wire a datagram is 66 bytes longer: 8 of UDP, 20 of IPv4, 38 of Ethernet with preamble and gap.".to_owned(),
         "Without a floor file, each row of tiles has boards of 32 channels for eight tiles, and tiles are 0.304 m apart.".to_owned(),
         format!("A computer senses {SENSED_BEYOND_M} m beyond its area, in whole tiles."),
