@@ -34,7 +34,8 @@ const CHECK: usize = 512;
 /// `r` per sample; its output is the imaginary part. The state advances in
 /// double precision once per span of 64 samples. What lies in between is a sum of
 /// the same 16 polynomials for every mode: the bank adds up what its modes
-/// give to each, and draws the sum once; smooth modes, those below 460 Hz at 96 kHz, need the first 8 only. That is faster than a recurrence per
+/// give to each, and draws the sum once. Smooth modes, those below 460 Hz at
+/// 96 kHz, need the first 8 only. That is faster than a recurrence per
 /// sample, and without its rounding (a single-precision two-pole filter is off
 /// by -23 dB for a 60 Hz mode at 96 kHz, this by less than -120 dB).
 ///

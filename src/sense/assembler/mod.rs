@@ -85,7 +85,8 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// reading that is not a number [`Quality::Faulty`].
 ///
 /// **Health.** Each sensor is compared with the other three of its plate, and its
-/// zero is followed while its tile is empty and quiet; [`Trouble`] says what can be found.
+/// zero is followed while its tile is empty and quiet; [`Trouble`] says what can be found. Time is
+/// the boards' own there: slots, however the sample clock is steered.
 ///
 /// It has no clock of its own: `received` and `now` are on the source's clock;
 /// one that is earlier than the last counts as the last.
