@@ -103,9 +103,6 @@ impl App {
         let state = &self.guide.state;
         let (sheet, view) = (state.sheet(), state.view());
         ui.label(RichText::new(&sheet.title).size(23.0).strong().color(INK));
-        if !sheet.about.is_empty() {
-            ui.label(RichText::new(&sheet.about).size(14.0).color(QUIET));
-        }
         let count = format!("Series {} of {}", state.current + 1, state.sheets.len());
         ui.label(RichText::new(count).size(14.0).color(QUIET));
         if self.shelf.is_phantom {
