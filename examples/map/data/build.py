@@ -101,6 +101,27 @@ def rivers(features, grid):
     return found
 
 
+def around_pole(polygons, arcs):
+    """Polygons without rings that lie at the south pole: what such a ring has as a hole is the country's outline."""
+
+    def is_at_pole(ring):
+        places = [0]
+        for arc in ring:
+            at = 0
+            for _, step in arcs[~arc if arc < 0 else arc]:
+                at += step
+                places.append(at)
+        return max(places) == 0
+
+    found = []
+    for polygon in polygons:
+        if is_at_pole(polygon[0]):
+            found += [[ring] for ring in polygon[1:]]
+        else:
+            found.append(polygon)
+    return found
+
+
 def from_zoom(people, is_capital):
     usual = next(zoom for least, zoom in BY_PEOPLE if people >= least)
     return min(usual, next(zoom for least, zoom in BY_PEOPLE_CAPITAL if people >= least)) if is_capital else usual
@@ -145,7 +166,9 @@ def main():
     shapes = [
         {
             "name": shape["properties"]["name"],
-            "polygons": shape["arcs"] if shape["type"] == "MultiPolygon" else [shape["arcs"]],
+            "polygons": around_pole(
+                shape["arcs"] if shape["type"] == "MultiPolygon" else [shape["arcs"]], countries["arcs"]
+            ),
         }
         for shape in countries["objects"]["countries"]["geometries"]
     ]

@@ -5,7 +5,7 @@ use underfoot::floor::{self, Geometry};
 use underfoot::layout::Layout;
 
 /// How large the smallest side of a control is at least, in points: what a mouse or a finger hits and a label needs.
-const CONTROL: f32 = 44.0;
+const CONTROL: f32 = 40.0;
 
 /// Metres of floor that are shown around what people need.
 const AROUND_M: f32 = 0.06;

@@ -73,7 +73,9 @@ impl World {
             unroll(&mut points);
             Line { bounds: Bounds::of(&points), points, is_border: users.len() > 1 }
         };
-        let lines = arcs.into_iter().zip(&users).map(line).collect();
+        // What no country uses is the edge of the world.
+        let used = arcs.into_iter().zip(&users).filter(|(_, users)| !users.is_empty());
+        let lines = used.map(line).collect();
         let lakes = atlas.lakes.iter().map(|shape| {
             let polygons = shape.polygons.iter();
             let rings = |polygon: &Vec<Vec<[i64; 2]>>| -> Vec<Vec<[f64; 2]>> {
