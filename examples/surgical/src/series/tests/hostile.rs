@@ -8,13 +8,12 @@ use flate2::Compression;
 use flate2::write::DeflateEncoder;
 use proptest::prelude::*;
 
-use super::make::{Maker, OPEN};
+use super::make::{BIG_ENDIAN, Maker, OPEN};
 use super::{read_bytes, shown};
 use crate::series::unfit::Unfit;
 
 const EXPLICIT: &str = uids::EXPLICIT_VR_LITTLE_ENDIAN;
 const IMPLICIT: &str = uids::IMPLICIT_VR_LITTLE_ENDIAN;
-const BIG_ENDIAN: &str = uids::EXPLICIT_VR_BIG_ENDIAN;
 const ITEM: Tag = Tag(0xfffe, 0xe000);
 
 fn is_damaged(file: &Maker) -> String {

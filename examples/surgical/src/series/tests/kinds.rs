@@ -7,7 +7,7 @@ use dicom_dictionary_std::{tags, uids};
 use flate2::Compression;
 use flate2::write::DeflateEncoder;
 
-use super::make::Maker;
+use super::make::{BIG_ENDIAN, Maker};
 use super::shown;
 use crate::series::file::Part;
 use crate::series::unfit::Unfit;
@@ -15,7 +15,6 @@ use crate::series::{Pixels, opposite};
 
 const EXPLICIT: &str = uids::EXPLICIT_VR_LITTLE_ENDIAN;
 const IMPLICIT: &str = uids::IMPLICIT_VR_LITTLE_ENDIAN;
-const BIG_ENDIAN: &str = uids::EXPLICIT_VR_BIG_ENDIAN;
 
 /// The grey values of all frames.
 fn greys(part: &Part) -> Vec<f32> {

@@ -5,6 +5,9 @@ use dicom_dictionary_std::{tags, uids};
 
 use crate::series::guard::Encoding;
 
+/// The syntax of big-endian files, which the standard has retired.
+pub const BIG_ENDIAN: &str = "1.2.840.10008.1.2.2";
+
 /// A length that is not told.
 pub const OPEN: u32 = u32::MAX;
 
@@ -24,7 +27,7 @@ impl Maker {
     pub fn new(uid: &'static str) -> Self {
         let encoding = match uid {
             uids::IMPLICIT_VR_LITTLE_ENDIAN => Encoding::Implicit,
-            uids::EXPLICIT_VR_BIG_ENDIAN => Encoding::BigEndian,
+            BIG_ENDIAN => Encoding::BigEndian,
             _ => Encoding::Explicit,
         };
         Self { encoding, uid, elements: Vec::new() }
