@@ -15,6 +15,7 @@ use underfoot_egui::{FootInput, Projector, SmallFloor};
 
 use crate::chart;
 use crate::guide::Guide;
+use crate::inset::Part;
 use crate::tiles::Tiles;
 
 const INK: Color32 = Color32::from_rgb(0x2a, 0x28, 0x25);
@@ -23,9 +24,6 @@ const CARD: Color32 = Color32::from_rgba_premultiplied(0xed, 0xea, 0xe5, 0xf2);
 
 /// What lies between the edge of a card and what is on it, in points.
 const EDGE: Vec2 = vec2(18.0, 14.0);
-
-/// How wide the small floor is, in points.
-const INSET: f32 = 330.0;
 
 /// How often a map is drawn on which nothing moves.
 const IDLE: Duration = Duration::from_millis(50);
@@ -37,8 +35,12 @@ pub struct App {
     small: SmallFloor,
     projector: Projector,
     picture: Picture,
+    /// What of the floor the small one shows.
+    part: Part,
     drag: Vec2,
     levels: f64,
+    /// What lay over the map the last time.
+    covered: Vec<Rect>,
 }
 
 /// Pictures over the map's own shapes.
@@ -54,7 +56,8 @@ impl Picture {
     fn credits(&self) -> String {
         let attribution = Some(self.attribution.clone()).filter(|text| !text.is_empty());
         let trouble = self.tiles.as_ref().and_then(Tiles::trouble).map(|why| format!("No tiles: {why}"));
-        let all = std::iter::once("Shapes: Natural Earth".to_owned()).chain(attribution).chain(trouble);
+        let own = "Shapes: Natural Earth   Cities: GeoNames, CC BY 4.0".to_owned();
+        let all = std::iter::once(own).chain(attribution).chain(trouble);
         all.collect::<Vec<_>>().join("   ")
     }
 }
@@ -73,12 +76,24 @@ impl App {
         FootInput::tune(context);
         context.set_theme(egui::Theme::Light);
         let (small, projector) = (SmallFloor::new(Theme::LIGHT, hand), Projector::new(project));
-        let (drag, levels) = (Vec2::ZERO, 0.0);
-        Self { guide, geometry, feet: FootInput::new(free), small, projector, picture, drag, levels }
+        let part = Part::of(&geometry, &guide.floor.snapshot().layout);
+        let (drag, levels, covered) = (Vec2::ZERO, 0.0, Vec::new());
+        Self {
+            guide,
+            geometry,
+            feet: FootInput::new(free),
+            small,
+            projector,
+            picture,
+            part,
+            drag,
+            levels,
+            covered,
+        }
     }
 
-    /// The card in a corner that says where one is.
-    fn title(&self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) {
+    /// The card in a corner that says where one is; gives what it covers.
+    fn title(&self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
         let camera = &self.guide.state.camera;
         let side = |degrees: f64, [plus, minus]: [&str; 2]| {
             format!("{:.1}° {}", degrees.abs(), if degrees < 0.0 { minus } else { plus })
@@ -97,18 +112,21 @@ impl App {
             };
             let colour = Color32::from_rgb(colour.red, colour.green, colour.blue);
             ui.label(RichText::new(words).size(15.0).color(colour));
-        });
+        })
     }
 
-    /// The small floor, and the mouse as a foot on it.
-    fn floor(&mut self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) {
-        let size = Vec2::splat(INSET);
+    /// The small floor, and the mouse as a foot on it; gives what it covers.
+    fn floor(&mut self, ui: &mut Ui, rect: Rect, snapshot: &Snapshot) -> Rect {
+        let size = self.part.size(rect.size());
         let outer = size + 2.0 * EDGE;
         let at = Rect::from_min_size(rect.max - outer - vec2(24.0, 24.0), outer);
         card(ui, at, |ui| {
-            ui.set_max_size(size);
-            self.small.ui(ui, &self.geometry, snapshot);
-        });
+            let (shown, _) = ui.allocate_exact_size(size, Sense::hover());
+            let whole = self.part.whole(&self.geometry, shown);
+            let mut inside = ui.new_child(egui::UiBuilder::new().max_rect(whole));
+            inside.set_clip_rect(shown.intersect(ui.clip_rect()));
+            self.small.ui(&mut inside, &self.geometry, snapshot);
+        })
     }
 }
 
@@ -144,7 +162,7 @@ impl eframe::App for App {
         if let Some(tiles) = &mut self.picture.tiles {
             tiles.paint(ui.ctx(), ui.painter(), rect, &self.guide.state.camera, Instant::now());
         }
-        chart::layers(ui.painter(), rect, &self.guide.world, &self.guide.state);
+        chart::layers(ui.painter(), rect, &self.guide.world, &self.guide.state, &self.covered);
         chart::scale_bar(
             ui.painter(),
             rect,
@@ -153,9 +171,10 @@ impl eframe::App for App {
         );
         let below = pos2(rect.left() + 28.0, rect.bottom() - 6.0);
         let font = FontId::proportional(11.0);
-        ui.painter().text(below, Align2::LEFT_BOTTOM, self.picture.credits(), font, QUIET);
-        self.title(ui, rect, &snapshot);
-        self.floor(ui, rect, &snapshot);
+        let credits = ui.painter().text(below, Align2::LEFT_BOTTOM, self.picture.credits(), font, QUIET);
+        let corner =
+            Rect::from_min_max(pos2(rect.left(), rect.bottom() - 60.0), pos2(credits.right(), rect.bottom()));
+        self.covered = vec![corner, self.title(ui, rect, &snapshot), self.floor(ui, rect, &snapshot)];
         self.projector.show(&ui.ctx().clone(), &self.geometry, &snapshot);
     }
 }
@@ -168,8 +187,8 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect) -> Response {
     map
 }
 
-/// A light card over the map.
-fn card(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
+/// A light card over the map; gives where it is.
+fn card(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) -> Rect {
     let mut ui = ui.new_child(egui::UiBuilder::new().max_rect(rect));
     let shadow = Shadow { offset: [0, 2], blur: 14, spread: 0, color: Color32::from_black_alpha(45) };
     Frame::new()
@@ -177,5 +196,7 @@ fn card(ui: &mut Ui, rect: Rect, add: impl FnOnce(&mut Ui)) {
         .corner_radius(CornerRadius::same(12))
         .shadow(shadow)
         .inner_margin(Margin::symmetric(EDGE.x as i8, EDGE.y as i8))
-        .show(&mut ui, add);
+        .show(&mut ui, add)
+        .response
+        .rect
 }

@@ -3,15 +3,17 @@
 use eframe::egui::{Align2, Color32, FontId, Mesh, Painter, Pos2, Rect, Shape, Stroke, pos2, vec2};
 
 use crate::mercator::{Screen, project};
+use crate::names;
 use crate::state::State;
-use crate::world::{HUES, World};
+use crate::world::{Bounds, HUES, World};
 
 const SEA: Color32 = Color32::from_rgb(0xd3, 0xe3, 0xea);
 const COAST: Stroke = Stroke { width: 1.1, color: Color32::from_rgb(0x6f, 0x8b, 0x99) };
+const SHORE: Stroke = Stroke { width: 0.8, color: Color32::from_rgb(0x86, 0xa9, 0xbb) };
+const RIVER: Color32 = Color32::from_rgb(0x93, 0xbb, 0xd0);
 const BORDER: Stroke = Stroke { width: 0.9, color: Color32::from_rgb(0xb5, 0xa4, 0x8c) };
 const GRID: Stroke = Stroke { width: 1.0, color: Color32::from_rgb(0xa9, 0xc3, 0xcf) };
 const INK: Color32 = Color32::from_rgb(0x2a, 0x28, 0x25);
-const QUIET: Color32 = Color32::from_rgb(0x5d, 0x58, 0x50);
 const HALO: Color32 = Color32::from_rgba_premultiplied(0xb4, 0xb2, 0xac, 0xb8);
 const LAND: [Color32; HUES] = [
     Color32::from_rgb(0xf4, 0xec, 0xdb),
@@ -24,36 +26,68 @@ const LAND: [Color32; HUES] = [
 /// Distance between two points of a line that are both worth drawing, in points.
 const FINE: f32 = 1.5;
 
-/// Draws sea and land into `rect`.
+/// Draws sea, land and what flows through it into `rect`.
 pub fn shapes(painter: &Painter, rect: Rect, world: &World, state: &State) {
     let screen = Screen::new(rect, &state.camera);
+    let zoom = state.camera.zoom;
     painter.rect_filled(rect, 0.0, SEA);
     let mut land = Mesh::default();
     for country in &world.countries {
         let color = LAND.get(country.hue % HUES).copied().unwrap_or(SEA);
-        for turn in screen.turns(country.span) {
-            country.fill(&mut land, color, |at| screen.point(at, turn));
+        for area in &country.areas {
+            for turn in screen.turns(area.bounds.span).filter(|_| screen.reaches(area.bounds.reach)) {
+                area.fill(&mut land, color, |at| screen.point(at, turn));
+            }
         }
     }
     painter.add(Shape::mesh(land));
-    for line in &world.lines {
-        for turn in screen.turns(line.span) {
-            let points = fine(line.points.iter().map(|at| screen.point(*at, turn)));
-            if Rect::from_points(&points).intersects(rect) && points.len() > 1 {
-                painter.add(Shape::line(points, if line.is_border { BORDER } else { COAST }));
-            }
+    for river in world.rivers.iter().filter(|river| river.from <= zoom + 0.3) {
+        // Wider the nearer: a great river is three points wide at the nearest zoom.
+        let width = (0.7 + river.width) * (1.0 + 0.15 * (zoom as f32 - 2.0));
+        line(painter, &screen, &river.points, &river.bounds, Stroke::new(width.min(3.0), RIVER));
+    }
+    lakes(painter, &screen, world, zoom);
+    for stretch in &world.lines {
+        let stroke = if stretch.is_border { BORDER } else { COAST };
+        line(painter, &screen, &stretch.points, &stretch.bounds, stroke);
+    }
+}
+
+fn lakes(painter: &Painter, screen: &Screen, world: &World, zoom: f64) {
+    let mut water = Mesh::default();
+    let seen = || world.lakes.iter().filter(|lake| lake.from <= zoom + 0.3).flat_map(|lake| &lake.areas);
+    for area in seen() {
+        for turn in screen.turns(area.bounds.span).filter(|_| screen.reaches(area.bounds.reach)) {
+            area.fill(&mut water, SEA, |at| screen.point(at, turn));
+        }
+    }
+    painter.add(Shape::mesh(water));
+    for area in seen() {
+        for ring in area.rings() {
+            line(painter, screen, ring, &area.bounds, SHORE);
         }
     }
 }
 
-/// Draws what lies over land and sea, as far as it is switched on, and the mark in the middle.
-pub fn layers(painter: &Painter, rect: Rect, world: &World, state: &State) {
+/// A line wherever it is seen.
+fn line(painter: &Painter, screen: &Screen, points: &[[f64; 2]], bounds: &Bounds, stroke: Stroke) {
+    for turn in screen.turns(bounds.span).filter(|_| screen.reaches(bounds.reach)) {
+        let points = fine(points.iter().map(|at| screen.point(*at, turn)));
+        if points.len() > 1 {
+            painter.add(Shape::line(points, stroke));
+        }
+    }
+}
+
+/// Draws what lies over land and sea, as far as it is switched on, and the mark in the middle; `covered` is what will lie
+/// over the map.
+pub fn layers(painter: &Painter, rect: Rect, world: &World, state: &State, covered: &[Rect]) {
     let screen = Screen::new(rect, &state.camera);
     if state.grid {
         grid(painter, rect, &screen, state.camera.zoom);
     }
     if state.names {
-        names(painter, rect, &screen, world);
+        names::draw(painter, rect, &screen, world, state.camera.zoom, covered);
     }
     crosshair(painter, rect.center());
 }
@@ -90,32 +124,6 @@ fn grid(painter: &Painter, rect: Rect, screen: &Screen, zoom: f64) {
     }
     for lat in (-90 + step as i32..90).step_by(step) {
         painter.hline(rect.x_range(), screen.point(project(0.0, f64::from(lat)), 0.0).y, GRID);
-    }
-}
-
-/// The names that fit into their countries and beside each other, those of large ones first.
-fn names(painter: &Painter, rect: Rect, screen: &Screen, world: &World) {
-    let mut countries: Vec<_> = world.countries.iter().collect();
-    countries.sort_by(|one, other| other.area.total_cmp(&one.area));
-    // The middle's name is not written below the mark on it: it stands beside the map.
-    let mut taken = vec![Rect::from_center_size(rect.center(), vec2(24.0, 24.0))];
-    for country in countries {
-        for turn in screen.turns(country.span) {
-            let at = screen.point(country.middle, turn);
-            if !rect.contains(at) {
-                continue;
-            }
-            let room = screen.point([country.middle[0] + country.width, 0.0], turn).x - at.x;
-            let size = (room / 14.0).clamp(11.0, 19.0).round();
-            let font = FontId::proportional(size);
-            let galley = painter.layout_no_wrap(country.name.clone(), font, QUIET);
-            let place = Align2::CENTER_CENTER.anchor_size(at, galley.size());
-            let is_taken = taken.iter().any(|other| other.intersects(place.expand(3.0)));
-            if galley.size().x <= room * 0.95 && !is_taken {
-                painter.galley(place.min, galley, QUIET);
-                taken.push(place);
-            }
-        }
     }
 }
 

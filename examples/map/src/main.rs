@@ -3,7 +3,9 @@
 mod app;
 mod chart;
 mod guide;
+mod inset;
 mod mercator;
+mod names;
 mod state;
 mod tiles;
 mod world;

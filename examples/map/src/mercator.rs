@@ -94,6 +94,12 @@ impl Screen {
         (first..=last).map(f64::from)
     }
 
+    /// Whether something is seen that lies between these two, north and south.
+    pub fn reaches(&self, [north, south]: [f64; 2]) -> bool {
+        let half = f64::from(self.rect.height()) / 2.0 / self.scale;
+        self.middle[1] - half <= south && north <= self.middle[1] + half
+    }
+
     /// Kilometres that `points` are in the middle of the screen.
     pub fn kilometres(&self, points: f64) -> f64 {
         /// Around the equator.

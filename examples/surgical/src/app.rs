@@ -55,6 +55,8 @@ pub struct App {
     small: SmallFloor,
     projector: Projector,
     drag: [f64; 2],
+    /// How far a wheel has turned that is not a slice yet, in slices.
+    wheel: f32,
 }
 
 impl App {
@@ -71,7 +73,7 @@ impl App {
         context.set_theme(egui::Theme::Dark);
         let (small, projector) = (SmallFloor::new(Theme::DARK, hand), Projector::new(false));
         let (feet, film) = (FootInput::new(free), Film::default());
-        Self { guide, shelf, film, geometry, feet, small, projector, drag: [0.0; 2] }
+        Self { guide, shelf, film, geometry, feet, small, projector, drag: [0.0; 2], wheel: 0.0 }
     }
 
     /// Picture, and what must be seen over it at once.
@@ -153,12 +155,12 @@ impl App {
                 "{}: {:.1} {}  on slice {}",
                 number + 1,
                 measure.length(),
-                sheet.unit,
+                sheet.unit(measure.slice),
                 measure.slice + 1
             );
             ui.label(RichText::new(words).size(19.0).color(INK));
         }
-        if sheet.unit == "px" {
+        if sheet.unit(view.slice) == "px" {
             ui.label(RichText::new("The files don't say how large a pixel is").size(13.0).color(AMBER));
         }
         if state.is_armed {
@@ -253,6 +255,10 @@ impl eframe::App for App {
         if ui.input(|input| input.key_pressed(Key::P)) {
             self.projector.toggle();
         }
+        let slices = turned(ui, picture, &mut self.wheel);
+        if slices != 0.0 {
+            self.guide.state.step(slices);
+        }
         let panel = Rect::from_min_max(pos2(picture.right(), line.bottom()), rect.max).shrink(EDGE);
         let mut beside = ui.new_child(UiBuilder::new().max_rect(panel));
         beside.set_clip_rect(panel.expand(EDGE));
@@ -269,6 +275,43 @@ pub fn dragged(ui: &Ui, feet: &mut FootInput, rect: Rect, guide: &Guide, before:
     let scale = Screen::new(rect, &guide.state).scale;
     let by = picture.drag_delta();
     [before[0] + f64::from(by.x) / scale, before[1] + f64::from(by.y) / scale]
+}
+
+/// By how many slices a wheel over the picture and keys ask to turn; `rest` is what a wheel has turned less than that.
+fn turned(ui: &Ui, picture: Rect, rest: &mut f32) -> f64 {
+    /// Points that a wheel's step scrolls by, as the toolkit has it.
+    const STEP: f32 = 50.0;
+    let keys = [
+        (Key::ArrowUp, -1.0),
+        (Key::ArrowLeft, -1.0),
+        (Key::ArrowDown, 1.0),
+        (Key::ArrowRight, 1.0),
+        (Key::PageUp, -10.0),
+        (Key::PageDown, 10.0),
+        (Key::Home, f64::NEG_INFINITY),
+        (Key::End, f64::INFINITY),
+    ];
+    ui.input(|input| {
+        let by_key = keys.iter().map(|(key, slices)| f64::from(input.num_presses(*key) as u32) * slices);
+        let by_key: f64 = by_key.filter(|slices| !slices.is_nan()).sum();
+        if input.pointer.hover_pos().is_some_and(|at| picture.contains(at)) {
+            let moved: f32 = input
+                .events
+                .iter()
+                .map(|event| match event {
+                    egui::Event::MouseWheel { unit, delta, .. } => match unit {
+                        egui::MouseWheelUnit::Point => delta.y / STEP,
+                        egui::MouseWheelUnit::Line | egui::MouseWheelUnit::Page => delta.y,
+                    },
+                    _ => 0.0,
+                })
+                .sum();
+            *rest -= moved;
+        }
+        let whole = rest.trunc();
+        *rest -= whole;
+        by_key + f64::from(whole)
+    })
 }
 
 /// A band across the picture with a large line and a smaller one.

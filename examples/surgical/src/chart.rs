@@ -1,11 +1,11 @@
-//! The picture as it is drawn: a slice through its window, marks and measures, and a scale.
+//! The picture as it is drawn: a slice through its window, marks and measures, a scale, and which side is which.
 
 use eframe::egui::{
     Align2, Color32, ColorImage, Context, FontId, Painter, Pos2, Rect, Stroke, TextureHandle, TextureOptions,
     pos2, vec2,
 };
 
-use crate::series::{Series, Window};
+use crate::series::{Pixels, Series, Window, opposite};
 use crate::state::{Mark, State};
 
 const GAUGE: Color32 = Color32::from_rgb(0xf2, 0xd0, 0x6b);
@@ -22,8 +22,8 @@ pub struct Screen {
 
 impl Screen {
     pub fn new(rect: Rect, state: &State) -> Self {
-        let [width, height] = state.sheet().extent();
         let view = state.view();
+        let [width, height] = state.sheet().extent(view.slice);
         let fit = (f64::from(rect.width()) / width).min(f64::from(rect.height()) / height);
         Self { rect, middle: view.middle, scale: fit * view.zoom }
     }
@@ -50,9 +50,9 @@ impl Film {
         let view = state.view();
         let wanted = (state.current, view.slice, view.window);
         if self.shown != Some(wanted)
-            && let Some(values) = series.frames.get(view.slice)
+            && let Some(frame) = series.frames.get(view.slice)
         {
-            let image = developed(series.size, values, view.window, series.is_inverted);
+            let image = developed(series.size, &frame.pixels, view.window, series.is_inverted);
             match &mut self.texture {
                 Some(texture) => texture.set(image, TextureOptions::LINEAR),
                 None => self.texture = Some(context.load_texture("slice", image, TextureOptions::LINEAR)),
@@ -60,24 +60,57 @@ impl Film {
             self.shown = Some(wanted);
         }
         if let Some(texture) = &self.texture {
-            let place = Rect::from_two_pos(screen.point([0.0; 2]), screen.point(state.sheet().extent()));
+            let place =
+                Rect::from_two_pos(screen.point([0.0; 2]), screen.point(state.sheet().extent(view.slice)));
             let whole = Rect::from_min_max(pos2(0.0, 0.0), pos2(1.0, 1.0));
             painter.image(texture.id(), place, whole, Color32::WHITE);
         }
         marks(painter, &screen, state);
         crosshair(painter, rect.center());
         scale_bar(painter, &screen, state);
+        sides(painter, rect, state);
+        let about = &state.sheet().about;
+        if !about.is_empty() {
+            words_at(painter, rect.left_top() + vec2(20.0, 16.0), Align2::LEFT_TOP, about, 16.0);
+        }
     }
 }
 
-/// Values as greys: black below the window, white above.
-fn developed(size: [usize; 2], values: &[f32], window: Window, is_inverted: bool) -> ColorImage {
+/// Values as greys, black below the window and white above; of colours, each of red, green and blue likewise.
+fn developed(size: [usize; 2], pixels: &Pixels, window: Window, is_inverted: bool) -> ColorImage {
     let low = window.level - 0.5 * window.width;
-    let grey = values.iter().map(|value| {
-        let share = ((f64::from(*value) - low) / window.width).clamp(0.0, 1.0);
+    let grey = |value: f64| {
+        let share = ((value - low) / window.width).clamp(0.0, 1.0);
         (255.0 * if is_inverted { 1.0 - share } else { share }).round() as u8
-    });
-    ColorImage::from_gray(size, &grey.collect::<Vec<u8>>())
+    };
+    match pixels {
+        Pixels::Grey(values) => {
+            let greys: Vec<u8> = values.iter().map(|value| grey(f64::from(*value))).collect();
+            ColorImage::from_gray(size, &greys)
+        }
+        Pixels::Colour(colours) => {
+            let shades: Vec<u8> = (0..=u8::MAX).map(|value| grey(f64::from(value))).collect();
+            let shade = |value: u8| shades.get(usize::from(value)).copied().unwrap_or_default();
+            let bytes: Vec<u8> = colours.as_flattened().iter().map(|value| shade(*value)).collect();
+            ColorImage::from_rgb(size, &bytes)
+        }
+    }
+}
+
+/// Letters at all four edges: towards which side of the body each is.
+fn sides(painter: &Painter, rect: Rect, state: &State) {
+    const SIZE: f32 = 26.0;
+    let Some([right, down]) = state.sheet().towards(state.view().slice) else { return };
+    let (left, up) = (opposite(right), opposite(down));
+    let edges = [
+        (rect.right_center() - vec2(18.0, 0.0), Align2::RIGHT_CENTER, right),
+        (rect.center_bottom() - vec2(0.0, 14.0), Align2::CENTER_BOTTOM, down),
+        (rect.left_center() + vec2(18.0, 0.0), Align2::LEFT_CENTER, &left),
+        (rect.center_top() + vec2(0.0, 14.0), Align2::CENTER_TOP, &up),
+    ];
+    for (at, anchor, letters) in edges {
+        words_at(painter, at, anchor, letters, SIZE);
+    }
 }
 
 fn marks(painter: &Painter, screen: &Screen, state: &State) {
@@ -90,7 +123,7 @@ fn marks(painter: &Painter, screen: &Screen, state: &State) {
         for at in [from, to] {
             painter.circle_filled(at, 4.0, GAUGE);
         }
-        let words = format!("{}: {:.1} {}", number + 1, measure.length(), state.sheet().unit);
+        let words = format!("{}: {:.1} {}", number + 1, measure.length(), state.sheet().unit(view.slice));
         words_at(painter, from.lerp(to, 0.5) - vec2(0.0, 8.0), Align2::CENTER_BOTTOM, &words, 17.0);
     }
     if let Some(Mark { slice, at }) = view.first
@@ -127,7 +160,7 @@ fn scale_bar(painter: &Painter, screen: &Screen, state: &State) {
         painter,
         left - vec2(0.0, 9.0),
         Align2::LEFT_BOTTOM,
-        &format!("{length} {}", state.sheet().unit),
+        &format!("{length} {}", state.sheet().unit(state.view().slice)),
         14.0,
     );
 }

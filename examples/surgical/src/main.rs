@@ -5,6 +5,7 @@
 mod app;
 mod beam;
 mod chart;
+mod check;
 mod feel;
 mod guide;
 mod phantom;
@@ -13,10 +14,11 @@ mod state;
 
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use clap::Parser;
+use clap::{Parser, Subcommand};
 use eframe::egui::{self, RawInput, Rect, pos2, vec2};
 use underfoot::floor::{self, Floor};
 use underfoot::layout::Layout;
@@ -43,7 +45,10 @@ const UNSEEN: Rect = Rect { min: pos2(0.0, 34.0), max: pos2(908.0, 800.0) };
 /// Without a folder it shows a phantom. Without a floor, the small one in the window is a simulated one: press it with
 /// the mouse.
 #[derive(Parser, Debug)]
+#[command(args_conflicts_with_subcommands = true)]
 struct Args {
+    #[command(subcommand)]
+    command: Option<Command>,
     /// A DICOM file, or a folder of them: all series in it and below it.
     folder: Option<PathBuf>,
     /// Follow a real floor, or `underfoot simulate`, that sends its packets to this address.
@@ -68,8 +73,34 @@ struct Args {
     feel: Feel,
 }
 
-fn main() -> Result<(), Box<dyn Error>> {
+/// What there is to do without a window and a floor.
+#[derive(Subcommand, Debug)]
+enum Command {
+    /// Print a line of JSON for each file: whether it is shown, as what, or why not. Ends with status 1 if one is not.
+    ///
+    /// A folder of this name is opened as `./check`.
+    Check {
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        /// Write the pixels of each file's first picture into this folder: grey values as `<number>.f32`, little-endian,
+        /// and colours as `<number>.rgb`, by the file's place among the arguments, from 0.
+        #[arg(long, value_name = "FOLDER")]
+        values: Option<PathBuf>,
+    },
+}
+
+fn main() -> Result<ExitCode, Box<dyn Error>> {
     let args = Args::parse();
+    if let Some(Command::Check { files, values }) = &args.command {
+        let are_all_shown = check::check(files, values.as_deref())?;
+        return Ok(if are_all_shown { ExitCode::SUCCESS } else { ExitCode::FAILURE });
+    }
+    view(args)?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// Opens the viewer, and closes with it.
+fn view(args: Args) -> Result<(), Box<dyn Error>> {
     let shelf = shelf(args.folder.as_deref())?;
     let hardware = match &args.floor {
         Some(path) => schema::load_floor(path)?,

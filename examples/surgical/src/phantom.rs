@@ -81,6 +81,7 @@ fn common(series: usize, number: usize, modality: &str, title: &str, class: &str
     put(&mut file, tags::SERIES_INSTANCE_UID, VR::UI, format!("{ROOT}.{series}"));
     put(&mut file, tags::PATIENT_NAME, VR::PN, "Phantom^Simulated");
     put(&mut file, tags::PATIENT_ID, VR::LO, "NOBODY");
+    put(&mut file, tags::STUDY_DATE, VR::DA, "20240517");
     put(&mut file, tags::MODALITY, VR::CS, modality);
     put(&mut file, tags::SERIES_DESCRIPTION, VR::LO, title);
     put(&mut file, tags::SERIES_NUMBER, VR::IS, series.to_string());

@@ -6,7 +6,7 @@ use underfoot::widget::{EventKind, Value};
 use underfoot::wire::LinkState;
 
 use crate::beam::{Beam, Cause};
-use crate::series::{Series, Window};
+use crate::series::{Plane, Series, Window};
 
 /// How many series a page of the floor offers.
 pub const OFFERED: usize = 4;
@@ -21,6 +21,9 @@ const WIDTHS: [f64; 2] = [1.0, 4.3e9];
 
 /// How far one may come nearer.
 pub const NEAREST: f64 = 8.0;
+
+/// How near to each other two points of a measurement count as the same, in pixels along both axes.
+const SAME: f64 = 0.5;
 
 /// How long nothing must change for the viewer to count as settled, in seconds.
 const SETTLED_S: f64 = 0.3;
@@ -80,10 +83,11 @@ pub struct View {
 #[derive(Clone, Debug)]
 pub struct Sheet {
     pub title: String,
+    /// Patient, number and day.
+    pub about: String,
     pub frames: usize,
     pub size: [usize; 2],
-    pub spacing: [f64; 2],
-    pub unit: &'static str,
+    planes: Vec<Plane>,
     window: Window,
 }
 
@@ -91,25 +95,46 @@ impl Sheet {
     pub fn of(series: &Series) -> Self {
         Self {
             title: series.title.clone(),
+            about: series.about.clone(),
             frames: series.frames.len(),
             size: series.size,
-            spacing: series.spacing_mm.unwrap_or([1.0; 2]),
-            unit: if series.spacing_mm.is_some() { "mm" } else { "px" },
+            planes: series.frames.iter().map(|frame| frame.plane.clone()).collect(),
             window: series.window,
         }
     }
 
-    /// Width and height in units.
-    pub fn extent(&self) -> [f64; 2] {
-        [0, 1].map(|axis| self.size[axis] as f64 * self.spacing[axis])
+    fn spacing_mm(&self, slice: usize) -> Option<[f64; 2]> {
+        self.planes.get(slice)?.spacing_mm
+    }
+
+    /// Width and height of a slice in its units.
+    pub fn extent(&self, slice: usize) -> [f64; 2] {
+        let spacing = self.spacing(slice);
+        [0, 1].map(|axis| self.size[axis] as f64 * spacing[axis])
+    }
+
+    /// Units from pixel to pixel.
+    fn spacing(&self, slice: usize) -> [f64; 2] {
+        self.spacing_mm(slice).unwrap_or([1.0; 2])
+    }
+
+    /// The units of a slice: millimetres, or pixels where its file doesn't say how large these are.
+    pub fn unit(&self, slice: usize) -> &'static str {
+        if self.spacing_mm(slice).is_some() { "mm" } else { "px" }
+    }
+
+    /// Towards which side of the body the right edge and the lower edge of a slice are, in letters.
+    pub fn towards(&self, slice: usize) -> Option<&[String; 2]> {
+        self.planes.get(slice)?.towards.as_ref()
     }
 
     fn view(&self) -> View {
+        let slice = self.frames / 2;
         View {
-            slice: self.frames / 2,
+            slice,
             window: self.window,
             zoom: 1.0,
-            middle: self.extent().map(|extent| 0.5 * extent),
+            middle: self.extent(slice).map(|extent| 0.5 * extent),
             first: None,
             measures: Vec::new(),
         }
@@ -251,21 +276,38 @@ impl State {
         let last = self.sheet().frames.saturating_sub(1);
         // A number that is not finite becomes 0.
         let slice = ((number - 1.0).round().max(0.0) as usize).min(last);
+        let (before, after) = (self.sheet().extent(self.view().slice), self.sheet().extent(slice));
         let view = self.view_mut();
         view.slice = slice;
+        // Slices may have pixels of different sizes: the same pixel stays in the middle.
+        view.middle = [0, 1].map(|axis| view.middle[axis] * after[axis] / before[axis]);
         if view.first.is_some_and(|first| first.slice != slice) {
             view.first = None;
             self.notify("The first point was on another slice: begin again");
         }
     }
 
+    /// Turns by so many slices, as mouse and keys ask for; stops at the first one and the last one.
+    pub fn step(&mut self, slices: f64) {
+        self.turn_to(self.view().slice as f64 + 1.0 + slices);
+        self.still_s = 0.0;
+    }
+
     /// A press of the marking button: the first point of a measurement, or its second.
     fn mark(&mut self) {
+        let spacing = self.sheet().spacing(self.view().slice);
         let view = self.view_mut();
         let (slice, at) = (view.slice, view.middle);
-        match view.first.take() {
-            Some(first) => view.measures.push(Measure { slice, ends: [first.at, at] }),
-            None => view.first = Some(Mark { slice, at }),
+        let Some(first) = view.first.take() else {
+            view.first = Some(Mark { slice, at });
+            return;
+        };
+        let is_same = [0, 1].iter().all(|axis| (at[*axis] - first.at[*axis]).abs() < SAME * spacing[*axis]);
+        if is_same {
+            view.first = Some(first);
+            self.notify("Both points are the same: slide the picture to the second one");
+        } else {
+            view.measures.push(Measure { slice, ends: [first.at, at] });
         }
     }
 
@@ -277,7 +319,7 @@ impl State {
     /// Lets time pass; gives whether the viewer has just come to rest.
     pub fn pass(&mut self, dt_s: f64, hold: &Hold) -> bool {
         let before = self.report(None);
-        let extent = self.sheet().extent();
+        let extent = self.sheet().extent(self.view().slice);
         let view = self.view_mut();
         let [wider, brighter] =
             hold.window.map(|share| if share.is_finite() { share.clamp(-1.0, 1.0) } else { 0.0 });
@@ -331,19 +373,21 @@ impl State {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::series::{Frame, Pixels};
 
     const DT_S: f64 = 1.0 / 60.0;
 
     fn series(title: &str, frames: usize, spacing_mm: Option<[f64; 2]>) -> Sheet {
         let window = Window { level: 40.0, width: 400.0 };
-        let frames = vec![vec![0.0; 100 * 50]; frames];
+        let plane = Plane { spacing_mm, ..Plane::default() };
+        let frame = Frame { pixels: Pixels::Grey(vec![0.0; 100 * 50]), plane };
         Sheet::of(&Series {
             title: title.into(),
+            about: String::new(),
             size: [100, 50],
-            spacing_mm,
             window,
             is_inverted: false,
-            frames,
+            frames: vec![frame; frames],
         })
     }
 
@@ -384,20 +428,58 @@ mod tests {
     #[test]
     fn two_presses_measure_in_millimetres_or_else_in_pixels() {
         let mut state = viewer();
-        assert_eq!(state.sheet().extent(), [50.0, 100.0]);
+        assert_eq!(state.sheet().extent(0), [50.0, 100.0]);
         state.hear_control("mark", EventKind::Clicked);
         // The picture goes to the left and up, so that what is in the middle goes to the right and down.
         state.pass(DT_S, &Hold { drag: [-3.0, -4.0], ..Hold::default() });
         state.hear_control("mark", EventKind::Clicked);
         assert_eq!(state.report(None).measures, [5.0]);
-        assert_eq!(state.sheet().unit, "mm");
+        assert_eq!(state.sheet().unit(0), "mm");
         state.hear_control("clear", EventKind::Armed);
         assert!(state.is_armed && state.has_marks());
         state.hear_control("clear", EventKind::Clicked);
         state.hear_control("clear", EventKind::Disarmed);
         assert!(!state.is_armed && !state.has_marks());
-        assert_eq!(series("Bare", 1, None).unit, "px");
-        assert_eq!(series("Bare", 1, None).extent(), [100.0, 50.0]);
+        assert_eq!(series("Bare", 1, None).unit(0), "px");
+        assert_eq!(series("Bare", 1, None).extent(0), [100.0, 50.0]);
+    }
+
+    #[test]
+    fn a_second_point_on_the_first_one_measures_nothing() {
+        let mut state = viewer();
+        state.hear_control("mark", EventKind::Clicked);
+        // A foot sways: 0.2 mm are 0.4 pixels to the right.
+        state.pass(DT_S, &Hold { drag: [-0.2, 0.0], ..Hold::default() });
+        state.hear_control("mark", EventKind::Clicked);
+        assert_eq!(state.report(None).measures, [0.0; 0]);
+        assert!(state.notice().is_some_and(|words| words.contains("the same")));
+        // The first point is kept.
+        state.pass(DT_S, &Hold { drag: [-2.8, 0.0], ..Hold::default() });
+        state.hear_control("mark", EventKind::Clicked);
+        assert_eq!(state.report(None).measures, [3.0]);
+    }
+
+    #[test]
+    fn mouse_and_keys_step_through_slices_to_both_ends() {
+        let mut state = viewer();
+        assert_eq!(state.view().slice, 5);
+        for (slices, shown) in [(1.0, 6), (-2.0, 4), (-100.0, 0), (f64::INFINITY, 9)] {
+            state.step(slices);
+            assert_eq!(state.view().slice, shown, "{slices}");
+        }
+    }
+
+    #[test]
+    fn each_slice_is_measured_by_its_own_pixels() {
+        let mut sheet = series("Mixed", 3, Some([0.5, 2.0]));
+        sheet.planes[1].spacing_mm = Some([1.0, 4.0]);
+        sheet.planes[2].spacing_mm = None;
+        let mut state = State::new(vec![sheet], 5.0);
+        assert_eq!((state.view().slice, state.view().middle), (1, [50.0, 100.0]));
+        state.step(-1.0);
+        assert_eq!((state.view().middle, state.sheet().unit(0)), ([25.0, 50.0], "mm"));
+        state.step(2.0);
+        assert_eq!((state.view().middle, state.sheet().unit(2)), ([50.0, 25.0], "px"));
     }
 
     #[test]

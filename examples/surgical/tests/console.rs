@@ -88,3 +88,65 @@ fn what_can_t_be_shown_is_told_with_its_name_and_nothing_starts() {
     let told = viewer(&["--no-window", "/nowhere/at/all"]);
     assert!(String::from_utf8_lossy(&told.stderr).contains("/nowhere/at/all"));
 }
+
+/// A DICOM file of two grey pixels, 7 and 9.
+fn two_pixels() -> Vec<u8> {
+    let element = |tag: [u8; 4], kind: &[u8; 2], value: &[u8]| {
+        let length = (value.len() as u16).to_le_bytes();
+        [tag.as_slice(), kind, &length, value].concat()
+    };
+    let number = |element_of: u8, number: u8| element([0x28, 0, element_of, 0], b"US", &[number, 0]);
+    let bits =
+        [0x00, 0x01, 0x02].map(|part| element([0x28, 0, part, 1], b"US", &[8 - u8::from(part == 2), 0]));
+    [
+        vec![0; 128],
+        b"DICM".to_vec(),
+        element([2, 0, 0x10, 0], b"UI", b"1.2.840.10008.1.2.1\0"),
+        element([8, 0, 0x60, 0], b"CS", b"OT"),
+        number(0x02, 1),
+        number(0x10, 1),
+        number(0x11, 2),
+        bits.concat(),
+        vec![0xe0, 0x7f, 0x10, 0, b'O', b'B', 0, 0, 2, 0, 0, 0, 7, 9],
+    ]
+    .concat()
+}
+
+#[test]
+fn files_are_checked_without_a_window() {
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (picture, letter) = (at("picture.dcm"), at("letter.txt"));
+    std::fs::write(&picture, two_pixels()).unwrap();
+    std::fs::write(&letter, "Dear colleague").unwrap();
+    let values = folder.path().to_str().unwrap();
+    let checked = viewer(&["check", "--values", values, &letter, &picture]);
+    assert_eq!(checked.status.code(), Some(1), "one is not shown");
+    let text = String::from_utf8(checked.stdout).unwrap();
+    let lines: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    let [no, yes] = lines.as_slice() else { panic!("{text}") };
+    assert_eq!((&no["shown"], &no["file"]), (&json!(false), &json!(letter)));
+    assert_eq!(no["why"], "is not a DICOM file: it does not begin as one");
+    assert_eq!((&yes["shown"], &yes["size"], &yes["frames"]), (&json!(true), &json!([2, 1]), &json!(1)));
+    let written = std::fs::read(folder.path().join("1.f32")).unwrap();
+    assert_eq!(written, [7.0_f32.to_le_bytes(), 9.0_f32.to_le_bytes()].concat());
+    assert!(viewer(&["check", &picture]).status.success());
+}
+
+#[cfg(unix)]
+#[test]
+fn a_pipe_that_nobody_writes_to_does_not_hold_the_viewer_up() {
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.dcm");
+    assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    for arguments in [["check", pipe.to_str().unwrap()], ["--no-window", folder.path().to_str().unwrap()]] {
+        let told = viewer(&arguments);
+        assert!(!told.status.success());
+        let words = [told.stdout, told.stderr].concat();
+        let words = String::from_utf8_lossy(&words);
+        assert!(
+            words.contains("a pipe, a device") || words.contains("neither a file nor a folder"),
+            "{words}"
+        );
+    }
+}

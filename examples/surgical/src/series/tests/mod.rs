@@ -1,7 +1,26 @@
 //! Files that are series, and files that are not.
 
+mod hostile;
+mod kinds;
+mod make;
+
+use std::fs;
+
+use dicom_dictionary_std::tags;
+use dicom_object::{DefaultDicomObject, open_file};
+
 use super::*;
 use crate::phantom;
+use make::Maker;
+
+/// What the reader makes of a file of these bytes; a failure of a decoder is not caught.
+fn read_bytes(bytes: &[u8]) -> Result<Part, Unfit> {
+    file::part(Path::new("made.dcm"), bytes, &mut MOST_PIXELS.clone())
+}
+
+fn shown(file: &Maker) -> Result<Part, Unfit> {
+    read_bytes(&file.file())
+}
 
 fn phantom() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -17,13 +36,20 @@ fn the_phantom_is_read_as_it_was_written() {
     let [ct, xa] = found.series.as_slice() else { panic!("{}", found.series.len()) };
     assert_eq!((ct.title.as_str(), ct.frames.len()), ("CT Phantom, computed", phantom::SLICES));
     assert_eq!((xa.title.as_str(), xa.frames.len()), ("XA Phantom, X-rayed", phantom::PICTURES));
-    assert_eq!(ct.spacing_mm, Some([phantom::SPACING_MM; 2]));
+    let plane = &ct.frames[0].plane;
+    assert_eq!(plane.spacing_mm, Some([phantom::SPACING_MM; 2]));
+    assert_eq!(plane.towards, Some(["L".to_owned(), "P".to_owned()]));
+    assert_eq!(ct.about, "Phantom, Simulated   NOBODY   2024-05-17");
     assert_eq!(ct.window, Window { level: 40.0, width: 400.0 });
     // Air in a corner, to the noise: the modality's scale has been applied.
-    assert!((ct.frames[0][0] + 1000.0).abs() < 15.0, "{}", ct.frames[0][0]);
+    let greys = |slice: usize| match &ct.frames[slice].pixels {
+        Pixels::Grey(values) => values,
+        Pixels::Colour(colours) => panic!("{colours:?}"),
+    };
+    assert!((greys(0)[0] + 1000.0).abs() < 15.0, "{}", greys(0)[0]);
     let row = (0.5 * ct.size[1] as f64 + phantom::RODS_DOWN_MM / phantom::SPACING_MM) as usize;
     let metal: Vec<f64> = (0..ct.size[0])
-        .filter(|x| ct.frames[20][row * ct.size[0] + x] > 2000.0)
+        .filter(|x| greys(20)[row * ct.size[0] + x] > 2000.0)
         .map(|x| x as f64 * phantom::SPACING_MM)
         .collect();
     let half = 0.5 * ct.size[0] as f64 * phantom::SPACING_MM;
@@ -71,10 +97,10 @@ fn what_is_no_picture_is_told_by_name_and_the_others_are_shown() {
     for expected in [
         "notes.txt is not a DICOM file",
         "empty.dcm is not a DICOM file",
-        "ct_002.dcm is not a DICOM file, or a damaged one",
-        "ct_003.dcm has no picture: PixelData is missing",
-        "ct_004.dcm has no picture: Rows is missing",
-        "ct_005.dcm has pixels that can't be read",
+        "ct_002.dcm is a damaged DICOM file: PixelData says 100352 bytes",
+        "ct_003.dcm has no picture: it is a “CT Image Storage” without pixels",
+        "ct_004.dcm has no picture that can be shown: its number of rows is missing",
+        "ct_005.dcm has pixels that can't be read: they need 1792000 bytes, and 100352 are there",
         "smaller.dcm is 256 x 256 pixels, and its series 224 x 224",
     ] {
         assert!(told.contains(expected), "{expected}\n{told}");
@@ -103,7 +129,7 @@ fn missing_tags_that_can_be_done_without_are_done_without() {
     file.write_to_file(folder.path().join("bare.dcm")).unwrap();
     let found = read(folder.path()).unwrap();
     let [series] = found.series.as_slice() else { panic!("{found:?}") };
-    assert_eq!((series.title.as_str(), series.spacing_mm), ("CT Untitled", None));
+    assert_eq!((series.title.as_str(), series.frames[0].plane.spacing_mm), ("CT Untitled", None));
     // From air to metal.
     assert!((series.window.width - 3400.0).abs() < 40.0, "{:?}", series.window);
 }
@@ -112,7 +138,7 @@ fn missing_tags_that_can_be_done_without_are_done_without() {
 fn what_does_not_fit_into_memory_is_left_out_and_the_rest_shown() {
     let folder = phantom();
     let mut room = 10;
-    let refused = part(&folder.path().join("ct_001.dcm"), &mut room);
+    let refused = file::read(&folder.path().join("ct_001.dcm"), &mut room);
     assert!(matches!(refused, Err(Unfit::Full)));
     assert_eq!(room, 10);
 }
@@ -123,5 +149,5 @@ fn slices_are_ordered_by_their_place() {
     fs::rename(folder.path().join("ct_001.dcm"), folder.path().join("zz.dcm")).unwrap();
     let found = read(folder.path()).unwrap();
     let again = read(phantom().path()).unwrap();
-    assert_eq!(found.series[0].frames[0], again.series[0].frames[0]);
+    assert_eq!(found.series[0].frames[0].pixels, again.series[0].frames[0].pixels);
 }
