@@ -274,4 +274,10 @@ fn report(counters: &LinkCounters, dropped: u64) {
         counters.bad_readings,
         counters.denied,
     );
+    if counters.overflowed > 0 {
+        errln!(
+            "{} datagrams were dropped by the system, since nobody read them in time.",
+            counters.overflowed
+        );
+    }
 }
