@@ -7,6 +7,8 @@ mod pages;
 mod ports;
 #[path = "../support/sender.rs"]
 mod sender;
+#[path = "../support/units.rs"]
+mod units;
 
 mod app;
 mod areas;
@@ -26,5 +28,7 @@ mod senders;
 mod service;
 mod soak;
 mod storage;
+mod systemd;
+mod unit_files;
 mod web;
 mod wiring;
