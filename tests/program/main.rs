@@ -16,6 +16,7 @@ mod calibrate;
 mod clients;
 mod console;
 mod end_to_end;
+mod faults;
 mod holds;
 mod input;
 mod mirror;
