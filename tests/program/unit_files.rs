@@ -136,3 +136,19 @@ fn the_options_in_the_unit_exist() {
     }
     assert!(count >= 5, "{count}");
 }
+
+/// The page for people on site leads to the units, names their files and repeats none of them.
+#[test]
+fn the_page_says_where_the_unit_keeps_its_files() {
+    let page = std::fs::read_to_string(concat!(env!("CARGO_MANIFEST_DIR"), "/docs/on-site.md")).unwrap();
+    for unit in Unit::all() {
+        assert!(page.contains(&format!("(../packaging/systemd/{})", unit.name)), "{}", unit.name);
+    }
+    assert!(!page.contains("[Service]"));
+    let unit = Unit::named("underfoot.service");
+    let memory = unit.value("MemoryMax").replace('M', " MB");
+    let files = unit.value("EnvironmentFile").replace("-%E", "/etc");
+    for part in [format!("/var/lib/{}", unit.value("StateDirectory")), files, memory] {
+        assert!(page.contains(&part), "{part}");
+    }
+}

@@ -106,7 +106,7 @@ fn n6_after_a_reboot_a_loaded_control_must_first_be_seen_unloaded() {
     tape.wait(200);
     let played = tape.play();
     assert_eq!(played.events(), ["it pressed", "it cancelled", "it pressed", "it released"]);
-    let pressed = played.lines.iter().filter(|line| line["event"] == "pressed").next_back().unwrap();
+    let pressed = played.lines.iter().rfind(|line| line["event"] == "pressed").unwrap();
     assert!(pressed["t_s"].as_f64().unwrap() > lifted, "{pressed}");
 }
 
