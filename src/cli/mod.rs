@@ -46,8 +46,6 @@ mod session;
 mod simulate;
 mod stop;
 mod watch;
-#[cfg(unix)]
-mod watchdog;
 mod web;
 mod wiring;
 

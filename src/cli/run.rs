@@ -16,6 +16,8 @@ use underfoot::recording::{Recorded, Recorder, WhenBehind};
 use underfoot::runtime::{EndReason, Event, Kind, Session, Snapshot};
 use underfoot::sense::Method;
 use underfoot::sink::LatencyStages;
+#[cfg(unix)]
+use underfoot::sink::Watchdog;
 use underfoot::source::Faults;
 use underfoot::wire::LinkCounters;
 
@@ -32,8 +34,6 @@ use super::outputs::OutputArgs;
 use super::senders::{BoardArgs, CommandArgs};
 use super::stop::{panic_flag, stop_flag};
 use super::watch::Watch;
-#[cfg(unix)]
-use super::watchdog::Watchdog;
 use super::web::WebArgs;
 
 /// Where packets arrive unless anything says otherwise.
@@ -274,4 +274,10 @@ fn report(counters: &LinkCounters, dropped: u64) {
         counters.bad_readings,
         counters.denied,
     );
+    if counters.overflowed > 0 {
+        errln!(
+            "{} datagrams were dropped by the system, since nobody read them in time.",
+            counters.overflowed
+        );
+    }
 }

@@ -21,6 +21,8 @@ mod report;
 mod silent;
 mod tuio;
 mod udp;
+#[cfg(unix)]
+mod watchdog;
 #[cfg(feature = "wav")]
 mod wav;
 mod within;
@@ -52,6 +54,8 @@ pub(crate) use report::OwnedReport;
 pub use report::Report;
 pub use silent::SilentSink;
 pub use tuio::{TuioSink, TuioVersion};
+#[cfg(unix)]
+pub use watchdog::Watchdog;
 #[cfg(feature = "wav")]
 pub use wav::{WavFormat, WavOptions, WavSink, WavSummary, WhenFull};
 pub use within::Within;

@@ -7,6 +7,8 @@ mod pages;
 mod ports;
 #[path = "../support/sender.rs"]
 mod sender;
+#[path = "../support/units.rs"]
+mod units;
 
 mod app;
 mod areas;
@@ -14,6 +16,7 @@ mod calibrate;
 mod clients;
 mod console;
 mod end_to_end;
+mod faults;
 mod holds;
 mod input;
 mod mirror;
@@ -26,5 +29,7 @@ mod senders;
 mod service;
 mod soak;
 mod storage;
+mod systemd;
+mod unit_files;
 mod web;
 mod wiring;

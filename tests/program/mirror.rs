@@ -151,6 +151,7 @@ const HARMLESS: &str = r#"Layout(
     widgets: [(id: "zoom", kind: "slider", at: (1.2, 0), size: (1.8, 0.9))],
 )"#;
 
+// J1, J2
 #[test]
 fn a_window_that_joins_senses_what_the_server_tells_and_loses_it_with_the_server() {
     let site = Site::new();
@@ -225,6 +226,7 @@ fn raw(web: SocketAddr) -> WebSocket<TcpStream> {
     client(format!("ws://{web}/mirror"), stream(web)).unwrap().0
 }
 
+// J3
 #[test]
 fn a_window_that_does_not_read_is_dropped_and_counted_and_others_go_on() {
     let site = Site::new();
@@ -266,6 +268,7 @@ fn refused(news: &Receiver<MirrorNews>) -> String {
     }
 }
 
+// J4
 #[test]
 fn a_layout_from_a_window_is_checked_and_taken_only_where_that_is_allowed() {
     let site = Site::new();
@@ -305,6 +308,7 @@ fn a_layout_from_a_window_is_checked_and_taken_only_where_that_is_allowed() {
     drop(run);
 }
 
+// J4
 #[test]
 fn pages_from_elsewhere_can_t_join_and_a_window_may_keep_controls_off_while_it_is_there() {
     let site = Site::new();

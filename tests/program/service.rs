@@ -1,7 +1,7 @@
 //! The program under a service manager, and on a computer that starts before its network does.
 #![cfg(unix)]
 
-use std::io::{BufRead, BufReader};
+use std::io::{BufRead, BufReader, Write};
 use std::os::unix::net::UnixDatagram;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
@@ -67,4 +67,58 @@ fn an_address_that_is_not_there_yet_is_waited_for() {
     std::thread::sleep(Duration::from_millis(700));
     assert!(served.0.try_wait().unwrap().is_none(), "it waits");
     assert_eq!(ended(served), Some(1), "stopped before it could begin");
+}
+
+/// How a network of its own is made here: as root, or by a user who is root in it; `None`, with the reason printed, where
+/// neither works.
+#[cfg(target_os = "linux")]
+fn own_network() -> Option<Vec<&'static str>> {
+    let ways = [vec!["--net"], vec!["--user", "--map-root-user", "--net"]];
+    let mut why = String::new();
+    for way in ways {
+        let tried = Command::new("unshare").args(&way).args(["ip", "link", "set", "lo", "up"]).output();
+        match tried {
+            Ok(output) if output.status.success() => return Some(way),
+            Ok(output) => why = String::from_utf8_lossy(&output.stderr).into_owned(),
+            Err(error) => why = error.to_string(),
+        }
+    }
+    println!("not run: no network namespace can be made, or there is no `ip` (Debian: iproute2): {why}");
+    None
+}
+
+/// Row N15. In a network of its own the address comes while the program waits for it, and then boards send to it.
+#[test]
+#[cfg(target_os = "linux")]
+fn an_address_that_comes_later_is_served_from_then_on() {
+    const SCRIPT: &str = r#"
+        ip link set lo up
+        "$0" run map --no-osc --json --await-address --allow 192.0.2.1 --listen 192.0.2.1:9000 2>&1 &
+        read -r _
+        ip addr add 192.0.2.1/32 dev lo
+        "$0" simulate --send 192.0.2.1:9000 --loop &
+        read -r _
+        kill -s TERM %1 %2
+        wait %1
+    "#;
+    let Some(way) = own_network() else { return };
+    let mut script = Command::new("unshare")
+        .args(way)
+        // What runs inside ends with it.
+        .args(["--pid", "--fork", "--kill-child", "bash", "-mec", SCRIPT, env!("CARGO_BIN_EXE_underfoot")])
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::null())
+        .spawn()
+        .map(Served)
+        .unwrap();
+    let mut steps = script.0.stdin.take().unwrap();
+    let mut said = BufReader::new(script.0.stdout.take().unwrap()).lines().map_while(Result::ok);
+    let mut until = |text: &str| assert!(said.any(|line| line.contains(text)), "never said: {text}");
+    until("no address 192.0.2.1 yet: waiting for it");
+    writeln!(steps, "the network is there").unwrap();
+    until("Listening on 192.0.2.1:9000");
+    until(r#""event":"link","state":"live""#);
+    writeln!(steps, "enough").unwrap();
+    assert_eq!(script.0.wait().unwrap().code(), Some(0));
 }

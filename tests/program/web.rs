@@ -158,6 +158,7 @@ fn believed_for(site: &Site) -> Duration {
     took
 }
 
+// W7
 #[test]
 fn a_page_believes_no_hold_for_long_after_the_program_was_killed() {
     let site = Site::new();
@@ -237,6 +238,7 @@ fn a_page_sees_the_layout_sets_a_control_and_is_told_why_it_may_not() {
     drop(run);
 }
 
+// W4
 #[test]
 fn pages_from_elsewhere_are_refused_and_ours_is_served() {
     const UPGRADE: &str = "Connection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
@@ -260,6 +262,7 @@ fn pages_from_elsewhere_are_refused_and_ours_is_served() {
     drop(run);
 }
 
+// W1
 #[test]
 fn a_client_that_does_not_read_is_dropped_and_counted() {
     let site = Site::new();

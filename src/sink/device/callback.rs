@@ -61,6 +61,8 @@ pub(super) struct Callback {
     promotion: Promotion,
     channels: usize,
     sample_rate: u32,
+    /// Whether cues that waited for the first block are too old to be felt.
+    forgets: bool,
 }
 
 impl Callback {
@@ -78,7 +80,15 @@ impl Callback {
             promotion,
             channels: usize::from(choice.channels).max(1),
             sample_rate: choice.sample_rate,
+            forgets: false,
         }
+    }
+
+    /// The same for a device that was away: a card may take seconds to open and to ask for its first block, and cues of
+    /// that time are not felt.
+    pub(super) fn forgetting(mut self) -> Self {
+        self.forgets = true;
+        self
     }
 
     /// Fills a block whose first sample sounds in so much time, zero if that is not known.
@@ -92,6 +102,9 @@ impl Callback {
     pub(super) fn run<T: SizedSample + FromSample<f32>>(&mut self, out: &mut [T], sounds_in: Duration) {
         let frames = out.len() / self.channels;
         if let Some(player) = &mut self.player {
+            if std::mem::take(&mut self.forgets) {
+                player.restart();
+            }
             player.fill(out, sounds_in);
         }
         self.stats.frames.store(frames as u32, Ordering::Relaxed);

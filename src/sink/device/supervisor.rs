@@ -104,7 +104,9 @@ impl Supervisor {
             said_denied: false,
             said_storm: None,
         };
-        supervisor.start(&card, choice, Duration::ZERO).map_err(|error| trouble(&card.name(), &error))?;
+        supervisor
+            .start(&card, choice, Duration::ZERO, false)
+            .map_err(|error| trouble(&card.name(), &error))?;
         Ok(supervisor)
     }
 
@@ -227,7 +229,7 @@ impl Supervisor {
             Ok(choice) => choice,
             Err(error) => return self.refuse(DeviceState::Unfit, &error.to_string()),
         };
-        match self.start(&card, choice, now) {
+        match self.start(&card, choice, now, true) {
             Ok(()) => {
                 self.now.reopened += 1;
                 (self.now.sample_rate, self.now.channels) = (choice.sample_rate, choice.channels);
@@ -249,7 +251,8 @@ impl Supervisor {
         choice::choose(&card.name(), &ranges, &self.floor, options)
     }
 
-    fn start(&mut self, card: &Card, choice: Choice, now: Duration) -> Result<(), Error> {
+    /// Opens the device; `is_back` if it was away.
+    fn start(&mut self, card: &Card, choice: Choice, now: Duration, is_back: bool) -> Result<(), Error> {
         let Some(mut player) = self.parked.take() else { return Ok(()) };
         player.fit(&self.floor, &self.options, choice);
         let (forwarder, reports) = ErrorForwarder::new(Arc::clone(&self.stats));
@@ -258,6 +261,7 @@ impl Supervisor {
         self.stats.frames.store(0, Ordering::Relaxed);
         let promotion = Promotion::new(self.ask, matches!(card, Card::Paced));
         let callback = Callback::new(player, choice, self.home.0.clone(), Arc::clone(&self.stats), promotion);
+        let callback = if is_back { callback.forgetting() } else { callback };
         match stream::open(card, choice, callback, forwarder) {
             Ok(stream) => {
                 self.watch.opened(now, blocks, underruns);

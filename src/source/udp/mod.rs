@@ -1,6 +1,7 @@
 //! Packets and requests from a UDP socket.
 
 mod admission;
+mod drops;
 mod forward;
 mod log;
 mod open;
@@ -19,6 +20,7 @@ use std::time::{Duration, Instant as HostInstant, SystemTime};
 use rosc::OscTime;
 
 use self::admission::{Admission, Refusal};
+use self::drops::KernelDrops;
 pub use self::forward::ForwardCounters;
 use self::forward::Forwarder;
 use self::log::RefusalLog;
@@ -40,9 +42,6 @@ const MAX_UNWAITED: usize = 64;
 /// How often requests on their own port are looked for, and most that are examined then.
 const REQUESTS_EVERY: Duration = Duration::from_millis(1);
 const MAX_REQUESTS: usize = 32;
-
-/// How often the kernel is asked how many datagrams it dropped.
-const DROPS_EVERY: Duration = Duration::from_secs(1);
 
 /// Sensor packets and control messages from a UDP socket.
 ///
@@ -77,8 +76,7 @@ pub struct UdpSource {
     notes: Option<SyncSender<Vec<u8>>>,
     boards: usize,
     counters: LinkCounters,
-    drops_read: Instant,
-    kernel_drops: u64,
+    kernel_drops: KernelDrops,
     log: RefusalLog,
 }
 
@@ -119,8 +117,7 @@ impl UdpSource {
             notes: None,
             boards: floor.boards.len(),
             counters: LinkCounters::default(),
-            drops_read: Instant::START,
-            kernel_drops: 0,
+            kernel_drops: KernelDrops::default(),
             log: RefusalLog::default(),
         })
     }
@@ -347,19 +344,6 @@ impl UdpSource {
         self.patience = Some(patience);
         Ok(())
     }
-
-    /// Asks the kernel now and then how many datagrams it dropped on this socket.
-    fn read_drops(&mut self, now: Instant) {
-        if now.since(self.drops_read) < DROPS_EVERY {
-            return;
-        }
-        self.drops_read = now;
-        if let Some(dropped) = proc_net::drops(&self.socket) {
-            let before = self.kernel_drops;
-            self.kernel_drops = self.kernel_drops.max(dropped);
-            self.counters.overflowed += self.kernel_drops - before;
-        }
-    }
 }
 
 impl SensorSource for UdpSource {
@@ -367,7 +351,7 @@ impl SensorSource for UdpSource {
     /// twice `patience` at most, even while datagrams arrive that hold no sensor packet.
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let begun = self.now();
-        self.read_drops(begun);
+        self.counters.overflowed += self.kernel_drops.look(&self.socket, begun);
         if self.commands.as_ref().is_some_and(|(_, looked)| begun.since(*looked) >= REQUESTS_EVERY) {
             self.receive_commands()?;
         }

@@ -215,7 +215,7 @@ fn a_program_that_is_gone_or_stands_still_is_no_longer_believed() {
     }
 }
 
-// N3
+// N3, R6, S6, S13
 #[test]
 fn boards_that_fall_silent_stand_still_or_jump_end_what_is_held() {
     let site = Site::new();

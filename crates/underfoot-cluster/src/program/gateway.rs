@@ -11,6 +11,8 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::floor::Network;
 use underfoot::outgoing::{TuioProfiles, write_control, write_error, write_mute, write_page};
 use underfoot::schema;
+#[cfg(unix)]
+use underfoot::sink::Watchdog;
 use underfoot::sink::{
     AreaNews, AreaState, EventSink, Fanout, JsonSink, OscSink, Rank, TuioSink, TuioVersion, claim_priority,
 };
@@ -100,6 +102,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let lines = JsonSink::new(io::stdout())?;
         sinks.push(if args.json_contacts { lines.with_contacts() } else { lines });
+    }
+    #[cfg(unix)]
+    if let Some(watchdog) = Watchdog::of_environment() {
+        sinks.push(watchdog);
     }
     let mut requests = args.commands.map(|address| RequestSocket::open(address, args)).transpose()?;
     let changes = match &args.layout {

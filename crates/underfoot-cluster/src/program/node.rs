@@ -12,7 +12,9 @@ use underfoot::floor::{Area, Floor};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 use underfoot::serve::Command;
-use underfoot::sink::{Rank, claim_priority};
+#[cfg(unix)]
+use underfoot::sink::Watchdog;
+use underfoot::sink::{Fanout, Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::HostClock;
 use underfoot::wire::ControlMessage;
@@ -119,11 +121,16 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
+    let mut sinks = Fanout::new().with(sink);
+    #[cfg(unix)]
+    if let Some(watchdog) = Watchdog::of_environment() {
+        sinks.push(watchdog);
+    }
     let sound = args.sound;
     let session = Session::source(source, Arc::clone(&clock))
         .floor(part)
         .layout(layout)
-        .sink(sink)
+        .sink(sinks)
         .neighbours(border)
         .actuators(move |floor, start, _| sound.open(floor, start))
         .realtime()

@@ -3,6 +3,8 @@
 
 #[path = "../../../../tests/support/ports.rs"]
 mod ports;
+#[path = "../../../../tests/support/units.rs"]
+mod unit_files;
 
 mod border;
 mod commands;
@@ -16,3 +18,4 @@ mod netns;
 mod offline;
 mod same;
 mod soak;
+mod units;

@@ -93,6 +93,23 @@ fn a2_a_card_that_never_calls_is_tried_again_and_again_with_more_and_more_patien
 }
 
 #[test]
+fn a2_what_happens_until_a_card_asks_for_its_first_block_again_is_not_felt() {
+    let (host, card) = one_card();
+    let mut rig = Rig::on(&host, DeviceOptions::default());
+    rig.play(&card, millis(500));
+    rig.pass(millis(300));
+    assert_eq!((rig.status().state, card.opened()), (DeviceState::Faulty, 2), "opened, and not yet heard of");
+    // Feet go on for a while before it asks.
+    for _ in 0..5 {
+        rig.sender.send(&cue(0, Instant::START));
+        rig.pass(TICK);
+    }
+    assert!(is_silent(&card.pull(480)), "it would come all at once");
+    rig.sender.send(&cue(0, Instant::START));
+    assert!(!is_silent(&card.pull(480)), "and what happens now is felt");
+}
+
+#[test]
 fn a3_underruns_are_counted_and_five_in_ten_seconds_bring_longer_blocks() {
     let (host, card) = one_card();
     let mut rig = Rig::on(&host, DeviceOptions::default());

@@ -1,0 +1,31 @@
+//! `underfoot session`: people of a scenario on a simulated floor, in the floor's own time.
+
+use serde_json::Value;
+
+use crate::end_to_end::{said, underfoot};
+
+/// What controls and floor report while a scenario is played on a page, with these options more.
+pub fn session(page: &str, scenario: &str, more: &[&str]) -> Vec<Value> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("page.ron"), page).unwrap();
+    std::fs::write(folder.path().join("visit.ron"), scenario).unwrap();
+    let output = underfoot()
+        .current_dir(folder.path())
+        .args([
+            "session",
+            "page.ron",
+            "--scenario",
+            "visit.ron",
+            "--calibrate",
+            "--out",
+            "out",
+            "--rate",
+            "8000",
+        ])
+        .args(more)
+        .output()
+        .unwrap();
+    assert!(output.status.success(), "{more:?}: {}", said(&output));
+    let lines = std::fs::read_to_string(folder.path().join("out/events.jsonl")).unwrap();
+    lines.lines().map(|line| serde_json::from_str(line).unwrap()).collect()
+}

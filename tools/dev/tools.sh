@@ -1,0 +1,153 @@
+# Programs that the tests of `./dev test` use, beyond what a build needs. Each is installed only if it is missing: Debian's
+# packages by apt, all others into target/tools, which `rm -r target/tools` takes away again. Read by `dev`.
+
+tools=${CARGO_TARGET_DIR:-target}/tools
+
+# Programs of the registry, each at the newest version that Rust 1.95 builds.
+cargo_tools=(cargo-nextest@0.9.143 cargo-deny@0.20.2 cargo-c@0.10.21+cargo-0.95.0)
+
+# Debian's packages for the tests, and how each is found: by a command, or by a file.
+tool_packages() {
+    local found
+    found=$(ldconfig -p 2>/dev/null || /sbin/ldconfig -p 2>/dev/null || true)
+    has() { command -v "$1" >/dev/null || [ -x "/usr/sbin/$1" ]; }
+    # Saves killed at each of their system calls; a clock of one process set; a network that comes later.
+    has strace || echo strace
+    compgen -G '/usr/lib/*/faketime/libfaketimeMT.so.1' >/dev/null || echo libfaketime
+    has ip || echo iproute2
+    # The units are read, judged and started by systemd itself.
+    has systemd-analyze || echo systemd
+    # A sound card that keeps time, without hardware.
+    has jackd || echo jackd2
+    compgen -G '/usr/lib/*/alsa-lib/libasound_module_pcm_jack.so' >/dev/null || echo libasound2-plugins
+    # Real windows with real input, on a display of their own.
+    has Xvfb || echo xvfb
+    has xdotool || echo xdotool
+    has xclip || echo xclip
+    grep -q 'libGL\.so\.1' <<<"$found" || echo libgl1
+    compgen -G '/usr/lib/*/dri/swrast_dri.so' >/dev/null || echo libgl1-mesa-dri
+    grep -q 'libxkbcommon-x11\.so\.0' <<<"$found" || echo libxkbcommon-x11-0
+    grep -q 'libXcursor\.so\.1' <<<"$found" || echo libxcursor1
+    grep -q 'libXi\.so\.6' <<<"$found" || echo libxi6
+    # The floor's page in a browser.
+    has chromium || has chromium-browser || has google-chrome || echo chromium
+    has node || echo nodejs
+    has npm || echo npm
+    has python3 || echo python3
+    python3 -c 'import ensurepip, venv' 2>/dev/null || echo python3-venv
+}
+
+# Says of one tool that it is not there, and what is not tried for that; the run goes on.
+lacks() { say "NOT RUN: $*"; }
+
+# Runs an installation and says how long it took; a failed one is told and costs the run nothing but what it is for.
+install_step() {
+    local start=$SECONDS
+    say "installing: $*"
+    if "$@" >&2; then
+        printf '   installed in %d s\n' $((SECONDS - start)) >&2
+    else
+        lacks "could not be installed: $*"
+    fi
+}
+
+install_tool_packages() {
+    local packages
+    mapfile -t packages < <(tool_packages | sort -u)
+    [ ${#packages[@]} -gt 0 ] || return 0
+    if ! command -v apt-get >/dev/null; then
+        lacks "tests skip what needs the equivalents of these Debian packages: ${packages[*]}"
+    elif ! as_root true 2>/dev/null; then
+        lacks "tests skip what needs these packages, which take root: apt-get install ${packages[*]}"
+    else
+        install_step apt_install "${packages[@]}"
+    fi
+}
+
+apt_install() {
+    as_root apt-get update -qq || return
+    as_root env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "$@"
+}
+
+# A Python of the tests' own, with tools/dev/python.txt; made anew when that changes.
+install_python() {
+    local wanted=tools/dev/python.txt made=$tools/python/made_from.txt
+    cmp -s "$wanted" "$made" && return
+    command -v python3 >/dev/null || { lacks "there is no python3, so nothing reads what we send"; return; }
+    install_step make_python "$wanted" "$made"
+}
+
+make_python() {
+    rm -rf "$tools/python"
+    python3 -m venv "$tools/python" || return
+    "$tools/python/bin/pip" install --quiet --disable-pip-version-check --requirement "$1" || return
+    cp "$1" "$2"
+}
+
+# What leads the browser, in place; made anew when package.json changes.
+install_web() {
+    local wanted=bindings/web/package.json made=bindings/web/node_modules/made_from.json
+    cmp -s "$wanted" "$made" && return
+    command -v npm >/dev/null || { lacks "there is no npm, so nothing opens the floor's page"; return; }
+    install_step make_web "$wanted" "$made"
+}
+
+make_web() {
+    npm install --silent --no-audit --no-fund --no-package-lock --prefix bindings/web || return
+    cp "$1" "$2"
+}
+
+# Whether a program of cargo's works, such as `nextest`.
+has_cargo() { cargo "$1" --version >/dev/null 2>&1; }
+
+# The version of a program of `cargo_tools`.
+version_of() {
+    local tool
+    for tool in "${cargo_tools[@]}"; do
+        [ "${tool%%@*}" != "$1" ] || echo "${tool#*@}"
+    done
+}
+
+install_cargo_tools() {
+    has_cargo nextest || install_cargo cargo-nextest
+    [[ $(cargo deny --version 2>/dev/null) == cargo-deny\ 0.20.* ]] || install_cargo cargo-deny
+    has_cargo cinstall || install_cargo cargo-c
+}
+
+# Optimised little: these programs run for seconds, and building them takes minutes.
+install_cargo() {
+    CARGO_PROFILE_RELEASE_OPT_LEVEL=1 CARGO_PROFILE_RELEASE_LTO=off CARGO_PROFILE_RELEASE_CODEGEN_UNITS=16 \
+        install_step cargo install --quiet --locked --root "$tools" --version "=$(version_of "$1")" "$1"
+}
+
+# Says which tests pass without having tried anything, since a program of others is missing or this user may too little.
+tools_note() {
+    [ "$(uname)" = Linux ] || return 0
+    local missing
+    mapfile -t missing < <(tool_packages | sort -u)
+    [ ${#missing[@]} = 0 ] || lacks "tests skip what needs these Debian packages: ${missing[*]}"
+    python3 -c 'import pythonosc, pythontuio' 2>/dev/null \
+        || lacks "python-osc and python-tuio are missing, so they read nothing that we send"
+    unshare --net true 2>/dev/null || unshare --user --map-root-user --net true 2>/dev/null \
+        || lacks "no network namespace can be made here, so no network card comes late"
+    as_root_quietly unshare --mount --pid --fork --cgroup true 2>/dev/null \
+        || lacks "this user is neither root nor may use sudo without a password, so no systemd starts the unit"
+}
+
+# As a test does it, which asks nobody for a password.
+as_root_quietly() {
+    if [ "$(id -u)" = 0 ]; then "$@"
+    else sudo -n "$@"; fi
+}
+
+# Installs all of them.
+install_tools() {
+    local start=$SECONDS
+    mkdir -p "$tools"
+    export PATH=$(realpath "$tools")/python/bin:$(realpath "$tools")/bin:$PATH
+    [ "$(uname)" != Linux ] || install_tool_packages
+    install_python
+    install_web
+    install_cargo_tools
+    [ $((SECONDS - start)) -lt 2 ] || say "the tools of the tests were installed in $((SECONDS - start)) s"
+}
