@@ -238,10 +238,13 @@ fn no_claim_of_a_length_takes_memory() {
         let claim = [&[opcode][..], &u64::MAX.to_le_bytes(), b"abc"].concat();
         assert!(complaint(&claim).contains("it ends in the middle of the record"), "{opcode}");
     }
-    // A bomb: 300 MB of zeros in some kB.
-    let bomb = chunk("lz4", true, &vec![0; 300 << 20]);
-    assert!(bomb.len() < 4 << 20);
-    assert!(complaint(&bomb).contains("claims"));
+    // A bomb: 20 MB of zeros in some kB that claim to be less.
+    for compression in ["zstd", "lz4"] {
+        let mut bomb = chunk(compression, true, &vec![0; 20 << 20]);
+        assert!(bomb.len() < 1 << 20);
+        bomb[9 + 16..9 + 24].copy_from_slice(&1000_u64.to_le_bytes());
+        assert!(complaint(&bomb).contains("holds 1001 bytes, not the 1000 that it claims"), "{compression}");
+    }
 }
 
 #[test]

@@ -87,15 +87,19 @@ impl Control {
         value_at(&self.points, self.points.partition_point(|point| point.t <= t), t, self.neutral)
     }
 
-    /// The value at `t`; at a jump the earlier one.
+    /// The value at `t`; at a jump the earlier one, to which the line before leads.
     pub(super) fn until(&self, t: f32) -> f32 {
         let after = self.points.partition_point(|point| point.t < t - SAME_S);
-        match self.points.get(after) {
-            Some(point) if point.t <= t + SAME_S && point.jumps => after
-                .checked_sub(1)
-                .and_then(|before| self.points.get(before))
-                .map_or(self.neutral, |p| p.value),
-            _ => self.at(t),
+        if self.points.get(after).is_none_or(|point| point.t > t + SAME_S || !point.jumps) {
+            return self.at(t);
+        }
+        let before = |back: usize| after.checked_sub(back).and_then(|before| self.points.get(before));
+        match (before(2), before(1)) {
+            (Some(a), Some(b)) if !b.jumps => {
+                b.value + (b.value - a.value) * (t - b.t) / (b.t - a.t).max(JUMP_S)
+            }
+            (_, Some(b)) => b.value,
+            (_, None) => self.neutral,
         }
     }
 
@@ -161,8 +165,9 @@ fn joined(pieces: &[Piece], neutral: f32) -> Vec<Point> {
             }
             // The next piece begins on the way there.
             if let [a, b] = pair {
-                let value = a.1 + (b.1 - a.1) * (end - a.0) / (b.0 - a.0).max(1e-6);
-                points.push(Point { t: (end - JUMP_S).max(a.0), value, jumps: false });
+                let t = end - JUMP_S;
+                let value = a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0).max(1e-6);
+                points.extend((t > a.0).then_some(Point { t, value, jumps: false }));
             }
             break;
         }

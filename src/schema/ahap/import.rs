@@ -92,7 +92,8 @@ fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut
             ));
         }
     }
-    if curves.iter().any(|curve| curve.points.is_empty()) {
+    let is_known = |curve: &ParameterCurve| matches!(curve.id.as_str(), INTENSITY | SHARPNESS);
+    if curves.iter().any(|curve| curve.points.is_empty() && is_known(curve)) {
         warnings.lost("curves without points".to_owned());
     }
 }
@@ -134,8 +135,10 @@ fn limit_split(parts: &mut Vec<Part>, warnings: &mut Warnings) {
     let in_time = parts.iter().filter(|part| part.at_s <= LONGEST_S).count();
     let room = in_time.min(MAX_PARTS);
     if let Some(first) = parts.get(room) {
-        let (more, from) = (parts.len() - room, first.at_s);
-        warnings.note(format!("tones of split events from {from:.3} s on: left out, {more} of them"));
+        let from = first.at_s;
+        warnings.note(format!(
+            "tones of split events from {from:.3} s on: left out (there is room for {MAX_PARTS})"
+        ));
         parts.truncate(room);
     }
 }

@@ -6,7 +6,7 @@ use super::CONTINUOUS_N;
 use super::control::{Control, SAME_S};
 use super::import::{Controls, Parameters, SHORTEST_S, pitch_hz};
 use super::warnings::Warnings;
-use crate::feel::{MAX_POINTS, Part, PartKind, Tone, TonePoint};
+use crate::feel::{MAX_PARTS, MAX_POINTS, Part, PartKind, Tone, TonePoint};
 use crate::units::Newtons;
 
 /// Differences from the pattern's course that are tried one after the other, of full intensity and full sharpness; the
@@ -171,7 +171,9 @@ impl Span<'_> {
         };
         let level = Newtons(CONTINUOUS_N * self.parameters.intensity);
         let (mut parts, mut rest) = (Vec::new(), times.as_slice());
+        // One more than a sequence has room for shows that there are more.
         while rest.len() > 1
+            && parts.len() <= MAX_PARTS
             && let Some((&from, _)) = rest.split_first()
         {
             let (own, next) = rest.split_at(rest.len().min(MAX_POINTS));
