@@ -89,7 +89,8 @@ impl Records {
         let mut record = RawRecord { opcode, at, length, state: State::Whole };
         let kept = if length > most { length.min(FIRST_BYTES) } else { length };
         let mut read = self.read(kept)?;
-        if let Some(checksum) = &mut self.checksum {
+        // The record that has the checksum is not part of it.
+        if let Some(checksum) = self.checksum.as_mut().filter(|_| opcode != op::DATA_END) {
             checksum.update(&head);
             checksum.update(&self.data);
         }
@@ -120,7 +121,7 @@ impl Records {
         }
     }
 
-    /// Checksum of all bytes before the record that was read last; afterwards none is kept.
+    /// Checksum of all bytes before the end of the data section, which was read last; afterwards none is kept.
     pub(super) fn end_checksum(&mut self) -> Option<u32> {
         self.checksum.take().map(crc32fast::Hasher::finalize)
     }
