@@ -26,5 +26,6 @@ mod senders;
 mod service;
 mod soak;
 mod storage;
+mod tables;
 mod web;
 mod wiring;
