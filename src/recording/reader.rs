@@ -30,7 +30,7 @@ pub struct Recording {
 
 /// Attachments and metadata of a recording, wherever in the file they stand.
 #[derive(Default)]
-struct Opening {
+pub(super) struct Opening {
     floor: Option<String>,
     layout: Option<String>,
     method: Option<Method>,
@@ -62,17 +62,10 @@ impl Recording {
     /// # Errors
     /// Those of [`Self::open`].
     pub fn read(bytes: Box<dyn RecordingBytes>, name: &Path) -> Result<Self, RecordingError> {
-        let failed = |source| RecordingError::File { path: name.into(), source };
-        let unreadable = |why: String| RecordingError::Unreadable { path: name.into(), why };
-        let Some(mut records) = Records::new(bytes).map_err(failed)? else {
-            return Err(unreadable("no recording of a floor begins there: it is not an MCAP file".into()));
-        };
-        let opening = Opening::find(&mut records).map_err(failed)?.map_err(unreadable)?;
-        records.rewind().map_err(failed)?;
+        let (opening, parts) = Opening::read(bytes, name)?;
         let floor = schema::parse_floor(&opening.floor.unwrap_or_default(), FLOOR)?;
         let layout = read_layout(&opening.layout.unwrap_or_default(), &floor.geometry)?;
         let method = opening.method.unwrap_or_default();
-        let parts = Ordered::new(Messages::new(records, name, opening.checksums));
         Ok(Self { floor, layout, method, parts })
     }
 
@@ -125,6 +118,22 @@ impl Recording {
 }
 
 impl Opening {
+    /// The attachments and the metadata of a file, and its messages from the beginning.
+    pub(super) fn read(
+        bytes: Box<dyn RecordingBytes>,
+        name: &Path,
+    ) -> Result<(Self, Ordered), RecordingError> {
+        let failed = |source| RecordingError::File { path: name.into(), source };
+        let unreadable = |why: String| RecordingError::Unreadable { path: name.into(), why };
+        let Some(mut records) = Records::new(bytes).map_err(failed)? else {
+            return Err(unreadable("no recording of a floor begins there: it is not an MCAP file".into()));
+        };
+        let mut opening = Self::find(&mut records).map_err(failed)?.map_err(unreadable)?;
+        records.rewind().map_err(failed)?;
+        let messages = Messages::new(records, name, std::mem::take(&mut opening.checksums));
+        Ok((opening, Ordered::new(messages)))
+    }
+
     /// Finds the attachments and the metadata of a recording. The second error says why there are none.
     fn find(records: &mut Records) -> io::Result<Result<Self, String>> {
         let mut found = Self::default();

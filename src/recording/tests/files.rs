@@ -150,6 +150,10 @@ fn no_bit_of_a_checked_file_changes_entries_without_a_word() {
     let taken = entries(12);
     for compression in ["", "zstd"] {
         let file = Tool { chunks: Some(compression), chunk_of: 5, ..OURS }.write(&taken);
+        // The texts are those of the same file.
+        assert!(
+            Recording::read(Box::new(std::io::Cursor::new(file.clone())), std::path::Path::new("x")).is_ok()
+        );
         for bit in 0..file.len() * 8 {
             flip(&file, bit, &taken, true, compression);
         }
