@@ -89,11 +89,11 @@ impl Control {
 
     /// The value at `t`; at a jump the earlier one, to which the line before leads.
     pub(super) fn until(&self, t: f32) -> f32 {
-        let after = self.points.partition_point(|point| point.t < t - SAME_S);
-        if self.points.get(after).is_none_or(|point| point.t > t + SAME_S || !point.jumps) {
-            return self.at(t);
-        }
-        let before = |back: usize| after.checked_sub(back).and_then(|before| self.points.get(before));
+        let first = self.points.partition_point(|point| point.t < t - SAME_S);
+        let mut near =
+            self.points.iter().enumerate().skip(first).take_while(|(_, point)| point.t <= t + SAME_S);
+        let Some((jump, _)) = near.find(|(_, point)| point.jumps) else { return self.at(t) };
+        let before = |back: usize| jump.checked_sub(back).and_then(|before| self.points.get(before));
         match (before(2), before(1)) {
             (Some(a), Some(b)) if !b.jumps => {
                 b.value + (b.value - a.value) * (t - b.t) / (b.t - a.t).max(JUMP_S)
