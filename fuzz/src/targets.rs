@@ -82,9 +82,9 @@ impl Target {
             }),
             "csv" => {
                 let forces = is_force_table(text, geometry);
-                let loads = LoadTable::parse(text, geometry)
+                let loads = LoadTable::read(text.as_bytes(), geometry)
                     .map(|table| table.sensors.iter().map(|sensor| sensor.judge()).count());
-                let presses = PressTable::parse(text, &self.floor);
+                let presses = PressTable::read(text.as_bytes(), &self.floor);
                 forces || loads.is_ok() || presses.is_ok()
             }
             "ahap" => schema::read_ahap(text, "it").is_ok(),
@@ -116,7 +116,7 @@ fn is_force_table(text: &str, geometry: &Geometry) -> bool {
     loop {
         match table.next_frame(&mut frame) {
             Ok(Some(_)) => assert!(frame.forces.iter().flatten().all(|force| force.is_finite())),
-            Ok(None) => return true,
+            Ok(None) => return table.problems().is_empty(),
             Err(_) => return false,
         }
     }

@@ -45,6 +45,7 @@ mod sense;
 mod session;
 mod simulate;
 mod stop;
+mod table;
 mod watch;
 mod web;
 mod wiring;

@@ -56,9 +56,12 @@ pub(crate) fn whole(progress: &Progress) -> Result<(), Failure> {
             progress.left_out()
         );
     }
+    if progress.foreign() > 0 {
+        errln!("{} messages on topics of other programs were passed over.", progress.foreign());
+    }
     match progress.broken() {
         Some(why) => Err(Failure::Other(format!(
-            "the recording breaks off after {} packets ({:.1} s); all up to there was read ({why})",
+            "the recording breaks off or is damaged after {} packets ({:.1} s); all up to there was read ({why})",
             progress.packets(),
             progress.now().secs(),
         ))),

@@ -1,11 +1,10 @@
 //! `underfoot sense`: contacts and cursor from a force table.
 
-use std::io::{self, BufReader, BufWriter, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use clap::Args;
 use serde::Serialize;
-use underfoot::schema::open_bounded;
 use underfoot::sense::{
     Contact, ContactId, Covariance, Cursor, CursorPicker, ForceFrame, ForceTable, Method, Quality, Sensing,
 };
@@ -13,11 +12,12 @@ use underfoot::sense::{
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
 use super::output::note_failure;
+use super::table;
 
 /// What `underfoot sense` is asked to do.
 #[derive(Args, Clone, Debug)]
 pub(crate) struct SenseArgs {
-    /// Force table: CSV with the header `t_s,col,row,f_sw,f_se,f_nw,f_ne`
+    /// Force table: CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`
     file: PathBuf,
 
     /// Geometry and position maps are those of this floor; a force table needs no calibration.
@@ -38,26 +38,27 @@ const MOST_BYTES: u64 = 128 << 30;
 /// nobody reads the output any more.
 ///
 /// # Errors
-/// If the floor file is refused, the table can't be opened or read, or a line of it breaks the format; the
-/// instants before that line have then been printed.
+/// If the floor file is refused or the table can't be opened or read; after all instants, if lines of the table
+/// were left out.
 pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let geometry = floor.geometry;
-    let failed = |error: &dyn std::fmt::Display| Failure::Other(format!("{}: {error}", args.file.display()));
-    let file = open_bounded(&args.file, MOST_BYTES).map_err(|error| failed(&error))?;
+    let file = table::open(&args.file, MOST_BYTES)?;
     let method = if args.eq4 { Method::Eq4 } else { Method::Tracker };
-    let mut table = ForceTable::new(BufReader::new(file), geometry).map_err(|error| failed(&error))?;
+    let mut forces =
+        ForceTable::new(file, geometry).map_err(|error| table::refused(&args.file, "force table", &error))?;
+    table::warn_of_unread(&args.file, forces.unread());
     let mut sensing = Sensing::new(geometry, method).with_maps(&floor.position_maps);
     let mut picker = CursorPicker::default();
     let mut frame = ForceFrame::empty(&geometry);
     let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
     loop {
-        let t_s = match table.next_frame(&mut frame) {
+        let t_s = match forces.next_frame(&mut frame) {
             Ok(Some(t_s)) => t_s,
             Ok(None) => break,
             Err(error) => {
                 out.flush().unwrap_or_else(note_failure);
-                return Err(failed(&error));
+                return Err(Failure::File(args.file.clone(), error));
             }
         };
         let contacts = sensing.update(&frame);
@@ -68,7 +69,7 @@ pub(crate) fn run(args: &SenseArgs) -> Result<(), Failure> {
         }
     }
     out.flush().unwrap_or_else(note_failure);
-    Ok(())
+    table::conclude(table::left_out(&args.file, forces.problems()).as_slice())
 }
 
 #[derive(Serialize)]

@@ -4,7 +4,7 @@ use std::fs::File;
 use std::net::SocketAddr;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::atomic::AtomicU64;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
 use underfoot::engine::Snapshot;
@@ -30,6 +30,7 @@ use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
 use super::play::{self, SimArgs};
 use super::run::whole;
+use super::stop::stop_flag;
 
 /// What `underfoot session` is asked to do.
 #[derive(clap::Args, Debug)]
@@ -95,6 +96,7 @@ impl Default for Args {
 /// Plays a scenario on a simulated floor, faster than in real time, and leaves what a visitor would have seen, felt and
 /// caused.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
+    let stop = stop_flag()?;
     let floor = args.floor.load()?;
     let geometry = floor.geometry;
     let layout = args.layout.load(&geometry)?;
@@ -134,15 +136,24 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         .with_feel(feel, Box::new(wav))
         .with_events(Box::new(told));
     let mut camera = Camera::default();
-    while server.turn()? == Ended::No {
+    let mut is_stopped = false;
+    while !is_stopped && server.turn()? == Ended::No {
         camera.look(&server);
+        is_stopped = stop.load(Ordering::Relaxed);
     }
+    let played = server.engine().now();
     let layout = server.engine().layout().clone();
     drop(server);
     let unrecorded = recorder.map(|recorder| recorder.lost());
     camera.develop(&geometry, &layout, &script, &picture)?;
     whole(&lost, "frames")?;
     unrecorded.map_or(Ok(()), |lost| whole(&lost, "entries"))?;
+    if is_stopped {
+        return Err(Failure::Other(format!(
+            "stopped after {:.1} s; the files hold everything up to there",
+            played.secs()
+        )));
+    }
     outln!(
         "Played {:.1} s. What the floor looked like: {}\nWhat its actuators did, a channel per tile: {}\n\
          What its controls did: {}",

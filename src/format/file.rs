@@ -22,6 +22,18 @@ pub struct BoundedFile {
 /// socket, which are not opened at all, since that may wait or never end; [`ErrorKind::FileTooLarge`] for a file of
 /// more than `most` bytes.
 pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
+    let file = open_ordinary(path)?;
+    if file.metadata()?.len() > most {
+        return Err(too_large(most));
+    }
+    Ok(BoundedFile { file, most, left: most })
+}
+
+/// Opens the file at `path`, of any size, for those who read it piece by piece.
+///
+/// # Errors
+/// Those of [`open_bounded`], but for a size.
+pub(crate) fn open_ordinary(path: &Path) -> io::Result<File> {
     // Examined before it is opened: opening a pipe waits for a writer.
     let metadata = path.metadata()?;
     if metadata.is_dir() {
@@ -30,10 +42,7 @@ pub fn open_bounded(path: &Path, most: u64) -> io::Result<BoundedFile> {
     if !metadata.is_file() {
         return Err(io::Error::new(ErrorKind::InvalidInput, "it is not an ordinary file"));
     }
-    if metadata.len() > most {
-        return Err(too_large(most));
-    }
-    Ok(BoundedFile { file: File::open(path)?, most, left: most })
+    File::open(path)
 }
 
 /// The bytes of the file at `path`, `most` at most.

@@ -4,11 +4,17 @@
 //! source for a packet, for requests and for the time, and for nothing else: with the same answers it tells the same
 //! events, to the bit. `docs/recordings.md` describes the file.
 
+mod bytes;
+mod chunk;
 mod entry;
 mod events;
+mod messages;
+mod order;
 mod packets;
+mod parts;
 mod reader;
 mod recorder;
+mod records;
 mod replay;
 mod tap;
 #[cfg(test)]
@@ -29,6 +35,7 @@ pub use packets::{PacketTap, TappedPackets};
 pub use reader::Recording;
 pub(crate) use recorder::read_layout;
 pub use recorder::{Recorded, Recorder, WhenBehind};
+pub use records::RecordingBytes;
 pub use replay::{Progress, ReplaySource, Speed};
 pub use tap::TappedSource;
 pub(crate) use tap::{Entries, EntrySink};
@@ -43,6 +50,8 @@ pub(crate) const LAYOUTS: &str = "/underfoot/layouts";
 pub(crate) const GAPS: &str = "/underfoot/gaps";
 pub(crate) const END: &str = "/underfoot/end";
 const EVENTS: &str = "/underfoot/events";
+
+const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENTS];
 
 /// The name of the metadata, and the version of all this.
 const METADATA: &str = "underfoot";

@@ -1,27 +1,23 @@
-//! A recording that is read, from its beginning and piece by piece.
+//! A recording that is opened: its floor, its layout, and then its messages.
 
 use std::collections::HashMap;
-use std::fmt;
-use std::fs::File;
-use std::io::Read;
-use std::path::{Path, PathBuf};
+use std::io;
+use std::path::Path;
 
-use mcap::records::Record;
-use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOptions};
+use mcap::records::op;
 
-use super::entry::{self, Entry};
+use super::messages::{Messages, Part};
+use super::order::Ordered;
+use super::parts::{Attachment, metadata};
 use super::recorder::read_layout;
+use super::records::{RawRecord, RecordingBytes, Records, State};
 use super::replay::{ReplaySource, Speed};
-use super::{EVENTS, FLOOR, LAYOUT, METADATA, RecordingError, VERSION};
+use super::{FLOOR, LAYOUT, METADATA, RecordingError, VERSION};
 use crate::floor::Floor;
+use crate::format::file::open_ordinary;
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
-use crate::units::Instant;
-use crate::wire::Decoder;
-
-/// The longest record that is read: a chunk, or a layout with thousands of controls.
-const LONGEST: usize = 64 << 20;
 
 /// A recording that is about to be played again.
 #[derive(Debug)]
@@ -29,51 +25,48 @@ pub struct Recording {
     floor: Floor,
     layout: Layout,
     method: Method,
-    messages: Messages,
+    parts: Ordered,
+}
+
+/// Attachments and metadata of a recording, wherever in the file they stand.
+#[derive(Default)]
+pub(super) struct Opening {
+    floor: Option<String>,
+    layout: Option<String>,
+    method: Option<Method>,
+    /// Checksums by name, so that others of the same name are noticed later.
+    checksums: HashMap<&'static str, u32>,
 }
 
 impl Recording {
-    /// Whether the file at `path` begins as a recording does; false if it can't be read.
+    /// Whether the file at `path` begins as a recording does; false if it can't be read, or is a device or a pipe.
     #[must_use]
     pub fn is_at(path: &Path) -> bool {
-        let mut begins = [0; mcap::MAGIC.len()];
-        File::open(path).is_ok_and(|mut file| file.read_exact(&mut begins).is_ok() && begins == mcap::MAGIC)
+        open_ordinary(path)
+            .and_then(|file| Records::new(Box::new(file)))
+            .is_ok_and(|records| records.is_some())
     }
 
     /// Opens the recording at `path` and reads the floor and the layout that it was made with.
     ///
     /// # Errors
-    /// [`RecordingError`] if the file can't be read, is not a recording of a floor, or was cut off before one begins.
+    /// [`RecordingError`] if the file can't be read, is not an ordinary file or not a recording of a floor, or was cut
+    /// off before one begins.
     pub fn open(path: &Path) -> Result<Self, RecordingError> {
-        let unreadable = |why: String| RecordingError::Unreadable { path: path.into(), why };
-        let file = File::open(path).map_err(|source| RecordingError::File { path: path.into(), source })?;
-        let mut messages = Messages::new(file, path);
-        let [mut floor, mut layout, mut method] = [None, None, None];
-        while floor.is_none() || layout.is_none() || method.is_none() {
-            match messages.next_part() {
-                Part::Attachment(name, text) if name == FLOOR => floor = Some(text),
-                Part::Attachment(name, text) if name == LAYOUT => layout = Some(text),
-                Part::Metadata(version, of) if version == VERSION => method = Some(of),
-                Part::Metadata(version, _) => {
-                    return Err(unreadable(format!(
-                        "it is of version {version}, this program reads {VERSION}"
-                    )));
-                }
-                Part::Attachment(..) => {}
-                Part::Entry(..) | Part::Event(_) | Part::Whole => {
-                    return Err(unreadable(
-                        "it has no floor and layout: it is not a recording of a floor".into(),
-                    ));
-                }
-                Part::Broken(why) => {
-                    return Err(unreadable(format!("no recording of a floor begins there: {why}")));
-                }
-            }
-        }
-        let floor = schema::parse_floor(&floor.unwrap_or_default(), FLOOR)?;
-        let layout = read_layout(&layout.unwrap_or_default(), &floor.geometry)?;
-        let method = if method.as_deref() == Some("eq4") { Method::Eq4 } else { Method::Tracker };
-        Ok(Self { floor, layout, method, messages })
+        let failed = |source| RecordingError::File { path: path.into(), source };
+        Self::read(Box::new(open_ordinary(path).map_err(failed)?), path)
+    }
+
+    /// As [`Self::open`], of bytes from anywhere; `name` is the name that messages call them by.
+    ///
+    /// # Errors
+    /// Those of [`Self::open`].
+    pub fn read(bytes: Box<dyn RecordingBytes>, name: &Path) -> Result<Self, RecordingError> {
+        let (opening, parts) = Opening::read(bytes, name)?;
+        let floor = schema::parse_floor(&opening.floor.unwrap_or_default(), FLOOR)?;
+        let layout = read_layout(&opening.layout.unwrap_or_default(), &floor.geometry)?;
+        let method = opening.method.unwrap_or_default();
+        Ok(Self { floor, layout, method, parts })
     }
 
     /// The floor.
@@ -94,29 +87,29 @@ impl Recording {
         self.method
     }
 
-    pub(super) fn into_messages(self) -> Messages {
-        self.messages
+    pub(super) fn into_parts(self) -> Ordered {
+        self.parts
     }
 
     /// What was recorded, as a source.
     #[must_use]
     pub fn source(self, speed: Speed) -> ReplaySource {
-        ReplaySource::new(self.messages, self.floor.geometry, speed)
+        ReplaySource::new(self.parts, self.floor.geometry, speed)
     }
 
-    /// The lines of the events that were recorded; then, where the file is broken, why.
+    /// The lines of the events that were recorded; then, where the file is cut or damaged, where and why.
     pub fn events(self) -> impl Iterator<Item = Result<Vec<u8>, String>> {
-        let (mut messages, mut is_over) = (self.messages, false);
+        let (mut parts, mut is_over) = (self.parts, false);
         std::iter::from_fn(move || {
             while !is_over {
-                match messages.next_part() {
+                match parts.next_part() {
                     Part::Event(line) => return Some(Ok(line)),
+                    Part::Entry(..) => {}
                     Part::Whole => is_over = true,
                     Part::Broken(why) => {
                         is_over = true;
                         return Some(Err(why));
                     }
-                    _ => {}
                 }
             }
             None
@@ -124,96 +117,102 @@ impl Recording {
     }
 }
 
-/// What stands in the file, one after the other.
-#[expect(
-    clippy::large_enum_variant,
-    reason = "nearly all are packets, and packets are not allocated one by one"
-)]
-pub(super) enum Part {
-    /// Its name and text.
-    Attachment(String, String),
-    /// The version and how feet were told apart.
-    Metadata(String, String),
-    /// When the server took it, and what.
-    Entry(Instant, Entry),
-    /// A line.
-    Event(Vec<u8>),
-    /// The end of what was recorded.
-    Whole,
-    /// The file ends too early or makes no sense from here on; why.
-    Broken(String),
-}
-
-/// The messages of a file.
-pub(super) struct Messages {
-    file: File,
-    path: PathBuf,
-    reader: LinearReader,
-    topics: HashMap<u16, String>,
-    decoder: Decoder,
-}
-
-impl Messages {
-    fn new(file: File, path: &Path) -> Self {
-        let options = LinearReaderOptions::default().with_record_length_limit(LONGEST);
-        let reader = LinearReader::new_with_options(options);
-        let (topics, decoder) = (HashMap::new(), entry::decoder());
-        Self { file, path: path.into(), reader, topics, decoder }
+impl Opening {
+    /// The attachments and the metadata of a file, and its messages from the beginning.
+    pub(super) fn read(
+        bytes: Box<dyn RecordingBytes>,
+        name: &Path,
+    ) -> Result<(Self, Ordered), RecordingError> {
+        let failed = |source| RecordingError::File { path: name.into(), source };
+        let unreadable = |why: String| RecordingError::Unreadable { path: name.into(), why };
+        let Some(mut records) = Records::new(bytes).map_err(failed)? else {
+            return Err(unreadable("no recording of a floor begins there: it is not an MCAP file".into()));
+        };
+        let mut opening = Self::find(&mut records).map_err(failed)?.map_err(unreadable)?;
+        records.rewind().map_err(failed)?;
+        let messages = Messages::new(records, name, std::mem::take(&mut opening.checksums));
+        Ok((opening, Ordered::new(messages)))
     }
 
-    /// Which file it is.
-    pub(super) fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// What comes next; after the end or a break, that again.
-    pub(super) fn next_part(&mut self) -> Part {
-        loop {
-            let (data, opcode) = match self.reader.next_event() {
-                Some(Ok(LinearReadEvent::ReadRequest(wanted))) => {
-                    match self.file.read(self.reader.insert(wanted.min(LONGEST))) {
-                        Ok(read) => self.reader.notify_read(read),
-                        Err(error) => return Part::Broken(error.to_string()),
-                    }
-                    continue;
-                }
-                Some(Ok(LinearReadEvent::Record { data, opcode })) => (data, opcode),
-                Some(Err(error)) => return Part::Broken(error.to_string()),
-                None => return Part::Whole,
+    /// Finds the attachments and the metadata of a recording. The second error says why there are none.
+    fn find(records: &mut Records) -> io::Result<Result<Self, String>> {
+        let mut found = Self::default();
+        while !found.is_whole() {
+            let Some(record) = records.next_other()? else {
+                return Ok(Err(found.missing("it ends before its end")));
             };
-            let text = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
-            match mcap::parse_record(opcode, data) {
-                Ok(Record::Message { header, data }) => {
-                    let [taken, came] = [header.log_time, header.publish_time]
-                        .map(|nanos| Instant::from_micros(nanos / 1000));
-                    let Some(topic) = self.topics.get(&header.channel_id) else { continue };
-                    if topic == EVENTS {
-                        return Part::Event(data.into_owned());
-                    }
-                    if let Some(entry) = Entry::read(topic, &data, came, &self.decoder) {
-                        return Part::Entry(taken, entry);
-                    }
-                }
-                Ok(Record::Channel(channel)) => {
-                    self.topics.insert(channel.id, channel.topic);
-                }
-                Ok(Record::Attachment { header, data, .. }) => {
-                    return Part::Attachment(header.name, text(&data));
-                }
-                Ok(Record::Metadata(metadata)) if metadata.name == METADATA => {
-                    let of = |key: &str| metadata.metadata.get(key).cloned().unwrap_or_default();
-                    return Part::Metadata(of("version"), of("method"));
-                }
-                Ok(Record::DataEnd(_)) => return Part::Whole,
-                Ok(_) => {}
-                Err(error) => return Part::Broken(error.to_string()),
+            if record.opcode == op::FOOTER {
+                return Ok(Err(found.missing("a tool may have left attachments or metadata out")));
             }
+            if let Err(why) = found.take(&record, records.data()) {
+                return Ok(Err(why));
+            }
+        }
+        Ok(Ok(found))
+    }
+
+    const fn is_whole(&self) -> bool {
+        self.floor.is_some() && self.layout.is_some() && self.method.is_some()
+    }
+
+    fn missing(&self, hint: &str) -> String {
+        let names = [
+            (FLOOR, self.floor.is_none()),
+            (LAYOUT, self.layout.is_none()),
+            ("the metadata \"underfoot\"", self.method.is_none()),
+        ];
+        let missing: Vec<&str> = names.into_iter().filter(|(_, is)| *is).map(|(name, _)| name).collect();
+        format!("no recording of a floor begins there: it lacks {} ({hint})", missing.join(", "))
+    }
+
+    /// Takes a record if it is one of those; the error says why it cannot be.
+    fn take(&mut self, record: &RawRecord, data: &[u8]) -> Result<(), String> {
+        let RawRecord { opcode, at, state, .. } = *record;
+        match opcode {
+            op::ATTACHMENT => {
+                let name = Attachment::name(data);
+                let Some(name) = [FLOOR, LAYOUT].into_iter().find(|own| name == Some(*own)) else {
+                    return Ok(());
+                };
+                let attachment = Attachment::read(data).filter(|_| state == State::Whole);
+                let Some(attachment) = attachment.filter(|attachment| attachment.is_sound) else {
+                    return Err(format!("{name}, at byte {at}, is damaged or cut"));
+                };
+                let slot = if name == FLOOR { &mut self.floor } else { &mut self.layout };
+                if slot.is_none() {
+                    let text = std::str::from_utf8(attachment.data);
+                    *slot = Some(text.map_err(|_| format!("{name}, at byte {at}, is not UTF-8"))?.to_owned());
+                    self.checksums.insert(name, crc32fast::hash(attachment.data));
+                }
+                Ok(())
+            }
+            op::METADATA if self.method.is_none() => {
+                let Some((METADATA, entries)) = metadata(data).filter(|_| state == State::Whole) else {
+                    return Ok(());
+                };
+                let version = entries.get("version").copied().unwrap_or_default();
+                if version != VERSION {
+                    return Err(format!("it is of version {version:.32?}, this program reads {VERSION}"));
+                }
+                let method = entries.get("method").copied().unwrap_or_default();
+                let known =
+                    [Method::Eq4, Method::Tracker].into_iter().find(|known| known_as(*known) == method);
+                self.method = Some(
+                    known
+                        .ok_or_else(|| format!("feet were told apart by {method:.32?}, which is unknown"))?,
+                );
+                self.checksums.insert(METADATA, crc32fast::hash(data));
+                Ok(())
+            }
+            _ => Ok(()),
         }
     }
 }
 
-impl fmt::Debug for Messages {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Messages").field("path", &self.path).finish_non_exhaustive()
+/// The name of a method in the metadata.
+pub(super) const fn known_as(method: Method) -> &'static str {
+    match method {
+        Method::Eq4 => "eq4",
+        Method::Tracker => "tracker",
     }
 }

@@ -6,7 +6,8 @@ use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
 use super::entry::Entry;
-use super::reader::{Messages, Part};
+use super::messages::Part;
+use super::order::Ordered;
 use super::recorder::read_layout;
 use super::transport::Transport;
 use crate::floor::Geometry;
@@ -36,6 +37,7 @@ pub struct Progress {
     now_us: AtomicU64,
     packets: AtomicU64,
     gaps: AtomicU64,
+    foreign: AtomicU64,
     is_over: AtomicBool,
     broken: Mutex<Option<String>>,
 }
@@ -59,13 +61,19 @@ impl Progress {
         self.gaps.load(Ordering::Relaxed)
     }
 
+    /// Messages so far on topics of other programs, which are passed over.
+    #[must_use]
+    pub fn foreign(&self) -> u64 {
+        self.foreign.load(Ordering::Relaxed)
+    }
+
     /// Whether everything there is has been played.
     #[must_use]
     pub fn is_over(&self) -> bool {
         self.is_over.load(Ordering::Relaxed)
     }
 
-    /// Why the recording breaks off, if that has been reached.
+    /// Where and why the recording breaks off or is damaged, if that has been reached.
     #[must_use]
     pub fn broken(&self) -> Option<String> {
         self.broken.lock().unwrap_or_else(PoisonError::into_inner).clone()
@@ -75,7 +83,7 @@ impl Progress {
 /// Gives what a [`super::TappedSource`] gave, with the same times.
 #[derive(Debug)]
 pub struct ReplaySource {
-    messages: Messages,
+    parts: Ordered,
     geometry: Geometry,
     ahead: Option<(Instant, Entry)>,
     now: Instant,
@@ -86,10 +94,10 @@ pub struct ReplaySource {
 }
 
 impl ReplaySource {
-    pub(super) fn new(messages: Messages, geometry: Geometry, speed: Speed) -> Self {
+    pub(super) fn new(parts: Ordered, geometry: Geometry, speed: Speed) -> Self {
         let (transport, progress) = (Arc::new(Transport::new(speed)), Arc::default());
         let (now, begun) = (Instant::START, None);
-        let mut source = Self { messages, geometry, ahead: None, now, transport, begun, progress };
+        let mut source = Self { parts, geometry, ahead: None, now, transport, begun, progress };
         source.advance();
         source.now = source.ahead.as_ref().map_or(Instant::START, |(taken, _)| *taken);
         source
@@ -122,20 +130,21 @@ impl ReplaySource {
             self.progress.now_us.store(self.now.micros(), Ordering::Relaxed);
         }
         while self.ahead.is_none() && !self.progress.is_over() {
-            match self.messages.next_part() {
+            match self.parts.next_part() {
                 Part::Entry(_, Entry::Gap(entries)) => {
                     self.progress.gaps.fetch_add(entries, Ordering::Relaxed);
                 }
                 Part::Entry(taken, entry) => self.ahead = Some((taken, entry)),
                 Part::Whole => self.progress.is_over.store(true, Ordering::Relaxed),
                 Part::Broken(why) => {
-                    let why = format!("{}: {why}", self.messages.path().display());
+                    let why = format!("{}: {why}", self.parts.path().display());
                     *self.progress.broken.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
                     self.progress.is_over.store(true, Ordering::Relaxed);
                 }
-                Part::Event(_) | Part::Attachment(..) | Part::Metadata(..) => {}
+                Part::Event(_) => {}
             }
         }
+        self.progress.foreign.store(self.parts.foreign(), Ordering::Relaxed);
         next
     }
 

@@ -3,7 +3,8 @@
 use serde::Deserialize;
 
 use super::entry::Entry;
-use super::reader::{Part, Recording};
+use super::messages::Part;
+use super::reader::Recording;
 use crate::units::Instant;
 
 /// What happened when in a recording.
@@ -44,10 +45,10 @@ impl Recording {
     /// Reads all of it. `tell` is called with what has been found now and then and at the end, and stops the reading by
     /// `false`.
     pub fn read_timeline(self, mut tell: impl FnMut(&Timeline) -> bool) {
-        let (mut messages, mut timeline) = (self.into_messages(), Timeline::default());
+        let (mut parts, mut timeline) = (self.into_parts(), Timeline::default());
         for round in 1_usize.. {
-            match messages.next_part() {
-                Part::Entry(_, Entry::Gap(_)) | Part::Attachment(..) | Part::Metadata(..) => {}
+            match parts.next_part() {
+                Part::Entry(_, Entry::Gap(_)) => {}
                 Part::Entry(taken, _) => {
                     let begins = timeline.span.map_or(taken, |(begins, _)| begins);
                     timeline.span = Some((begins, taken.max(begins)));

@@ -12,6 +12,7 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
 use super::entry::Entry;
+use super::reader::known_as;
 use super::{END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, METADATA, PACKETS, REQUESTS, SILENCE, VERSION};
 use crate::sense::Method;
 use crate::sink::Disk;
@@ -47,6 +48,8 @@ pub(super) struct RecordingFile {
     disk: Disk,
     channels: BTreeMap<&'static str, u16>,
     bytes: Vec<u8>,
+    /// Number of the next entry; it wraps.
+    number: u32,
 }
 
 impl RecordingFile {
@@ -66,12 +69,8 @@ impl RecordingFile {
             .profile("underfoot")
             .library(concat!("underfoot ", env!("CARGO_PKG_VERSION")));
         let mut writer = options.create(BufWriter::new(file))?;
-        let method = match method {
-            Method::Eq4 => "eq4",
-            Method::Tracker => "tracker",
-        };
-        let metadata =
-            [("version", VERSION), ("method", method)].map(|(key, value)| (key.into(), value.into()));
+        let metadata = [("version", VERSION), ("method", known_as(method))]
+            .map(|(key, value)| (key.into(), value.into()));
         writer.write_metadata(&Metadata { name: METADATA.into(), metadata: metadata.into() })?;
         for (name, text) in [(FLOOR, floor), (LAYOUT, layout)] {
             let data = text.as_bytes().into();
@@ -98,7 +97,7 @@ impl RecordingFile {
             channels.insert(topic, writer.add_channel(schema, topic, encoding, &BTreeMap::new())?);
         }
         writer.flush()?;
-        Ok(Self { writer, disk, channels, bytes: Vec::new() })
+        Ok(Self { writer, disk, channels, bytes: Vec::new(), number: 0 })
     }
 
     fn write(&mut self, job: &Job) -> McapResult<()> {
@@ -107,21 +106,22 @@ impl RecordingFile {
                 for (taken, entry) in entries {
                     self.bytes.clear();
                     entry.write(&mut self.bytes);
-                    self.put(entry.topic(), *taken, entry.came(*taken))?;
+                    self.put(entry.topic(), self.number, *taken, entry.came(*taken))?;
+                    self.number = self.number.wrapping_add(1);
                 }
             }
             Job::Event(at, line) => {
                 self.bytes.clone_from(line);
-                self.put(EVENTS, *at, *at)?;
+                self.put(EVENTS, 0, *at, *at)?;
             }
         }
         Ok(())
     }
 
-    fn put(&mut self, topic: &str, taken: Instant, came: Instant) -> McapResult<()> {
+    fn put(&mut self, topic: &str, sequence: u32, taken: Instant, came: Instant) -> McapResult<()> {
         let Some(&channel_id) = self.channels.get(topic) else { return Ok(()) };
         let [log_time, publish_time] = [taken, came].map(|at| at.micros().saturating_mul(1000));
-        let header = MessageHeader { channel_id, sequence: 0, log_time, publish_time };
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time };
         self.writer.write_to_known_channel(&header, &self.bytes)
     }
 

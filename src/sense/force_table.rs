@@ -1,73 +1,60 @@
 //! Tables of forces, for sensing without a floor.
 
-use std::io::{self, BufRead, Read};
-
-use thiserror::Error;
+use std::collections::VecDeque;
+use std::io::{self, BufRead};
 
 use super::ForceFrame;
+use super::table::{Row, Table, TableError, TableProblems};
 use crate::floor::{Geometry, TileId};
 use crate::units::Instant;
 
-const HEADER: &str = "t_s,col,row,f_sw,f_se,f_nw,f_ne";
+const COLUMNS: [&[&str]; 1] = [&["t_s", "col", "row", "f_sw", "f_se", "f_nw", "f_ne"]];
 
-/// No line of a force table is longer.
-const LINE_LIMIT: u64 = 1024;
-
-/// Why a force table could not be read on.
-#[derive(Debug, Error)]
-pub enum ForceTableError {
-    /// The file itself could not be read.
-    #[error("cannot read the force table: {0}")]
-    Io(#[from] io::Error),
-    /// A line is not what the format asks for.
-    #[error("line {line}: {problem}")]
-    Line {
-        /// Which line, from 1.
-        line: u64,
-        /// What is wrong with it, and what was expected.
-        problem: String,
-    },
-}
+/// Latest time in a table, in seconds: a year.
+const LATEST_S: f64 = 31_557_600.0;
 
 /// Reads a force table, one instant at a time.
 ///
-/// CSV with the header `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated
+/// CSV with the columns `t_s,col,row,f_sw,f_se,f_nw,f_ne`: seconds, tile, calibrated
 /// and tared newtons. The rows of one instant are consecutive, times rise, and a
 /// tile that an instant doesn't name carries no load then.
+///
+/// Lines that cannot be read are left out and stand in [`Self::problems`]: a field that is missing, too many or no
+/// number, a tile off the floor or named twice in one instant, a time that breaks the order, is below 0 or beyond a
+/// year. Of two neighbours in the wrong order the line that fits less with the lines around it is left out.
 #[derive(Debug)]
 pub struct ForceTable<R> {
-    reader: R,
+    table: Table<R>,
     geometry: Geometry,
-    line: u64,
-    text: String,
-    /// The first row of the next instant, already read.
-    ahead: Option<Row>,
-    /// Tiles named in the instant that is being read, to be cleared for the next.
+    row: Row,
+    /// Loads read ahead, at most three: enough to find the one whose time is wrong.
+    ahead: VecDeque<Load>,
+    /// Time of the last load that was given.
+    last_s: Option<f64>,
+    /// Tiles named in the current instant, to be cleared for the next.
     named: Vec<usize>,
-    last: Option<f64>,
 }
 
+/// The load of one tile at one instant.
 #[derive(Clone, Copy, Debug)]
-struct Row {
+struct Load {
+    line: u64,
     t_s: f64,
     tile: TileId,
+    /// The tile's index on the floor.
+    index: usize,
     forces: [f32; 4],
-    line: u64,
 }
 
 impl<R: BufRead> ForceTable<R> {
     /// A table for a floor of this geometry; reads and checks the header.
     ///
     /// # Errors
-    /// If the file can't be read, or starts with anything but the header.
-    pub fn new(reader: R, geometry: Geometry) -> Result<Self, ForceTableError> {
-        let text = String::with_capacity(128);
-        let mut table = Self { reader, geometry, line: 0, text, ahead: None, named: Vec::new(), last: None };
-        if !table.read_line()? || table.text.trim_start_matches('\u{feff}') != HEADER {
-            return Err(table.problem(format!("expected the header {HEADER}")));
-        }
-        table.ahead = table.read_row()?;
-        Ok(table)
+    /// [`TableError`] if the header is of another table, or `reader` fails.
+    pub fn new(reader: R, geometry: Geometry) -> Result<Self, TableError> {
+        let table = Table::new(reader, &COLUMNS)?;
+        let (row, ahead, named) = (Row::default(), VecDeque::new(), Vec::new());
+        Ok(Self { table, geometry, row, ahead, last_s: None, named })
     }
 
     /// Fills `frame` with the next instant and gives its time in seconds; `None` at the end.
@@ -76,108 +63,111 @@ impl<R: BufRead> ForceTable<R> {
     /// same geometry: only the tiles named last time are cleared.
     ///
     /// # Errors
-    /// At the first line that breaks the format, with its number: a field missing,
-    /// too many or not a number, a tile off the floor or named twice in one
-    /// instant, a time before the one above it, below 0 or beyond a year.
-    pub fn next_frame(&mut self, frame: &mut ForceFrame) -> Result<Option<f64>, ForceTableError> {
+    /// Those of the reader.
+    pub fn next_frame(&mut self, frame: &mut ForceFrame) -> io::Result<Option<f64>> {
         for index in self.named.drain(..) {
             if let Some(forces) = frame.forces.get_mut(index) {
                 *forces = [0.0; 4];
             }
         }
-        let Some(first) = self.ahead.take() else { return Ok(None) };
-        if self.last.is_some_and(|last| first.t_s < last) {
-            return Err(problem(first.line, "its time lies before the one above".into()));
-        }
+        let Some(first) = self.next_in_order()? else { return Ok(None) };
         frame.at = Instant::from_micros((first.t_s * 1e6).round() as u64);
         frame.received = frame.at;
-        let mut row = first;
-        loop {
-            let Some(index) = self.geometry.index(row.tile) else {
-                let block = self.geometry.block();
-                return Err(problem(
-                    row.line,
-                    format!("tile {} is not on a floor of {block}; try --grid", row.tile),
-                ));
-            };
-            if self.named.contains(&index) {
-                return Err(problem(row.line, format!("tile {} is named twice in one instant", row.tile)));
-            }
-            self.named.push(index);
-            if let Some(forces) = frame.forces.get_mut(index) {
-                *forces = row.forces;
-            }
-            match self.read_row()? {
-                Some(next) if next.t_s == first.t_s => row = next,
-                next => {
-                    self.ahead = next;
-                    break;
+        let mut next = Some(first);
+        while let Some(load) = next {
+            if self.named.contains(&load.index) {
+                let problem = format!("tile {} is named twice in one instant", load.tile);
+                self.table.report_line(load.line, problem);
+            } else {
+                self.named.push(load.index);
+                if let Some(forces) = frame.forces.get_mut(load.index) {
+                    *forces = load.forces;
                 }
             }
+            self.settle_order()?;
+            next = self.ahead.pop_front_if(|load| load.t_s == first.t_s);
         }
-        self.last = Some(first.t_s);
         Ok(Some(first.t_s))
     }
 
-    /// Reads a line without its end into `text`; false at the end of the file.
-    fn read_line(&mut self) -> Result<bool, ForceTableError> {
-        self.text.clear();
-        self.line += 1;
-        let read = self.reader.by_ref().take(LINE_LIMIT).read_line(&mut self.text)?;
-        if read as u64 == LINE_LIMIT {
-            return Err(self.problem(format!("longer than {LINE_LIMIT} bytes; not a force table")));
-        }
-        self.text.truncate(self.text.trim_end_matches(['\n', '\r']).len());
-        Ok(read > 0)
+    /// Everything wrong with the lines so far.
+    #[must_use]
+    pub fn problems(&self) -> &TableProblems {
+        self.table.problems()
     }
 
-    fn read_row(&mut self) -> Result<Option<Row>, ForceTableError> {
-        if !self.read_line()? {
-            return Ok(None);
-        }
-        self.parse().map(Some).map_err(|text| self.problem(text))
+    /// Names of the columns that are not read, as the header has them.
+    #[must_use]
+    pub fn unread(&self) -> &[String] {
+        self.table.unread()
     }
 
-    fn parse(&self) -> Result<Row, String> {
-        let mut fields = self.text.split(',').map(str::trim);
-        let mut field = |name: &str| fields.next().ok_or_else(|| format!("the field {name} is missing"));
-        let t_s = number(field("t_s")?, "t_s", 0.0..=31_557_600.0)?;
-        let column = whole(field("col")?, "col")?;
-        let row = whole(field("row")?, "row")?;
-        let mut forces = [0.0; 4];
-        for (force, name) in forces.iter_mut().zip(["f_sw", "f_se", "f_nw", "f_ne"]) {
-            *force = number(field(name)?, name, -1e6..=1e6)? as f32;
-        }
-        match fields.count() {
-            0 => Ok(Row { t_s, tile: TileId::new(column, row), forces, line: self.line }),
-            extra => Err(format!("{extra} fields too many; expected {HEADER}")),
+    fn next_in_order(&mut self) -> io::Result<Option<Load>> {
+        self.settle_order()?;
+        let next = self.ahead.pop_front();
+        self.last_s = next.map(|load| load.t_s).or(self.last_s);
+        Ok(next)
+    }
+
+    /// Reads ahead and leaves out lines until the first two loads ahead are in the order of time.
+    fn settle_order(&mut self) -> io::Result<()> {
+        loop {
+            self.read_ahead(2)?;
+            let (Some(first), Some(second)) = (self.ahead.front(), self.ahead.get(1)) else { return Ok(()) };
+            let (first, second) = (*first, *second);
+            if second.t_s >= first.t_s {
+                return Ok(());
+            }
+            self.read_ahead(3)?;
+            let third = self.ahead.get(2).map(|third| third.t_s);
+            let fits_before = self.last_s.is_none_or(|last| second.t_s >= last);
+            // At the end of the table nothing follows that could decide: the first load of all is believed.
+            let is_first_wrong =
+                fits_before && third.map_or(self.last_s.is_some(), |third| third < first.t_s);
+            let (wrong, problem) = if is_first_wrong {
+                (0, "its time lies after the one below")
+            } else {
+                (1, "its time lies before the one above")
+            };
+            let line = if wrong == 0 { first.line } else { second.line };
+            self.ahead.remove(wrong);
+            self.table.report_line(line, problem.to_owned());
         }
     }
 
-    fn problem(&self, text: String) -> ForceTableError {
-        problem(self.line, text)
+    fn read_ahead(&mut self, count: usize) -> io::Result<()> {
+        while self.ahead.len() < count && self.table.next_row(&mut self.row)? {
+            let load = self.load();
+            self.ahead.extend(load);
+        }
+        Ok(())
     }
-}
 
-fn problem(line: u64, problem: String) -> ForceTableError {
-    ForceTableError::Line { line, problem }
-}
-
-fn number(text: &str, name: &str, range: std::ops::RangeInclusive<f64>) -> Result<f64, String> {
-    text.parse().ok().filter(|number| range.contains(number)).ok_or_else(|| {
-        format!("{name} must be a number from {} to {}, not {text:?}", range.start(), range.end())
-    })
-}
-
-fn whole(text: &str, name: &str) -> Result<u16, String> {
-    text.parse().map_err(|_| format!("{name} must be a whole number from 0, not {text:?}"))
+    fn load(&mut self) -> Option<Load> {
+        let (table, row) = (&mut self.table, &self.row);
+        let t_s = table.number(row, 0, 0.0..=LATEST_S);
+        let column = table.whole(row, 1, 0..u16::MAX);
+        let line = table.whole(row, 2, 0..u16::MAX);
+        let [sw, se, nw, ne] =
+            std::array::from_fn(|corner| table.number(row, 3 + corner, -1e6..=1e6).map(|force| force as f32));
+        let (t_s, tile, forces) = (t_s?, TileId::new(column?, line?), [sw?, se?, nw?, ne?]);
+        let Some(index) = self.geometry.index(tile) else {
+            let block = self.geometry.block();
+            table.report_line(row.line(), format!("tile {tile} is not on a floor of {block}; try --grid"));
+            return None;
+        };
+        Some(Load { line: row.line(), t_s, tile, index, forces })
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Vec<(f64, Vec<usize>)>, ForceTableError> {
+    const HEADER: &str = "t_s,col,row,f_sw,f_se,f_nw,f_ne";
+
+    /// The instants of a table, each with its loaded tiles, and its problems.
+    fn read(text: &str) -> Result<(Vec<(f64, Vec<usize>)>, Vec<String>), TableError> {
         let geometry = Geometry::default();
         let mut table = ForceTable::new(text.as_bytes(), geometry)?;
         let mut frame = ForceFrame::empty(&geometry);
@@ -186,35 +176,81 @@ mod tests {
             let loaded = (0..36).filter(|&index| frame.forces[index] != [0.0; 4]).collect();
             instants.push((t_s, loaded));
         }
-        Ok(instants)
+        let problems = table.problems().shown().iter().map(ToString::to_string).collect();
+        Ok((instants, problems))
     }
 
-    fn complaint(rows: &str) -> String {
-        read(&format!("{HEADER}\n{rows}")).unwrap_err().to_string()
+    /// The only problem of these rows.
+    fn problem(rows: &str) -> String {
+        let (_, problems) = read(&format!("{HEADER}\n{rows}")).unwrap();
+        let [problem] = &problems[..] else { panic!("{problems:?}") };
+        problem.clone()
     }
 
     #[test]
     fn tiles_absent_at_an_instant_carry_nothing() {
         let rows = "0.000,1,0,1,2,3,4\r\n0.000,0,1,1,0,0,0\n0.001,5,5,0,0,0,9\n0.002,0,0,0,0,0,0";
-        let instants = read(&format!("\u{feff}{HEADER}\r\n{rows}")).unwrap();
+        let (instants, problems) = read(&format!("\u{feff}{HEADER}\r\n{rows}")).unwrap();
         assert_eq!(instants, [(0.0, vec![1, 6]), (0.001, vec![35]), (0.002, vec![])]);
-        assert_eq!(read(&format!("{HEADER}\n")).unwrap(), []);
+        assert_eq!(problems, [""; 0]);
+        assert_eq!(read(&format!("{HEADER}\n")).unwrap().0, []);
     }
 
     #[test]
-    fn every_complaint_names_its_line() {
-        assert_eq!(complaint("0,0,0,1,2,3"), "line 2: the field f_ne is missing");
-        assert!(complaint("0,0,0,1,2,3,4,5").starts_with("line 2: 1 fields too many"));
-        assert!(complaint("0,0,0,1,2,3,x").contains("f_ne must be a number"));
-        assert!(complaint("0,0,0,1,2,NaN,3").contains("f_nw must be a number"));
-        assert!(complaint("0,0,0,1,2,inf,3").contains("f_nw must be a number"));
-        assert!(complaint("-1,0,0,1,2,3,4").contains("t_s must be"));
-        assert!(complaint("0,0.5,0,1,2,3,4").contains("col must be a whole number"));
-        assert!(complaint("0,6,0,1,2,3,4").contains("try --grid"));
-        assert!(complaint("0,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: tile (0, 0) is named twice"));
-        assert!(complaint("1,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: its time lies before"));
-        assert!(complaint("\n").contains("t_s must be"));
-        assert!(complaint(&"9".repeat(5000)).contains("longer than"));
+    fn every_problem_names_its_line() {
+        assert_eq!(problem("0,0,0,1,2,3"), "line 2: expected 7 fields, found 6");
+        assert!(problem("0,0,0,1,2,3,4,5").starts_with("line 2: expected 7 fields, found 8"));
+        assert!(problem("0,0,0,1,2,3,x").starts_with("line 2, column f_ne: expected a number"));
+        assert!(problem("0,0,0,1,2,NaN,3").starts_with("line 2, column f_nw: expected a number"));
+        assert!(problem("0,0,0,1,2,inf,3").starts_with("line 2, column f_nw: expected a number"));
+        assert!(problem("-1,0,0,1,2,3,4").starts_with("line 2, column t_s: expected a number"));
+        assert!(problem("1e300,0,0,1,2,3,4").starts_with("line 2, column t_s: expected a number"));
+        assert!(problem("0,0.5,0,1,2,3,4").starts_with("line 2, column col: expected a whole number"));
+        assert!(problem("0,6,0,1,2,3,4").contains("try --grid"));
+        assert!(problem("0,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: tile (0, 0) is named twice"));
+        assert!(problem("1,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: its time lies before"));
+        assert!(problem(&"9".repeat(100_000)).contains("line 2: longer than"));
+    }
+
+    /// Five instants of one tile, the line of `broken` among them replaced.
+    fn times_without(broken: usize, by: &str) -> (Vec<f64>, Vec<String>) {
+        let mut rows: Vec<String> = (0..5).map(|step| format!("{step},0,0,1,1,1,1")).collect();
+        by.clone_into(&mut rows[broken]);
+        let (instants, problems) = read(&format!("{HEADER}\n{}\n", rows.join("\n"))).unwrap();
+        (instants.into_iter().map(|(t_s, _)| t_s).collect(), problems)
+    }
+
+    #[test]
+    fn a_broken_line_costs_no_other_line() {
+        let broken =
+            ["1,0", "\"", "x", "1,0,0,\"1,1,1,1", "9999,0,0,1,1,1,1", "9,9,9,9,9,9,9", "1,0,0,1,1,1,1,1,1"];
+        for line in broken {
+            for place in 0..5 {
+                let (times, problems) = times_without(place, line);
+                let others: Vec<f64> = (0..5).filter(|step| *step != place).map(|step| step as f64).collect();
+                // A time that is too late stands in order where nothing follows it.
+                if line.starts_with("9999") && place == 4 {
+                    assert_eq!((times.len(), problems.len()), (5, 0));
+                    continue;
+                }
+                assert_eq!(times, others, "{line} in place {place}");
+                assert_eq!(problems.len(), 1, "{line} in place {place}: {problems:?}");
+                assert!(problems[0].starts_with(&format!("line {}", place + 2)), "{problems:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_time_that_is_too_early_costs_no_other_line() {
+        for place in 2..5 {
+            let (times, problems) = times_without(place, "0.5,0,0,1,1,1,1");
+            let others: Vec<f64> = (0..5).filter(|step| *step != place).map(|step| step as f64).collect();
+            assert_eq!(times, others, "in place {place}");
+            assert!(
+                problems[0].starts_with(&format!("line {}: its time lies before", place + 2)),
+                "{problems:?}"
+            );
+        }
     }
 
     #[test]
@@ -226,8 +262,23 @@ mod tests {
 
     proptest::proptest! {
         #[test]
-        fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf]{0,12},?\n?){0,40}") {
+        fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf\"#;]{0,12},?[\n\r]?){0,40}") {
             let _ = read(&format!("{HEADER}\n{rows}"));
+        }
+
+        /// Whatever stands between them, good lines are read.
+        #[test]
+        fn good_lines_are_read_whatever_stands_between_them(
+            junk in proptest::collection::vec("[0-9a-z.,;\"#\t ]{0,30}", 6),
+            end in "\n|\r\n|\r",
+        ) {
+            // Junk that is itself a row of a tile on the floor would be read.
+            let junk = junk.iter().map(|line| format!("{line},?"));
+            let rows: Vec<String> =
+                junk.zip(0..).flat_map(|(line, step)| [format!("{step},1,1,9,9,9,9"), line]).collect();
+            let (instants, _) = read(&format!("{HEADER}{end}{}{end}", rows.join(&end))).unwrap();
+            let times: Vec<f64> = instants.iter().map(|(t_s, _)| *t_s).collect();
+            proptest::prop_assert_eq!(times, [0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         }
     }
 }

@@ -1,8 +1,10 @@
 //! Tables of load-cell measurements, and what they say of each sensor.
 
+use std::io::BufRead;
+
 use super::calibration::{Fit, FitError, LoadPoint};
 use super::law_choice::Comparison;
-use super::table::{Table, TableProblems, shown};
+use super::table::{Row, Table, TableError, TableNotes, shown};
 use crate::floor::{Calibration, Corner, Geometry, SensorId, TileId};
 use crate::units::Newtons;
 
@@ -11,6 +13,8 @@ use crate::units::Newtons;
 pub struct LoadTable {
     /// The sensors measured, by tile index and corner.
     pub sensors: Vec<SensorLoads>,
+    /// Lines left out, columns not read.
+    pub notes: TableNotes,
 }
 
 /// One sensor's measurements.
@@ -71,24 +75,28 @@ const COLUMNS: [&[&str]; 2] =
     [&["col", "row", "corner", "volts", "newtons"], &["col", "row", "corner", "counts", "newtons"]];
 
 impl LoadTable {
-    /// Reads a CSV table with the header `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
+    /// Reads a CSV table with the columns `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
     ///
     /// One line per measurement, in any order: the sensor's tile and corner
     /// (`sw`, `se`, `nw`, `ne`), its output (0 to 5 volts, or 0 to 65535
     /// counts) and what the load cell read (-100 to 10000 newtons, the plate's
-    /// weight included if it rests on the sensor).
+    /// weight included if it rests on the sensor). Lines that cannot be read are left out and stand in
+    /// [`Self::notes`].
     ///
     /// # Errors
-    /// Everything wrong with the table, by line and column.
-    pub fn parse(text: &str, geometry: &Geometry) -> Result<Self, TableProblems> {
-        let (mut table, header) = Table::new(text, &COLUMNS)?;
+    /// [`TableError`] if the header is of another table, or `reader` fails.
+    pub fn read(reader: impl BufRead, geometry: &Geometry) -> Result<Self, TableError> {
+        let mut table = Table::new(reader, &COLUMNS)?;
+        let (header, mut row) = (table.header(), Row::default());
         let mut sensors: Vec<Option<SensorLoads>> = vec![None; geometry.tile_count() * 4];
-        while let Some(row) = table.next_row() {
+        while table.next_row(&mut row)? {
             let column = table.whole(&row, 0, geometry.block().column_range());
             let line = table.whole(&row, 1, geometry.block().row_range());
-            let corner = corner(row.text(2));
+            let written = table.text(&row, 2);
+            let corner = corner(&written);
             if corner.is_none() {
-                table.report(&row, 2, format!("expected sw, se, nw or ne, found {}", shown(row.text(2))));
+                let found = shown(&written);
+                table.report(&row, 2, format!("expected sw, se, nw or ne, found {found}"));
             }
             let output = if header == 0 {
                 table
@@ -113,7 +121,7 @@ impl LoadTable {
                 loads.points.push(LoadPoint::new(volts, Newtons(force as f32)));
             }
         }
-        table.conclude(Self { sensors: sensors.into_iter().flatten().collect() })
+        Ok(Self { sensors: sensors.into_iter().flatten().collect(), notes: table.into_notes() })
     }
 }
 
@@ -161,8 +169,8 @@ mod tests {
 
     const HEADER: &str = "col,row,corner,volts,newtons\n";
 
-    fn read(text: &str) -> Result<LoadTable, TableProblems> {
-        LoadTable::parse(text, &Geometry::of_paper_tiles(2, 2).unwrap())
+    fn read(text: &str) -> Result<LoadTable, TableError> {
+        LoadTable::read(text.as_bytes(), &Geometry::of_paper_tiles(2, 2).unwrap())
     }
 
     fn loads(points: impl IntoIterator<Item = (f32, f32)>) -> SensorLoads {
@@ -188,8 +196,10 @@ mod tests {
 
     #[test]
     fn every_problem_has_its_line_and_column() {
-        let problems =
-            read(&format!("{HEADER}2,0,ne,1,1\n0,0,up,6,NaN\n0,0,ne,1\n0,-1,ne,,1\n")).unwrap_err();
+        let lines = "2,0,ne,1,1\n0,0,up,6,NaN\n0,0,ne,1\n0,-1,ne,,1\n1,1,ne,1,1\n";
+        let table = read(&format!("{HEADER}{lines}")).unwrap();
+        let problems = table.notes.problems;
+        assert_eq!((problems.lines(), table.sensors.len()), (4, 1));
         let shown: Vec<String> = problems.shown().iter().map(ToString::to_string).collect();
         assert_eq!(
             shown,
@@ -203,7 +213,8 @@ mod tests {
                 "line 5, column volts: expected a number from 0 to 5, found \"\"",
             ]
         );
-        let problems = read(&format!("{HEADER}{}", "0,0,ne,x,1\n".repeat(100))).unwrap_err();
+        let table = read(&format!("{HEADER}{}", "0,0,ne,x,1\n".repeat(100))).unwrap();
+        let problems = table.notes.problems;
         assert_eq!((problems.shown().len(), problems.more()), (20, 80));
         assert!(problems.to_string().ends_with("and 80 more like these"));
         assert!(read("").unwrap_err().to_string().contains("expected the header"));

@@ -49,7 +49,7 @@ pub use calibration::{Fit, FitError, LoadPoint};
 pub use contact::{Contact, ContactId, Covariance, TileLoad};
 pub use cursor::Cursor;
 #[cfg(any(feature = "internals", test))]
-pub use force_table::{ForceTable, ForceTableError};
+pub use force_table::ForceTable;
 pub use frame::ForceFrame;
 pub use health::{SensorHealth, Trouble};
 #[cfg(any(feature = "internals", test))]
@@ -63,7 +63,7 @@ pub use press_table::{PressTable, TilePoints};
 pub use quality::Quality;
 pub use sensing::Method;
 #[cfg(any(feature = "internals", test))]
-pub use table::{TableProblem, TableProblems};
+pub use table::{TableError, TableNotes, TableProblem, TableProblems};
 
 internal! {
     use assembler::{Assembler, BoardStatus, Tare, TareOutcome, TareRules};

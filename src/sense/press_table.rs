@@ -1,10 +1,12 @@
 //! Tables of known points pressed, for position maps.
 
+use std::io::BufRead;
+
 use glam::Vec2;
 
 use super::position_map::{MapError, MapFit, Press, Sighting};
-use super::table::{Table, TableProblems};
-use crate::floor::{Calibration, Corner, Floor, SensorId, TileId};
+use super::table::{Row, Table, TableError, TableNotes};
+use crate::floor::{Calibration, Corner, Floor, Geometry, SensorId, TileId};
 
 /// The points pressed on each tile.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,6 +15,8 @@ pub struct PressTable {
     pub tiles: Vec<TilePoints>,
     /// Presses left out because a sensor was at 98 % of its converter's range or above.
     pub saturated: usize,
+    /// Lines left out, columns not read.
+    pub notes: TableNotes,
 }
 
 /// The points pressed on one tile.
@@ -32,73 +36,90 @@ const COLUMNS: [&[&str]; 3] = [
     &["true_x_m", "true_y_m", "est_x_m", "est_y_m"],
 ];
 
+/// Indices of two of the headers above.
+const PRESSES_WITH_FORCE: usize = 1;
+const SIGHTINGS: usize = 2;
+
 impl PressTable {
     /// Reads a CSV table of points pressed on `floor`, all lengths in floor metres.
     ///
-    /// With the header `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is
+    /// With the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if the pressing force is
     /// known): the point, its tile, and what the tile's sensors read, calibrated and tared. With
-    /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and where the floor put it without a map.
+    /// `true_x_m,true_y_m,est_x_m,est_y_m`: the point and where the floor put it without a map. Lines that cannot be
+    /// read are left out and stand in [`Self::notes`].
     ///
     /// # Errors
-    /// Everything wrong with the table, by line and column.
-    pub fn parse(text: &str, floor: &Floor) -> Result<Self, TableProblems> {
-        let (mut table, header) = Table::new(text, &COLUMNS)?;
-        let geometry = &floor.geometry;
-        let mut tiles: Vec<Option<TilePoints>> = vec![None; geometry.tile_count()];
+    /// [`TableError`] if the header is of another table, or `reader` fails.
+    pub fn read(reader: impl BufRead, floor: &Floor) -> Result<Self, TableError> {
+        let mut table = Table::new(reader, &COLUMNS)?;
+        let (header, mut row) = (table.header(), Row::default());
+        let mut tiles: Vec<Option<TilePoints>> = vec![None; floor.geometry.tile_count()];
         let mut saturated = 0;
-        while let Some(row) = table.next_row() {
-            let mut number = |field, least: f64, most: f64| {
-                table.number(&row, field, least..=most).map(|number| number as f32)
-            };
-            let point = (number(0, -1e4, 1e4), number(1, -1e4, 1e4));
-            if header == 2 {
-                let estimate = (number(2, -1e4, 1e4), number(3, -1e4, 1e4));
-                let ((Some(x), Some(y)), (Some(est_x), Some(est_y))) = (point, estimate) else { continue };
-                let (at, estimate) = (Vec2::new(x, y), Vec2::new(est_x, est_y));
-                let Some(tile) = geometry.tile_under(at) else {
-                    table.report(&row, 0, "this point is not on the floor".into());
-                    continue;
-                };
-                if at.distance(estimate) > geometry.pitch_m() {
-                    let off = at.distance(estimate);
-                    table.report(&row, 2, format!("{off:.2} m from where it was pressed: more than a tile"));
-                    continue;
-                }
-                let centre = geometry.centre(tile);
-                let points = points(&mut tiles, geometry.index(tile), tile);
-                points.sightings.push(Sighting { at: at - centre, estimate: estimate - centre });
-                continue;
-            }
-            let forces: [Option<f32>; 4] = std::array::from_fn(|corner| number(4 + corner, -1e4, 1e5));
-            let force = if header == 1 { number(8, 1.0, 1e5).map(Some) } else { Some(None) };
-            let block = geometry.block();
-            let column = table.whole(&row, 2, block.column_range());
-            let line = table.whole(&row, 3, block.row_range());
-            let ((Some(x), Some(y)), [Some(sw), Some(se), Some(nw), Some(ne)]) = (point, forces) else {
-                continue;
-            };
-            let (Some(column), Some(line), Some(force)) = (column, line, force) else { continue };
-            let tile = TileId::new(column, line);
-            let at = Vec2::new(x, y) - geometry.centre(tile);
-            let half = 0.5 * geometry.pitch_m();
-            for (field, along) in [(0, at.x), (1, at.y)] {
-                if along.abs() > half + 1e-4 {
-                    let middle = if field == 0 { x } else { y } - along;
-                    let (least, most) = (middle - half, middle + half);
-                    let problem = format!("expected a point of tile {tile}, {least:.3} to {most:.3}");
-                    table.report(&row, field, problem);
-                }
-            }
-            let forces = [sw, se, nw, ne];
-            if is_saturated(floor, tile, forces) {
-                saturated += 1;
+        while table.next_row(&mut row)? {
+            if header == SIGHTINGS {
+                let Some((tile, sighting)) = sighting(&mut table, &row, &floor.geometry) else { continue };
+                points(&mut tiles, floor.geometry.index(tile), tile).sightings.push(sighting);
             } else {
-                let points = points(&mut tiles, geometry.index(tile), tile);
-                points.presses.push(Press { at, forces, force });
+                let Some((tile, press)) = press(&mut table, &row, &floor.geometry) else { continue };
+                if is_saturated(floor, tile, press.forces) {
+                    saturated += 1;
+                } else {
+                    points(&mut tiles, floor.geometry.index(tile), tile).presses.push(press);
+                }
             }
         }
-        table.conclude(Self { tiles: tiles.into_iter().flatten().collect(), saturated })
+        let notes = table.into_notes();
+        Ok(Self { tiles: tiles.into_iter().flatten().collect(), saturated, notes })
     }
+}
+
+/// A place in one direction, in floor metres.
+fn place<R: BufRead>(table: &mut Table<R>, row: &Row, field: usize) -> Option<f32> {
+    table.number(row, field, -1e4..=1e4).map(|place| place as f32)
+}
+
+/// The point of a row and where the floor put it.
+fn sighting<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) -> Option<(TileId, Sighting)> {
+    let [x, y, est_x, est_y] = std::array::from_fn(|field| place(table, row, field));
+    let (at, estimate) = (Vec2::new(x?, y?), Vec2::new(est_x?, est_y?));
+    let Some(tile) = geometry.tile_under(at) else {
+        table.report(row, 0, "this point is not on the floor".into());
+        return None;
+    };
+    let off = at.distance(estimate);
+    if off > geometry.pitch_m() {
+        table.report(row, 2, format!("{off:.2} m from where it was pressed: more than a tile"));
+        return None;
+    }
+    let centre = geometry.centre(tile);
+    Some((tile, Sighting { at: at - centre, estimate: estimate - centre }))
+}
+
+/// The point of a row and the forces under it.
+fn press<R: BufRead>(table: &mut Table<R>, row: &Row, geometry: &Geometry) -> Option<(TileId, Press)> {
+    let [x, y] = std::array::from_fn(|field| place(table, row, field));
+    let [sw, se, nw, ne] =
+        std::array::from_fn(|corner| table.number(row, 4 + corner, -1e4..=1e5).map(|force| force as f32));
+    let force = if table.header() == PRESSES_WITH_FORCE {
+        table.number(row, 8, 1.0..=1e5).map(|force| Some(force as f32))
+    } else {
+        Some(None)
+    };
+    let column = table.whole(row, 2, geometry.block().column_range());
+    let line = table.whole(row, 3, geometry.block().row_range());
+    let (x, y, force, forces) = (x?, y?, force?, [sw?, se?, nw?, ne?]);
+    let tile = TileId::new(column?, line?);
+    let at = Vec2::new(x, y) - geometry.centre(tile);
+    let half = 0.5 * geometry.pitch_m();
+    let mut is_on_tile = true;
+    for (field, along, written) in [(0, at.x, x), (1, at.y, y)] {
+        if along.abs() > half + 1e-4 {
+            is_on_tile = false;
+            let (least, most) = (written - along - half, written - along + half);
+            table.report(row, field, format!("expected a point of tile {tile}, {least:.3} to {most:.3}"));
+        }
+    }
+    is_on_tile.then_some((tile, Press { at, forces, force }))
 }
 
 fn points(tiles: &mut Vec<Option<TilePoints>>, index: Option<usize>, tile: TileId) -> &mut TilePoints {
@@ -137,7 +158,6 @@ impl TilePoints {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::floor::Geometry;
 
     fn floor() -> Floor {
         Floor::of(Geometry::of_paper_tiles(2, 1).unwrap())
@@ -146,14 +166,14 @@ mod tests {
     #[test]
     fn points_are_taken_from_their_tile_s_centre() {
         let text = "x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne\n0.5,0.1,1,0,10,20,30,40\n";
-        let table = PressTable::parse(text, &floor()).unwrap();
+        let table = PressTable::read(text.as_bytes(), &floor()).unwrap();
         let [points] = &table.tiles[..] else { panic!("one tile") };
         assert_eq!(points.tile, TileId::new(1, 0));
         assert!(points.presses[0].at.distance(Vec2::new(0.044, -0.052)) < 1e-6);
         assert_eq!((points.presses[0].forces, points.presses[0].force), ([10.0, 20.0, 30.0, 40.0], None));
 
         let text = "true_x_m,true_y_m,est_x_m,est_y_m\n0.5,0.1,0.51,0.12\n";
-        let table = PressTable::parse(text, &floor()).unwrap();
+        let table = PressTable::read(text.as_bytes(), &floor()).unwrap();
         assert!(table.tiles[0].sightings[0].estimate.distance(Vec2::new(0.054, -0.032)) < 1e-6);
     }
 
@@ -161,14 +181,14 @@ mod tests {
     fn places_off_the_tile_are_named() {
         let text =
             "x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne,force_n\n0.1,0.1,1,0,1,2,3,4,10\n0.4,0.1,1,0,1,2,3,4,0\n";
-        let problems = PressTable::parse(text, &floor()).unwrap_err();
+        let problems = PressTable::read(text.as_bytes(), &floor()).unwrap().notes.problems;
         assert_eq!(
             problems.to_string(),
             "line 2, column x_m: expected a point of tile (1, 0), 0.304 to 0.608\n\
              line 3, column force_n: expected a number from 1 to 100000, found \"0\""
         );
         let text = "true_x_m,true_y_m,est_x_m,est_y_m\n0.1,0.9,0.1,0.9\n0.1,0.1,0.5,0.1\n";
-        let problems = PressTable::parse(text, &floor()).unwrap_err();
+        let problems = PressTable::read(text.as_bytes(), &floor()).unwrap().notes.problems;
         assert_eq!(
             problems.to_string(),
             "line 2, column true_x_m: this point is not on the floor\n\
@@ -187,7 +207,7 @@ mod tests {
             most - 21.0,
             most - 19.0
         );
-        let table = PressTable::parse(&text, &floor).unwrap();
+        let table = PressTable::read(text.as_bytes(), &floor).unwrap();
         assert_eq!((table.saturated, table.tiles[0].presses.len()), (1, 1));
     }
 
@@ -195,7 +215,8 @@ mod tests {
         #[test]
         fn no_text_makes_it_panic(rows in "([0-9eE.,+\\-NaInf]{0,12},?\n?){0,40}") {
             for columns in COLUMNS {
-                let _ = PressTable::parse(&format!("{}\n{rows}", columns.join(",")), &floor());
+                let text = format!("{}\n{rows}", columns.join(","));
+                let _ = PressTable::read(text.as_bytes(), &floor());
             }
         }
     }

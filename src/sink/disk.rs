@@ -92,13 +92,14 @@ impl Space {
 }
 
 /// The bytes that the disk of `path` has left for programs without privileges; `None` where the system does not tell.
-#[cfg(target_os = "linux")]
+#[cfg(unix)]
+#[allow(clippy::useless_conversion, reason = "macOS counts blocks in 32 bits")]
 fn free(path: &Path) -> Option<u64> {
     let disk = nix::sys::statvfs::statvfs(path).ok()?;
-    disk.blocks_available().checked_mul(disk.fragment_size())
+    u64::from(disk.blocks_available()).checked_mul(disk.fragment_size())
 }
 
-#[cfg(not(target_os = "linux"))]
+#[cfg(not(unix))]
 fn free(_path: &Path) -> Option<u64> {
     None
 }

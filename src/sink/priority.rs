@@ -13,17 +13,16 @@ pub enum Rank {
     Telling,
 }
 
-/// Asks the system to let the calling thread go before everybody else's; a thread that already does keeps its place.
+/// Asks the system to run the calling thread before others; a thread that has real-time priority keeps it.
 ///
-/// Threads that it starts later inherit this, so that it belongs after them. On
-/// Linux it takes `rtprio` in the limits of whoever runs the program; other
-/// systems' audio hosts promote their threads by themselves, and nothing is
-/// done there.
+/// On Linux threads that it starts later inherit this, so that it belongs after them, and it takes `rtprio` in the
+/// limits of the user. On macOS and Windows no privilege is needed; the sound card's callback is promoted there by the
+/// audio host and left alone.
 pub fn claim_priority(rank: Rank) -> Priority {
     claim(rank)
 }
 
-#[cfg(target_os = "linux")]
+#[cfg(unix)]
 fn claim(rank: Rank) -> Priority {
     use RealtimeThreadSchedulePolicy::{Fifo, RoundRobin};
     use thread_priority::{
@@ -32,6 +31,9 @@ fn claim(rank: Rank) -> Priority {
     };
     if matches!(thread_schedule_policy(), Ok(ThreadSchedulePolicy::Realtime(Fifo | RoundRobin))) {
         return Priority::RealTime;
+    }
+    if cfg!(target_os = "macos") && rank == Rank::Sound {
+        return Priority::Hosts;
     }
     // Interrupts of a real-time kernel are at 50: samples go before them, packets come out of them.
     let value: u8 = match rank {
@@ -47,7 +49,19 @@ fn claim(rank: Rank) -> Priority {
     }
 }
 
-#[cfg(not(target_os = "linux"))]
+#[cfg(windows)]
+fn claim(rank: Rank) -> Priority {
+    use thread_priority::{ThreadPriority, WinAPIThreadPriority, set_current_thread_priority};
+    if rank == Rank::Sound {
+        return Priority::Hosts;
+    }
+    match set_current_thread_priority(ThreadPriority::Os(WinAPIThreadPriority::TimeCritical.into())) {
+        Ok(()) => Priority::RealTime,
+        Err(_) => Priority::Denied,
+    }
+}
+
+#[cfg(not(any(unix, windows)))]
 fn claim(_: Rank) -> Priority {
     Priority::Hosts
 }

@@ -19,7 +19,7 @@ fn simulated_parts_come_back_within_one_percent_through_two_percent_of_noise() {
     let exact = PartConfig { a_spread: 0.25, b_spread: 0.05, ..PartConfig::exact() };
     let config = SimConfig { sensing: sim::Sensing::Counts(exact), ..SimConfig::default() };
     let sim = SimFloor::new(&floor, config, 7);
-    let table = LoadTable::parse(&sim::load_table(&sim, 3), &floor.geometry).unwrap();
+    let table = LoadTable::read(sim::load_table(&sim, 3).as_bytes(), &floor.geometry).unwrap();
     assert_eq!(table.sensors.len(), 24);
     let mut rng = rand_pcg::Pcg64Mcg::seed_from_u64(5);
     let noise = Normal::new(1.0, 0.02).unwrap();
@@ -44,13 +44,13 @@ fn tables_of_a_simulated_floor_calibrate_and_map_it() {
     let sim = simulated(&nominal);
     // The tare was measured through slightly other curves; it follows the new ones.
     let mut floor = sim::calibrated(&nominal, &sim, 2).unwrap();
-    let table = LoadTable::parse(&sim::load_table(&sim, 1), &floor.geometry).unwrap();
+    let table = LoadTable::read(sim::load_table(&sim, 1).as_bytes(), &floor.geometry).unwrap();
     for loads in &table.sensors {
         let judgement = loads.judge();
         assert_eq!(judgement.verdict, Verdict::Good, "{}", loads.sensor);
         floor.recalibrate(loads.sensor, judgement.fit.unwrap().calibration, None);
     }
-    let table = PressTable::parse(&sim::press_table(&floor, &sim, 1), &floor).unwrap();
+    let table = PressTable::read(sim::press_table(&floor, &sim, 1).as_bytes(), &floor).unwrap();
     assert_eq!(table.tiles.len(), 6);
     for points in &table.tiles {
         let fit = points.fit(&floor).unwrap();
@@ -70,7 +70,7 @@ fn places_alone_teach_the_part_of_the_distortion_that_no_force_changes() {
         let seen = centre + at * 0.9 + Vec2::new(0.004, 0.0);
         text += &format!("{},{},{},{}\n", centre.x + at.x, centre.y + at.y, seen.x, seen.y);
     }
-    let table = PressTable::parse(&text, &floor).unwrap();
+    let table = PressTable::read(text.as_bytes(), &floor).unwrap();
     let fit = table.tiles[0].fit(&floor).unwrap();
     assert_eq!((table.tiles[0].tile, fit.points), (TileId::new(1, 1), 49));
     assert!(fit.before.worst_m > 0.014 && fit.after.worst_m < 0.002, "{fit:?}");
@@ -88,7 +88,7 @@ fn a_part_beyond_repair_is_named() {
             None => line.to_owned(),
         })
         .collect();
-    let table = LoadTable::parse(&broken.join("\n"), &floor.geometry).unwrap();
+    let table = LoadTable::read(broken.join("\n").as_bytes(), &floor.geometry).unwrap();
     let beyond = table.sensors.iter().filter(|loads| loads.judge().verdict == Verdict::Replace);
     let named: Vec<_> = beyond.map(|loads| loads.sensor).collect();
     assert_eq!(named, [SensorId { tile: TileId::new(1, 1), corner: Corner::NorthWest }]);
@@ -224,7 +224,7 @@ fn a_sensor_at_its_end_is_left_out_of_the_fit() {
     };
     let text =
         format!("col,row,corner,counts,newtons\n{}0,0,sw,65535,900\n0,0,sw,65535,1500\n", points(60_000));
-    let table = LoadTable::parse(&text, &Geometry::default()).unwrap();
+    let table = LoadTable::read(text.as_bytes(), &Geometry::default()).unwrap();
     assert_eq!((table.sensors[0].points.len(), table.sensors[0].saturated), (40, 2));
     let Fit { calibration, residual } = table.sensors[0].judge().fit.unwrap();
     assert!((calibration.numbers()[0] - 0.5).abs() < 1e-3 && residual < 1e-3, "{calibration:?}");

@@ -107,7 +107,7 @@ fn at_least_98_of_100_parts_of_each_law_get_its_name_through_two_percent_of_nois
 fn parts_that_stray_from_the_paper_s_law_by_five_percent_keep_it() {
     let floor = Floor::default();
     let sim = SimFloor::new(&floor, SimConfig::default(), 3);
-    let table = LoadTable::parse(&sim::load_table(&sim, 1), &floor.geometry).unwrap();
+    let table = LoadTable::read(sim::load_table(&sim, 1).as_bytes(), &floor.geometry).unwrap();
     let others = table.sensors.iter().filter(|loads| loads.judge().laws.chosen != Some(LawKind::Exponential));
     let others: Vec<_> = others.map(|loads| loads.sensor).collect();
     assert!(others.len() <= 2, "of {}: {others:?}", table.sensors.len());

@@ -236,6 +236,65 @@ fn saving_the_layout_changes_the_floor_and_a_bad_one_is_refused() {
     assert!(server.0.wait().unwrap().success());
 }
 
+/// A server whose layout is reached through `path`, which `change` makes another; gives its log, beside the layout.
+#[cfg(unix)]
+fn log_of_a_change(folder: &Path, path: &Path, change: impl FnOnce()) -> String {
+    let log = folder.join("log.txt");
+    let address = format!("127.0.0.1:{}", free_port());
+    let mut server = underfoot()
+        .args(["run", "-vv", "--listen", &address, "--no-osc"])
+        .arg(path)
+        .stderr(std::fs::File::create(&log).unwrap())
+        .spawn()
+        .map(Served)
+        .unwrap();
+    let has = |text: &str| std::fs::read_to_string(&log).is_ok_and(|log| log.contains(text));
+    let until = |text: &str| {
+        let begun = Instant::now();
+        while !has(text) {
+            assert!(begun.elapsed() < Duration::from_secs(60), "never said: {text}");
+            std::thread::sleep(Duration::from_millis(10));
+        }
+    };
+    until("Listening on");
+    change();
+    until("the changed layout is on the floor");
+    terminate(&server.0);
+    assert!(server.0.wait().unwrap().success());
+    std::fs::read_to_string(log).unwrap()
+}
+
+// F7
+#[cfg(unix)]
+#[test]
+fn a_layout_behind_links_is_reloaded_and_the_log_beside_it_is_not_watched() {
+    use std::os::unix::fs::symlink;
+    let page = |id: &str| {
+        format!(
+            "Layout(version: 1, regions: [(id: \"page\", at: (0, 2), size: (6, 4))], \
+             widgets: [(id: \"{id}\", kind: \"button\", at: (1, 3), size: (1, 1))])"
+        )
+    };
+    let folder = tempfile::tempdir().unwrap();
+    let at = |name: &str| folder.path().join(name);
+    for version in ["..one", "..two"] {
+        std::fs::create_dir(at(version)).unwrap();
+        std::fs::write(at(version).join("page.ron"), page(version.trim_start_matches('.'))).unwrap();
+    }
+    symlink("..one", at("..data")).unwrap();
+    symlink("..data/page.ron", at("page.ron")).unwrap();
+    let swap = || {
+        symlink("..two", at("..data_tmp")).unwrap();
+        std::fs::rename(at("..data_tmp"), at("..data")).unwrap();
+    };
+    let log = log_of_a_change(folder.path(), &at("page.ron"), swap);
+    assert_eq!(log.matches("the changed layout").count(), 1);
+    let log = log_of_a_change(folder.path(), &at("page.ron"), || {
+        std::fs::write(at("..two/page.ron"), page("three")).unwrap();
+    });
+    assert!(!log.contains("log.txt") && log.len() < 100_000, "{} bytes", log.len());
+}
+
 #[test]
 fn a_layout_is_drawn_without_a_display() {
     let folder = tempfile::tempdir().unwrap();

@@ -31,5 +31,6 @@ mod soak;
 mod storage;
 mod systemd;
 mod unit_files;
+mod tables;
 mod web;
 mod wiring;

@@ -14,6 +14,8 @@ use underfoot::schema::{Kinds, builtin_layout, parse_layout};
 use underfoot::widget::EventKind;
 
 use super::end_to_end::{said, underfoot};
+#[cfg(unix)]
+use crate::ports::free_port;
 
 /// The built-in session, or what somebody does on one of the example apps' floors: layout and scenario.
 fn record(folder: &Path, app: Option<[&str; 2]>) -> (Vec<u8>, String) {
@@ -181,6 +183,112 @@ fn a_file_that_is_no_recording_is_refused() {
     let output = replay(&file);
     assert_eq!(output.status.code(), Some(1));
     assert!(said(&output).contains("no recording of a floor begins there"), "{}", said(&output));
+}
+
+/// A recording of 84a7726, and the same written anew by the MCAP library for Python: by zstd, and by lz4 in small chunks
+/// with the attachments behind the messages.
+#[test]
+fn recordings_of_the_first_version_replay_unchanged_whichever_tool_wrote_them_anew() {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/recordings");
+    let recorded = std::fs::read_to_string(folder.join("events.jsonl")).unwrap();
+    for name in ["first.mcap", "zstd.mcap", "lz4_attachments_last.mcap"] {
+        let output = replay(&folder.join(name));
+        assert!(output.status.success(), "{name}: {}", said(&output));
+        assert!(said(&output).contains("Replayed 2.0 s"), "{name}: {}", said(&output));
+        let replayed = String::from_utf8_lossy(&output.stdout);
+        let of_controls = |lines: &str| -> Vec<String> {
+            lines.lines().filter(|line| line.contains("\"id\":")).map(str::to_owned).collect()
+        };
+        assert_eq!(of_controls(&recorded).len(), 3);
+        assert_eq!(of_controls(&replayed), of_controls(&recorded), "{name}");
+    }
+}
+
+#[test]
+fn a_damaged_recording_is_named_with_its_place() {
+    let folder = tempfile::tempdir().unwrap();
+    let (mut whole, events) = record(folder.path(), None);
+    let place = whole.len() / 2;
+    whole[place] ^= 4;
+    let damaged = folder.path().join("damaged.mcap");
+    std::fs::write(&damaged, whole).unwrap();
+    let output = replay(&damaged);
+    assert_eq!(output.status.code(), Some(1));
+    assert!(said(&output).contains("the chunk at byte"), "{}", said(&output));
+    assert!(said(&output).contains("does not fit its checksum"), "{}", said(&output));
+    let lines = common(&output, &events);
+    assert!(lines > 20 && lines < events.lines().count(), "{lines}");
+    let export =
+        underfoot().current_dir(folder.path()).args(["export", "damaged.mcap", "--out", "t"]).output();
+    assert_eq!(export.unwrap().status.code(), Some(1));
+}
+
+/// Service managers send SIGTERM, terminals SIGINT and SIGHUP.
+#[cfg(unix)]
+const ENDS: [&str; 3] = ["TERM", "INT", "HUP"];
+
+#[cfg(unix)]
+fn send(signal: &str, process: &std::process::Child) {
+    let kill = std::process::Command::new("kill").args(["-s", signal, &process.id().to_string()]).status();
+    assert!(kill.unwrap().success());
+}
+
+/// Waits until the recording at `path` has so many bytes.
+#[cfg(unix)]
+fn await_bytes(path: &Path, bytes: u64, process: &mut std::process::Child) {
+    while std::fs::metadata(path).map_or(0, |file| file.len()) < bytes {
+        assert!(process.try_wait().unwrap().is_none(), "it ended before it was asked to");
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_a_recorded_session_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    for signal in ENDS {
+        let path = folder.path().join("ended.mcap");
+        let mut session = underfoot()
+            .current_dir(folder.path())
+            .args(["session", "--out", "ended", "--record", "ended.mcap"])
+            .stderr(std::process::Stdio::null())
+            .spawn()
+            .unwrap();
+        await_bytes(&path, 2_000_000, &mut session);
+        send(signal, &session);
+        assert_eq!(session.wait().unwrap().code(), Some(1), "{signal}: not all was played");
+        let output = replay(&path);
+        assert!(output.status.success(), "{signal}: {}", said(&output));
+        let events = std::fs::read_to_string(folder.path().join("ended/events.jsonl")).unwrap();
+        assert_eq!(String::from_utf8(output.stdout).unwrap(), events, "{signal}");
+        std::fs::remove_file(path).unwrap();
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn a_signal_ends_the_recording_of_a_served_floor_whole() {
+    let folder = tempfile::tempdir().unwrap();
+    for signal in ENDS {
+        let path = folder.path().join(signal).with_extension("mcap");
+        let address = format!("127.0.0.1:{}", free_port());
+        let quiet = || std::process::Stdio::null();
+        let mut server = underfoot()
+            .args(["run", "map", "--listen", &address, "--no-osc", "--record"])
+            .arg(&path)
+            .stderr(quiet())
+            .spawn()
+            .unwrap();
+        let mut boards =
+            underfoot().args(["simulate", "--send", &address, "--loop"]).stderr(quiet()).spawn().unwrap();
+        await_bytes(&path, 300_000, &mut server);
+        send(signal, &server);
+        assert!(server.wait().unwrap().success(), "{signal}");
+        send("TERM", &boards);
+        boards.wait().unwrap();
+        let output = replay(&path);
+        assert!(output.status.success(), "{signal}: {}", said(&output));
+    }
 }
 
 /// Whoever looks at a recording stops it, goes on and leaps ahead; what happens in it is the same.

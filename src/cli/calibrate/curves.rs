@@ -7,9 +7,10 @@ use underfoot::floor::{Calibration, CalibrationRecord, Floor, LawKind};
 use underfoot::picture;
 use underfoot::sense::{Candidate, Fit, FitError, Judgement, LoadTable, SensorLoads, Verdict};
 
-use super::{count, plot, read_table, rounded, today};
+use super::{MOST_BYTES, count, plot, rounded, today};
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
+use crate::cli::table;
 
 /// What `underfoot calibrate curves` is asked to do.
 ///
@@ -20,10 +21,11 @@ use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
 ///
 /// A residual up to 8 % of full scale is `good`, up to 15 % `poor`; beyond, or where no law
 /// of a force sensor fits, the part is to be `replace`d, keeps the nominal law, and the exit status is 1.
-/// Sensors that are not in the table keep what the floor file has.
+/// Sensors that are not in the table keep what the floor file has. A line that cannot be read is left out and named;
+/// the others count, and the exit status is 1.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// CSV with the header `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
+    /// CSV with the columns `col,row,corner,volts,newtons` or `col,row,corner,counts,newtons`.
     table: PathBuf,
     #[command(flatten)]
     floor: FloorArgs,
@@ -52,15 +54,15 @@ const PLOT_PX: u32 = 1800;
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
-    let text = read_table(&args.table)?;
-    let name = args.table.display();
-    let table = LoadTable::parse(&text, &floor.geometry).map_err(|problems| {
-        Failure::Other(format!("{name} is no table of this floor's sensors:\n{problems}"))
-    })?;
-    if table.sensors.is_empty() {
-        return Err(Failure::Other(format!("{name} holds no measurements")));
+    let loads = LoadTable::read(table::open(&args.table, MOST_BYTES)?, &floor.geometry)
+        .map_err(|error| table::refused(&args.table, "table of sensors", &error))?;
+    table::warn_of_unread(&args.table, &loads.notes.unread);
+    let left_out = table::left_out(&args.table, &loads.notes.problems);
+    if loads.sensors.is_empty() {
+        let empty = format!("{} holds no measurements that can be used", args.table.display());
+        return table::conclude(&left_out.into_iter().chain([empty]).collect::<Vec<_>>());
     }
-    let judged: Vec<_> = table.sensors.iter().map(|loads| (loads, loads.judge())).collect();
+    let judged: Vec<_> = loads.sensors.iter().map(|loads| (loads, loads.judge())).collect();
     let mapped = maps(&floor);
     keep(&mut floor, &judged);
     let dropped = mapped - maps(&floor);
@@ -90,7 +92,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
         let maps = count(dropped, "position map");
         errln!("{maps} made through the old curves were taken away: measure them anew.");
     }
-    outcome(&judged)
+    table::conclude(&failures(&judged).chain(left_out).collect::<Vec<_>>())
 }
 
 fn maps(floor: &Floor) -> usize {
@@ -240,12 +242,11 @@ fn add_numbers(value: &mut Value, fit: Option<Fit>) {
     }
 }
 
-/// A failure that names the sensors with which the work is not done.
-fn outcome(judged: &[(&SensorLoads, Judgement)]) -> Result<(), Failure> {
-    let mut lines = Vec::new();
-    for (loads, judgement) in judged {
+/// The sensors with which the work is not done.
+fn failures(judged: &[(&SensorLoads, Judgement)]) -> impl Iterator<Item = String> {
+    judged.iter().filter_map(|(loads, judgement)| {
         let advice = match judgement.verdict {
-            Verdict::Good | Verdict::Poor => continue,
+            Verdict::Good | Verdict::Poor => return None,
             Verdict::Unmeasured => "measure it again; it keeps what it had",
             Verdict::Replace => "replace it; until then it counts as a nominal part",
         };
@@ -256,7 +257,6 @@ fn outcome(judged: &[(&SensorLoads, Judgement)]) -> Result<(), Failure> {
             }
             Err(error) => error.to_string(),
         };
-        lines.push(format!("the sensor of {}: {reason}: {advice}", loads.sensor));
-    }
-    if lines.is_empty() { Ok(()) } else { Err(Failure::Other(lines.join("\nerror: "))) }
+        Some(format!("the sensor of {}: {reason}: {advice}", loads.sensor))
+    })
 }

@@ -6,19 +6,21 @@ use serde_json::json;
 use underfoot::floor::{Floor, MapRecord, TileId};
 use underfoot::sense::{Errors, MapError, MapFit, PressTable};
 
-use super::{count, read_table, rounded, today};
+use super::{MOST_BYTES, count, rounded, today};
 use crate::cli::failure::Failure;
 use crate::cli::floor_args::{FloorArgs, FloorOut, saved_json};
+use crate::cli::table;
 
 /// What `underfoot calibrate map` is asked to do.
 ///
 /// Press at least 16 known points on a tile, up to its edges, each with several forces from a light foot's to a
 /// person's weight. `underfoot measure --json` gives what the sensors read meanwhile. Press with weights that you
 /// know, or a tool with a load cell: what a tile weighs as a whole decides where a foot is found that stands on two.
-/// Errors with the map are those of points that it was not made from.
+/// Errors with the map are those of points that it was not made from. A line that cannot be read is left out and
+/// named; the others count, and the exit status is 1.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// CSV with the header `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if it is known),
+    /// CSV with the columns `x_m,y_m,col,row,f_sw,f_se,f_nw,f_ne` (and `force_n`, if it is known),
     /// or `true_x_m,true_y_m,est_x_m,est_y_m`.
     table: PathBuf,
     #[command(flatten)]
@@ -35,15 +37,15 @@ pub(crate) struct Args {
 pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let out = args.out.as_deref().or(args.floor.floor.as_deref()).map(FloorOut::new);
     let mut floor = args.floor.load()?;
-    let text = read_table(&args.table)?;
-    let name = args.table.display();
-    let table = PressTable::parse(&text, &floor).map_err(|problems| {
-        Failure::Other(format!("{name} is no table of points on this floor:\n{problems}"))
-    })?;
-    if table.tiles.is_empty() {
-        return Err(Failure::Other(format!("{name} holds no points that can be used")));
+    let pressed = PressTable::read(table::open(&args.table, MOST_BYTES)?, &floor)
+        .map_err(|error| table::refused(&args.table, "table of points", &error))?;
+    table::warn_of_unread(&args.table, &pressed.notes.unread);
+    let left_out = table::left_out(&args.table, &pressed.notes.problems);
+    if pressed.tiles.is_empty() {
+        let empty = format!("{} holds no points that can be used", args.table.display());
+        return table::conclude(&left_out.into_iter().chain([empty]).collect::<Vec<_>>());
     }
-    let fits: Vec<_> = table.tiles.iter().map(|points| (points.tile, points.fit(&floor))).collect();
+    let fits: Vec<_> = pressed.tiles.iter().map(|points| (points.tile, points.fit(&floor))).collect();
     keep(&mut floor, &fits);
     let saved = match &out {
         Some(out) => Some((out.path(), out.save(&floor)?)),
@@ -52,18 +54,18 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     if args.json {
         let tiles: Vec<_> = fits.iter().map(|(tile, fit)| as_json(*tile, fit)).collect();
         let saved = saved.as_ref().map(|(path, saved)| saved_json(path, saved));
-        outln!("{}", json!({ "tiles": tiles, "saturated": table.saturated, "saved": saved }));
+        outln!("{}", json!({ "tiles": tiles, "saturated": pressed.saturated, "saved": saved }));
     } else {
         print(&fits);
-        if table.saturated > 0 {
-            let points = count(table.saturated, "point");
+        if pressed.saturated > 0 {
+            let points = count(pressed.saturated, "point");
             outln!("{points} with a sensor at 98 % of its range or above left out.");
         }
         if saved.is_none() {
             errln!("Nothing is kept: say where with --out FLOOR.ron.");
         }
     }
-    outcome(&fits)
+    table::conclude(&failures(&fits).chain(left_out).collect::<Vec<_>>())
 }
 
 type Fits = [(TileId, Result<MapFit, MapError>)];
@@ -112,15 +114,11 @@ fn as_json(tile: TileId, fit: &Result<MapFit, MapError>) -> serde_json::Value {
     })
 }
 
-/// A failure that names the tiles that must be pressed again.
-fn outcome(fits: &Fits) -> Result<(), Failure> {
-    let lines: Vec<_> = fits
-        .iter()
-        .filter_map(|(tile, fit)| match fit {
-            // A tile that is as good as it gets is not a failure.
-            Ok(_) | Err(MapError::NoBetter { .. }) => None,
-            Err(error) => Some(format!("tile {tile}: {error}; it keeps what it had")),
-        })
-        .collect();
-    if lines.is_empty() { Ok(()) } else { Err(Failure::Other(lines.join("\nerror: "))) }
+/// The tiles that must be pressed again.
+fn failures(fits: &Fits) -> impl Iterator<Item = String> {
+    fits.iter().filter_map(|(tile, fit)| match fit {
+        // A tile that is as good as it gets is not a failure.
+        Ok(_) | Err(MapError::NoBetter { .. }) => None,
+        Err(error) => Some(format!("tile {tile}: {error}; it keeps what it had")),
+    })
 }

@@ -5,12 +5,10 @@ mod map;
 mod plot;
 mod tare;
 
-use std::path::Path;
 use std::time::{SystemTime, UNIX_EPOCH};
 
 use clap::Subcommand;
 use underfoot::floor::Day;
-use underfoot::schema::read_bounded;
 
 use super::failure::Failure;
 
@@ -42,11 +40,6 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
 
 /// The largest table that is read: an hour of one sensor at 1 kHz.
 const MOST_BYTES: u64 = 256 << 20;
-
-/// The text of a table.
-fn read_table(path: &Path) -> Result<String, Failure> {
-    read_bounded(path, MOST_BYTES).map_err(|error| Failure::File(path.into(), error))
-}
 
 /// Today, in UTC.
 fn today() -> Day {

@@ -11,7 +11,9 @@ use std::net::SocketAddr;
 use std::panic::{self, AssertUnwindSafe};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
+use std::thread;
 use std::time::Duration;
 
 use underfoot::feel::Renderer;
@@ -31,7 +33,7 @@ use underfoot::source::{FaultSwitch, Faults, Pace, RehearsalSource, SensorSource
 use underfoot::units::HostClock;
 
 use self::commands::{CommandHandler, Desk};
-use self::feeds::{Mouse, Scopes, ToWindow, shoe};
+use self::feeds::{Mouse, Scopes, ToWindow, shoe, stop_and_wait};
 use self::followed::Followed;
 use self::joined::Joined;
 use self::player::Player;
@@ -40,10 +42,12 @@ use super::failure::Failure;
 use super::fault_args::say_what_is_rehearsed;
 use super::floor_args::FloorArgs;
 use super::layout_args::{DEFAULT_LAYOUT, LayoutArgs};
+use super::output;
 use super::outputs::OutputArgs;
 use super::play::{self, SimArgs};
 use super::run::end;
 use super::senders::{BoardArgs, CommandArgs};
+use super::stop::stop_flag;
 
 /// What `underfoot preview` is asked to do.
 #[derive(clap::Args, Debug, Default)]
@@ -183,6 +187,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         session = session.record(path);
     }
     let session = session.start()?;
+    let signals = SignalWatch::start(&session)?;
 
     let desk = Desk { session: session.clone(), layouts };
     let watch = desk.watch(&args.layout)?;
@@ -219,6 +224,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let shown = panic::catch_unwind(AssertUnwindSafe(|| preview::run(input, &options)));
     session.stop();
     let end = end(&session);
+    drop(signals);
     match shown.unwrap_or_else(|reason| panic::resume_unwind(reason)) {
         Ok(()) => match end.kind {
             Kind::Ended(EndReason::Failed) => Err(Failure::Other(end.message().into())),
@@ -228,6 +234,38 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             _ => Ok(()),
         },
         Err(PreviewError::NoWindow(reason)) => Err(Failure::NoWindow(reason)),
+    }
+}
+
+/// Lets the floor end in order, its recording with it, where a signal ends the program: the window draws nothing while
+/// another covers it, and could not.
+struct SignalWatch {
+    is_over: Arc<AtomicBool>,
+}
+
+impl SignalWatch {
+    fn start(session: &Session) -> Result<Self, Failure> {
+        /// Time between two looks at the flag.
+        const EVERY: Duration = Duration::from_millis(50);
+        let (stop, session, is_over) = (stop_flag()?, session.clone(), Arc::<AtomicBool>::default());
+        let watch = Self { is_over: Arc::clone(&is_over) };
+        thread::spawn(move || {
+            while !stop.load(Ordering::Relaxed) {
+                if is_over.load(Ordering::Relaxed) {
+                    return;
+                }
+                thread::sleep(EVERY);
+            }
+            stop_and_wait(&session);
+            std::process::exit(i32::from(!output::finish()));
+        });
+        Ok(watch)
+    }
+}
+
+impl Drop for SignalWatch {
+    fn drop(&mut self) {
+        self.is_over.store(true, Ordering::Relaxed);
     }
 }
 

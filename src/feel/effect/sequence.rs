@@ -10,8 +10,9 @@ use super::{MAX_POINTS, Tone, TonePoint};
 use crate::feel::Click;
 use crate::format::{Rec, list, record};
 
-/// Most parts of a sequence.
-pub const MAX_PARTS: usize = 128;
+/// Greatest number of parts of a sequence: each that is held has a key of its own, of which a foot has 256 (see
+/// [`crate::feel::key`]) and other effects have the first 16. The longest of Apple's own patterns have some 150 taps.
+pub const MAX_PARTS: usize = 240;
 
 record! {
     /// Clicks and tones one after the other, or at once.

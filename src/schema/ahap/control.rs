@@ -2,21 +2,42 @@
 
 use super::file::{DynamicParameter, ParameterCurve};
 
-/// What controls one quality of all events over time.
-#[derive(Debug)]
+/// Course of one quality of all events over time: straight lines between points, in the order of time.
+#[derive(Clone, Debug)]
 pub(super) struct Control {
-    /// In order of their beginning: each holds until the next one begins.
-    pieces: Vec<Piece>,
+    points: Vec<Point>,
+    /// Value before the first point.
     neutral: f32,
+    /// Greatest difference from the pattern's own course.
+    tolerance: f32,
+    /// Number of values that were brought into range.
+    limited: usize,
 }
 
-/// A curve, or a value from a moment on (a curve of one point).
-#[derive(Debug)]
+/// Value at one moment.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    t: f32,
+    value: f32,
+    /// Whether the value jumps here, from that of the point before.
+    jumps: bool,
+}
+
+/// A curve, or a value from a moment on (a curve of one point), in force until the next one begins.
 struct Piece {
     begin: f32,
-    /// Times from the pattern's start, and values.
     points: Vec<(f32, f32)>,
 }
+
+/// Moments closer together than this are the same one, in seconds.
+pub(super) const SAME_S: f32 = 1e-4;
+
+/// Time that a jump takes in a curve, in seconds.
+pub(super) const JUMP_S: f32 = 0.001;
+
+/// Greatest number of points that one straight line replaces. A bound on time: a thinned course is as near to the
+/// pattern's with any.
+const LONGEST_LINE: usize = 256;
 
 impl Control {
     /// All curves and parameters of this `id`, their values brought to `range`.
@@ -27,62 +48,139 @@ impl Control {
         curves: &[ParameterCurve],
         parameters: &[DynamicParameter],
     ) -> Self {
-        let tame = |value: f64| (value as f32).clamp(range.0, range.1);
-        let curves = curves.iter().filter(|curve| curve.id == id && !curve.points.is_empty()).map(|curve| {
-            let mut points: Vec<(f32, f32)> = curve
-                .points
-                .iter()
-                .map(|point| ((curve.time + point.time) as f32, tame(point.parameter_value)))
-                .collect();
+        let mut limited = 0;
+        let mut in_range = |value: f64| {
+            let value = value as f32;
+            let within = if value.is_nan() { neutral } else { value.clamp(range.0, range.1) };
+            limited += usize::from(within != value);
+            within
+        };
+        let mut pieces = Vec::new();
+        for curve in curves.iter().filter(|curve| curve.id == id) {
+            let point = |point: &super::file::ControlPoint| {
+                ((curve.time + point.time) as f32, in_range(point.parameter_value))
+            };
+            let mut points: Vec<(f32, f32)> = curve.points.iter().map(point).collect();
             points.sort_by(|a, b| a.0.total_cmp(&b.0));
-            Piece { begin: points[0].0, points }
-        });
-        let parameters = parameters.iter().filter(|parameter| parameter.id == id).map(|parameter| {
-            let time = parameter.time as f32;
-            Piece { begin: time, points: vec![(time, tame(parameter.value))] }
-        });
-        let mut pieces: Vec<Piece> = curves.chain(parameters).collect();
+            pieces.extend(points.first().copied().map(|first| Piece { begin: first.0, points }));
+        }
+        for parameter in parameters.iter().filter(|parameter| parameter.id == id) {
+            let begin = parameter.time as f32;
+            pieces.push(Piece { begin, points: vec![(begin, in_range(parameter.value))] });
+        }
         pieces.sort_by(|a, b| a.begin.total_cmp(&b.begin));
-        Self { pieces, neutral }
+        Self { points: joined(&pieces, neutral), neutral, tolerance: 0.0, limited }
+    }
+
+    /// Number of values that were brought into range.
+    pub(super) const fn limited(&self) -> usize {
+        self.limited
+    }
+
+    /// Greatest difference from the pattern's own course, in the control's own unit.
+    pub(super) const fn tolerance(&self) -> f32 {
+        self.tolerance
     }
 
     /// The value at `t`; at a jump the later one.
     pub(super) fn at(&self, t: f32) -> f32 {
-        self.of_piece(self.pieces.iter().rev().find(|piece| piece.begin <= t), t)
+        value_at(&self.points, self.points.partition_point(|point| point.t <= t), t, self.neutral)
     }
 
-    /// The value at `t`; at a jump the earlier one.
+    /// The value at `t`; at a jump the earlier one, to which the line before leads.
     pub(super) fn until(&self, t: f32) -> f32 {
-        self.of_piece(self.pieces.iter().rev().find(|piece| piece.begin < t - SAME_S), t)
-    }
-
-    fn of_piece(&self, piece: Option<&Piece>, t: f32) -> f32 {
-        let Some(piece) = piece else { return self.neutral };
-        let after = piece.points.iter().position(|point| point.0 > t).unwrap_or(piece.points.len());
-        let before = after.saturating_sub(1);
-        match (piece.points.get(before), piece.points.get(after)) {
-            (Some(a), Some(b)) => a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0),
-            (Some(point), None) | (None, Some(point)) => point.1,
-            (None, None) => self.neutral,
+        let first = self.points.partition_point(|point| point.t < t - SAME_S);
+        let mut near =
+            self.points.iter().enumerate().skip(first).take_while(|(_, point)| point.t <= t + SAME_S);
+        let Some((jump, _)) = near.find(|(_, point)| point.jumps) else { return self.at(t) };
+        let before = |back: usize| jump.checked_sub(back).and_then(|before| self.points.get(before));
+        match (before(2), before(1)) {
+            (Some(a), Some(b)) if !b.jumps => {
+                b.value + (b.value - a.value) * (t - b.t) / (b.t - a.t).max(JUMP_S)
+            }
+            (_, Some(b)) => b.value,
+            (_, None) => self.neutral,
         }
     }
 
     /// The moments between `from` and `to` at which it bends or jumps; of a jump also the moment just before.
     pub(super) fn bends(&self, from: f32, to: f32) -> impl Iterator<Item = f32> + '_ {
-        self.pieces
-            .iter()
-            .filter(move |piece| piece.begin < to - SAME_S)
-            .flat_map(|piece| {
-                let jump = (self.at(piece.begin) - self.at(piece.begin - JUMP_S)).abs() > 1e-4;
-                let before = jump.then_some(piece.begin - JUMP_S);
-                before.into_iter().chain(piece.points.iter().map(|point| point.0))
-            })
-            .filter(move |t| *t > from + SAME_S && *t < to - SAME_S)
+        let begin = self.points.partition_point(|point| point.t <= from + SAME_S);
+        let rest = self.points.get(begin..).unwrap_or_default();
+        rest.iter().map(|point| point.t).take_while(move |t| *t < to - SAME_S)
+    }
+
+    /// The same with as few points as keep it within `tolerance` of its course.
+    pub(super) fn thinned(&self, tolerance: f32) -> Self {
+        let mut points = Vec::new();
+        let mut anchor = self.points.first().copied();
+        points.extend(anchor);
+        let mut index = 0;
+        while let Some(from) = anchor {
+            let next = index + reach(from, self.points.get(index + 1..).unwrap_or_default(), tolerance);
+            anchor = self.points.get(next).copied().filter(|_| next > index);
+            points.extend(anchor.map(|point| Point { jumps: point.jumps && next == index + 1, ..point }));
+            index = next;
+        }
+        Self { points, tolerance, ..*self }
     }
 }
 
-/// Moments closer together than this are the same one, in seconds.
-pub(super) const SAME_S: f32 = 1e-4;
+/// Number of the points `rest` behind `from` that one straight line to the last of them replaces.
+fn reach(from: Point, rest: &[Point], tolerance: f32) -> usize {
+    // Slopes that keep the line within the tolerance of all points so far.
+    let (mut least, mut most, mut reached) =
+        (f32::NEG_INFINITY, f32::INFINITY, usize::from(!rest.is_empty()));
+    for (index, point) in rest.iter().take(LONGEST_LINE).enumerate() {
+        let (dt, rise) = ((point.t - from.t).max(1e-6), point.value - from.value);
+        if (least..=most).contains(&(rise / dt)) {
+            reached = index + 1;
+        }
+        least = least.max((rise - tolerance) / dt);
+        most = most.min((rise + tolerance) / dt);
+        if least > most {
+            break;
+        }
+    }
+    reached
+}
 
-/// How steep a jump is that a curve stands for, in seconds.
-pub(super) const JUMP_S: f32 = 0.001;
+/// All pieces as one course.
+fn joined(pieces: &[Piece], neutral: f32) -> Vec<Point> {
+    let mut points: Vec<Point> = Vec::new();
+    for (index, piece) in pieces.iter().enumerate() {
+        let end = pieces.get(index + 1).map_or(f32::INFINITY, |next| next.begin);
+        let Some(&(_, first)) = piece.points.first().filter(|_| end > piece.begin) else { continue };
+        let before = value_at(&points, points.len(), piece.begin, neutral);
+        let jumps = (first - before).abs() > SAME_S;
+        let last = points.last().map_or(f32::NEG_INFINITY, |point| point.t);
+        if jumps && piece.begin - JUMP_S > last {
+            points.push(Point { t: piece.begin - JUMP_S, value: before, jumps: false });
+        }
+        points.push(Point { t: piece.begin, value: first, jumps });
+        for (pair, &(t, value)) in piece.points.windows(2).zip(piece.points.iter().skip(1)) {
+            if t < end {
+                points.push(Point { t, value, jumps: false });
+                continue;
+            }
+            // The next piece begins on the way there.
+            if let [a, b] = pair {
+                let t = end - JUMP_S;
+                let value = a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0).max(1e-6);
+                points.extend((t > a.0).then_some(Point { t, value, jumps: false }));
+            }
+            break;
+        }
+    }
+    points
+}
+
+/// The value at `t`, where the points from number `after` on lie later.
+fn value_at(points: &[Point], after: usize, t: f32, neutral: f32) -> f32 {
+    let before = after.checked_sub(1).and_then(|before| points.get(before));
+    match (before, points.get(after)) {
+        (Some(a), Some(b)) => a.value + (b.value - a.value) * (t - a.t) / (b.t - a.t).max(1e-9),
+        (Some(point), None) => point.value,
+        (None, _) => neutral,
+    }
+}

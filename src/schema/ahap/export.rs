@@ -55,7 +55,7 @@ pub fn write_ahap(effect: &Effect, name: &str) -> Result<(String, Vec<String>), 
         }
     }
     let file = File {
-        version: 1.0,
+        version: json!(1.0),
         metadata: Some(json!({ "Description": name, "Created": "underfoot" })),
         pattern,
     };

@@ -3,20 +3,24 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// The file as written; what is not known is kept so that it can be named.
+use super::AhapError;
+
+/// Largest file, in bytes: a minute of a control curve with a point every millisecond.
+const LARGEST: usize = 4_000_000;
+
+/// Latest time in a pattern that is taken for one, in seconds: a day.
+const LATEST_S: f64 = 86_400.0;
+
+/// The file as written; unknown entries are kept so that they can be named.
 #[derive(Debug, Deserialize, Serialize)]
 #[serde(rename_all = "PascalCase")]
 pub(super) struct File {
-    #[serde(default = "one")]
-    pub(super) version: f64,
+    #[serde(default)]
+    pub(super) version: Value,
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(super) metadata: Option<Value>,
     #[serde(default)]
     pub(super) pattern: Vec<Entry>,
-}
-
-fn one() -> f64 {
-    1.0
 }
 
 /// One entry of a pattern: exactly one of its fields is there.
@@ -99,4 +103,54 @@ pub(super) struct ControlPoint {
     pub(super) time: f64,
     #[serde(default)]
     pub(super) parameter_value: f64,
+}
+
+impl File {
+    /// The file in `text`: JSON in which commas may trail and comments may stand, as in files that Apple publishes.
+    pub(super) fn parse(text: &str, name: &str) -> Result<Self, AhapError> {
+        if text.len() > LARGEST {
+            return Err(AhapError::TooLarge(name.to_owned()));
+        }
+        let written = text.strip_prefix('\u{feff}').unwrap_or(text).as_bytes();
+        let mut bytes = written.to_vec();
+        if json_strip_comments::strip_slice(&mut bytes).is_err() {
+            // A slash begins no comment: the JSON reader names its place.
+            bytes = written.to_vec();
+        }
+        let file: Self = serde_json::from_slice(&bytes).map_err(|error| AhapError::Json {
+            name: name.to_owned(),
+            line: error.line(),
+            column: error.column(),
+            reason: error.to_string(),
+        })?;
+        file.check_times(name)?;
+        Ok(file)
+    }
+
+    /// Refuses times that are none: negative, not finite, beyond a day.
+    fn check_times(&self, name: &str) -> Result<(), AhapError> {
+        let check = |entry: usize, field: &'static str, seconds: f64| {
+            if (0.0..=LATEST_S).contains(&seconds) {
+                return Ok(());
+            }
+            Err(AhapError::Time { name: name.to_owned(), entry: entry + 1, field, seconds })
+        };
+        for (index, entry) in self.pattern.iter().enumerate() {
+            if let Some(event) = &entry.event {
+                check(index, "Time", event.time)?;
+                check(index, "EventDuration", event.event_duration.unwrap_or_default())?;
+            }
+            if let Some(parameter) = &entry.parameter {
+                check(index, "Time", parameter.time)?;
+            }
+            if let Some(curve) = &entry.parameter_curve {
+                check(index, "Time", curve.time)?;
+                curve
+                    .points
+                    .iter()
+                    .try_for_each(|point| check(index, "Time of a control point", point.time))?;
+            }
+        }
+        Ok(())
+    }
 }

@@ -1,99 +1,159 @@
 //! AHAP to effects.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
 use arrayvec::ArrayVec;
 
-use super::control::{Control, SAME_S};
-use super::file::{Entry, Event, File};
-use super::{
-    AhapError, CONTINUOUS_HZ, CONTINUOUS_N, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness,
-};
+use super::control::Control;
+use super::file::{Entry, Event, File, ParameterCurve};
+use super::long_tone::{self, Course};
+use super::warnings::Warnings;
+use super::{AhapError, CONTINUOUS_HZ, TRANSIENT_DECAY_S, TRANSIENT_HZ, TRANSIENT_N, at_sharpness};
 use crate::feel::{
-    Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, MAX_POINTS, Manner, Mode, Part, PartKind,
-    Sequence, Tone, TonePoint,
+    Click, Clicks, Effect, EffectKind, Impulse, MAX_PARTS, Manner, Mode, Part, PartKind, Sequence,
 };
 use crate::units::Newtons;
 
-/// Longest that anything lasts, in seconds; as in our own files.
-const LONGEST_S: f64 = 60.0;
+/// Latest beginning and longest duration of anything, in seconds; as in our own files.
+const LONGEST_S: f32 = 60.0;
 
-/// The effect that an AHAP file describes, and what of it has no counterpart.
+/// Duration of a tone without one, in seconds: the shortest that our own files have.
+pub(super) const SHORTEST_S: f32 = 0.001;
+
+/// The effect that an AHAP file describes, and everything of it that is left out or differs.
 ///
 /// `name` is what messages call the text. A pattern of one click or one tone
-/// becomes that, any other a sequence.
+/// becomes that, any other a sequence. Events that begin after 60 s, and those beyond the parts that a sequence has room
+/// for, are left out; control curves with more points than a tone has are simplified or split. Commas may trail and
+/// comments may stand where JSON forbids them.
 ///
 /// # Errors
-/// [`AhapError`]: it is not a pattern, or nothing of it can be felt.
+/// [`AhapError`]: it is not a pattern, one of its times is negative or beyond a day, or nothing of it can be felt.
 pub fn read_ahap(text: &str, name: &str) -> Result<(Effect, Vec<String>), AhapError> {
-    if text.len() > 4_000_000 {
-        return Err(AhapError::TooLarge(name.to_owned()));
-    }
-    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-    let file: File = serde_json::from_str(text).map_err(|error| AhapError::Json {
-        name: name.to_owned(),
-        line: error.line(),
-        column: error.column(),
-        reason: error.to_string(),
-    })?;
+    let file = File::parse(text, name)?;
     let mut warnings = Warnings::default();
     let (mut events, mut curves, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
     for Entry { event, parameter, parameter_curve, other } in file.pattern {
         events.extend(event);
         curves.extend(parameter_curve);
         parameters.extend(parameter);
-        other.keys().for_each(|key| warnings.note(format!("entries called {key}")));
+        other.keys().for_each(|key| warnings.lost(format!("entries called {}", shown(key))));
     }
     let ids = curves.iter().map(|curve| &curve.id).chain(parameters.iter().map(|parameter| &parameter.id));
-    for id in ids.filter(|id| !matches!(id.as_str(), "HapticIntensityControl" | "HapticSharpnessControl")) {
-        warnings.note(format!("the control {id}"));
+    for id in ids.filter(|id| !matches!(id.as_str(), INTENSITY | SHARPNESS)) {
+        warnings.lost(format!("the control {}", shown(id)));
     }
-    let intensity = Control::of("HapticIntensityControl", 1.0, (0.0, 1.0), &curves, &parameters);
-    let sharpness = Control::of("HapticSharpnessControl", 0.0, (-1.0, 1.0), &curves, &parameters);
+    let controls = Controls {
+        intensity: Control::of(INTENSITY, 1.0, (0.0, 1.0), &curves, &parameters),
+        sharpness: Control::of(SHARPNESS, 0.0, (-1.0, 1.0), &curves, &parameters),
+    };
+    warn_of_values(&controls, &curves, &mut warnings);
+    let events = felt(events, &mut warnings);
+    let mut course = Course::new(&controls);
     let mut parts: Vec<Part> =
-        events.iter().filter_map(|event| part(event, &intensity, &sharpness, &mut warnings)).collect();
-    if parts.len() > MAX_PARTS {
-        return Err(AhapError::TooMany { name: name.to_owned(), events: parts.len(), most: MAX_PARTS });
-    }
+        events.iter().flat_map(|event| parts(event, &controls, &mut course, &mut warnings)).collect();
     parts.sort_by(|a, b| a.at_s.total_cmp(&b.at_s));
+    limit_split(&mut parts, &mut warnings);
     let kind = match parts.as_slice() {
-        [] => return Err(AhapError::Empty(name.to_owned())),
+        [] => return Err(AhapError::Empty { name: name.to_owned(), left_out: warnings.into_lines() }),
         [Part { at_s, kind: PartKind::Click(click) }] if *at_s == 0.0 => {
             EffectKind::Click(Clicks { press: click.clone(), release: None })
         }
         [Part { at_s, kind: PartKind::Tone(tone) }] if *at_s == 0.0 => EffectKind::Continuous(tone.clone()),
         _ => EffectKind::Sequence(Sequence { parts: Arc::from(parts), curve: ArrayVec::new() }),
     };
-    Ok((Effect { kind, manner: Manner::PLAIN }, warnings.told()))
+    Ok((Effect { kind, manner: Manner::PLAIN }, warnings.into_lines()))
 }
 
-/// What has no counterpart, each with how often it came.
-#[derive(Debug, Default)]
-struct Warnings(BTreeMap<String, usize>);
+const INTENSITY: &str = "HapticIntensityControl";
+const SHARPNESS: &str = "HapticSharpnessControl";
 
-impl Warnings {
-    fn note(&mut self, what: String) {
-        *self.0.entry(what).or_default() += 1;
+/// What changes over time for all events.
+pub(super) struct Controls {
+    pub(super) intensity: Control,
+    pub(super) sharpness: Control,
+}
+
+/// A name of the file for messages: of bounded length, without control characters.
+fn shown(name: &str) -> String {
+    let mut shown: String = name.chars().take(64).map(|c| if c.is_control() { '?' } else { c }).collect();
+    if name.chars().nth(64).is_some() {
+        shown.push_str("...");
     }
+    shown
+}
 
-    fn told(self) -> Vec<String> {
-        let times = |count: usize| if count > 1 { format!(" ({count} times)") } else { String::new() };
-        self.0
-            .into_iter()
-            .map(|(what, count)| format!("{what}{}: no counterpart, left out", times(count)))
-            .collect()
+fn warn_of_values(controls: &Controls, curves: &[ParameterCurve], warnings: &mut Warnings) {
+    for (id, control) in [(INTENSITY, &controls.intensity), (SHARPNESS, &controls.sharpness)] {
+        if control.limited() > 0 {
+            warnings.note(format!(
+                "{id}: {} values were out of range and are brought into it",
+                control.limited()
+            ));
+        }
+    }
+    let is_known = |curve: &ParameterCurve| matches!(curve.id.as_str(), INTENSITY | SHARPNESS);
+    if curves.iter().any(|curve| curve.points.is_empty() && is_known(curve)) {
+        warnings.lost("curves without points".to_owned());
     }
 }
+
+/// The events that can be felt, in the order of time.
+fn felt(events: Vec<Event>, warnings: &mut Warnings) -> Vec<Event> {
+    let (mut felt, mut late) = (Vec::new(), Vec::new());
+    for event in events {
+        if !matches!(event.event_type.as_str(), TRANSIENT | CONTINUOUS) {
+            warnings.lost(format!("events of the type {}", shown(&event.event_type)));
+        } else if event.time > f64::from(LONGEST_S) {
+            late.push(event.time);
+        } else {
+            felt.push(event);
+        }
+    }
+    if !late.is_empty() {
+        let (first, last) =
+            late.iter().fold((f64::INFINITY, 0.0_f64), |(first, last), t| (first.min(*t), last.max(*t)));
+        let times =
+            if late.len() == 1 { format!("at {first:.3} s") } else { format!("{first:.3} to {last:.3} s") };
+        let number = late.len();
+        warnings
+            .note(format!("events that begin after {LONGEST_S:.0} s: left out, {number} of them ({times})"));
+    }
+    felt.sort_by(|a, b| a.time.total_cmp(&b.time));
+    if let Some(first) = felt.get(MAX_PARTS) {
+        let (more, from) = (felt.len() - MAX_PARTS, first.time);
+        warnings.note(format!(
+            "events from {from:.3} s on: left out, {more} of them (there is room for {MAX_PARTS})"
+        ));
+        felt.truncate(MAX_PARTS);
+    }
+    felt
+}
+
+/// Leaves out parts of split events that a sequence has no room for.
+fn limit_split(parts: &mut Vec<Part>, warnings: &mut Warnings) {
+    let in_time = parts.iter().filter(|part| part.at_s <= LONGEST_S).count();
+    let room = in_time.min(MAX_PARTS);
+    if let Some(first) = parts.get(room) {
+        let from = first.at_s;
+        warnings.note(format!(
+            "tones of split events from {from:.3} s on: left out (there is room for {MAX_PARTS})"
+        ));
+        parts.truncate(room);
+    }
+}
+
+const TRANSIENT: &str = "HapticTransient";
+const CONTINUOUS: &str = "HapticContinuous";
 
 /// The parameters of one event that have a counterpart.
-struct Parameters {
-    intensity: f32,
-    sharpness: f32,
-    attack_s: f32,
-    decay_s: f32,
-    release_s: f32,
-    sustained: bool,
+pub(super) struct Parameters {
+    pub(super) intensity: f32,
+    pub(super) sharpness: f32,
+    pub(super) attack_s: f32,
+    pub(super) decay_s: f32,
+    pub(super) release_s: f32,
+    pub(super) sustained: bool,
 }
 
 impl Parameters {
@@ -107,94 +167,70 @@ impl Parameters {
             release_s: 0.0,
             sustained: true,
         };
-        let transient = event.event_type == "HapticTransient";
+        let kind = event.event_type.as_str();
         for parameter in &event.event_parameters {
             let value = parameter.value.value() as f32;
             let share = if value >= 0.0 { value.min(1.0) } else { 0.0 };
-            match parameter.id.as_str() {
-                "HapticIntensity" => parameters.intensity = share,
-                "HapticSharpness" => parameters.sharpness = share,
-                "AttackTime" if !transient => parameters.attack_s = share,
-                "DecayTime" if !transient => parameters.decay_s = share,
-                "ReleaseTime" if !transient => parameters.release_s = share,
-                "Sustained" if !transient => parameters.sustained = value != 0.0,
-                other => warnings.note(format!("{other} of a {}", event.event_type)),
+            let target = match parameter.id.as_str() {
+                "HapticIntensity" => &mut parameters.intensity,
+                "HapticSharpness" => &mut parameters.sharpness,
+                "AttackTime" if kind == CONTINUOUS => &mut parameters.attack_s,
+                "DecayTime" if kind == CONTINUOUS => &mut parameters.decay_s,
+                "ReleaseTime" if kind == CONTINUOUS => &mut parameters.release_s,
+                "Sustained" if kind == CONTINUOUS => {
+                    parameters.sustained = value != 0.0;
+                    continue;
+                }
+                other => {
+                    warnings.lost(format!("{} of a {kind}", shown(other)));
+                    continue;
+                }
+            };
+            *target = share;
+            if share != value {
+                warnings.note(format!("{} of a {kind}: out of range, brought into 0 to 1", parameter.id));
             }
         }
-        event.other.keys().for_each(|key| warnings.note(format!("{key} of a {}", event.event_type)));
+        event.other.keys().for_each(|key| warnings.lost(format!("{} of a {kind}", shown(key))));
         parameters
     }
 }
 
-fn part(event: &Event, intensity: &Control, sharpness: &Control, warnings: &mut Warnings) -> Option<Part> {
-    let seconds = |seconds: f64| if seconds >= 0.0 { seconds.min(LONGEST_S) as f32 } else { 0.0 };
-    let at_s = seconds(event.time);
-    let parameters = match event.event_type.as_str() {
-        "HapticTransient" | "HapticContinuous" => Parameters::of(event, warnings),
-        other => {
-            warnings.note(format!("events of the type {other}"));
-            return None;
-        }
+/// The click or the tones of one event.
+fn parts(event: &Event, controls: &Controls, course: &mut Course<'_>, warnings: &mut Warnings) -> Vec<Part> {
+    let at_s = event.time as f32;
+    let parameters = Parameters::of(event, warnings);
+    if event.event_type == TRANSIENT {
+        return vec![Part { at_s, kind: PartKind::Click(click(&parameters, at_s, controls)) }];
+    }
+    let duration_s = event.event_duration.unwrap_or_default() as f32;
+    if event.event_duration.is_none() {
+        warnings.note(format!("a {CONTINUOUS} without EventDuration: lasts 1 ms"));
+    }
+    if duration_s > LONGEST_S {
+        let rest = duration_s - LONGEST_S;
+        warnings
+            .note(format!("a {CONTINUOUS} longer than {LONGEST_S:.0} s: its last {rest:.3} s are left out"));
+    }
+    let length_s = duration_s.clamp(SHORTEST_S, LONGEST_S);
+    long_tone::tones(at_s, length_s, &parameters, course, warnings)
+}
+
+fn click(parameters: &Parameters, at_s: f32, controls: &Controls) -> Click {
+    let sharpness = (parameters.sharpness + controls.sharpness.at(at_s)).clamp(0.0, 1.0);
+    let mode = Mode {
+        frequency_hz: at_sharpness(TRANSIENT_HZ, sharpness),
+        decay_s: at_sharpness(TRANSIENT_DECAY_S, sharpness),
+        amplitude: 1.0,
     };
-    let sharp = |t: f32| (parameters.sharpness + sharpness.at(t)).clamp(0.0, 1.0);
-    let kind = if event.event_type == "HapticTransient" {
-        let sharpness = sharp(at_s);
-        let mode = Mode {
-            frequency_hz: at_sharpness(TRANSIENT_HZ, sharpness),
-            decay_s: at_sharpness(TRANSIENT_DECAY_S, sharpness),
-            amplitude: 1.0,
-        };
-        PartKind::Click(Click {
-            modes: [mode].into_iter().collect(),
-            level: Newtons(TRANSIENT_N * parameters.intensity * intensity.at(at_s)),
-            impulse: Impulse::default(),
-        })
-    } else {
-        let length_s = seconds(event.event_duration.unwrap_or(0.0)).max(0.001);
-        let end = at_s + length_s + parameters.release_s;
-        let mut times: Vec<f32> = intensity.bends(at_s, end).chain(sharpness.bends(at_s, end)).collect();
-        let mut curve = ArrayVec::<TonePoint, MAX_POINTS>::new();
-        let differs = |control: &Control| (control.at(at_s) - control.until(end)).abs() > 1e-4;
-        if !times.is_empty() || differs(intensity) || differs(sharpness) {
-            times.extend([at_s, end]);
-            times.sort_by(f32::total_cmp);
-            times.dedup_by(|later, earlier| *later - *earlier < SAME_S);
-            if times.len() > MAX_POINTS {
-                warnings.note(format!("points of control curves beyond {MAX_POINTS} for one event"));
-                times.drain(MAX_POINTS - 1..times.len() - 1);
-            }
-            let last = times.len() - 1;
-            curve.extend(times.iter().enumerate().map(|(number, &t)| {
-                // What begins where the event ends concerns it no more.
-                let (level, sharpness) = if number == last {
-                    (intensity.until(t), (parameters.sharpness + sharpness.until(t)).clamp(0.0, 1.0))
-                } else {
-                    (intensity.at(t), sharp(t))
-                };
-                TonePoint { at_s: t - at_s, level, hz: Some(at_sharpness(CONTINUOUS_HZ, sharpness)) }
-            }));
-        }
-        // Without bends the controls are the same all along.
-        let steady = if curve.is_empty() { intensity.at(at_s) } else { 1.0 };
-        PartKind::Tone(Tone {
-            level: Newtons(CONTINUOUS_N * parameters.intensity * steady),
-            hz: at_sharpness(
-                CONTINUOUS_HZ,
-                if curve.is_empty() { sharp(at_s) } else { parameters.sharpness },
-            ),
-            noise: 0.0,
-            length_s,
-            attack_s: parameters.attack_s,
-            // What is not sustained dies away over its duration, if its decay says nothing.
-            decay_s: if parameters.sustained || parameters.decay_s > 0.0 {
-                parameters.decay_s
-            } else {
-                length_s
-            },
-            sustain: if parameters.sustained { 1.0 } else { 0.0 },
-            release_s: parameters.release_s,
-            curve,
-        })
-    };
-    Some(Part { at_s, kind })
+    Click {
+        modes: [mode].into_iter().collect(),
+        level: Newtons(TRANSIENT_N * parameters.intensity * controls.intensity.at(at_s)),
+        impulse: Impulse::default(),
+    }
+}
+
+/// The pitch of a tone at a sharpness, which is brought to 0 to 1.
+pub(super) fn pitch_hz(sharpness: f32) -> f32 {
+    at_sharpness(CONTINUOUS_HZ, sharpness.clamp(0.0, 1.0))
 }

@@ -10,7 +10,7 @@
 //! | `AttackTime`, `DecayTime`, `ReleaseTime`, `Sustained` | the tone's envelope, in seconds |
 //! | `HapticIntensityControl`, `HapticSharpnessControl` as curve or parameter | the clicks' levels and pitches, the tones' curves |
 //!
-//! What has no counterpart is named in a warning.
+//! Everything that has no counterpart, is out of range or beyond a limit is named in a warning.
 //!
 //! # Source
 //! "Representing haptic patterns in AHAP files" and `CHHapticDynamicParameter`, Apple's documentation of Core
@@ -21,6 +21,8 @@ mod control;
 mod export;
 mod file;
 mod import;
+mod long_tone;
+mod warnings;
 
 pub use export::write_ahap;
 pub use import::read_ahap;
@@ -45,22 +47,33 @@ pub enum AhapError {
         /// What is wrong there.
         reason: String,
     },
-    /// Nothing in it can be felt.
-    #[error("{0}: there is no haptic event in this pattern")]
-    Empty(String),
-    /// More than a sequence holds.
-    #[error("{name}: this pattern has {events} haptic events; there is room for {most}")]
-    TooMany {
+    /// A time that cannot be one: negative or beyond a day.
+    #[error("{name}: entry {entry} of the pattern: {field} is {seconds} s; expected 0 to 86400")]
+    Time {
         /// What messages call the text.
         name: String,
-        /// How many it has.
-        events: usize,
-        /// How many there may be.
-        most: usize,
+        /// Number of the entry, from 1.
+        entry: usize,
+        /// The field.
+        field: &'static str,
+        /// Its value.
+        seconds: f64,
+    },
+    /// Nothing in it can be felt.
+    #[error("{name}: there is no haptic event in this pattern that can be played{}", listed(left_out))]
+    Empty {
+        /// What messages call the text.
+        name: String,
+        /// Everything that was left out.
+        left_out: Vec<String>,
     },
     /// What a moving foot or a value drives has no counterpart.
     #[error("AHAP has no counterpart for {0}, which is driven by the foot")]
     Driven(&'static str),
+}
+
+fn listed(left_out: &[String]) -> String {
+    left_out.iter().map(|line| format!("\n  {line}")).collect()
 }
 
 /// Levels at intensity 1, in newtons.

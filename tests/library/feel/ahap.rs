@@ -113,15 +113,264 @@ fn what_has_no_counterpart_is_named() {
 fn what_is_no_pattern_is_refused_with_its_place() {
     let error = |text: &str| read_ahap(text, "x.ahap").unwrap_err();
     assert!(error("{\n  \"Pattern\": 3 }").to_string().starts_with("x.ahap:2:"));
-    assert!(matches!(error("{ \"Pattern\": [] }"), AhapError::Empty(_)));
+    assert!(matches!(error("{ \"Pattern\": [] }"), AhapError::Empty { .. }));
     assert!(matches!(error(&" ".repeat(5_000_000)), AhapError::TooLarge(_)));
-    let event = r#"{ "Event": { "Time": 0, "EventType": "HapticTransient" } }"#;
-    let many = format!("{{ \"Pattern\": [{}] }}", vec![event; 200].join(","));
-    assert!(matches!(error(&many), AhapError::TooMany { events: 200, .. }));
     for name in ["wood", "rubber", "detent", "end_stop", "smooth"] {
         let effect = Arc::clone(&Effects::builtin().get(name).unwrap().effect);
         assert!(matches!(write_ahap(&effect, name), Err(AhapError::Driven(_))), "{name}");
     }
+}
+
+fn pattern(entries: &[String]) -> String {
+    format!("{{ \"Version\": 1.0, \"Pattern\": [{}] }}", entries.join(","))
+}
+
+fn tap(time: impl std::fmt::Display) -> String {
+    format!("{{ \"Event\": {{ \"Time\": {time}, \"EventType\": \"HapticTransient\" }} }}")
+}
+
+fn hum(time: f32, duration: f32, parameters: &str) -> String {
+    format!(
+        "{{ \"Event\": {{ \"Time\": {time}, \"EventType\": \"HapticContinuous\", \"EventDuration\": {duration}, \
+         \"EventParameters\": [{parameters}] }} }}"
+    )
+}
+
+/// A curve of a control through these points, which begins at 0.
+fn curve(id: &str, points: &[(f32, f32)]) -> String {
+    let points: Vec<String> =
+        points.iter().map(|(t, value)| format!("{{ \"Time\": {t}, \"ParameterValue\": {value} }}")).collect();
+    format!(
+        "{{ \"ParameterCurve\": {{ \"ParameterID\": \"{id}\", \"Time\": 0, \"ParameterCurveControlPoints\": [{}] }} }}",
+        points.join(",")
+    )
+}
+
+#[test]
+fn commas_may_trail_and_comments_may_stand_anywhere() {
+    let (plain, _) = read_ahap(BOING, "plain").unwrap();
+    let trailing = BOING.replace(" }", ", }").replace(" ]", ", ]").replace("}\n  ]", "},\n  ]");
+    let spaced = BOING.replace(" }", " ,\n }").replace(" ]", ",\t ]");
+    let commented = BOING
+        .replace("\"Metadata\"", "// an example, of \"course\"\n  \"Metadata\"")
+        .replace(" ] }", " , /* the last, } ] */ ] }")
+        .replace("a spring", "a // spring, /* not a comment */ ,}");
+    let marked = format!("\u{feff} {BOING}");
+    for text in [trailing, spaced, commented, marked] {
+        let (effect, warnings) =
+            read_ahap(&text, "lenient").unwrap_or_else(|error| panic!("{error}\n{text}"));
+        assert_eq!((&effect, warnings), (&plain, Vec::new()), "{text}");
+    }
+}
+
+#[test]
+fn text_that_is_not_json_is_refused_with_its_place() {
+    for (text, place) in [
+        ("{ \"Pattern\": [ { } { } ] }", "x.ahap:1:"),
+        ("{ \"Pattern\": [\n / ] }", "x.ahap:2:2"),
+        ("{ \"Pattern\": [\n /* never closed ] }", "x.ahap:2:"),
+        ("{ \"Pattern\": [\n \"never closed ] }", "x.ahap:2:"),
+        ("", "x.ahap:1:0"),
+    ] {
+        let error = read_ahap(text, "x.ahap").unwrap_err();
+        assert!(error.to_string().starts_with(place), "{text}: {error}");
+    }
+}
+
+#[test]
+fn events_after_a_minute_are_left_out_and_never_moved() {
+    for late in [&[61.0, 62.5, 600.0][..], &[60.01], &[86_400.0]] {
+        let entries: Vec<String> = [0.0, 30.0, 60.0].iter().chain(late).map(tap).collect();
+        let (effect, warnings) = read_ahap(&pattern(&entries), "taps").unwrap();
+        let times: Vec<f32> = parts(&effect).iter().map(|part| part.at_s).collect();
+        assert_eq!(times, [0.0, 30.0, 60.0]);
+        let [warning] = &warnings[..] else { panic!("{warnings:?}") };
+        let number = format!("left out, {} of them", late.len());
+        assert!(warning.contains("after 60 s") && warning.contains(&number), "{warning}");
+        assert!(warning.contains(&format!("{:.3} s", late.last().unwrap())), "{warning}");
+    }
+    let error = read_ahap(&pattern(&[tap(61), tap(62)]), "late").unwrap_err().to_string();
+    assert!(error.contains("that can be played") && error.contains("after 60 s"), "{error}");
+}
+
+#[test]
+fn the_end_of_a_tone_beyond_a_minute_is_left_out_and_named() {
+    let (effect, warnings) = read_ahap(&pattern(&[hum(0.0, 95.0, "")]), "tone").unwrap();
+    let EffectKind::Continuous(tone) = &effect.kind else { panic!("{effect:?}") };
+    assert_eq!(tone.length_s, 60.0);
+    assert!(warnings[0].contains("its last 35.000 s are left out"), "{warnings:?}");
+}
+
+#[test]
+fn times_that_are_none_are_refused() {
+    let event = |time: &str, duration: &str| {
+        format!(
+            "{{ \"Event\": {{ \"Time\": {time}, \"EventType\": \"HapticContinuous\", \"EventDuration\": {duration} }} }}"
+        )
+    };
+    let control = |time: &str| {
+        format!(
+            "{{ \"Parameter\": {{ \"ParameterID\": \"HapticIntensityControl\", \"ParameterValue\": 1, \"Time\": {time} }} }}"
+        )
+    };
+    let points = |begin: &str, point: &str| {
+        format!(
+            "{{ \"ParameterCurve\": {{ \"ParameterID\": \"HapticIntensityControl\", \"Time\": {begin}, \
+             \"ParameterCurveControlPoints\": [{{ \"Time\": {point}, \"ParameterValue\": 1 }}] }} }}"
+        )
+    };
+    for time in ["1e300", "-1", "-1e-3", "86401", "1.7976931348623157e308"] {
+        for (entry, field) in [
+            (event(time, "1"), "Time"),
+            (event("0", time), "EventDuration"),
+            (control(time), "Time"),
+            (points(time, "0"), "Time"),
+            (points("0", time), "Time of a control point"),
+        ] {
+            let error = read_ahap(&pattern(&[tap(0), entry]), "x.ahap").unwrap_err();
+            assert!(matches!(error, AhapError::Time { entry: 2, .. }), "{time}: {error}");
+            assert!(error.to_string().contains(&format!("{field} is")), "{time}: {error}");
+        }
+    }
+    for time in ["NaN", "Infinity", "1e999", "\"soon\"", "null"] {
+        let error = read_ahap(&pattern(&[event(time, "1")]), "x.ahap").unwrap_err();
+        assert!(matches!(error, AhapError::Json { .. }), "{time}: {error}");
+    }
+}
+
+#[test]
+fn as_many_taps_as_apples_longest_patterns_have_are_kept() {
+    let taps: Vec<String> = (0..300).map(|n| tap(0.02 * f64::from(n))).collect();
+    let (effect, warnings) = read_ahap(&pattern(&taps[..200]), "gravel").unwrap();
+    assert_eq!((parts(&effect).len(), warnings), (200, Vec::new()));
+    let (effect, warnings) = read_ahap(&pattern(&taps), "gravel").unwrap();
+    assert_eq!(parts(&effect).len(), 240);
+    assert!(warnings[0].contains("events from 4.800 s on: left out, 60 of them"), "{warnings:?}");
+    // Whatever their order in the file.
+    let reversed: Vec<String> = taps.into_iter().rev().collect();
+    assert_eq!(read_ahap(&pattern(&reversed), "gravel").unwrap(), (effect, warnings));
+}
+
+/// Level of all tones at `t`, of full intensity.
+fn level_at(effect: &Effect, t: f32) -> f32 {
+    let of = |at_s: f32, tone: &Tone| tone.level.0 / 12.0 * tone.at(t - at_s).0;
+    match &effect.kind {
+        EffectKind::Continuous(tone) => of(0.0, tone),
+        EffectKind::Sequence(sequence) => sequence
+            .parts
+            .iter()
+            .map(|part| match &part.kind {
+                PartKind::Tone(tone) => of(part.at_s, tone),
+                PartKind::Click(_) => 0.0,
+            })
+            .sum(),
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The value that straight lines through `points` have at `t`.
+fn line_at(points: &[(f32, f32)], t: f32) -> f32 {
+    let after = points.iter().position(|point| point.0 > t).unwrap_or(points.len() - 1).max(1);
+    let (a, b) = (points[after - 1], points[after]);
+    a.1 + (b.1 - a.1) * (t - a.0) / (b.0 - a.0)
+}
+
+/// The greatest difference in level of a hum of two seconds under this curve, and the warnings.
+fn difference(points: &[(f32, f32)], parameters: &str) -> (f32, Vec<String>, usize) {
+    let text = pattern(&[hum(0.0, 2.0, parameters), curve("HapticIntensityControl", points)]);
+    let (effect, warnings) = read_ahap(&text, "long").unwrap();
+    let seams: Vec<f32> = match &effect.kind {
+        EffectKind::Sequence(sequence) => sequence.parts.iter().skip(1).map(|part| part.at_s).collect(),
+        _ => Vec::new(),
+    };
+    let near_seam = |t: f32| seams.iter().any(|seam| (t - seam).abs() < 0.012);
+    let worst = (1..1999)
+        .map(|n| n as f32 / 1000.0)
+        .filter(|t| !near_seam(*t))
+        .map(|t| (level_at(&effect, t) - line_at(points, t)).abs())
+        .fold(0.0, f32::max);
+    (worst, warnings, seams.len() + 1)
+}
+
+#[test]
+fn long_curves_are_simplified_within_the_error_that_is_stated() {
+    let smooth = |f: fn(f32) -> f32| -> Vec<(f32, f32)> {
+        (0..=250).map(|n| 0.008 * n as f32).map(|t| (t, f(t))).collect()
+    };
+    for (name, f) in [
+        ("fades", (|t| (-2.0 * t).exp()) as fn(f32) -> f32),
+        ("swells", |t| (t * std::f32::consts::FRAC_PI_2).sin().abs()),
+        ("rests, rises, rests", |t| ((t - 0.5).clamp(0.0, 0.3) / 0.3).clamp(0.0, 1.0)),
+    ] {
+        let (worst, warnings, tones) = difference(&smooth(f), "");
+        assert_eq!(tones, 1, "{name}");
+        let stated = if warnings.is_empty() { 0.0 } else { stated(&warnings) };
+        assert!(worst <= stated + 2e-3, "{name}: {worst}, {warnings:?}");
+    }
+}
+
+/// The error that a warning states, as a share.
+fn stated(warnings: &[String]) -> f32 {
+    let warning = warnings.iter().find(|warning| warning.contains("within")).unwrap();
+    warning.split("within ").nth(1).unwrap().split(' ').next().unwrap().parse::<f32>().unwrap() / 100.0
+}
+
+#[test]
+fn curves_that_cannot_be_simplified_are_split_and_never_cut() {
+    // A saw of 100 teeth: nothing of it can be left out.
+    let saw: Vec<(f32, f32)> =
+        (0..=200).map(|n| (0.01 * n as f32, if n % 2 == 0 { 0.1 } else { 0.9 })).collect();
+    let (worst, warnings, tones) = difference(&saw, "");
+    assert!(tones > 10 && warnings[0].contains(&format!("split among {tones} tones")), "{warnings:?}");
+    assert!(worst <= stated(&warnings) + 2e-3, "{worst}, {warnings:?}");
+}
+
+#[test]
+fn a_split_tone_keeps_its_attack_and_its_release() {
+    let saw: Vec<(f32, f32)> =
+        (0..=240).map(|n| (0.01 * n as f32, if n % 2 == 0 { 0.6 } else { 1.0 })).collect();
+    let envelope = r#"{ "ParameterID": "AttackTime", "ParameterValue": 0.4 },
+        { "ParameterID": "ReleaseTime", "ParameterValue": 0.3 }"#;
+    let text = pattern(&[hum(0.0, 2.0, envelope), curve("HapticIntensityControl", &saw)]);
+    let (effect, _) = read_ahap(&text, "long").unwrap();
+    let envelope = |t: f32| (t / 0.4).min(1.0) * (1.0 - ((t - 2.0) / 0.3).max(0.0));
+    for t in [0.1_f32, 0.2, 0.3, 1.0, 2.15] {
+        // A seam lies near one of three moments at most.
+        let off =
+            [t, t + 0.001, t + 0.03].map(|t| (level_at(&effect, t) - envelope(t) * line_at(&saw, t)).abs());
+        let least = off.into_iter().fold(f32::INFINITY, f32::min);
+        assert!(least < 0.08, "at {t}: off by {off:?}");
+    }
+    assert_eq!(level_at(&effect, 2.31), 0.0);
+}
+
+/// A minute of a control that jumps every millisecond, under many tones: whatever becomes of it, it ends.
+#[test]
+fn no_number_of_control_points_takes_for_ever() {
+    let step = |n: u32| {
+        format!(
+            "{{\"Parameter\":{{\"ParameterID\":\"HapticIntensityControl\",\"ParameterValue\":0.{},\"Time\":{}}}}}",
+            n % 10,
+            f64::from(n) * 0.0015
+        )
+    };
+    let entries: Vec<String> =
+        (0..50).map(|n| hum(n as f32, 50.0, "")).chain((0..40_000).map(step)).collect();
+    let (effect, warnings) = read_ahap(&pattern(&entries), "jumps").unwrap();
+    assert_eq!(parts(&effect).len(), 240);
+    assert!(warnings.iter().any(|warning| warning.contains("tones of split events")), "{warnings:?}");
+}
+
+#[test]
+fn values_beyond_their_range_are_named() {
+    let loud = r#"{ "ParameterID": "HapticIntensity", "ParameterValue": 1e300 }"#;
+    let text = pattern(&[hum(0.0, 1.0, loud), curve("HapticSharpnessControl", &[(0.0, -7.0), (1.0, 0.0)])]);
+    let (effect, warnings) = read_ahap(&text, "loud").unwrap();
+    let EffectKind::Continuous(tone) = &effect.kind else { panic!("{effect:?}") };
+    assert_eq!(tone.level, Newtons(12.0));
+    let told = warnings.join("\n");
+    assert!(told.contains("HapticIntensity of a HapticContinuous: out of range"), "{told}");
+    assert!(told.contains("HapticSharpnessControl: 1 values were out of range"), "{told}");
 }
 
 #[test]

@@ -1,5 +1,8 @@
 //! Entries are read as they were written, and no bytes make the reader panic.
 
+mod build;
+mod files;
+
 use arrayvec::ArrayVec;
 
 use super::entry::{Entry, decoder};

@@ -1,0 +1,105 @@
+//! Entries in the order in which the server took them, wherever a tool that sorts by time has put them.
+
+use std::collections::VecDeque;
+use std::fmt;
+use std::path::Path;
+
+use super::entry::Entry;
+use super::messages::{Messages, Numbered, Part};
+use crate::units::Instant;
+
+/// Greatest number of entries of one moment that are put in order: a second of a floor of 65 boards.
+const MOST_AT_ONCE: usize = 1 << 16;
+
+/// The parts of a recording in order: of entries with the same time first those with the lower number.
+///
+/// The first recordings have no numbers; their entries keep the order of the file.
+pub(super) struct Ordered {
+    messages: Messages,
+    /// Entries of one moment, and whether all of them are there and in order.
+    waiting: VecDeque<(Instant, u32, Entry)>,
+    is_sorted: bool,
+    /// The part behind them.
+    ahead: Option<Numbered>,
+    last: Option<(Instant, u32)>,
+}
+
+impl Ordered {
+    pub(super) const fn new(messages: Messages) -> Self {
+        Self { messages, waiting: VecDeque::new(), is_sorted: false, ahead: None, last: None }
+    }
+
+    /// Name of the file.
+    pub(super) fn path(&self) -> &Path {
+        self.messages.path()
+    }
+
+    /// Messages of others so far.
+    pub(super) const fn foreign(&self) -> u64 {
+        self.messages.foreign()
+    }
+
+    /// The next part; after the end or a break, that again.
+    pub(super) fn next_part(&mut self) -> Part {
+        loop {
+            if self.is_sorted {
+                if let Some((taken, number, entry)) = self.waiting.pop_front() {
+                    self.last = Some((taken, number));
+                    return Part::Entry(taken, entry);
+                }
+                self.is_sorted = false;
+            }
+            if let Some(other) = self.fill() {
+                return other;
+            }
+            self.sort();
+        }
+    }
+
+    /// Reads the entries of the next moment; `None` when all of them are there, otherwise a part that is none.
+    fn fill(&mut self) -> Option<Part> {
+        loop {
+            let next = self.ahead.take().unwrap_or_else(|| self.messages.next());
+            let moment = self.waiting.front().map(|(taken, ..)| *taken);
+            match next {
+                Numbered::Entry(taken, number, entry)
+                    if moment.is_none_or(|moment| moment == taken) && self.waiting.len() < MOST_AT_ONCE =>
+                {
+                    if let Some((last, _)) = self.last.filter(|(last, _)| taken < *last) {
+                        return Some(Part::Broken(out_of_order(taken, last)));
+                    }
+                    self.waiting.push_back((taken, number, entry));
+                }
+                // Lines of events come from another thread: they have no place among entries.
+                Numbered::Part(Part::Event(line)) => return Some(Part::Event(line)),
+                Numbered::Part(part) if self.waiting.is_empty() => return Some(part),
+                behind => {
+                    self.ahead = Some(behind);
+                    return None;
+                }
+            }
+        }
+    }
+
+    fn sort(&mut self) {
+        // Numbers wrap: they count from the last one that was given.
+        let base = self.last.map_or(0, |(_, number)| number);
+        self.waiting.make_contiguous().sort_by_key(|(_, number, _)| number.wrapping_sub(base));
+        self.is_sorted = true;
+    }
+}
+
+fn out_of_order(taken: Instant, last: Instant) -> String {
+    format!(
+        "its messages are not in the order of time: one of {:.6} s follows one of {:.6} s (`mcap sort` puts them in \
+         order)",
+        taken.secs(),
+        last.secs()
+    )
+}
+
+impl fmt::Debug for Ordered {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Ordered").field("path", &self.path()).finish_non_exhaustive()
+    }
+}
