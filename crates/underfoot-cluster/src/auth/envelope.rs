@@ -1,38 +1,38 @@
-//! A message's bytes: who sends it, what it answers, its body, and the hash over all of it.
+//! The bytes of a message: its sender, its answers, its body, and the MAC over all of it.
 //!
 //! ```text
-//! "uf" format kind   nonce counter sent    count   count x (nonce sent received)   body   hash
+//! "uf" format kind   nonce counter sent    count   count x (nonce sent received)   body   MAC
 //!  2   1      1      8     8       8       2       24                                     32 bytes, big-endian
 //! ```
 
 use blake3::Hash;
 
-/// What every message begins with: neither OSC nor JSON does. The last byte is the number of this form.
+/// First bytes of every message, with which neither OSC nor JSON begins. The last one is the number of this format.
 const MAGIC: [u8; 3] = *b"uf\x01";
 
-/// Bytes of the hash at the end.
+/// Bytes of the MAC.
 const TAG: usize = 32;
 
 /// Bytes of one answer.
 const ANSWER: usize = 24;
 
-/// What a message is for. Each has a key of its own, so that none passes for another.
+/// The purpose of a message. Each kind has a key of its own, so that none passes for another.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Kind {
-    /// A node to gateways.
+    /// From a node to gateways.
     Node = 1,
-    /// A gateway to nodes.
+    /// From a gateway to nodes.
     Gateway = 2,
-    /// A node to a neighbour: cues over the border.
+    /// From a node to a neighbour: cues over the border.
     Note = 3,
-    /// A node to a neighbour: the packet of a board.
+    /// From a node to a neighbour: the packet of a board.
     Packet = 4,
 }
 
 impl Kind {
     pub(super) const ALL: [Self; 4] = [Self::Node, Self::Gateway, Self::Note, Self::Packet];
 
-    /// What its key is derived for.
+    /// The context from which its key is derived.
     pub(super) const fn context(self) -> &'static str {
         match self {
             Self::Node => "underfoot-cluster 2026 messages of nodes to gateways",
@@ -43,37 +43,37 @@ impl Kind {
     }
 }
 
-/// That a message has come, and when: what its receiver tells its sender.
+/// Receipt of a message, for its sender.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Echo {
-    /// When it was sent, in microseconds of the clock of whoever sent it and hears of it now.
+    /// Time of sending, in microseconds of the sender's clock.
     pub sent: u64,
-    /// When it was received, in microseconds of the clock of whoever tells of it.
+    /// Time of receipt, in microseconds of the receiver's clock.
     pub received: u64,
 }
 
-/// Who sends a message, and when.
+/// Sender, number and time of a message.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Head {
     /// The sender's nonce.
     pub from: u64,
     /// The message's number, from 1.
     pub counter: u64,
-    /// When it was sent, in microseconds of the sender's clock.
+    /// Time of sending, in microseconds of the sender's clock.
     pub sent: u64,
 }
 
-/// The parts of a message whose hash is right.
+/// The parts of a message.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Parts<'m> {
     pub(super) head: Head,
     answers: &'m [u8],
-    /// Where the body is among the bytes.
+    /// Start and end of the body among the bytes.
     pub(super) body: (usize, usize),
 }
 
 impl Parts<'_> {
-    /// What it answers to the program with this `nonce`.
+    /// Its answer to the program with this `nonce`.
     pub(super) fn answer_to(&self, nonce: u64) -> Option<Echo> {
         let mut answers = self.answers.chunks_exact(ANSWER).filter_map(|mut answer| {
             Some((take_u64(&mut answer)?, take_u64(&mut answer)?, take_u64(&mut answer)?))
@@ -82,7 +82,7 @@ impl Parts<'_> {
     }
 }
 
-/// Writes a message into `out`, in place of what is in it.
+/// Writes a message into `out`, whose content it replaces.
 pub(super) fn write(
     (kind, key): (Kind, &[u8; TAG]),
     head: &Head,
@@ -113,27 +113,31 @@ pub(super) fn write(
     out.extend(tag.as_bytes());
 }
 
-/// The kind of a message, as its bytes say; `None` if they are none of this form.
+/// The kind of a message; `None` for bytes of another format.
 pub(super) fn kind(bytes: &[u8]) -> Option<Kind> {
     let (&number, _) = bytes.strip_prefix(&MAGIC)?.split_first()?;
     Kind::ALL.into_iter().find(|kind| *kind as u8 == number)
 }
 
-/// Whether the hash at the end of `bytes` is that of `key`; in the same time, whichever of its bytes is wrong.
+/// Whether the MAC at the end of `bytes` is right for `key`. The comparison takes the same time whichever byte differs.
 pub(super) fn is_genuine(bytes: &[u8], key: &[u8; TAG]) -> bool {
     bytes
         .split_last_chunk::<TAG>()
-        .is_some_and(|(told, tag)| blake3::keyed_hash(key, told) == Hash::from(*tag))
+        .is_some_and(|(content, tag)| blake3::keyed_hash(key, content) == Hash::from(*tag))
 }
 
 /// The parts of a message; `None` if it is cut short.
 pub(super) fn parts(bytes: &[u8]) -> Option<Parts<'_>> {
-    let (told, _) = bytes.split_last_chunk::<TAG>()?;
-    let mut rest = told.get(MAGIC.len() + 1..)?;
+    let (content, _) = bytes.split_last_chunk::<TAG>()?;
+    let mut rest = content.get(MAGIC.len() + 1..)?;
     let (from, counter, sent) = (take_u64(&mut rest)?, take_u64(&mut rest)?, take_u64(&mut rest)?);
     let (count, rest) = rest.split_first_chunk::<2>()?;
     let (answers, body) = rest.split_at_checked(usize::from(u16::from_be_bytes(*count)) * ANSWER)?;
-    Some(Parts { head: Head { from, counter, sent }, answers, body: (told.len() - body.len(), told.len()) })
+    Some(Parts {
+        head: Head { from, counter, sent },
+        answers,
+        body: (content.len() - body.len(), content.len()),
+    })
 }
 
 fn take_u64(bytes: &mut &[u8]) -> Option<u64> {

@@ -1,4 +1,4 @@
-//! The key of a floor: 32 random bytes, in a file that only its owner can read.
+//! The key of a floor: 32 random bytes in a file that only its owner can read.
 
 use std::fmt;
 use std::fs::{self, File};
@@ -12,7 +12,7 @@ use thiserror::Error;
 /// Longest key file, in bytes: the digits and white space around them.
 const MOST_BYTES: u64 = 256;
 
-/// Why there is no key.
+/// Reason for a missing key.
 #[derive(Debug, Error)]
 #[non_exhaustive]
 pub enum KeyError {
@@ -29,7 +29,7 @@ pub enum KeyError {
         /// The system's reason.
         source: io::Error,
     },
-    /// Others than its owner may read or write the file.
+    /// Users other than its owner may read or write the file.
     #[error("others can read or write the floor's key {} (mode {mode:04o}): chmod 600 {}", path.display(), path.display())]
     Exposed {
         /// The file.
@@ -67,7 +67,7 @@ pub enum KeyError {
 pub struct Key([u8; 32]);
 
 impl fmt::Debug for Key {
-    /// Shows nothing of it.
+    /// Hides the key.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str("Key")
     }
@@ -82,14 +82,14 @@ impl Key {
 
     /// The key in the file at `path`.
     ///
-    /// On Unix a file that others than its owner may read or write is refused. Windows has no such bits: there the
-    /// folder decides who reads it.
+    /// On Unix, rejects a file that users other than its owner may read or write. Windows has no such bits: its folder
+    /// protects the file there.
     ///
     /// # Errors
     /// [`KeyError::Unreadable`], [`KeyError::Exposed`] or [`KeyError::Malformed`].
     pub fn read(path: &Path) -> Result<Self, KeyError> {
         let unreadable = |source| KeyError::Unreadable { path: path.to_owned(), source };
-        // A pipe would hold up whoever opens it.
+        // Opening a pipe would block.
         if !fs::metadata(path).map_err(unreadable)?.is_file() {
             return Err(unreadable(io::Error::other("it is not a file")));
         }
@@ -114,7 +114,7 @@ impl Key {
         getrandom::fill(&mut bytes).map_err(KeyError::Random)?;
         let unwritable = |source| KeyError::Unwritable { path: path.to_owned(), source };
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
-        // Nobody else can read a temporary file; it appears whole, and in no other file's place.
+        // A temporary file is private to its owner. It appears under its name whole, and replaces no other file.
         let mut file = NamedTempFile::new_in(folder.unwrap_or(Path::new("."))).map_err(unwritable)?;
         writeln!(file, "{}", Hash::from_bytes(bytes).to_hex()).map_err(unwritable)?;
         file.as_file().sync_all().map_err(unwritable)?;
@@ -127,7 +127,7 @@ impl Key {
         }
     }
 
-    /// A key of its own for one purpose; `context` names the purpose, and nothing else uses that name.
+    /// The key for one purpose; each purpose has a `context` of its own.
     #[must_use]
     pub fn derived(&self, context: &str) -> [u8; 32] {
         blake3::derive_key(context, &self.0)
@@ -192,7 +192,7 @@ mod tests {
     }
 
     #[test]
-    fn a_file_with_something_else_is_refused_with_what_was_expected() {
+    fn a_file_with_something_else_is_refused() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("hall.key");
         let digits = "7".repeat(64);
@@ -218,9 +218,13 @@ mod tests {
     }
 
     #[test]
-    fn keys_of_two_purposes_differ_and_debug_shows_none() {
+    fn keys_of_two_purposes_differ() {
         let key = Key::new([7; 32]);
         assert_ne!(key.derived("one"), key.derived("two"));
-        assert_eq!(format!("{key:?}"), "Key");
+    }
+
+    #[test]
+    fn debug_output_hides_the_key() {
+        assert_eq!(format!("{:?}", Key::new([7; 32])), "Key");
     }
 }

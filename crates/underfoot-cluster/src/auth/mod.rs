@@ -1,24 +1,25 @@
-//! Messages that only computers with the floor's key can write, and that count once, while they are new.
+//! Authenticated messages between the computers of a floor.
 //!
 //! ```text
 //! at its start each program draws a random number, its nonce
-//! every message: nonce of the sender, counter, time of the sender's clock,
-//!                for each receiver heard of late: its nonce and the time that it sent last,
-//!                body, and a keyed BLAKE3 hash over all of it
-//! a message is taken if  the hash is right                              else forged
-//!                        it answers the receiver's own nonce            else unanswered
-//!                        with a time less than 250 ms ago               else stale
-//!                        its counter is new                             else repeated
-//!                        and not far beyond the last one                else jumped
+//! each message: nonce of the sender, counter, time on the sender's clock,
+//!               for each receiver heard within 250 ms: its nonce and the time of its last message,
+//!               body, and a MAC (keyed BLAKE3) over all of it
+//! a receiver accepts a message if  the MAC is right                          else it is forged
+//!                                  it answers the receiver's own nonce       else unanswered
+//!                                  with a time less than 250 ms ago          else stale
+//!                                  its counter is new                        else repeated
+//!                                  and not far beyond the last one           else jumped
 //! ```
 //!
-//! Every message is a challenge to those that hear it, and answers theirs: the nonce makes what was recorded before a
-//! start worthless after it, and the time, which the receiver reads on the clock that it wrote it by, says how old a
-//! message can be at most. No clock of another computer is believed for that. Packets of boards go without answers, which
-//! would be longer than they are: each is as new as its sender's last note, and what lies between the two by the sender's
-//! clock counts as age.
+//! Each message is a challenge to its receivers and answers theirs. The nonce makes a recording worthless after the
+//! receiver's next start. The time is one that the receiver wrote itself, so that it bounds the message's age by the
+//! receiver's own clock; no clock of another computer decides about age.
 //!
-//! Everything here is pure: time, nonces and bytes are handed in.
+//! Packets of boards carry no answers, which would be longer than the packet. Each is as new as its sender's last note;
+//! the time between the two on the sender's clock adds to its age.
+//!
+//! This module is pure: time, nonces and bytes are handed in.
 
 mod envelope;
 mod key;

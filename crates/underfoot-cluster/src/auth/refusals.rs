@@ -1,25 +1,25 @@
-//! Messages that are not taken, counted by why.
+//! Rejected messages, counted by reason.
 
 use thiserror::Error;
 
-/// Why a message is not taken.
+/// Reason for rejecting a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
 #[non_exhaustive]
 pub enum Refusal {
-    /// It is none of this program's messages, or longer than any.
-    #[error("it has another form")]
+    /// It has another format, or is of a kind that this program does not receive.
+    #[error("it has another format")]
     Malformed,
-    /// Its hash is not that of the floor's key: it was written with another key, or changed on the way.
+    /// Its MAC is wrong: it was written with another key, or changed on the way.
     #[error("it was not written with this floor's key")]
     Forged,
-    /// It answers nothing that this program has sent since its start: it was recorded earlier, or its sender has heard
-    /// nothing yet.
-    #[error("it answers nothing that was sent since the start")]
+    /// It answers no message that this program has sent since its start: it is an earlier recording, or its sender has
+    /// received nothing yet.
+    #[error("it answers no message since the start")]
     Unanswered,
-    /// What it answers was sent too long ago.
+    /// It answers a message of more than 250 ms ago.
     #[error("it is too old")]
     Stale,
-    /// A message with its counter has been taken already, or one that came much later.
+    /// A message with its counter has come already, or with one that is far greater.
     #[error("it has come before")]
     Repeated,
     /// Its counter is far beyond the last one.
@@ -27,14 +27,14 @@ pub enum Refusal {
     Jumped,
 }
 
-/// How many messages were not taken, by why.
+/// Number of rejected messages, by reason.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Refusals {
     /// [`Refusal::Malformed`].
     pub malformed: u64,
     /// [`Refusal::Forged`].
     pub forged: u64,
-    /// [`Refusal::Unanswered`]; those of a sender that answers later are taken off again.
+    /// [`Refusal::Unanswered`], without those of senders that have answered since.
     pub unanswered: u64,
     /// [`Refusal::Stale`].
     pub stale: u64,
@@ -57,13 +57,13 @@ impl Refusals {
         *counter = counter.saturating_add(1);
     }
 
-    /// Each count, with what it counts in words that follow a number.
+    /// Each count with its reason, in words that follow a number and a noun.
     #[must_use]
-    pub const fn told(&self) -> [(u64, &'static str); 6] {
+    pub const fn by_reason(&self) -> [(u64, &'static str); 6] {
         [
-            (self.malformed, "of another form"),
+            (self.malformed, "of another format"),
             (self.forged, "not written with this floor's key"),
-            (self.unanswered, "recorded before this start, or of a program that hears nothing"),
+            (self.unanswered, "recorded before this start, or from a program that receives nothing"),
             (self.stale, "older than 250 ms"),
             (self.repeated, "that had come before"),
             (self.jumped, "with a counter far beyond the last"),
@@ -73,6 +73,6 @@ impl Refusals {
     /// All of them together.
     #[must_use]
     pub fn all(&self) -> u64 {
-        self.told().iter().map(|(count, _)| count).sum()
+        self.by_reason().iter().map(|(count, _)| count).sum()
     }
 }

@@ -1,4 +1,4 @@
-//! One program's messages to and from the other computers of its floor.
+//! The messages of one program to and from other computers of its floor.
 
 use std::ops::Range;
 use std::time::Duration;
@@ -10,26 +10,26 @@ use super::key::Key;
 use super::refusals::{Refusal, Refusals};
 use super::window::{Novelty, Window};
 
-/// How long ago that may have been sent which a message answers. A gateway that has been silent for 150 ms is no longer
-/// believed, and neither is what was 100 ms on its way.
+/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on its
+/// way for 100 ms is too late for a hold.
 const FRESH: Duration = Duration::from_millis(250);
 
-/// How long a sender that is silent is remembered: longer than anything that it sent is fresh.
+/// Time for which a silent sender is remembered; it must be longer than [`FRESH`].
 const REMEMBERED: Duration = Duration::from_secs(1);
 
-/// Which messages a program sends and takes.
+/// The kinds of messages that a program exchanges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
-    /// A gateway's: to all nodes.
+    /// A gateway, with nodes.
     Gateway,
-    /// A node's: to all gateways.
+    /// A node, with gateways.
     Node,
-    /// A node's: to its neighbours.
+    /// A node, with its neighbours.
     Neighbour,
 }
 
 impl Role {
-    const fn takes(self, kind: Kind) -> bool {
+    const fn receives(self, kind: Kind) -> bool {
         match self {
             Self::Gateway => matches!(kind, Kind::Node),
             Self::Node => matches!(kind, Kind::Gateway),
@@ -38,52 +38,52 @@ impl Role {
     }
 }
 
-/// A message of the sender's cannot have been sent before what it answers.
+/// Proof of a message's age: its sender wrote it after it had received the message that it answers.
 #[derive(Clone, Copy, Debug)]
 struct Proof {
-    /// When this program sent that.
+    /// When this program sent the answered message.
     answered: Instant,
-    /// When the message was sent, in microseconds of the sender's clock.
+    /// When the sender sent its answer, in microseconds of its clock.
     sent: u64,
 }
 
 impl Proof {
-    /// How old a message of the sender's is at most that it says it sent at `sent`.
+    /// Greatest age of another message of that sender, sent at `sent` on its clock.
     fn age(&self, sent: u64, now: Instant) -> Duration {
         now.since(self.answered) + Duration::from_micros(self.sent.saturating_sub(sent))
     }
 }
 
-/// A message that was taken.
+/// An accepted message.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Opened {
-    /// What it is for.
+    /// Its purpose.
     pub kind: Kind,
-    /// Who sends it, and when.
+    /// Its sender, number and time.
     pub head: Head,
-    /// What it answers; `None` for a packet of a board, which is as new as its sender's last note shows.
+    /// The message that it answers; `None` for a packet of a board.
     pub echo: Option<Echo>,
-    /// Where its body is among its bytes.
+    /// The place of its body among its bytes.
     pub body: Range<usize>,
 }
 
-/// Another program, since it was met.
+/// Another program.
 #[derive(Clone, Debug)]
 struct Peer {
     nonce: u64,
     window: Window,
-    /// The newest of its messages.
+    /// Receipt of its newest message.
     echo: Echo,
     heard: Instant,
-    /// What its last answer that was new says of its age.
+    /// From its last fresh answer.
     proof: Option<Proof>,
-    /// Messages that were refused before its first answer.
+    /// Messages rejected before its first answer.
     unanswered: u64,
-    /// When its counter jumped: what answers something that was sent later begins anew.
+    /// When its counter jumped. An answer to a message after that begins a new window.
     jumped: Option<Instant>,
 }
 
-/// Writes the messages of one program, and takes those of others that are theirs and new.
+/// Writes the messages of one program, and accepts those of others.
 #[derive(Clone, Debug)]
 pub struct Session {
     role: Role,
@@ -97,8 +97,8 @@ pub struct Session {
 }
 
 impl Session {
-    /// A session under the floor's `key`; `nonce` is a random number that no session before had, and `most_peers` how
-    /// many other programs there can be, at least one.
+    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number of
+    /// other programs that are remembered, at least one.
     #[must_use]
     pub fn new(role: Role, key: &Key, nonce: u64, most_peers: usize) -> Self {
         Self {
@@ -112,21 +112,20 @@ impl Session {
         }
     }
 
-    /// The nonce, by which others know it.
+    /// Its nonce, which identifies it to others.
     #[must_use]
     pub const fn nonce(&self) -> u64 {
         self.nonce
     }
 
-    /// How many messages were not taken so far, by why.
+    /// Number of rejected messages so far.
     #[must_use]
     pub const fn refusals(&self) -> Refusals {
         self.refusals
     }
 
-    /// Writes a message with this `body`, sent at `now`, into `out` in place of what is in it.
-    ///
-    /// Packets of boards, which come by the thousand, carry no answers: notes between them do.
+    /// Writes a message with this `body`, sent at `now`, into `out`, whose content it replaces. Packets of boards carry
+    /// no answers.
     pub fn seal(&mut self, kind: Kind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
         self.counter += 1;
         let head = Head { from: self.nonce, counter: self.counter, sent: now.micros() };
@@ -135,10 +134,10 @@ impl Session {
         envelope::write((kind, &self.keys[kind as usize - 1]), &head, answers, body, out);
     }
 
-    /// The message that `bytes` are, received at `now`.
+    /// Reads a message that was received at `now`.
     ///
     /// # Errors
-    /// Why it is not taken, which is also counted.
+    /// The reason for rejecting it, which is also counted.
     pub fn open(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
         let opened = self.look(bytes, now);
         if let Err(refusal) = opened {
@@ -148,13 +147,14 @@ impl Session {
     }
 
     fn look(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
-        let kind = envelope::kind(bytes).filter(|kind| self.role.takes(*kind)).ok_or(Refusal::Malformed)?;
+        let kind =
+            envelope::kind(bytes).filter(|kind| self.role.receives(*kind)).ok_or(Refusal::Malformed)?;
         if !envelope::is_genuine(bytes, &self.keys[kind as usize - 1]) {
             return Err(Refusal::Forged);
         }
         let parts = envelope::parts(bytes).ok_or(Refusal::Malformed)?;
         let head = parts.head;
-        // What this program has sent itself comes back.
+        // Its own message, reflected.
         if head.from == self.nonce {
             return Err(Refusal::Repeated);
         }
@@ -174,7 +174,7 @@ impl Session {
         Ok(Opened { kind, head, echo, body: parts.body.0..parts.body.1 })
     }
 
-    /// The sender of a message with this `head`, met now if it is not known.
+    /// The sender of a message with this `head`, which is added if it is new.
     fn peer(&mut self, head: &Head, now: Instant) -> Result<&mut Peer, Refusal> {
         self.peers.retain(|peer| now.since(peer.heard) <= REMEMBERED);
         let known = self.peers.iter().position(|peer| peer.nonce == head.from);
@@ -190,8 +190,8 @@ impl Session {
         self.peers.get_mut(index).ok_or(Refusal::Malformed)
     }
 
-    /// Forgets somebody if there is no room for one more: of those that have not answered, if there are any, the one
-    /// that has been silent for longest.
+    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without an
+    /// answer if there are any.
     fn make_room(&mut self) {
         if self.peers.len() < self.most_peers {
             return;
@@ -203,11 +203,11 @@ impl Session {
 }
 
 impl Peer {
-    /// The sender of a first message; `None` if its counter is one that no sender reaches.
+    /// The sender of a first message; `None` if its counter is beyond that of any sender.
     fn met(head: &Head, now: Instant) -> Option<Self> {
         Some(Self {
             nonce: head.from,
-            // The message itself is still to be noted.
+            // `note` adds the message itself.
             window: Window::beginning(head.counter.saturating_sub(1))?,
             echo: Echo { sent: head.sent, received: now.micros() },
             heard: now,
@@ -217,7 +217,7 @@ impl Peer {
         })
     }
 
-    /// Takes note of a message, and of what its answer proves if it has one.
+    /// Checks the counter of a message, and adds it; `proof` is from its answer, if it has one.
     fn note(&mut self, head: &Head, proof: Option<Proof>, now: Instant) -> Result<(), Refusal> {
         let mut novelty = self.window.look(head.counter);
         if novelty == Novelty::Jumped {
@@ -271,7 +271,7 @@ mod tests {
         })
     }
 
-    /// A gateway and a node that have heard each other at 1000 ms.
+    /// A gateway and a node that have answered each other at 1000 ms.
     fn pair() -> (Session, Session) {
         let (mut gateway, mut node) = (session(Role::Gateway, 1), session(Role::Node, 2));
         meet(&mut gateway, &mut node, 1000);
@@ -281,26 +281,30 @@ mod tests {
     fn meet(gateway: &mut Session, node: &mut Session, ms: u64) {
         let beat = sealed(gateway, Kind::Gateway, ms);
         assert_eq!(opened(node, &beat, ms), Err(Refusal::Unanswered));
-        let told = sealed(node, Kind::Node, ms);
-        assert!(opened(gateway, &told, ms).is_ok());
+        let message = sealed(node, Kind::Node, ms);
+        assert!(opened(gateway, &message, ms).is_ok());
         let beat = sealed(gateway, Kind::Gateway, ms);
         assert!(opened(node, &beat, ms).is_ok());
     }
 
     #[test]
-    fn programs_that_answer_each_other_are_heard_within_a_round_trip() {
+    fn programs_that_answer_each_other_are_accepted_within_a_round_trip() {
         let (gateway, node) = pair();
         assert_eq!(gateway.refusals(), Refusals::default());
-        assert_eq!(node.refusals(), Refusals::default(), "what came before the answer is no longer counted");
+        assert_eq!(
+            node.refusals(),
+            Refusals::default(),
+            "messages before the first answer are no longer counted"
+        );
     }
 
     #[test]
-    fn a_message_says_when_that_was_sent_which_it_answers() {
+    fn a_message_carries_the_receipt_of_the_one_that_it_answers() {
         let (mut gateway, mut node) = pair();
         let beat = sealed(&mut gateway, Kind::Gateway, 1040);
         opened(&mut node, &beat, 9_041).unwrap_err();
-        let told = sealed(&mut node, Kind::Node, 9_045);
-        let Opened { head, echo, .. } = gateway.open(&told, at(1046)).unwrap();
+        let message = sealed(&mut node, Kind::Node, 9_045);
+        let Opened { head, echo, .. } = gateway.open(&message, at(1046)).unwrap();
         assert_eq!((head.from, head.counter, head.sent), (2, 2, 9_045_000));
         assert_eq!(echo, Some(Echo { sent: 1_040_000, received: 9_041_000 }));
     }
@@ -309,15 +313,15 @@ mod tests {
     #[test]
     fn a_message_counts_once() {
         let (mut gateway, mut node) = pair();
-        let told = sealed(&mut node, Kind::Node, 1010);
-        assert!(opened(&mut gateway, &told, 1011).is_ok());
-        assert_eq!(opened(&mut gateway, &told, 1012), Err(Refusal::Repeated));
+        let message = sealed(&mut node, Kind::Node, 1010);
+        assert!(opened(&mut gateway, &message, 1011).is_ok());
+        assert_eq!(opened(&mut gateway, &message, 1012), Err(Refusal::Repeated));
         assert_eq!(gateway.refusals().repeated, 1);
     }
 
     // C5
     #[test]
-    fn a_message_that_another_key_wrote_is_forged() {
+    fn a_message_with_another_key_is_forged() {
         let (mut gateway, mut node) = pair();
         let mut other = Session::new(Role::Node, &Key::new([8; 32]), 2, 4);
         let mut forged = sealed(&mut other, Kind::Node, 1010);
@@ -328,14 +332,14 @@ mod tests {
             forged[12..20].copy_from_slice(&counter.to_be_bytes());
             assert_eq!(opened(&mut gateway, &forged, 1011), Err(Refusal::Forged));
         }
-        let told = sealed(&mut node, Kind::Node, 1012);
-        assert!(opened(&mut gateway, &told, 1013).is_ok(), "nothing of it has remained");
+        let message = sealed(&mut node, Kind::Node, 1012);
+        assert!(opened(&mut gateway, &message, 1013).is_ok(), "the forged counters have no effect");
         assert_eq!(gateway.refusals(), Refusals { forged: 3, ..Refusals::default() });
     }
 
     // C6
     #[test]
-    fn what_was_recorded_before_a_receiver_s_start_is_worthless_after_it() {
+    fn a_recording_is_worthless_after_the_receiver_s_next_start() {
         let (_, mut node) = pair();
         let recorded = sealed(&mut node, Kind::Node, 1010);
         let mut gateway = session(Role::Gateway, 3);
@@ -343,16 +347,16 @@ mod tests {
             assert!(opened(&mut gateway, &recorded, ms).is_err());
         }
         assert_eq!(gateway.refusals(), Refusals { unanswered: 1, repeated: 1, ..Refusals::default() });
-        // The node itself is heard once it has answered.
+        // The node itself is accepted once it has answered.
         let beat = sealed(&mut gateway, Kind::Gateway, 1020);
         opened(&mut node, &beat, 1021).unwrap();
-        let told = sealed(&mut node, Kind::Node, 1022);
-        assert!(opened(&mut gateway, &told, 1023).is_ok());
+        let message = sealed(&mut node, Kind::Node, 1022);
+        assert!(opened(&mut gateway, &message, 1023).is_ok());
     }
 
     // C6
     #[test]
-    fn what_was_recorded_before_a_sender_s_start_is_worthless_after_it() {
+    fn a_recording_is_worthless_after_the_sender_s_next_start() {
         let (mut gateway, mut old) = pair();
         let recorded: Vec<_> = (0..3).map(|_| sealed(&mut old, Kind::Node, 1010)).collect();
         assert!(opened(&mut gateway, &recorded[1], 1011).is_ok());
@@ -361,8 +365,8 @@ mod tests {
         for message in &recorded {
             assert_eq!(opened(&mut gateway, message, 2300), Err(Refusal::Stale));
         }
-        let told = sealed(&mut node, Kind::Node, 2010);
-        assert!(opened(&mut gateway, &told, 2011).is_ok());
+        let message = sealed(&mut node, Kind::Node, 2010);
+        assert!(opened(&mut gateway, &message, 2011).is_ok());
     }
 
     // C6
@@ -374,7 +378,7 @@ mod tests {
         assert_eq!(opened(&mut gateway, &held_back[1], 1251), Err(Refusal::Stale));
     }
 
-    /// Two neighbours that have heard each other at 1000 ms; the clock of the second is 70 s ahead.
+    /// Two neighbours that have answered each other at 1000 ms; the clock of the second is 70 s ahead.
     fn neighbours() -> (Session, Session) {
         let (mut west, mut east) = (session(Role::Neighbour, 1), session(Role::Neighbour, 2));
         let note = sealed(&mut west, Kind::Note, 1000);
@@ -387,14 +391,14 @@ mod tests {
     }
 
     #[test]
-    fn a_packet_is_as_new_as_the_notes_around_it_show() {
+    fn a_packet_is_as_new_as_its_sender_s_last_note() {
         let (mut west, mut east) = neighbours();
         let packets: Vec<_> = (0..4).map(|_| sealed(&mut west, Kind::Packet, 1010)).collect();
         assert!(opened(&mut east, &packets[0], 71_011).is_ok());
         assert_eq!(opened(&mut east, &packets[0], 71_012), Err(Refusal::Repeated));
         assert!(opened(&mut east, &packets[1], 71_250).is_ok(), "250 ms after what the last note answers");
         assert_eq!(opened(&mut east, &packets[2], 71_251), Err(Refusal::Stale));
-        // Notes go on while somebody holds a packet back.
+        // An attacker holds the packet back and lets notes pass.
         for ms in [1100, 1200, 1300] {
             let note = sealed(&mut east, Kind::Note, 70_000 + ms);
             opened(&mut west, &note, ms).unwrap();
@@ -408,7 +412,7 @@ mod tests {
 
     // C5
     #[test]
-    fn a_packet_of_a_stranger_is_not_taken() {
+    fn a_packet_without_a_note_before_it_is_rejected() {
         let (_, mut east) = neighbours();
         let mut stranger = session(Role::Neighbour, 3);
         let packet = sealed(&mut stranger, Kind::Packet, 1010);
@@ -416,10 +420,10 @@ mod tests {
     }
 
     #[test]
-    fn a_message_for_others_or_from_itself_is_not_taken() {
+    fn a_message_for_others_or_from_itself_is_rejected() {
         let (mut gateway, mut node) = pair();
         let beat = sealed(&mut gateway, Kind::Gateway, 1010);
-        assert_eq!(opened(&mut gateway, &beat, 1010), Err(Refusal::Malformed), "gateways hear nodes");
+        assert_eq!(opened(&mut gateway, &beat, 1010), Err(Refusal::Malformed), "gateways receive from nodes");
         let mut east = session(Role::Neighbour, 9);
         let note = sealed(&mut east, Kind::Note, 1010);
         assert_eq!(opened(&mut east, &note, 1010), Err(Refusal::Repeated), "its own");
@@ -438,8 +442,8 @@ mod tests {
             assert_eq!(opened(&mut gateway, &jump, 1011), Err(Refusal::Jumped));
         }
         node = honest;
-        let told = sealed(&mut node, Kind::Node, 1012);
-        assert!(opened(&mut gateway, &told, 1013).is_ok());
+        let message = sealed(&mut node, Kind::Node, 1012);
+        assert!(opened(&mut gateway, &message, 1013).is_ok());
     }
 
     #[test]
@@ -452,23 +456,23 @@ mod tests {
         }
         let beat = sealed(&mut gateway, Kind::Gateway, 1020);
         opened(&mut node, &beat, 1020).unwrap();
-        let told = sealed(&mut node, Kind::Node, 1021);
-        assert!(opened(&mut gateway, &told, 1021).is_ok());
-        assert_eq!(opened(&mut gateway, &told, 1022), Err(Refusal::Repeated));
+        let message = sealed(&mut node, Kind::Node, 1021);
+        assert!(opened(&mut gateway, &message, 1021).is_ok());
+        assert_eq!(opened(&mut gateway, &message, 1022), Err(Refusal::Repeated));
     }
 
     #[test]
-    fn a_sender_that_is_back_after_a_pause_is_heard_with_any_counter() {
+    fn a_sender_is_accepted_with_any_counter_after_a_pause() {
         let (mut gateway, mut node) = pair();
         node.counter = 1 << 40;
         let beat = sealed(&mut gateway, Kind::Gateway, 60_000);
         opened(&mut node, &beat, 60_000).unwrap_err();
-        let told = sealed(&mut node, Kind::Node, 60_001);
-        assert!(opened(&mut gateway, &told, 60_001).is_ok());
+        let message = sealed(&mut node, Kind::Node, 60_001);
+        assert!(opened(&mut gateway, &message, 60_001).is_ok());
     }
 
     #[test]
-    fn recordings_of_many_old_starts_drive_nobody_out() {
+    fn recordings_of_many_old_starts_displace_no_sender() {
         let (mut gateway, mut node) = pair();
         for nonce in 100..200 {
             let mut old = session(Role::Node, nonce);
@@ -476,19 +480,19 @@ mod tests {
             assert_eq!(opened(&mut gateway, &recorded, 1010), Err(Refusal::Unanswered));
             assert!(gateway.peers.len() <= 4);
         }
-        let told = sealed(&mut node, Kind::Node, 1011);
-        assert!(opened(&mut gateway, &told, 1011).is_ok());
+        let message = sealed(&mut node, Kind::Node, 1011);
+        assert!(opened(&mut gateway, &message, 1011).is_ok());
     }
 
     #[derive(Clone, Debug)]
     enum Step {
         /// So many milliseconds pass.
         Wait(u64),
-        /// The node, or the gateway, sends; the first copy arrives, or somebody keeps it back.
+        /// The node or the gateway sends; the message arrives at once, or is held back.
         Tell { by_node: bool, arrives: bool },
-        /// Somebody delivers what was sent, by number, to the node or the gateway.
+        /// An attacker delivers a message, by its number, to the node or the gateway.
         Deliver { number: usize, to_node: bool },
-        /// The node, or the gateway, starts again.
+        /// The node or the gateway starts again.
         Restart { node: bool },
     }
 
@@ -502,15 +506,15 @@ mod tests {
     }
 
     proptest! {
-        /// Whoever carries the messages keeps them back, repeats them and mixes them up as it likes, over any restarts.
+        /// An attacker on the way holds messages back, repeats and reorders them, over any restarts.
         #[test]
         fn each_message_counts_once_and_within_250_ms(steps in prop::collection::vec(step(), 1..200)) {
             let mut ends = [session(Role::Gateway, 1), session(Role::Node, 2)];
             let mut nonce = 2;
             let mut now = 1000;
-            // Bytes, and when they were sent.
+            // Bytes and time of each message.
             let mut sent: Vec<(Vec<u8>, u64)> = Vec::new();
-            let mut taken: Vec<usize> = Vec::new();
+            let mut accepted: Vec<usize> = Vec::new();
             for step in steps {
                 let delivery = match step {
                     Step::Wait(ms) => {
@@ -533,11 +537,11 @@ mod tests {
                     }
                 };
                 if let Some((number, to_node)) = delivery {
-                    let (bytes, told) = &sent[number];
+                    let (bytes, sent_at) = &sent[number];
                     if opened(&mut ends[usize::from(to_node)], bytes, now).is_ok() {
-                        prop_assert!(!taken.contains(&number), "twice");
-                        prop_assert!(now - told <= 250, "{} ms old", now - told);
-                        taken.push(number);
+                        prop_assert!(!accepted.contains(&number), "twice");
+                        prop_assert!(now - sent_at <= 250, "{} ms old", now - sent_at);
+                        accepted.push(number);
                     }
                 }
             }

@@ -1,25 +1,25 @@
-//! Which counters of one sender have come: each counts once.
+//! The anti-replay window: each counter of a sender counts once.
 
-/// How far behind the greatest counter one may come, as datagrams overtake each other on a network.
+/// Distance behind the greatest counter at which one is still accepted: datagrams overtake each other on a network.
 const BEHIND: u64 = 64;
 
-/// How far beyond the greatest counter the next one may be: what a node sends in half an hour without a pause, so that
-/// one that was cut off for that long is taken at once.
+/// Greatest step of the counter: as many messages as a node sends in half an hour, so that a node that was cut off for
+/// that long is accepted at once.
 const AHEAD: u64 = 1 << 20;
 
-/// Greatest counter that a sender reaches: a million messages a second for 290,000 years.
+/// Greatest counter of any sender: a million messages a second for 290,000 years.
 const GREATEST: u64 = u64::MAX >> 1;
 
-/// What a counter is.
+/// Relation of a counter to those that have come.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Novelty {
-    /// It has not come, and is greater than all that have.
+    /// It is greater than all of them.
     Newest,
-    /// It has not come; a greater one has.
+    /// It is new, but a greater one has come.
     Overtaken,
-    /// It has come, or is so far behind that nobody knows.
+    /// It has come, or lies behind the window.
     Repeated,
-    /// It is further beyond the others than a sender gets.
+    /// It is further beyond them than a sender gets.
     Jumped,
 }
 
@@ -35,7 +35,7 @@ pub(super) struct Window {
 }
 
 impl Window {
-    /// The window of a sender of which `counter` came first; `None` for one that no sender reaches.
+    /// The window of a sender whose first message has this `counter`; `None` beyond the greatest counter of any sender.
     pub(super) fn beginning(counter: u64) -> Option<Self> {
         (counter <= GREATEST).then_some(Self { newest: counter, seen: 1 })
     }
@@ -50,7 +50,7 @@ impl Window {
         if has_come { Novelty::Repeated } else { Novelty::Overtaken }
     }
 
-    /// Takes note that `counter` has come, which is neither repeated nor jumped.
+    /// Adds a `counter` that is neither repeated nor jumped.
     pub(super) fn note(&mut self, counter: u64) {
         if counter > self.newest {
             let step = counter - self.newest;
@@ -82,9 +82,9 @@ mod tests {
     }
 
     proptest! {
-        /// Against a set of all that have come: none is taken twice, and none near the newest is taken for one that has.
+        /// Compared with a set of all counters that have come.
         #[test]
-        fn each_counter_counts_once_in_whatever_order_they_come(
+        fn each_counter_counts_once_in_any_order(
             steps in prop::collection::vec(-80_i64..90, 1..400),
         ) {
             let mut window = Window::beginning(1000).unwrap();

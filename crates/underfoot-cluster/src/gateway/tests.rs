@@ -7,7 +7,8 @@ use underfoot::widget::{EventKind, WidgetId};
 use underfoot::wire::{ControlMessage, Request};
 
 use super::*;
-use crate::message::{Echo, NodeAnswer};
+use crate::auth::Echo;
+use crate::message::NodeAnswer;
 
 /// Two areas side by side, of 6 x 6 tiles each; the border is at 6 x 0.304 m.
 fn hall() -> Floor {
@@ -63,7 +64,7 @@ impl Node {
             held: self.held.clone(),
             layout: self.layout.clone(),
             // It took the probe 200 us to come, too.
-            echoes: vec![Echo { gateway: 9, sent: at - 200, received: there }],
+            echo: Some(Echo { sent: at - 200, received: there }),
             ..NodeMessage::default()
         }
     }
@@ -283,6 +284,7 @@ fn holding(until: u64) -> (Stage, Node, Node) {
     (stage, west, east)
 }
 
+// C3
 #[test]
 fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     let (mut stage, _, mut east) = holding(50_000);
@@ -309,6 +311,7 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     assert!(held.is_some_and(|report| report.held.is_empty() && report.ended.len() == 1), "{held:?}");
 }
 
+// C2
 #[test]
 fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghosts() {
     let (mut stage, mut west, mut east) = holding(50_000);
@@ -367,7 +370,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
         }
         let mut message = west.message(at, &[(7, 1.0, 1.0), (8, 1.4, 1.0)], events);
         if step < 20 {
-            message.echoes.clear();
+            message.echo = None;
         }
         stage.take(message, at);
         stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
@@ -384,6 +387,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
     (stage.kinds(), cancelled.unwrap(), pressed.unwrap())
 }
 
+// C4
 #[test]
 fn a_node_whose_clock_is_set_is_cancelled_soon_and_what_it_tells_later_is_not_held_up() {
     let expected = [EventKind::Pressed, EventKind::Cancelled, EventKind::Pressed];
@@ -395,6 +399,7 @@ fn a_node_whose_clock_is_set_is_cancelled_soon_and_what_it_tells_later_is_not_he
     }
 }
 
+// C1
 #[test]
 fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     let (mut stage, _, mut east) = holding(50_000);
@@ -410,6 +415,7 @@ fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
 }
 
+// C10
 #[test]
 fn of_two_nodes_that_claim_an_area_neither_acts() {
     let (mut stage, mut west, mut east) = holding(50_000);
@@ -452,6 +458,7 @@ fn events_that_never_came_end_what_was_pressed() {
     assert_eq!(stage.gateway.counters().lost, 2);
 }
 
+// C7
 #[test]
 fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
     let mut stage = Stage::new();
@@ -516,7 +523,7 @@ proptest! {
             }
             for (due, _, mut message) in arrivals {
                 // Clocks are known from the start, so that the same moments are told.
-                message.echoes.clear();
+                message.echo = None;
                 message.sequence += 1;
                 stage.take(message, due);
                 stage.advance(due + 300);

@@ -1,11 +1,11 @@
 //! `underfoot-cluster node`: one area is served, and told of.
 
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as HostInstant};
 
 use underfoot::floor::{Area, Floor};
@@ -14,20 +14,24 @@ use underfoot::schema;
 use underfoot::serve::Command;
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
-use underfoot::units::HostClock;
+use underfoot::units::{HostClock, Instant};
 use underfoot::wire::ControlMessage;
+use underfoot_cluster::auth::{Kind as AuthKind, Opened, Role, Session as AuthSession};
 use underfoot_cluster::message::{
     LayoutName, NodeMessage, NodeValue, ToNodes, VERSION, decode, encode, fingerprint,
 };
-use underfoot_cluster::node::{Action, Border, Draft, Guard, NodeSink, Reason, SendNote};
+use underfoot_cluster::node::{Action, Draft, Guard, NeighbourSession, NodeSink, Reason};
 use underfoot_cluster::transport::Transport;
 
+use super::key::{KeyArgs, session as session_of};
+use super::neighbourhood::Neighbourhood;
 use super::notices::Notices;
+use super::refused::{self, RefusalNotices};
 use super::slowed::{SlowedSource, slowed};
 use super::sound::SoundArgs;
-use super::stepped::SteppedSource;
+use super::stepped::{SteppedSource, Steps};
 use super::worker::Worker;
-use super::{Failure, drawn, endpoints, layout, stop_flag};
+use super::{Failure, endpoints, layout, locked, stop_flag};
 
 /// What a node is asked to do.
 #[derive(clap::Args, Debug)]
@@ -51,6 +55,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ENDPOINT")]
     gateway: Vec<String>,
     #[command(flatten)]
+    key: KeyArgs,
+    #[command(flatten)]
     sound: SoundArgs,
     /// On how many threads the feet of a crowd are sensed. Those beyond the first sleep while fewer than a hundred feet
     /// are in the area, and keep a core busy each while there are more.
@@ -70,8 +76,12 @@ pub(crate) struct Args {
 /// Where packets arrive unless anything says otherwise.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// Notes of neighbours that may wait for the next frame.
-const NOTES: usize = 1024;
+/// Senders that are remembered besides the gateways: recordings of earlier starts.
+const SPARE_GATEWAYS: usize = 8;
+
+/// Nouns of reports about rejected messages.
+const MESSAGES: &str = "messages of gateways";
+const DATAGRAMS: &str = "datagrams of neighbours";
 
 /// Messages that may wait for the thread that sends them: a fifth of a second.
 const WAITING: usize = 100;
@@ -95,27 +105,21 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let stop = stop_flag(args.seconds)?;
     let listen = args.listen.or(area.listen).unwrap_or(LISTEN);
     let gateways = endpoints(args.gateway, &floor);
-    let (notes, noted) = sync_channel(NOTES);
-    let neighbours = Border::neighbours(&floor, area).filter_map(|area| Some(area.listen?.ip()));
-    let source = UdpSource::bind(listen, &part)?
-        .also_allowing(floor.forwarding_addresses(area).chain(neighbours))
-        .handing_notes_to(notes);
-    let node = drawn();
-    let border = Border::new(&floor, area, node, sender(&floor, area, listen)?, noted);
+    let (key, made) = args.key.find((&floor, &args.floor), &gateways, [listen])?;
+    let source = UdpSource::bind(listen, &part)?;
+    let steps = args.step_clock.then(Steps::by_signal).transpose()?;
+    let set = steps.as_ref().map_or_else(|| source.clock(), |steps| steps.clock(source.clock()));
+    let clock = if args.slow > 1 { slowed(set, args.slow) } else { set };
+    let Neighbourhood { seal, computers, border, session: neighbours, unheard } =
+        Neighbourhood::of((&floor, area), listen, &key, &clock)?;
     let crossed = border.counters();
+    let source = source.sealed_by(Box::new(seal), computers);
     let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
-    let (source, clock): (Box<dyn SensorSource>, HostClock) = if args.step_clock {
-        let source = SteppedSource::new(source)?;
-        let clock = source.clock();
-        (Box::new(source), clock)
-    } else {
-        let clock = source.clock();
-        (Box::new(source), clock)
+    let source: Box<dyn SensorSource> = match steps {
+        Some(steps) => Box::new(SteppedSource::new(source, steps)),
+        None => Box::new(source),
     };
-    let (source, clock): (Box<dyn SensorSource>, HostClock) = match args.slow {
-        0 | 1 => (source, clock),
-        times => (Box::new(SlowedSource::new(source, times)), slowed(clock, times)),
-    };
+    let source = if args.slow > 1 { Box::new(SlowedSource::new(source, args.slow)) } else { source };
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
@@ -131,18 +135,25 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .stop_flag(stop)
         .start()?;
     let notices = Notices::start();
+    made.into_iter().for_each(|made| notices.say(made));
     // What tells, and Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
+    let answering = session_of(Role::Node, &key, gateways.len() + SPARE_GATEWAYS)?;
+    let answering = Arc::new(Mutex::new(answering));
     let worker = Worker::start(session.clone(), area.clone(), floor.geometry, own, notices.clone());
     let transport = {
         let worker = worker.clone();
         let commander = Commander { session: session.clone(), notices: notices.clone() };
         let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
-        Transport::node(&gateways, &args.area, move |bytes| {
+        let answering = Arc::clone(&answering);
+        Transport::node(&gateways, &args.area, &key, move |bytes| {
             let now = clock();
-            let message = match decode(bytes) {
+            let Ok(Opened { head, body, .. }) = locked(&answering).open(bytes, now) else { return };
+            let message = match decode(bytes.get(body).unwrap_or_default())
+                .map(|told: ToNodes| told.in_envelope(&head))
+            {
                 Ok(ToNodes::Beat(message)) => message,
                 Ok(ToNodes::Layout(layout)) => return worker.check(layout, now),
                 Err(_) => {
@@ -151,7 +162,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
                 }
             };
             worker.hear(&message, now);
-            let actions = guard.lock().unwrap_or_else(PoisonError::into_inner).hear(&message, now);
+            let actions = locked(&guard).hear(&message, now);
             actions.into_iter().for_each(|action| commander.apply(action));
         })?
     };
@@ -166,11 +177,13 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
             version: VERSION,
             floor: fingerprint(&floor),
             area: args.area,
-            node,
             name: format!("{listen} (process {})", std::process::id()),
             ..NodeMessage::default()
         },
         transport,
+        session: Arc::clone(&answering),
+        neighbours: neighbours.clone(),
+        refused: Default::default(),
         guard,
         clock,
         commander: Commander { session: session.clone(), notices: notices.clone() },
@@ -196,6 +209,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         (crossed.untimed(), "cues of neighbours whose clock was not known yet, not played"),
         (crossed.unsent(), "cues that could not be handed to a neighbour"),
         (crossed.refused(), "notes of neighbours not understood"),
+        (unheard.load(Ordering::Relaxed), "notes of neighbours dropped, since they came faster than frames"),
         (forwarded.late(), "packets too old to be forwarded"),
         (forwarded.unsent(), "packets not forwarded, since the system did not take them"),
         (held_up.load(Ordering::Relaxed), "messages held up"),
@@ -203,20 +217,9 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         (refused.load(Ordering::Relaxed), "messages not understood"),
     ];
     lost.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| eprintln!("{count} {what}."));
+    refused::report(locked(&answering).refusals(), MESSAGES);
+    refused::report(neighbours.refusals(), DATAGRAMS);
     ended(&session)
-}
-
-/// Sends notes to the neighbours of `area`, from a port of its own beside `listen`.
-fn sender(floor: &Floor, area: &Area, listen: SocketAddr) -> Result<SendNote, Failure> {
-    let to: Vec<SocketAddr> = Border::neighbours(floor, area).filter_map(|area| area.listen).collect();
-    let socket = UdpSocket::bind(SocketAddr::new(listen.ip(), 0))
-        .and_then(|socket| socket.set_nonblocking(true).map(|()| socket))
-        .map_err(|error| Failure::Other(format!("cues can't be handed to neighbours: {error}")))?;
-    Ok(Box::new(move |number, note| match to.get(number) {
-        // An error may be the echo of an earlier note to a neighbour that is not there.
-        Some(to) => socket.send_to(note, to).or_else(|_| socket.send_to(note, to)).is_ok(),
-        None => false,
-    }))
 }
 
 /// The area called `id`.
@@ -261,9 +264,13 @@ impl Commander {
 
 /// Sends what happens, for as long as anything does.
 struct Teller {
-    /// What all messages have in common, and the number of the last one.
+    /// What all messages have in common.
     head: NodeMessage,
     transport: Transport,
+    session: Arc<Mutex<AuthSession>>,
+    neighbours: NeighbourSession,
+    /// About messages of gateways and datagrams of neighbours.
+    refused: [RefusalNotices; 2],
     guard: Arc<Mutex<Guard>>,
     clock: HostClock,
     commander: Commander,
@@ -290,18 +297,26 @@ impl Teller {
             }
             let now = (self.clock)();
             self.worker.change(now);
-            let actions = self.guard.lock().unwrap_or_else(PoisonError::into_inner).tick(now);
+            let actions = locked(&self.guard).tick(now);
             actions.into_iter().for_each(|action| self.commander.apply(action));
+            self.report_refusals(now);
+        }
+    }
+
+    fn report_refusals(&mut self, now: Instant) {
+        let refusals =
+            [(locked(&self.session).refusals(), MESSAGES), (self.neighbours.refusals(), DATAGRAMS)];
+        for (notices, (refusals, noun)) in self.refused.iter_mut().zip(refusals) {
+            let due = notices.look(refusals, noun, now);
+            due.into_iter().for_each(|notice| self.commander.notices.say(notice));
         }
     }
 
     fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
-        let echoes = self.guard.lock().unwrap_or_else(PoisonError::into_inner).echoes().collect();
-        self.head.sequence += 1;
         let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
             draft.message();
         let (layout, answers) = self.worker.report();
-        let mut message = NodeMessage {
+        let message = NodeMessage {
             frame,
             silent,
             contacts,
@@ -310,15 +325,15 @@ impl Teller {
             events,
             held,
             values,
-            echoes,
             page,
             answers,
             layout,
             ..self.head.clone()
         };
-        // Last, so that nothing but the way of the message follows.
-        message.sent = (self.clock)().micros();
-        if !self.transport.send(encode(&message)) {
+        let (body, mut sealed) = (encode(&message), Vec::new());
+        // Last, so that nothing but the way of the message follows the time in it.
+        locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);
+        if !self.transport.send(sealed) {
             self.unsent += 1;
         }
     }

@@ -6,9 +6,12 @@ mod ports;
 
 mod border;
 mod commands;
+mod cost;
 mod faults;
+mod forger;
 mod hall;
 mod halo;
+mod key;
 mod lines;
 mod link;
 mod many;
