@@ -10,6 +10,7 @@ mod refused;
 mod slowed;
 mod sound;
 mod stepped;
+mod teller;
 mod worker;
 
 use std::path::PathBuf;

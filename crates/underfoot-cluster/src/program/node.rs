@@ -4,32 +4,28 @@ use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
-use std::time::{Duration, Instant as HostInstant};
+use std::time::Duration;
 
 use underfoot::floor::{Area, Floor};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
-use underfoot::serve::Command;
 use underfoot::sink::{Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
-use underfoot::units::{HostClock, Instant};
-use underfoot::wire::ControlMessage;
-use underfoot_cluster::auth::{Kind as AuthKind, Opened, Role, Session as AuthSession};
-use underfoot_cluster::message::{
-    LayoutName, NodeMessage, NodeValue, ToNodes, VERSION, decode, encode, fingerprint,
-};
-use underfoot_cluster::node::{Action, Draft, Guard, NeighbourSession, NodeSink, Reason};
+use underfoot_cluster::auth::{Opened, Role};
+use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
+use underfoot_cluster::node::{Guard, NodeSink};
 use underfoot_cluster::transport::Transport;
 
 use super::key::{KeyArgs, session as session_of};
 use super::neighbourhood::Neighbourhood;
 use super::notices::Notices;
-use super::refused::{self, RefusalNotices};
+use super::refused;
 use super::slowed::{SlowedSource, slowed};
 use super::sound::SoundArgs;
 use super::stepped::{SteppedSource, Steps};
+use super::teller::{Commander, DATAGRAMS, MESSAGES, Teller};
 use super::worker::Worker;
 use super::{Failure, endpoints, layout, locked, stop_flag};
 
@@ -79,18 +75,8 @@ const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST,
 /// Senders that are remembered besides the gateways: recordings of earlier starts.
 const SPARE_GATEWAYS: usize = 8;
 
-/// Nouns of reports about rejected messages.
-const MESSAGES: &str = "messages of gateways";
-const DATAGRAMS: &str = "datagrams of neighbours";
-
 /// Messages that may wait for the thread that sends them: a fifth of a second.
 const WAITING: usize = 100;
-
-/// Time between two tellings of all values, with which a gateway compares what it knows.
-const VALUES_EVERY: Duration = Duration::from_millis(500);
-
-/// How often is looked whether gateways are silent.
-const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Serves an area until told to stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
@@ -228,124 +214,6 @@ fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
         let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
         Failure::Other(format!("the floor has no area \"{id}\": there are {}", ids.join(", ")))
     })
-}
-
-/// Does what the guard says.
-struct Commander {
-    session: Session,
-    notices: Notices,
-}
-
-impl Commander {
-    fn apply(&self, action: Action) {
-        let (commands, notice): (&[ControlMessage], &str) = match action {
-            Action::Heard => (&[], "The gateway hears this node."),
-            Action::Cancel(Reason::Late) => (
-                &[ControlMessage::CancelAll],
-                "The gateway got nothing new for 100 ms: what was held is cancelled.",
-            ),
-            Action::Cancel(Reason::Silent) => {
-                (&[ControlMessage::CancelAll], "The gateway is silent: what was held is cancelled.")
-            }
-            Action::Mute => (
-                &[ControlMessage::CancelAll, ControlMessage::Mute { on: true }],
-                "Another node serves this area too: neither is believed, and nothing is felt. Stop one of them.",
-            ),
-            Action::Unmute => {
-                (&[ControlMessage::Mute { on: false }], "The other node has stopped: this one works again.")
-            }
-            _ => return,
-        };
-        self.notices.say(notice);
-        // A floor that has ended holds nothing.
-        commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
-    }
-}
-
-/// Sends what happens, for as long as anything does.
-struct Teller {
-    /// What all messages have in common.
-    head: NodeMessage,
-    transport: Transport,
-    session: Arc<Mutex<AuthSession>>,
-    neighbours: NeighbourSession,
-    /// About messages of gateways and datagrams of neighbours.
-    refused: [RefusalNotices; 2],
-    guard: Arc<Mutex<Guard>>,
-    clock: HostClock,
-    commander: Commander,
-    worker: Worker,
-    unsent: u64,
-}
-
-impl Teller {
-    /// Works until the floor has ended; how many messages could not be sent.
-    fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
-        let mut values_told: Option<HostInstant> = None;
-        loop {
-            match drafts.recv_timeout(PATIENCE) {
-                Ok(draft) => {
-                    let is_due = values_told.is_none_or(|told| told.elapsed() >= VALUES_EVERY);
-                    let values = is_due.then(|| self.values());
-                    if is_due {
-                        values_told = Some(HostInstant::now());
-                    }
-                    self.send(draft, values);
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return self.unsent,
-            }
-            let now = (self.clock)();
-            self.worker.change(now);
-            let actions = locked(&self.guard).tick(now);
-            actions.into_iter().for_each(|action| self.commander.apply(action));
-            self.report_refusals(now);
-        }
-    }
-
-    fn report_refusals(&mut self, now: Instant) {
-        let refusals =
-            [(locked(&self.session).refusals(), MESSAGES), (self.neighbours.refusals(), DATAGRAMS)];
-        for (notices, (refusals, noun)) in self.refused.iter_mut().zip(refusals) {
-            let due = notices.look(refusals, noun, now);
-            due.into_iter().for_each(|notice| self.commander.notices.say(notice));
-        }
-    }
-
-    fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
-        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
-            draft.message();
-        let (layout, answers) = self.worker.report();
-        let message = NodeMessage {
-            frame,
-            silent,
-            contacts,
-            earlier,
-            first_event,
-            events,
-            held,
-            values,
-            page,
-            answers,
-            layout,
-            ..self.head.clone()
-        };
-        let (body, mut sealed) = (encode(&message), Vec::new());
-        // Last, so that nothing but the way of the message follows the time in it.
-        locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);
-        if !self.transport.send(sealed) {
-            self.unsent += 1;
-        }
-    }
-
-    /// What the controls hold that no foot holds.
-    fn values(&self) -> Vec<(String, NodeValue)> {
-        let snapshot = self.commander.session.snapshot();
-        let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);
-        let free = all.filter(|(widget, _)| !snapshot.floor.held.contains(&widget.id));
-        free.filter_map(|(widget, state)| Some((widget.id.as_str().to_owned(), state.value?.into())))
-            .collect()
-    }
 }
 
 /// What the floor's end was.
