@@ -50,6 +50,12 @@ impl AreaArgs {
             };
             return Err(Failure::Other(format!("the floor has no area \"{id}\": {known}")));
         };
+        if floor.key.is_some() {
+            tracing::warn!(
+                "`underfoot run` knows the other computers by their addresses, not by the floor's key; \
+                 `underfoot-cluster node` uses the key"
+            );
+        }
         let (forwardings, forwarders) =
             (floor.forwardings(&area), floor.forwarding_addresses(&area).collect());
         Ok((Served { geometry, area: Some(area), forwardings, forwarders }, part))

@@ -107,6 +107,7 @@ impl Floor {
             allow: self.allow.clone(),
             areas: Vec::new(),
             gateway: None,
+            key: None,
         })
     }
 }

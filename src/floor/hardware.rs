@@ -44,6 +44,9 @@ pub struct Floor {
     pub areas: Vec<Area>,
     /// Where the gateway listens for the areas' computers; `None` where that is said elsewhere.
     pub gateway: Option<SocketAddr>,
+    /// Path of the file with the key that the areas' computers share, as in the floor file: relative to its folder, or
+    /// absolute. `None` without one.
+    pub key: Option<String>,
 }
 
 impl Floor {
@@ -68,6 +71,7 @@ impl Floor {
             allow: Vec::new(),
             areas: Vec::new(),
             gateway: None,
+            key: None,
             geometry,
         }
     }

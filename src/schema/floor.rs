@@ -16,7 +16,7 @@ use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::floor::{ADDRESS, Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
-use crate::format::codec::Distinct;
+use crate::format::codec::{Distinct, Text};
 use crate::format::{Flat, Opt, Rec, Record, list, record};
 
 /// The floor that the file at `path` describes.
@@ -69,6 +69,8 @@ record! {
     pub(super) areas: Vec<AreaRecord> = "areas", AREAS => Vec::new();
     /// Where the gateway that joins these computers listens for them.
     pub(super) gateway: Option<SocketAddr> = "gateway", Opt(ADDRESS) => None;
+    /// Path of the file with the key that these computers share, from the floor file's folder.
+    pub(super) key: Option<String> = "key", Opt(Text(MAX_PATH)) => None;
     /// The boards; unless they are written, each row of tiles has its own, up to eight tiles a board.
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
@@ -89,6 +91,9 @@ record! {
     /// Loudspeakers beside the floor.
     pub(super) loudspeakers: Vec<LoudspeakerRecord> = "loudspeakers", LOUDSPEAKERS => Vec::new();
 }
+
+/// Longest path, in characters, as on Linux.
+const MAX_PATH: usize = 4096;
 
 /// Most networks that boards may send from.
 const MAX_NETWORKS: usize = 256;
@@ -160,6 +165,7 @@ impl FloorRecord {
             }
         }
         floor.gateway = self.gateway;
+        floor.key.clone_from(&self.key);
         floor.tared = self.tared;
         floor.allow.clone_from(&self.allow);
         floor.drive = self.drive;
@@ -181,6 +187,7 @@ impl FloorRecord {
             geometry: floor.geometry,
             areas: floor.areas.iter().map(AreaRecord::of).collect(),
             gateway: floor.gateway,
+            key: floor.key.clone(),
             boards,
             allow: floor.allow.clone(),
             tared: floor.tared,

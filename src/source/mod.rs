@@ -16,7 +16,7 @@ pub use fault::{FaultSwitch, RehearsalSource};
 pub(crate) use floor_clock::tests::ByHand;
 #[cfg(feature = "sim")]
 pub use simulated::{Pace, SimulatedSource};
-pub use udp::{ForwardCounters, UdpSource};
+pub use udp::{ForwardCounters, Seal, Sealed, UdpSource};
 
 use std::net::SocketAddr;
 use std::time::Duration;

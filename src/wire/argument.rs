@@ -48,7 +48,8 @@ pub(super) enum Argument {
 ///
 /// # Source
 /// Unicode Standard Annex 9, explicit and implicit directional marks; line and paragraph separators.
-fn is_shown(c: char) -> bool {
+#[must_use]
+pub fn is_shown(c: char) -> bool {
     let turns =
         matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     !c.is_control() && !turns && !matches!(c, '\u{2028}' | '\u{2029}')

@@ -30,7 +30,7 @@ pub use prefix::{BadPrefix, Prefix};
 pub(crate) use split::each_message;
 
 internal! {
-    use argument::{ArgumentKind, MAX_LABEL};
+    use argument::{ArgumentKind, MAX_LABEL, is_shown};
     use command::{COMMANDS, Command};
     use decode::{Batch, Decoder, WireError};
     use encode::{EncodeError, SensorEncoder, SensorFormat};

@@ -7,11 +7,13 @@
 //!
 //! | module | what is in it |
 //! |---|---|
+//! | [`auth`] | which messages are of this floor, and new; pure |
 //! | [`message`] | what nodes and gateway tell each other |
 //! | [`gateway`] | many areas' contacts and events into one floor's; pure: time is handed in, no I/O |
 //! | [`node`] | what a node tells of its floor |
 //! | [`transport`] | messages through Zenoh; the only module that knows it |
 
+pub mod auth;
 pub mod gateway;
 pub mod message;
 pub mod node;

@@ -31,6 +31,8 @@ enum Command {
     Node(program::node::Args),
     /// Join what the nodes tell, and tell it as one floor.
     Gateway(program::gateway::Args),
+    /// Make a key for a floor: a file that only its owner can read, the same for all computers of the floor.
+    Key(program::key::Args),
 }
 
 fn main() -> ExitCode {
@@ -45,6 +47,7 @@ fn main() -> ExitCode {
     let done: Result<(), Failure> = match cli.command {
         Command::Node(args) => program::node::run(args),
         Command::Gateway(args) => program::gateway::run(&args),
+        Command::Key(args) => program::key::run(&args),
     };
     match done {
         Ok(()) => ExitCode::SUCCESS,

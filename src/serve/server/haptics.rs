@@ -60,6 +60,13 @@ impl Haptics {
         }
     }
 
+    /// Sends what is due to neighbours at `now`.
+    pub(super) fn poll_neighbours(&mut self, now: Instant) {
+        if let Some(neighbours) = &mut self.neighbours {
+            neighbours.poll(now);
+        }
+    }
+
     /// Sends what a frame of time `at` leads to; `now` is the present.
     pub(super) fn send(&mut self, step: &Step<'_>, at: Instant, now: Instant) {
         let Some(feel) = &mut self.feel else { return };

@@ -265,6 +265,7 @@ impl Server {
             }
             Err(error) => return Err(error),
         }
+        self.haptics.poll_neighbours(self.source.now());
         self.note_link(is_silent);
         while self.step() {}
         // What silence changes no later frame would show.

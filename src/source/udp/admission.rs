@@ -17,6 +17,17 @@ const FRAMES_PER_SECOND: u32 = 1000;
 const REQUEST_EVERY: Duration = Duration::from_millis(1);
 const REQUEST_BURST: u32 = 2000;
 
+/// The way on which OSC has come.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Way {
+    /// On the sensors' port, as boards send it.
+    Plain,
+    /// On the sensors' port, sealed by another computer of the floor.
+    Sealed,
+    /// On the requests' own port.
+    OwnPort,
+}
+
 /// Why a datagram of a known form is not taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Refusal {
@@ -66,6 +77,8 @@ pub(super) struct Admission {
     /// Who may ask something; on the sensors' port unless requests have one of their own.
     apps: Vec<Network>,
     has_own_port: bool,
+    /// Other computers of the floor, from which sealed datagrams come.
+    computers: Vec<IpAddr>,
     datagrams: Senders,
     requests: Senders,
     /// Where each board was first heard, if boards are held to that.
@@ -83,6 +96,7 @@ impl Admission {
             boards: if floor.allow.is_empty() { Network::LOOPBACK.into() } else { floor.allow.clone() },
             apps: Network::LOOPBACK.into(),
             has_own_port: false,
+            computers: Vec::new(),
             datagrams: Senders::new(burst, every),
             requests: Senders::new(REQUEST_BURST, REQUEST_EVERY),
             homes: None,
@@ -96,6 +110,11 @@ impl Admission {
     /// Boards' packets come from these as well.
     pub(super) fn add_boards(&mut self, boards: impl Iterator<Item = Network>) {
         self.boards.extend(boards);
+    }
+
+    /// Sealed datagrams come from these.
+    pub(super) fn set_computers(&mut self, computers: Vec<IpAddr>) {
+        self.computers = computers;
     }
 
     /// Requests come from these, on the sensors' port.
@@ -118,8 +137,17 @@ impl Admission {
         self.apps.iter().any(|network| network.contains(ip))
     }
 
-    pub(super) fn is_board(&self, ip: IpAddr) -> bool {
+    fn is_board(&self, ip: IpAddr) -> bool {
         self.boards.iter().any(|network| network.contains(ip))
+    }
+
+    fn is_computer(&self, ip: IpAddr) -> bool {
+        self.computers.iter().any(|computer| computer.to_canonical() == ip.to_canonical())
+    }
+
+    /// Whether a sealed datagram may come from `sender`.
+    pub(super) fn sealed(&self, sender: SocketAddr, on_own_port: bool) -> Result<(), Refusal> {
+        (!on_own_port && self.is_computer(sender.ip())).then_some(()).ok_or(Refusal::Foreign)
     }
 
     /// Whether a datagram from `sender` is looked into at all.
@@ -130,8 +158,8 @@ impl Admission {
         now: Instant,
     ) -> Result<(), Refusal> {
         let takes_requests = on_own_port == self.has_own_port;
-        let is_known =
-            (!on_own_port && self.is_board(sender.ip())) || (takes_requests && self.is_app(sender.ip()));
+        let is_known = (!on_own_port && (self.is_board(sender.ip()) || self.is_computer(sender.ip())))
+            || (takes_requests && self.is_app(sender.ip()));
         match (is_known, on_own_port) {
             (false, true) => Err(Refusal::Requests),
             (false, false) => Err(Refusal::Foreign),
@@ -144,14 +172,19 @@ impl Admission {
     pub(super) fn batch(
         &mut self,
         sender: SocketAddr,
-        on_own_port: bool,
+        way: Way,
         batch: &Batch,
         now: Instant,
     ) -> Result<(), Refusal> {
-        if !batch.packets.is_empty() && (on_own_port || !self.is_board(sender.ip())) {
+        let takes_packets = match way {
+            Way::Plain => self.is_board(sender.ip()),
+            Way::Sealed => true,
+            Way::OwnPort => false,
+        };
+        if !batch.packets.is_empty() && !takes_packets {
             return Err(Refusal::Packets);
         }
-        if !batch.controls.is_empty() && (on_own_port != self.has_own_port || !self.is_app(sender.ip())) {
+        if !batch.controls.is_empty() && !self.is_answered(sender, way) {
             return Err(Refusal::Requests);
         }
         for _ in &batch.controls {
@@ -178,8 +211,9 @@ impl Admission {
         self.requests.take(sender, now).then_some(()).ok_or(Refusal::TooMany)
     }
 
-    /// Whether `sender` hears why it was refused.
-    pub(super) fn is_answered(&self, sender: SocketAddr, on_own_port: bool) -> bool {
-        on_own_port == self.has_own_port && self.is_app(sender.ip())
+    /// Whether `sender` may send requests on that way, and gets answers.
+    pub(super) fn is_answered(&self, sender: SocketAddr, way: Way) -> bool {
+        let is_port = way == if self.has_own_port { Way::OwnPort } else { Way::Plain };
+        is_port && self.is_app(sender.ip())
     }
 }

@@ -1,6 +1,6 @@
 //! Packets of boards near the border of an area, forwarded to the computers of other areas that sense them.
 //!
-//! They go as they came, message by message, and at once: the neighbour takes a forwarded packet as one of the board
+//! They go as they came, message by message and sealed where there is a seal, and at once: the neighbour takes a forwarded packet as one of the board
 //! itself, a little later. What has lain here for too long is not forwarded, or the neighbour could take an old state
 //! of the floor for a new one; it sees by the boards' numbers that something is missing.
 
@@ -11,6 +11,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
 
+use super::seal::Seal;
 use crate::floor::Forwarding;
 use crate::wire::each_message;
 
@@ -69,17 +70,22 @@ impl Forwarder {
     }
 
     /// Forwards what others need of `datagram`, which has been decoded and has `waited` here.
-    pub(super) fn forward(&self, datagram: &[u8], waited: Duration) {
+    pub(super) fn forward(
+        &self,
+        datagram: &[u8],
+        waited: Duration,
+        mut seal: Option<&mut (dyn Seal + 'static)>,
+    ) {
         each_message(datagram, &mut |address, message| {
             let Some(to) = self.to.get(address) else { return };
+            if waited > WITHIN {
+                self.counters.late.fetch_add(to.len() as u64, Ordering::Relaxed);
+                return;
+            }
+            let message = seal.as_mut().map_or(message, |seal| seal.seal(message));
             for to in to {
-                let count = if waited > WITHIN {
-                    &self.counters.late
-                } else if self.reaches(message, *to) {
-                    &self.counters.sent
-                } else {
-                    &self.counters.unsent
-                };
+                let is_sent = self.reaches(message, *to);
+                let count = if is_sent { &self.counters.sent } else { &self.counters.unsent };
                 count.fetch_add(1, Ordering::Relaxed);
             }
         });
@@ -133,12 +139,42 @@ mod tests {
         let timetag = OscTime { seconds: 0, fractional: 1 };
         let content = (0..3).map(message).collect();
         let bundle = encoder::encode(&OscPacket::Bundle(OscBundle { timetag, content })).unwrap();
-        forwarder.forward(&bundle, Duration::ZERO);
+        forwarder.forward(&bundle, Duration::ZERO, None);
         let sent = |board| Some(encoder::encode(&message(board)).unwrap());
         assert_eq!((received(&west), received(&west), received(&east)), (sent(1), sent(2), sent(2)));
-        forwarder.forward(&bundle, WITHIN + Duration::from_millis(1));
+        forwarder.forward(&bundle, WITHIN + Duration::from_millis(1), None);
         assert_eq!((received(&west), received(&east)), (None, None));
         let counters = forwarder.counters();
         assert_eq!((counters.sent(), counters.late(), counters.unsent()), (3, 3, 0));
+    }
+
+    /// Prefixes each message with a letter and its number.
+    #[derive(Debug, Default)]
+    struct Numbered(Vec<u8>, u8);
+
+    impl Seal for Numbered {
+        fn seal(&mut self, message: &[u8]) -> &[u8] {
+            self.1 += 1;
+            self.0 = [b"s", &[self.1][..], message].concat();
+            &self.0
+        }
+
+        fn open(&mut self, _: &[u8]) -> super::super::Sealed {
+            super::super::Sealed::Refused
+        }
+    }
+
+    #[test]
+    fn a_forwarded_packet_is_sealed_once_for_all_receivers() {
+        let here: SocketAddr = ([127, 0, 0, 1], 0).into();
+        let sockets = [(); 2].map(|()| UdpSocket::bind(here).unwrap());
+        let to = sockets.iter().map(|socket| socket.local_addr().unwrap()).collect();
+        let forwardings = [Forwarding { address: "/underfoot/board/1".into(), to }];
+        let forwarder = Forwarder::new(here, &forwardings).unwrap();
+        let plain = encoder::encode(&message(1)).unwrap();
+        forwarder.forward(&plain, Duration::ZERO, Some(&mut Numbered::default()));
+        for socket in &sockets {
+            assert_eq!(received(socket), Some([b"s", &[1][..], &plain].concat()));
+        }
     }
 }

@@ -6,6 +6,7 @@ mod forward;
 mod log;
 mod open;
 mod proc_net;
+mod seal;
 mod senders;
 mod stamped;
 mod timed;
@@ -13,18 +14,19 @@ mod timed;
 use std::collections::VecDeque;
 use std::io::ErrorKind;
 use std::net::{IpAddr, SocketAddr, UdpSocket};
+use std::ops::Range;
 use std::sync::Arc;
-use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant as HostInstant, SystemTime};
 
 use rosc::OscTime;
 
-use self::admission::{Admission, Refusal};
+use self::admission::{Admission, Refusal, Way};
 use self::drops::KernelDrops;
 pub use self::forward::ForwardCounters;
 use self::forward::Forwarder;
 use self::log::RefusalLog;
 use self::open::{BUFFER_BYTES, open};
+pub use self::seal::{Seal, Sealed};
 use self::stamped::{Received, Stamped};
 use self::timed::{Timed, delay};
 use super::{SensorSource, SourceError};
@@ -72,8 +74,8 @@ pub struct UdpSource {
     answer: Vec<u8>,
     admission: Admission,
     forwarder: Option<Forwarder>,
-    /// Where notes of other computers go.
-    notes: Option<SyncSender<Vec<u8>>>,
+    /// Authenticates other computers of the floor.
+    seal: Option<Box<dyn Seal>>,
     boards: usize,
     counters: LinkCounters,
     kernel_drops: KernelDrops,
@@ -114,7 +116,7 @@ impl UdpSource {
             answer: Vec::new(),
             admission: Admission::new(floor),
             forwarder: None,
-            notes: None,
+            seal: None,
             boards: floor.boards.len(),
             counters: LinkCounters::default(),
             kernel_drops: KernelDrops::default(),
@@ -166,11 +168,12 @@ impl UdpSource {
         Ok((self, counters))
     }
 
-    /// Hands notes of other computers that arrive among the packets to `notes`: datagrams of JSON, from where packets
-    /// are taken. What `notes` has no room for is dropped.
+    /// Seals forwarded packets, and takes sealed ones from these `computers`, also where it takes no other packets from
+    /// them.
     #[must_use]
-    pub fn handing_notes_to(mut self, notes: SyncSender<Vec<u8>>) -> Self {
-        self.notes = Some(notes);
+    pub fn sealed_by(mut self, seal: Box<dyn Seal>, computers: impl IntoIterator<Item = IpAddr>) -> Self {
+        self.admission.set_computers(computers.into_iter().collect());
+        self.seal = Some(seal);
         self
     }
 
@@ -265,36 +268,51 @@ impl UdpSource {
     fn sort(&mut self, sender: SocketAddr, length: usize, on_own_port: bool, now: Instant) {
         self.counters.datagrams += 1;
         if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
-            refusal.count(&mut self.counters);
-            return self.log.not_admitted(now, sender, refusal);
+            return self.refuse(sender, refusal, now);
         }
         let datagram = self.buffer.get(..length).unwrap_or_default();
         // OSC begins with a slash or a hash.
-        if let Some(notes) = self.notes.as_ref().filter(|_| datagram.starts_with(b"{")) {
-            if on_own_port || !self.admission.is_board(sender.ip()) {
-                Refusal::Foreign.count(&mut self.counters);
-                return self.log.not_admitted(now, sender, Refusal::Foreign);
+        let is_osc = datagram.first().is_none_or(|first| b"/#".contains(first));
+        match self.seal.as_mut().filter(|_| !is_osc) {
+            Some(seal) => match self.admission.sealed(sender, on_own_port).map(|()| seal.open(datagram)) {
+                Ok(Sealed::Forwarded(range)) => self.sort_osc((sender, Way::Sealed), range, now),
+                // The owner of the seal counts both.
+                Ok(Sealed::Taken | Sealed::Refused) => {}
+                Err(refusal) => self.refuse(sender, refusal, now),
+            },
+            None => {
+                let way = if on_own_port { Way::OwnPort } else { Way::Plain };
+                self.sort_osc((sender, way), 0..length, now);
             }
-            if notes.try_send(datagram.to_vec()).is_err() {
-                self.counters.overflowed += 1;
-            }
-            return;
         }
+    }
+
+    /// Counts and logs a datagram that is not taken.
+    fn refuse(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
+        refusal.count(&mut self.counters);
+        self.log.not_admitted(now, sender, refusal);
+    }
+
+    /// Sorts the OSC at these bytes of the buffer.
+    fn sort_osc(&mut self, (sender, way): (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
+        let datagram = self.buffer.get(bytes).unwrap_or_default();
         let decoded = self.decoder.decode(datagram, self.received, &mut self.batch);
         let wait = match decoded.and_then(|()| self.wait()) {
             Ok(wait) => wait,
             Err(error) => {
                 error.count(&mut self.counters);
                 self.log.refused(now, sender, &error);
-                return self.answer_refusal(sender, on_own_port, &error, now);
+                return self.answer_refusal(sender, way, &error, now);
             }
         };
-        if let Err(refusal) = self.admission.batch(sender, on_own_port, &self.batch, now) {
-            refusal.count(&mut self.counters);
-            return self.log.not_admitted(now, sender, refusal);
+        if let Err(refusal) = self.admission.batch(sender, way, &self.batch, now) {
+            return self.refuse(sender, refusal, now);
         }
         if let Some(forwarder) = self.forwarder.as_ref().filter(|_| !self.batch.packets.is_empty()) {
-            forwarder.forward(datagram, now.since(self.received));
+            // A packet is forwarded once.
+            if way != Way::Sealed {
+                forwarder.forward(datagram, now.since(self.received), self.seal.as_deref_mut());
+            }
         }
         self.packets.extend(self.batch.packets.drain(..));
         let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
@@ -317,9 +335,9 @@ impl UdpSource {
     }
 
     /// Tells `sender` why its request was refused, if it may ask at all and does not ask too much.
-    fn answer_refusal(&mut self, sender: SocketAddr, on_own_port: bool, error: &WireError, now: Instant) {
+    fn answer_refusal(&mut self, sender: SocketAddr, way: Way, error: &WireError, now: Instant) {
         let Some(address) = self.decoder.is_answered(error) else { return };
-        if !self.admission.is_answered(sender, on_own_port) {
+        if !self.admission.is_answered(sender, way) {
             return;
         }
         if let Err(refusal) = self.admission.request(sender, now) {

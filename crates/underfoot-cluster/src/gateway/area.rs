@@ -9,7 +9,8 @@ use super::clock::NodeClock;
 use super::presses::Presses;
 use crate::message::{LayoutStanding, NodeMessage, Standing};
 
-/// How old the newest frame of an area may be. What feet hold there is cancelled then.
+/// Greatest age of an area's newest frame, by the gateway's own clock: the uncertainty of the node's clock adds to the
+/// age. All holds of the area are cancelled then.
 pub const LOST_AFTER: Duration = Duration::from_millis(100);
 
 /// How far in the future a frame may be: the uncertainty of clocks that are known to a round trip. What is further is
@@ -26,6 +27,8 @@ pub(super) struct AreaState {
     pub(super) presses: Presses,
     /// When its newest frame was, on the gateway's clock.
     pub(super) newest: Option<Instant>,
+    /// Uncertainty of that time.
+    unsure: Duration,
     /// Up to when what it told has been put in order; never goes back while it lives.
     pub(super) told: Instant,
     /// Whether its boards are silent, as its node says.
@@ -57,7 +60,7 @@ pub(super) enum Worth {
 
 impl AreaState {
     /// Takes note of who says what when.
-    pub(super) fn note(&mut self, message: &NodeMessage, gateway: u64, now: Instant) -> Worth {
+    pub(super) fn note(&mut self, message: &NodeMessage, now: Instant) -> Worth {
         self.claims.note(message.node, &message.name, now);
         if self.claims.holder(now) != Holder::One(message.node) {
             return Worth::Nothing;
@@ -72,10 +75,7 @@ impl AreaState {
         }
         self.sequence = message.sequence;
         self.silent = message.silent;
-        let mut was_set = false;
-        for echo in message.echoes.iter().filter(|echo| echo.gateway == gateway) {
-            was_set |= self.clock.note(echo, message.sent, now);
-        }
+        let was_set = message.echo.is_some_and(|echo| self.clock.note(&echo, message.sent, now));
         let expected =
             self.next_event.replace(message.first_event.saturating_add(message.events.len() as u64));
         let lost = message.first_event.saturating_sub(expected.unwrap_or(message.first_event));
@@ -85,11 +85,12 @@ impl AreaState {
         let Some(frame) = message.frame.and_then(|frame| self.clock.here(frame)) else {
             return Worth::Nothing;
         };
+        let unsure = self.clock.uncertainty(now).unwrap_or_default();
         // What a node says of silent boards is no news of the floor, however new.
-        if message.silent || now.since(frame) > LOST_AFTER || frame > now + AHEAD {
+        if message.silent || now.since(frame) + unsure > LOST_AFTER || frame > now + AHEAD {
             return Worth::Stale;
         }
-        self.newest = Some(frame);
+        (self.newest, self.unsure) = (Some(frame), unsure);
         Worth::Fresh { lost }
     }
 
@@ -116,10 +117,15 @@ impl AreaState {
         (self.since, self.told) = (at, at);
     }
 
+    /// Greatest possible age of its newest frame at `now`; `None` without a frame.
+    pub(super) fn age(&self, now: Instant) -> Option<Duration> {
+        self.newest.map(|newest| now.since(newest) + self.unsure)
+    }
+
     /// Whether it has to be given up at `now`, and as what.
     pub(super) fn fallen(&mut self, now: Instant) -> Option<Standing> {
         let is_disputed = self.claims.holder(now) == Holder::Disputed;
-        let is_old = self.newest.is_none_or(|newest| now.since(newest) > LOST_AFTER);
+        let is_old = self.age(now).is_none_or(|age| age > LOST_AFTER);
         let next = match self.standing {
             Standing::Disputed if is_disputed => return None,
             _ if is_disputed => Standing::Disputed,

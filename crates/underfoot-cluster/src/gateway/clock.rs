@@ -11,7 +11,7 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-use crate::message::Echo;
+use crate::auth::Echo;
 
 /// How long a round trip counts. Longer finds quicker ones; clocks drift meanwhile, 0.5 ms in this time at most.
 const WINDOW: Duration = Duration::from_secs(5);
@@ -123,7 +123,7 @@ mod tests {
     /// A node whose clock is `offset` ahead; messages take `there` and `back`, in microseconds.
     fn trip(clock: &mut NodeClock, at: u64, offset: u64, there: u64, back: u64) -> bool {
         let (received, sent) = (at + there + offset, at + there + offset + 500);
-        let echo = Echo { gateway: 1, sent: at, received };
+        let echo = Echo { sent: at, received };
         clock.note(&echo, sent, Instant::from_micros(at + there + 500 + back))
     }
 
@@ -165,7 +165,7 @@ mod tests {
         let error = clock.here(there).unwrap().micros().abs_diff(now);
         assert!(error < 300, "{error}");
         let before = clock.clone();
-        let old = Echo { gateway: 1, sent: 1_000_000, received: 0 };
+        let old = Echo { sent: 1_000_000, received: 0 };
         assert!(!clock.note(&old, 1, Instant::from_micros(now)));
         assert_eq!(clock.here(5), before.here(5));
     }

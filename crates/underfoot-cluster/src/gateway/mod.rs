@@ -44,7 +44,7 @@ use self::requests::Requests;
 use self::shared::Shared;
 use crate::message::{
     GatewayMessage, LayoutMessage, LayoutOrder, LayoutStanding, NodeContact, NodeEvent, NodeFrame,
-    NodeMessage, NodeValue, Standing, VERSION, fingerprint,
+    NodeMessage, NodeValue, Standing, VERSION, fingerprint, shown,
 };
 
 pub use area::LOST_AFTER;
@@ -63,6 +63,9 @@ const CONTACTS_EVERY: Duration = Duration::from_millis(1);
 
 /// Most of anything in one message: what is beyond it is refused, for no area has it.
 const MOST: usize = 4096;
+
+/// Most characters of the name of an unknown area.
+const LONGEST_AREA: usize = 64;
 
 /// Nodes whose messages were refused that are remembered, so that each is complained of once.
 const COMPLAINTS: usize = 64;
@@ -112,7 +115,7 @@ pub struct Gateway {
 }
 
 impl Gateway {
-    /// A gateway of the areas of `floor`; `id` is a number that no gateway before it had.
+    /// A gateway of the areas of `floor`; `id` is its nonce.
     ///
     /// # Errors
     /// [`NoGateway`] for a floor without areas.
@@ -201,15 +204,16 @@ impl Gateway {
     }
 
     /// Takes in what a node told, received at `now`, which must not be before any other time that was given.
-    pub fn take(&mut self, message: NodeMessage, now: Instant) {
+    pub fn take(&mut self, mut message: NodeMessage, now: Instant) {
         self.counters.messages += 1;
+        message.tidy();
         let Some(number) = self.suited(&message) else {
             self.counters.refused += 1;
             return;
         };
         let Some(area) = self.areas.get_mut(number) else { return };
         let before = area.holder;
-        let worth = area.note(&message, self.id, now);
+        let worth = area.note(&message, now);
         if area.holder != before {
             area.page = None;
         }
@@ -285,8 +289,8 @@ impl Gateway {
     /// The number of the area that a message is about, if it is one of this floor.
     fn suited(&mut self, message: &NodeMessage) -> Option<usize> {
         let area = self.names.iter().position(|name| *name == message.area);
-        let NodeMessage { contacts, earlier, events, held, echoes, answers, .. } = message;
-        let sizes = [contacts.len(), earlier.len(), events.len(), held.len(), echoes.len(), answers.len()];
+        let NodeMessage { contacts, earlier, events, held, answers, .. } = message;
+        let sizes = [contacts.len(), earlier.len(), events.len(), held.len(), answers.len()];
         let mut all = contacts.iter().chain(earlier.iter().flat_map(|frame| &frame.contacts));
         let why = if message.version != VERSION {
             format!("speaks version {} of the messages, this gateway {VERSION}", message.version)
@@ -294,13 +298,16 @@ impl Gateway {
             "has a floor file with other tiles or areas".to_owned()
         } else if area.is_none() {
             "serves an area that the floor file does not name".to_owned()
-        } else if sizes.iter().any(|size| *size > MOST) || !all.all(NodeContact::is_sound) {
+        } else if sizes.iter().any(|size| *size > MOST)
+            || !all.all(NodeContact::is_sound)
+            || !message.has_good_ids()
+        {
             "tells what no node tells".to_owned()
         } else {
             return area;
         };
         if self.complained.len() < COMPLAINTS && self.complained.insert(message.node) {
-            let NodeMessage { name, area, .. } = message;
+            let (name, area) = (&message.name, shown(&message.area, LONGEST_AREA));
             self.out
                 .push(Told::Notice(format!("the node at {name} for area \"{area}\" is not heard: it {why}")));
         }
@@ -322,10 +329,7 @@ impl Gateway {
             area.page.clone_from(&message.page);
             self.tell_mutes(number, now);
         } else if is_torn {
-            // What was pressed may have been let go and pressed again in what is missing.
-            let cancelled = area.presses.cancel(now);
-            area.presses.shut(&message.held);
-            self.out.extend(cancelled.into_iter().map(Told::Event));
+            self.tear(number, &message.held, now);
         }
         let Some(area) = self.areas.get_mut(number) else { return };
         let NodeMessage { events, contacts, earlier, held, values, page, .. } = message;
@@ -353,6 +357,19 @@ impl Gateway {
         if let Some(page) = page {
             self.note_page(number, page, now);
         }
+    }
+
+    /// Cancels all holds of an area after a gap in its events, in which a control may have been released and pressed again.
+    /// Events from before the gap come first.
+    fn tear(&mut self, number: usize, held: &[String], now: Instant) {
+        let before = self.queue.extract_if(.., |(_, area, _), _| *area == number);
+        for ((at, ..), (happened, item)) in before.collect::<Vec<_>>() {
+            self.tell(number, at, happened, item);
+        }
+        let Some(area) = self.areas.get_mut(number) else { return };
+        let cancelled = area.presses.cancel(now);
+        area.presses.shut(held);
+        self.out.extend(cancelled.into_iter().map(Told::Event));
     }
 
     /// Gives an area up: what feet held there is cancelled, its contacts end.
@@ -388,7 +405,7 @@ impl Gateway {
             }
             Item::Frame { contacts } => self.joiner.frame(number, at, contacts),
             Item::Held { held, values } => {
-                area.presses.hold(&held);
+                self.counters.unpressed += area.presses.hold(&held);
                 let changed = values.map(|values| area.presses.compare(&values, at)).unwrap_or_default();
                 self.out.extend(changed.into_iter().map(Told::Event));
             }
@@ -446,8 +463,8 @@ impl Gateway {
         }
         let held: Vec<&str> = live().flat_map(|area| area.presses.held()).collect();
         let holding = live().filter(|area| area.presses.held().next().is_some());
-        let oldest = holding.filter_map(|area| area.newest).min().unwrap_or(now);
-        if let Some(report) = self.held.report(&held, now.since(oldest), now) {
+        let age = holding.filter_map(|area| area.age(now)).max().unwrap_or_default();
+        if let Some(report) = self.held.report(&held, age, now) {
             self.out.push(Told::Held(report.clone()));
         }
         let (number, due) = &mut self.alive;

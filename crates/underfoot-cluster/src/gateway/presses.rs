@@ -5,6 +5,7 @@
 //! the area is lost                    -> what a foot had changed changes back, Cancelled, Disarmed
 //! it is back, a control is still held -> nothing of it is told until the foot has let go
 //! it is back, a value is another one  -> Changed, which no foot did
+//! a hold without its own press        -> refused
 //! ```
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -34,8 +35,10 @@ pub(super) struct Presses {
     let_go: BTreeSet<String>,
     /// Controls of which nothing is told until no foot holds them.
     shut: BTreeSet<String>,
-    /// Those that feet hold, as the node says, and that are not shut.
+    /// Held controls by the node's last list: pressed, and not shut.
     held: BTreeSet<String>,
+    /// Controls in that list that were not pressed.
+    unpressed: BTreeSet<String>,
     /// Whether the node may hold other values than were told.
     is_unsure: bool,
 }
@@ -99,6 +102,7 @@ impl Presses {
             told.push(by_nobody(at, &id, EventKind::Disarmed));
         }
         self.held.clear();
+        self.unpressed.clear();
         self.let_go.clear();
         self.is_unsure = true;
         told
@@ -109,10 +113,16 @@ impl Presses {
         self.shut.extend(held.iter().cloned());
     }
 
-    /// Notes which controls feet hold now, as the node says.
-    pub(super) fn hold(&mut self, held: &[String]) {
+    /// Takes the node's list of held controls, of which only pressed ones count. Returns the number of new ones that were
+    /// not pressed.
+    pub(super) fn hold(&mut self, held: &[String]) -> u64 {
         self.shut.retain(|id| held.contains(id));
-        self.held = held.iter().filter(|id| !self.shut.contains(*id)).cloned().collect();
+        let (pressed, not): (BTreeSet<&String>, BTreeSet<&String>) =
+            held.iter().filter(|id| !self.shut.contains(*id)).partition(|id| self.open.contains_key(*id));
+        self.held = pressed.into_iter().cloned().collect();
+        let new = not.iter().filter(|id| !self.unpressed.contains(**id)).count();
+        self.unpressed = not.into_iter().cloned().collect();
+        new as u64
     }
 
     /// The controls that feet hold.
@@ -185,6 +195,21 @@ mod tests {
         assert!(!takes(&mut presses, 200, OFF) && !takes(&mut presses, 200, EventKind::Released));
         presses.hold(&[]);
         assert!(takes(&mut presses, 300, EventKind::Pressed));
+    }
+
+    #[test]
+    fn a_hold_counts_only_after_its_own_press() {
+        let mut presses = Presses::default();
+        let held = ["drive".to_owned()];
+        assert_eq!(presses.hold(&held), 1);
+        assert_eq!(presses.hold(&held), 0, "the same hold");
+        assert_eq!(presses.held().count(), 0);
+        assert!(!takes(&mut presses, 5, EventKind::Released));
+        takes(&mut presses, 6, EventKind::Pressed);
+        assert_eq!(presses.hold(&held), 0);
+        assert_eq!(presses.held().collect::<Vec<_>>(), ["drive"]);
+        takes(&mut presses, 7, EventKind::Released);
+        assert_eq!((presses.hold(&held), presses.held().count()), (1, 0));
     }
 
     #[test]

@@ -7,7 +7,8 @@ use underfoot::widget::{EventKind, WidgetId};
 use underfoot::wire::{ControlMessage, Request};
 
 use super::*;
-use crate::message::{Echo, NodeAnswer};
+use crate::auth::Echo;
+use crate::message::NodeAnswer;
 
 /// Two areas side by side, of 6 x 6 tiles each; the border is at 6 x 0.304 m.
 fn hall() -> Floor {
@@ -63,7 +64,7 @@ impl Node {
             held: self.held.clone(),
             layout: self.layout.clone(),
             // It took the probe 200 us to come, too.
-            echoes: vec![Echo { gateway: 9, sent: at - 200, received: there }],
+            echo: Some(Echo { sent: at - 200, received: there }),
             ..NodeMessage::default()
         }
     }
@@ -283,6 +284,7 @@ fn holding(until: u64) -> (Stage, Node, Node) {
     (stage, west, east)
 }
 
+// C3
 #[test]
 fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     let (mut stage, _, mut east) = holding(50_000);
@@ -309,6 +311,7 @@ fn an_area_that_falls_silent_is_cancelled_after_100_ms_and_the_rest_goes_on() {
     assert!(held.is_some_and(|report| report.held.is_empty() && report.ended.len() == 1), "{held:?}");
 }
 
+// C2
 #[test]
 fn what_a_frozen_node_tells_late_is_not_acted_on_and_it_comes_back_without_ghosts() {
     let (mut stage, mut west, mut east) = holding(50_000);
@@ -367,7 +370,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
         }
         let mut message = west.message(at, &[(7, 1.0, 1.0), (8, 1.4, 1.0)], events);
         if step < 20 {
-            message.echoes.clear();
+            message.echo = None;
         }
         stage.take(message, at);
         stage.take(east.message(at, &[(31, 3.0, 1.0)], vec![]), at);
@@ -384,6 +387,7 @@ fn step_of_the_clock(step_us: i64) -> (Vec<EventKind>, u64, u64) {
     (stage.kinds(), cancelled.unwrap(), pressed.unwrap())
 }
 
+// C4
 #[test]
 fn a_node_whose_clock_is_set_is_cancelled_soon_and_what_it_tells_later_is_not_held_up() {
     let expected = [EventKind::Pressed, EventKind::Cancelled, EventKind::Pressed];
@@ -395,6 +399,7 @@ fn a_node_whose_clock_is_set_is_cancelled_soon_and_what_it_tells_later_is_not_he
     }
 }
 
+// C1
 #[test]
 fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     let (mut stage, _, mut east) = holding(50_000);
@@ -410,6 +415,7 @@ fn a_node_that_starts_again_at_once_has_cancelled_what_was_held() {
     assert_eq!(stage.gateway.standing("west"), Some(Standing::Live));
 }
 
+// C10
 #[test]
 fn of_two_nodes_that_claim_an_area_neither_acts() {
     let (mut stage, mut west, mut east) = holding(50_000);
@@ -452,6 +458,79 @@ fn events_that_never_came_end_what_was_pressed() {
     assert_eq!(stage.gateway.counters().lost, 2);
 }
 
+#[test]
+fn events_from_before_a_gap_end_with_it() {
+    // Until 1 ms: both areas are live, and nobody has pressed.
+    let (mut stage, mut west, mut east) = (Stage::new(), Node::new("west", 1), Node::new("east", 2));
+    stage.take(west.message(START, &[], vec![]), START);
+    stage.take(east.message(START, &[], vec![]), START);
+    stage.advance(START + 300);
+    // The press waits for the east, and events are missing after it.
+    let at = START + 2000;
+    let pressed = west.event(at, EventKind::Pressed, "drive", Some(7), (1.0, 1.0));
+    west.held = vec!["drive".into()];
+    stage.take(west.message(at, &[(7, 1.0, 1.0)], vec![pressed]), at);
+    stage.advance(at + 300);
+    assert_eq!(stage.kinds(), []);
+    (west.events, west.held) = (west.events + 2, Vec::new());
+    stage.take(west.message(at + 2000, &[], vec![]), at + 2000);
+    for ms in 3..60 {
+        stage.advance(START + ms * 1000);
+    }
+    assert_eq!(stage.kinds(), [EventKind::Pressed, EventKind::Cancelled]);
+}
+
+#[test]
+fn the_uncertainty_of_a_node_s_clock_adds_to_the_age_of_its_frames() {
+    for (one_way_ms, standing) in [(40, Standing::Live), (60, Standing::Waiting)] {
+        let (mut stage, mut west) = (Stage::new(), Node::new("west", 1));
+        let way = one_way_ms * 1000;
+        // A round trip of twice that says no more than that the frame is between 0 and two ways old.
+        let echo = Some(Echo { sent: START - way, received: START + west.ahead });
+        let message = NodeMessage { echo, ..west.message(START, &[], vec![]) };
+        stage.gateway.take(message, Instant::from_micros(START + way));
+        assert_eq!(stage.gateway.standing("west"), Some(standing), "{one_way_ms} ms");
+    }
+}
+
+#[test]
+fn a_message_with_a_name_that_is_no_id_is_refused() {
+    let mut stage = Stage::new();
+    let mut west = Node::new("west", 1);
+    stage.take(west.message(START, &[], vec![]), START);
+    let bad = "drive\u{1b}[2J".to_owned();
+    let good = west.message(START + 2000, &[], vec![]);
+    let event = west.event(START + 2000, EventKind::Pressed, &bad, None, (1.0, 1.0));
+    let others = [
+        NodeMessage { held: vec![bad.clone()], ..good.clone() },
+        NodeMessage { events: vec![event], ..good.clone() },
+        NodeMessage { values: Some(vec![(bad.clone(), NodeValue::Switch(true))]), ..good.clone() },
+        NodeMessage { page: Some(bad), ..good },
+    ];
+    for other in others {
+        stage.take(other, START + 2000);
+    }
+    assert_eq!((stage.gateway.counters().refused, stage.gateway.counters().messages), (4, 5));
+}
+
+#[test]
+fn a_notice_shows_the_name_of_a_node_without_control_characters() {
+    let mut stage = Stage::new();
+    let message = Node::new("west", 1).message(START, &[], vec![]);
+    let message = NodeMessage { floor: 1, name: "here\u{1b}[2J".into(), ..message };
+    stage.take(NodeMessage { area: "no\u{7}where".into(), ..message }, START);
+    stage.advance(START + 300);
+    let notice = stage.told.iter().find_map(|told| match told {
+        Told::Notice(notice) => Some(notice.as_str()),
+        _ => None,
+    });
+    assert!(
+        notice.unwrap().starts_with("the node at here[2J for area \"nowhere\" is not heard"),
+        "{notice:?}"
+    );
+}
+
+// C7
 #[test]
 fn a_node_with_another_floor_file_is_told_about_once_and_not_heard() {
     let mut stage = Stage::new();
@@ -516,7 +595,7 @@ proptest! {
             }
             for (due, _, mut message) in arrivals {
                 // Clocks are known from the start, so that the same moments are told.
-                message.echoes.clear();
+                message.echo = None;
                 message.sequence += 1;
                 stage.take(message, due);
                 stage.advance(due + 300);

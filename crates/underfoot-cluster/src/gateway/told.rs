@@ -62,7 +62,7 @@ impl Told {
 /// What came in and what was not told, since the start.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Counters {
-    /// Messages of nodes.
+    /// Messages of nodes that were authentic and new.
     pub messages: u64,
     /// Messages of another version, another floor, an unknown area, or with numbers that mean nothing.
     pub refused: u64,
@@ -70,6 +70,8 @@ pub struct Counters {
     pub stale: u64,
     /// Events of the time in which their area was not believed, or of presses that apps were told are cancelled.
     pub withheld: u64,
+    /// Holds that a node reported without a press before, and that were refused.
+    pub unpressed: u64,
     /// Events that came too late to be told in order, and were told all the same.
     pub late: u64,
     /// Events that never came.

@@ -32,7 +32,8 @@ impl PartialEq for LayoutName {
 pub struct LayoutMessage {
     /// The version of the messages: [`super::VERSION`].
     pub version: u32,
-    /// Which gateway sends it.
+    /// The nonce of the gateway that sends it.
+    #[serde(skip)]
     pub gateway: u64,
     /// Which layout.
     pub name: LayoutName,

@@ -1,4 +1,7 @@
-//! What nodes and gateway tell each other: JSON objects, one per message.
+//! Messages of nodes and gateways: one JSON object each, in an envelope of [`crate::auth`].
+//!
+//! Sender, number, time and answer of a message are in its envelope and not in the JSON; these fields are filled in from
+//! there.
 //!
 //! Times are whole microseconds on the clock of whoever tells them. A node's clock starts when its program does; the
 //! gateway finds out how far it is from its own.
@@ -8,6 +11,7 @@ mod event;
 mod layout;
 mod note;
 mod request;
+mod text;
 
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -15,14 +19,17 @@ use thiserror::Error;
 use underfoot::floor::Floor;
 use underfoot::sink::AreaState;
 
+use crate::auth::{Echo, Head};
+
 pub use contact::NodeContact;
 pub use event::{NodeEvent, NodeValue};
 pub use layout::{LayoutMessage, LayoutName, LayoutOrder, LayoutStanding};
 pub use note::{Note, NoteCue, NoteLasting, NoteSpot};
 pub use request::{NodeAnswer, NodeRequest, NodeState};
+pub use text::{is_id, shown};
 
 /// The version of the messages; others are refused.
-pub const VERSION: u32 = 2;
+pub const VERSION: u32 = 3;
 
 /// Longest message, in bytes: a layout as long as files may be, each character of it escaped.
 pub const MAX_BYTES: usize = 1 << 23;
@@ -36,14 +43,20 @@ pub struct NodeMessage {
     pub floor: u64,
     /// Which area the node serves.
     pub area: String,
-    /// A number that the node has drawn at its start: another one after a restart.
+    /// The node's nonce: another one after a restart.
+    #[serde(skip)]
     pub node: u64,
     /// What a person may call it, such as the address that it listens on.
     pub name: String,
     /// The message's number, from 1.
+    #[serde(skip)]
     pub sequence: u64,
     /// When it was sent.
+    #[serde(skip)]
     pub sent: u64,
+    /// The message of the gateway that it answers.
+    #[serde(skip)]
+    pub echo: Option<Echo>,
     /// The time of the newest frame of forces; `None` before the first.
     pub frame: Option<u64>,
     /// Whether the node's boards are silent.
@@ -60,8 +73,6 @@ pub struct NodeMessage {
     pub held: Vec<String>,
     /// What the controls that are not held hold; told now and then.
     pub values: Option<Vec<(String, NodeValue)>>,
-    /// What the node has heard last of each gateway.
-    pub echoes: Vec<Echo>,
     /// The page that was shown last, if that was told.
     pub page: Option<String>,
     /// What became of requests.
@@ -79,15 +90,13 @@ pub struct NodeFrame {
     pub contacts: Vec<NodeContact>,
 }
 
-/// That a node has heard a gateway, and when.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Echo {
-    /// Which gateway.
-    pub gateway: u64,
-    /// When the gateway sent what was heard, on its clock.
-    pub sent: u64,
-    /// When the node received it, on the node's clock.
-    pub received: u64,
+impl NodeMessage {
+    /// The message with the contents of its envelope.
+    #[must_use]
+    pub fn in_envelope(self, head: &Head, echo: Option<Echo>) -> Self {
+        let Head { from, counter, sent } = *head;
+        Self { node: from, sequence: counter, sent, echo, ..self }
+    }
 }
 
 /// What a gateway sends to all nodes.
@@ -100,14 +109,28 @@ pub enum ToNodes {
     Layout(LayoutMessage),
 }
 
+impl ToNodes {
+    /// The message with the contents of its envelope.
+    #[must_use]
+    pub fn in_envelope(self, head: &Head) -> Self {
+        let Head { from: gateway, sent, .. } = *head;
+        match self {
+            Self::Beat(message) => Self::Beat(GatewayMessage { gateway, sent, ..message }),
+            Self::Layout(message) => Self::Layout(LayoutMessage { gateway, ..message }),
+        }
+    }
+}
+
 /// What a gateway tells all nodes, twenty times a second.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GatewayMessage {
     /// The version of the messages: [`VERSION`].
     pub version: u32,
-    /// A number that the gateway has drawn at its start.
+    /// The gateway's nonce: another one after a restart.
+    #[serde(skip)]
     pub gateway: u64,
     /// When it was sent.
+    #[serde(skip)]
     pub sent: u64,
     /// How each area stands with the gateway.
     pub areas: Vec<(String, Standing)>,
@@ -202,10 +225,13 @@ mod tests {
             area: "west".into(),
             frame: Some(17),
             held: vec!["drive".into()],
-            echoes: vec![Echo { gateway: u64::MAX, sent: 1, received: 2 }],
             ..NodeMessage::default()
         };
         assert_eq!(decode::<NodeMessage>(&encode(&message)).unwrap(), message);
+        let (head, echo) = (Head { from: 1, counter: 2, sent: 3 }, Some(Echo { sent: 4, received: 5 }));
+        let filled = decode::<NodeMessage>(&encode(&message)).unwrap().in_envelope(&head, echo);
+        assert_eq!((filled.node, filled.sequence, filled.sent, filled.echo), (1, 2, 3, echo));
+        assert_eq!(decode::<NodeMessage>(&encode(&filled)).unwrap(), message, "these are in the envelope");
         assert!(decode::<NodeMessage>(&encode(&message)[1..]).is_err());
         assert!(matches!(decode::<NodeMessage>(&vec![b' '; MAX_BYTES + 1]), Err(BadMessage::TooLong(_))));
     }

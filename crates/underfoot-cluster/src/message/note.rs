@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 use underfoot::feel::{Click, Cue, Lasting, Manner, Spot, SustainedCue, Tone};
 use underfoot::units::{Instant, Newtons};
 
-use super::Echo;
+use crate::auth::{Echo, Head};
 
 /// A tile by its column and row on the whole floor, and the share of the level that is felt there.
 pub type NoteSpot = (u16, u16, f32);
@@ -18,13 +18,17 @@ pub struct Note {
     pub floor: u64,
     /// Which area the node serves.
     pub area: String,
-    /// A number that the node has drawn at its start.
+    /// The node's nonce: another one after a restart.
+    #[serde(skip)]
     pub node: u64,
-    /// The note's number for this neighbour, from 1.
+    /// The note's number, from 1; datagrams to other neighbours have numbers between.
+    #[serde(skip)]
     pub sequence: u64,
     /// When it was sent, on the node's clock.
+    #[serde(skip)]
     pub sent: u64,
-    /// What the node has heard last of the neighbour; its `gateway` is the neighbour's number.
+    /// The message of the neighbour that it answers.
+    #[serde(skip)]
     pub echo: Option<Echo>,
     /// How many cues earlier notes had.
     pub earlier: u64,
@@ -64,6 +68,15 @@ pub struct NoteLasting {
     pub speed_m_s: f32,
     /// Normal force, in newtons.
     pub force_n: f32,
+}
+
+impl Note {
+    /// The note with the contents of its envelope.
+    #[must_use]
+    pub fn in_envelope(self, head: &Head, echo: Option<Echo>) -> Self {
+        let Head { from, counter, sent } = *head;
+        Self { node: from, sequence: counter, sent, echo, ..self }
+    }
 }
 
 impl NoteCue {

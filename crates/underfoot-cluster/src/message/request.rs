@@ -4,9 +4,13 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value as Argument;
 use underfoot::engine::{ControlState, ValueRange};
 use underfoot::widget::{Indicator, Scale, WidgetId};
-use underfoot::wire::{ControlMessage, read_json, write_json};
+use underfoot::wire::{ControlMessage, MAX_LABEL, read_json, write_json};
 
 use super::NodeValue;
+use super::text::shown;
+
+/// Most choices of a control.
+const MOST_CHOICES: usize = 1024;
 
 /// What one node is asked, as an app asks it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -101,6 +105,20 @@ impl From<&ControlState> for NodeState {
 }
 
 impl NodeState {
+    /// Its ids.
+    pub(super) fn ids(&self) -> impl Iterator<Item = &String> {
+        std::iter::once(&self.id).chain(self.page.iter().filter(|page| !page.is_empty()))
+    }
+
+    /// Cleans and shortens its texts, which apps may show.
+    pub(super) fn tidy(&mut self) {
+        self.label = shown(&self.label, MAX_LABEL);
+        if let Some(NodeRange::Choices(choices)) = &mut self.range {
+            choices.truncate(MOST_CHOICES);
+            choices.iter_mut().for_each(|choice| *choice = shown(choice, MAX_LABEL));
+        }
+    }
+
     /// The state as outputs take it.
     #[must_use]
     pub fn state(&self) -> ControlState {

@@ -3,8 +3,10 @@
 //! A control over a border belongs to one node. Its cues go to the neighbour under whose tiles they are felt too, at
 //! once and by UDP, as the packets of boards near the border do. A cue that comes too late is not played: a foot would
 //! take it for the answer to something else. Neighbours compare their clocks, since only by that is known how old a cue
-//! is.
+//! is. Notes travel in envelopes of [`crate::auth`], so that only computers of the floor move its actuators.
 
+use std::collections::HashSet;
+use std::net::SocketAddr;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::Receiver;
@@ -15,8 +17,9 @@ use underfoot::floor::{Area, Floor, Geometry, TileBlock, TileId};
 use underfoot::serve::Neighbours;
 use underfoot::units::Instant;
 
+use crate::auth::{Echo, Head};
 use crate::gateway::NodeClock;
-use crate::message::{Echo, Note, NoteCue, NoteLasting, NoteSpot, VERSION, decode, encode, fingerprint};
+use crate::message::{Note, NoteCue, NoteLasting, NoteSpot, VERSION, decode, encode, fingerprint};
 
 /// A cue older than this is not played. Clicks are felt as answers within 50 ms.
 const MOST_AGE: Duration = Duration::from_millis(50);
@@ -30,8 +33,19 @@ const LASTING: Duration = Duration::from_millis(4);
 /// Most that lasts in one note, which fits in a datagram; of more, the rest is not felt over the border and is counted.
 const MOST_LASTING: usize = 10;
 
-/// Sends a note to the neighbour with this number; false if it could not be sent.
+/// Sends a note to the neighbour with this number, in an envelope; false if it could not be sent.
 pub type SendNote = Box<dyn FnMut(usize, &[u8]) -> bool + Send>;
+
+/// A note that was accepted.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ReceivedNote {
+    /// Its sender, number and time.
+    pub head: Head,
+    /// The message that it answers.
+    pub echo: Option<Echo>,
+    /// The note.
+    pub body: Vec<u8>,
+}
 
 /// What crossed the borders, and what did not; counted since the start.
 #[derive(Debug, Default)]
@@ -98,17 +112,15 @@ fn count(counter: &AtomicU64, by: usize) {
 struct Neighbour {
     area: String,
     tiles: TileBlock,
-    /// The last note to it, when that was sent, and the cues in all of them.
-    sequence: u64,
+    /// When the last note to it was sent, and the cues in all of them.
     told: Option<Instant>,
     given: u64,
     /// Whether the last note told of something that lasts.
     told_lasting: bool,
-    /// The number that it has drawn, the last note of it, when that came, and how many cues it had told of then.
+    /// Its nonce, the last note of it, when that came, and how many cues it had told of then.
     node: u64,
     heard: u64,
     came: Instant,
-    echo: Option<Echo>,
     had: Option<u64>,
     clock: NodeClock,
     lasting: Vec<NoteLasting>,
@@ -119,14 +131,12 @@ impl Neighbour {
         Self {
             area: area.id.clone(),
             tiles: area.tiles,
-            sequence: 0,
             told: None,
             given: 0,
             told_lasting: false,
             node: 0,
             heard: 0,
             came: Instant::START,
-            echo: None,
             had: None,
             clock: NodeClock::default(),
             lasting: Vec::new(),
@@ -135,17 +145,10 @@ impl Neighbour {
 
     /// Forgets what was known of the program that served it before.
     fn meet(&mut self, node: u64) {
-        let Self { area, tiles, sequence, told, given, told_lasting, .. } = self;
+        let Self { area, tiles, told, given, told_lasting, .. } = self;
         let (area, tiles) = (std::mem::take(area), *tiles);
         let known = Area::new(&area, tiles);
-        *self = Self {
-            sequence: *sequence,
-            told: *told,
-            given: *given,
-            told_lasting: *told_lasting,
-            node,
-            ..Self::new(&known)
-        };
+        *self = Self { told: *told, given: *given, told_lasting: *told_lasting, node, ..Self::new(&known) };
     }
 }
 
@@ -158,36 +161,37 @@ pub struct Border {
     own: TileBlock,
     neighbours: Vec<Neighbour>,
     send: SendNote,
-    notes: Receiver<Vec<u8>>,
+    notes: Receiver<ReceivedNote>,
     counters: Arc<BorderCounters>,
 }
 
 impl Border {
-    /// The areas that `area` hands cues to, in the order of their numbers: those on whose tiles it senses feet. Those
-    /// that do not say where they listen get none.
-    pub fn neighbours<'f>(floor: &'f Floor, area: &Area) -> impl Iterator<Item = &'f Area> {
-        let (sensed, id) = (area.sensed(&floor.geometry), area.id.clone());
-        floor.areas.iter().filter(move |other| {
-            let common = other.tiles.common(&sensed);
-            other.id != id && other.listen.is_some() && common.columns > 0 && common.rows > 0
-        })
+    /// The areas with which the node of `area` exchanges notes, in the order of their numbers: those on whose tiles it
+    /// senses feet, and those with which it exchanges packets of boards. Areas without an address to listen on are left
+    /// out.
+    #[must_use]
+    pub fn neighbours<'f>(floor: &'f Floor, area: &Area) -> Vec<&'f Area> {
+        let sensed = area.sensed(&floor.geometry);
+        let to: HashSet<SocketAddr> = floor.forwardings(area).into_iter().flat_map(|one| one.to).collect();
+        let from: HashSet<&str> = floor.forwarders(area).into_iter().map(|one| one.id.as_str()).collect();
+        let is_neighbour = |other: &&Area| {
+            let touches = !other.tiles.common(&sensed).is_empty();
+            let sends = other.listen.is_some_and(|listen| to.contains(&listen));
+            other.id != area.id && other.listen.is_some() && (touches || sends || from.contains(&*other.id))
+        };
+        floor.areas.iter().filter(is_neighbour).collect()
     }
 
-    /// The borders of `area`, whose node has drawn the number `node`. Notes go out by `send` and come in by `notes`.
+    /// The borders of `area`. Notes go out by `send` and come in by `notes`.
     #[must_use]
-    pub fn new(floor: &Floor, area: &Area, node: u64, send: SendNote, notes: Receiver<Vec<u8>>) -> Self {
-        let head = Note {
-            version: VERSION,
-            floor: fingerprint(floor),
-            area: area.id.clone(),
-            node,
-            ..Note::default()
-        };
+    pub fn new(floor: &Floor, area: &Area, send: SendNote, notes: Receiver<ReceivedNote>) -> Self {
+        let head =
+            Note { version: VERSION, floor: fingerprint(floor), area: area.id.clone(), ..Note::default() };
         Self {
             head,
             geometry: floor.geometry.part(&area.sensed(&floor.geometry)).unwrap_or(floor.geometry),
             own: area.tiles,
-            neighbours: Self::neighbours(floor, area).map(Neighbour::new).collect(),
+            neighbours: Self::neighbours(floor, area).into_iter().map(Neighbour::new).collect(),
             send,
             notes,
             counters: Arc::default(),
@@ -203,16 +207,7 @@ impl Border {
     /// Sends a note to neighbour number `number` at `now`.
     fn tell(&mut self, number: usize, cues: Vec<NoteCue>, lasting: Vec<NoteLasting>, now: Instant) {
         let neighbour = &mut self.neighbours[number];
-        neighbour.sequence += 1;
-        let note = Note {
-            sequence: neighbour.sequence,
-            sent: now.micros(),
-            echo: neighbour.echo,
-            earlier: neighbour.given,
-            cues,
-            lasting,
-            ..self.head.clone()
-        };
+        let note = Note { earlier: neighbour.given, cues, lasting, ..self.head.clone() };
         let given = note.cues.len();
         (neighbour.told, neighbour.told_lasting) = (Some(now), !note.lasting.is_empty());
         neighbour.given += given as u64;
@@ -236,8 +231,7 @@ impl Border {
             return;
         }
         (neighbour.heard, neighbour.came) = (note.sequence, now);
-        neighbour.echo = Some(Echo { gateway: note.node, sent: note.sent, received: now.micros() });
-        if let Some(echo) = note.echo.filter(|echo| echo.gateway == self.head.node) {
+        if let Some(echo) = note.echo {
             neighbour.clock.note(&echo, note.sent, now);
         }
         let lost = neighbour.had.map_or(0, |had| note.earlier.saturating_sub(had));
@@ -309,9 +303,9 @@ impl Neighbours for Border {
     }
 
     fn take(&mut self, at: Instant, now: Instant, cues: &mut Vec<Cue>, sustained: &mut SustainedCues) {
-        while let Ok(note) = self.notes.try_recv() {
-            match decode::<Note>(&note) {
-                Ok(note) => self.hear(&note, at, now, cues),
+        while let Ok(ReceivedNote { head, echo, body }) = self.notes.try_recv() {
+            match decode::<Note>(&body) {
+                Ok(note) => self.hear(&note.in_envelope(&head, echo), at, now, cues),
                 Err(_) => count(&self.counters.refused, 1),
             }
         }
@@ -328,6 +322,9 @@ impl Neighbours for Border {
                 }
             }
         }
+    }
+
+    fn poll(&mut self, now: Instant) {
         for number in 0..self.neighbours.len() {
             let told = self.neighbours[number].told;
             if told.is_none_or(|told| now.since(told) >= QUIET) {
@@ -339,70 +336,124 @@ impl Neighbours for Border {
 
 #[cfg(test)]
 mod tests {
-    use std::sync::mpsc::{Sender, channel};
+    use std::ops::Range;
+    use std::sync::atomic::AtomicU64;
+    use std::sync::mpsc::sync_channel;
     use std::sync::{Mutex, PoisonError};
 
     use underfoot::feel::{Click, Hum, Lasting, Mode, SustainedCue};
-    use underfoot::floor::Geometry;
-    use underfoot::units::Newtons;
+    use underfoot::floor::{Board, Corner, Geometry, SensorId};
+    use underfoot::source::Seal;
+    use underfoot::units::{HostClock, Newtons};
 
     use super::*;
+    use crate::auth::{Key, Refusals, Role, Session};
+    use crate::node::{NeighbourSeal, NeighbourSession};
 
     /// How far the clock of the east is ahead of that of the west.
     const AHEAD_MS: u64 = 70_000;
 
     type Wire = Arc<Mutex<Vec<Vec<u8>>>>;
 
+    /// One of the two nodes.
+    struct End {
+        border: Border,
+        seal: NeighbourSeal,
+        session: NeighbourSession,
+        /// Its clock, in microseconds.
+        now: Arc<AtomicU64>,
+        /// Datagrams on their way.
+        wire: Wire,
+        /// Datagrams that have arrived.
+        arrived: Vec<Vec<u8>>,
+    }
+
+    impl End {
+        fn new(floor: &Floor, number: usize, nonce: u64, key: &Key) -> Self {
+            let now = Arc::<AtomicU64>::default();
+            let shown = Arc::clone(&now);
+            let clock: HostClock = Arc::new(move || Instant::from_micros(shown.load(Ordering::Relaxed)));
+            let session = NeighbourSession::new(Session::new(Role::Neighbour, key, nonce, 8), clock);
+            let wire = Wire::default();
+            let (to_wire, sealing) = (Arc::clone(&wire), session.clone());
+            let send = move |to, note: &[u8]| {
+                assert_eq!(to, 0, "there is one neighbour");
+                let mut sealed = Vec::new();
+                sealing.seal_note(note, &mut sealed);
+                to_wire.lock().unwrap_or_else(PoisonError::into_inner).push(sealed);
+                true
+            };
+            let (out, notes) = sync_channel(100);
+            let border = Border::new(floor, &floor.areas[number], Box::new(send), notes);
+            let seal = NeighbourSeal::new(session.clone(), out);
+            Self { border, seal, session, now, wire, arrived: Vec::new() }
+        }
+
+        fn set_clock(&self, now: Instant) {
+            self.now.store(now.micros(), Ordering::Relaxed);
+        }
+
+        /// Takes the datagrams that have arrived.
+        fn take(&mut self, now: Instant) -> (Vec<Cue>, SustainedCues) {
+            self.set_clock(now);
+            for bytes in self.arrived.drain(..) {
+                let _ = self.seal.open(&bytes);
+            }
+            let (mut cues, mut sustained) = Default::default();
+            self.border.poll(now);
+            self.border.take(now, now, &mut cues, &mut sustained);
+            (cues, sustained)
+        }
+    }
+
     /// Two areas of 6 x 6 tiles beside each other.
-    struct Pair {
-        borders: [Border; 2],
-        /// What each has sent and is on the way.
-        wires: [Wire; 2],
-        ends: [Sender<Vec<u8>>; 2],
+    struct Pair([End; 2]);
+
+    fn floor() -> Floor {
+        let area = |id: &str, number: u16| Area {
+            listen: Some(([127, 0, 0, 1], 9000 + number).into()),
+            ..Area::new(id, TileBlock { first: TileId::new(6 * number, 0), columns: 6, rows: 6 })
+        };
+        Floor::of(Geometry::of_paper_tiles(12, 6).unwrap()).with_areas(vec![area("west", 0), area("east", 1)])
+    }
+
+    fn key() -> Key {
+        Key::new([7; 32])
     }
 
     impl Pair {
         fn new() -> Self {
-            let area = |id: &str, number: u16| Area {
-                listen: Some(([127, 0, 0, 1], 9000 + number).into()),
-                ..Area::new(id, TileBlock { first: TileId::new(6 * number, 0), columns: 6, rows: 6 })
-            };
-            let floor = Floor::of(Geometry::of_paper_tiles(12, 6).unwrap())
-                .with_areas(vec![area("west", 0), area("east", 1)]);
-            let wires: [Wire; 2] = Default::default();
-            let made = [0, 1].map(|number: usize| {
-                let (end, notes) = channel();
-                let wire = Arc::clone(&wires[number]);
-                let send = move |to, note: &[u8]| {
-                    assert_eq!(to, 0, "there is one neighbour");
-                    wire.lock().unwrap_or_else(PoisonError::into_inner).push(note.to_vec());
-                    true
-                };
-                (Border::new(&floor, &floor.areas[number], number as u64 + 1, Box::new(send), notes), end)
-            });
-            let [(west, to_west), (east, to_east)] = made;
-            Self { borders: [west, east], wires, ends: [to_west, to_east] }
+            let floor = floor();
+            Self([0, 1].map(|number| End::new(&floor, number, number as u64 + 1, &key())))
         }
 
-        /// What is on the way from one arrives, or is lost.
-        fn deliver(&self, from: usize, arrives: bool) {
-            let sent = std::mem::take(&mut *self.wires[from].lock().unwrap());
+        /// Delivers the datagrams of one end, or loses them.
+        fn deliver(&mut self, from: usize, arrives: bool) {
+            let sent = std::mem::take(&mut *self.0[from].wire.lock().unwrap());
             if arrives {
-                sent.into_iter().for_each(|note| self.ends[1 - from].send(note).unwrap());
+                self.0[1 - from].arrived.extend(sent);
             }
         }
 
-        /// What one takes when `ms` are over for the west.
+        /// Takes the datagrams of one end when the clock of the west shows `ms`.
         fn take(&mut self, who: usize, ms: u64) -> (Vec<Cue>, SustainedCues) {
-            let now = Instant::from_millis(ms + AHEAD_MS * who as u64);
-            let (mut cues, mut sustained) = Default::default();
-            self.borders[who].take(now, now, &mut cues, &mut sustained);
-            (cues, sustained)
+            self.0[who].take(Instant::from_millis(ms + AHEAD_MS * who as u64))
         }
 
-        /// Lets them hear each other, so that each knows the other's clock.
-        fn compare_clocks(&mut self) {
-            for ms in 1000..1200 {
+        /// Gives cues of the west.
+        fn give(&mut self, cues: &[Cue], lasting: &SustainedCues, ms: u64) {
+            let now = Instant::from_millis(ms);
+            self.0[0].set_clock(now);
+            self.0[0].border.give(cues, lasting, now);
+        }
+
+        fn counters(&self, who: usize) -> Arc<BorderCounters> {
+            self.0[who].border.counters()
+        }
+
+        /// Lets them hear each other for some milliseconds, so that each knows the other's clock.
+        fn compare_clocks(&mut self, span: Range<u64>) {
+            for ms in span {
                 for who in [0, 1] {
                     self.deliver(1 - who, true);
                     self.take(who, ms);
@@ -427,8 +478,8 @@ mod tests {
     #[test]
     fn a_cue_is_felt_on_the_neighbour_s_tiles_with_its_next_frame() {
         let mut pair = Pair::new();
-        pair.compare_clocks();
-        pair.borders[0].give(&[click(1300)], &SustainedCues::new(), Instant::from_millis(1300));
+        pair.compare_clocks(1000..1200);
+        pair.give(&[click(1300)], &SustainedCues::new(), 1300);
         pair.deliver(0, true);
         let (cues, _) = pair.take(1, 1302);
         // The east senses from column 2 on: column 6 is its fifth of ten.
@@ -438,7 +489,7 @@ mod tests {
             cues,
             [Cue { received: cue.at, spots: [here].into_iter().collect(), audio_gain: 0.0, ..cue }]
         );
-        let (west, east) = (pair.borders[0].counters(), pair.borders[1].counters());
+        let (west, east) = (pair.counters(0), pair.counters(1));
         assert_eq!((west.given(), east.felt(), east.late(), east.lost(), east.untimed()), (1, 1, 0, 0, 0));
         // Nothing of it comes back.
         pair.deliver(1, true);
@@ -446,43 +497,59 @@ mod tests {
     }
 
     #[test]
-    fn a_cue_on_own_tiles_alone_stays_here() {
-        let mut pair = Pair::new();
-        pair.compare_clocks();
-        let own = Cue { spots: [Spot { tile: 0, weight: 1.0 }].into_iter().collect(), ..click(1300) };
-        pair.borders[0].give(&[own], &SustainedCues::new(), Instant::from_millis(1300));
-        assert!(pair.wires[0].lock().unwrap().is_empty());
+    fn computers_that_exchange_packets_exchange_notes() {
+        // Areas of six columns in a row. The board of the second one reaches over all of the third, whose tiles the
+        // fourth senses; it is too far from the second to sense its own.
+        let area = |id: &str, number: u16| Area {
+            listen: Some(([127, 0, 0, 1], 9000 + number).into()),
+            ..Area::new(id, TileBlock { first: TileId::new(6 * number, 0), columns: 6, rows: 1 })
+        };
+        let areas = ["a", "b", "c", "d"].into_iter().zip(0..).map(|(id, number)| area(id, number)).collect();
+        let mut floor = Floor::of(Geometry::of_paper_tiles(24, 1).unwrap()).with_areas(areas);
+        let sensors = |tile| Corner::ALL.map(|corner| Some(SensorId { tile, corner }));
+        let channels = (6..18).flat_map(|column| sensors(TileId::new(column, 0))).collect();
+        floor.boards = vec![Board { address: "/underfoot/board/0".into(), channels }];
+        let ids = |number: usize| -> Vec<&str> {
+            Border::neighbours(&floor, &floor.areas[number]).into_iter().map(|area| &*area.id).collect()
+        };
+        assert_eq!((ids(1), ids(3)), (vec!["a", "c", "d"], vec!["b", "c"]));
     }
 
     #[test]
-    fn a_cue_that_is_late_or_lost_or_of_unknown_age_is_counted_and_not_played() {
+    fn a_cue_on_own_tiles_alone_stays_here() {
         let mut pair = Pair::new();
-        let give = |pair: &mut Pair, ms| {
-            pair.borders[0].give(&[click(ms)], &SustainedCues::new(), Instant::from_millis(ms));
-        };
-        give(&mut pair, 900);
-        pair.deliver(0, true);
-        assert!(pair.take(1, 901).0.is_empty());
-        pair.compare_clocks();
+        pair.compare_clocks(1000..1200);
+        let own = Cue { spots: [Spot { tile: 0, weight: 1.0 }].into_iter().collect(), ..click(1300) };
+        pair.give(&[own], &SustainedCues::new(), 1300);
+        assert!(pair.0[0].wire.lock().unwrap().is_empty());
+    }
+
+    #[test]
+    fn a_cue_that_is_late_or_lost_is_counted_and_not_played() {
+        let mut pair = Pair::new();
+        let give = |pair: &mut Pair, ms| pair.give(&[click(ms)], &SustainedCues::new(), ms);
+        pair.compare_clocks(1000..1200);
         give(&mut pair, 1300);
         pair.deliver(0, true);
         assert!(pair.take(1, 1351).0.is_empty(), "51 ms old");
+        pair.compare_clocks(1352..1400);
         give(&mut pair, 1400);
         pair.deliver(0, true);
         assert_eq!(pair.take(1, 1449).0.len(), 1, "49 ms old");
+        pair.compare_clocks(1450..1500);
         give(&mut pair, 1500);
         pair.deliver(0, false);
         give(&mut pair, 1600);
         pair.deliver(0, true);
         assert_eq!(pair.take(1, 1601).0.len(), 1);
-        let east = pair.borders[1].counters();
-        assert_eq!((east.felt(), east.late(), east.lost(), east.untimed(), east.refused()), (2, 1, 1, 1, 0));
+        let east = pair.counters(1);
+        assert_eq!((east.felt(), east.late(), east.lost(), east.untimed(), east.refused()), (2, 1, 1, 0, 0));
     }
 
     #[test]
     fn what_lasts_is_felt_until_it_ends_or_nothing_is_heard_for_50_ms() {
         let mut pair = Pair::new();
-        pair.compare_clocks();
+        pair.compare_clocks(1000..1200);
         let hum = SustainedCue {
             key: 7,
             spots: click(0).spots,
@@ -493,8 +560,8 @@ mod tests {
         let lasting: SustainedCues = [hum].into_iter().collect();
         let mut notes = 0;
         for ms in 1300..1320 {
-            pair.borders[0].give(&[], &lasting, Instant::from_millis(ms));
-            notes += pair.wires[0].lock().unwrap().len();
+            pair.give(&[], &lasting, ms);
+            notes += pair.0[0].wire.lock().unwrap().len();
             pair.deliver(0, true);
             let (_, felt) = pair.take(1, ms);
             assert_eq!(felt.len(), 1, "{ms}");
@@ -502,34 +569,88 @@ mod tests {
             assert_ne!(felt[0].key, 7, "a foot here may have that name");
         }
         assert_eq!(notes, 5, "every 4 ms");
-        pair.borders[0].give(&[], &SustainedCues::new(), Instant::from_millis(1320));
+        pair.give(&[], &SustainedCues::new(), 1320);
         pair.deliver(0, true);
         assert!(pair.take(1, 1320).1.is_empty(), "it has ended");
-        pair.borders[0].give(&[], &lasting, Instant::from_millis(1400));
+        pair.give(&[], &lasting, 1400);
         pair.deliver(0, true);
         assert_eq!(pair.take(1, 1400).1.len(), 1);
         assert_eq!(pair.take(1, 1450).1.len(), 1);
         assert!(pair.take(1, 1451).1.is_empty(), "the neighbour is silent");
     }
 
+    /// A note of the west with a cue for tile (6, 2) of the east.
+    fn note(pair: &Pair) -> Note {
+        let cue = NoteCue { at: 1_300_000, spots: vec![(6, 2, 1.0)], ..NoteCue::default() };
+        Note { cues: vec![cue], ..pair.0[0].border.head.clone() }
+    }
+
     #[test]
-    fn a_neighbour_that_starts_again_is_met_anew_and_strangers_are_refused() {
+    fn a_cue_that_comes_before_the_first_answer_is_not_played() {
         let mut pair = Pair::new();
-        pair.compare_clocks();
-        let mut note = Note {
-            node: 77,
-            sequence: 1,
-            cues: vec![NoteCue { at: 1_300_000, spots: vec![(6, 2, 1.0)], ..NoteCue::default() }],
-            ..pair.borders[0].head.clone()
+        pair.give(&[click(900)], &SustainedCues::new(), 900);
+        pair.deliver(0, true);
+        assert!(pair.take(1, 901).0.is_empty());
+        assert_eq!(pair.0[1].session.refusals(), Refusals { unanswered: 1, ..Refusals::default() });
+    }
+
+    #[test]
+    fn a_neighbour_that_starts_again_is_met_anew() {
+        let mut pair = Pair::new();
+        pair.compare_clocks(1000..1200);
+        pair.0[0] = End::new(&floor(), 0, 77, &key());
+        pair.give(&[click(1300)], &SustainedCues::new(), 1300);
+        pair.deliver(0, true);
+        assert!(pair.take(1, 1301).0.is_empty(), "it has not answered");
+        pair.compare_clocks(1302..1400);
+        pair.give(&[click(1400)], &SustainedCues::new(), 1400);
+        pair.deliver(0, true);
+        assert_eq!(pair.take(1, 1401).0.len(), 1);
+        assert_eq!(pair.counters(1).lost(), 0);
+    }
+
+    #[test]
+    fn a_note_of_another_floor_or_of_no_neighbour_is_refused() {
+        let mut pair = Pair::new();
+        pair.compare_clocks(1000..1200);
+        let good = note(&pair);
+        let others = [
+            Note { floor: good.floor + 1, ..good.clone() },
+            Note { area: "nowhere".into(), ..good.clone() },
+            Note { version: VERSION + 1, ..good.clone() },
+        ];
+        let send = |pair: &mut Pair, bytes: &[u8]| {
+            pair.0[0].set_clock(Instant::from_millis(1300));
+            assert!((pair.0[0].border.send)(0, bytes));
+            pair.deliver(0, true);
+            pair.take(1, 1300).0.len()
         };
-        pair.ends[1].send(encode(&note)).unwrap();
-        assert!(pair.take(1, 1300).0.is_empty(), "nothing is known of its clock");
-        (note.floor, note.sequence) = (note.floor + 1, 2);
-        pair.ends[1].send(encode(&note)).unwrap();
-        pair.ends[1].send(b"{}".to_vec()).unwrap();
-        pair.ends[1].send(b"{\"area\":\"nowhere\"".to_vec()).unwrap();
-        pair.take(1, 1301);
-        let east = pair.borders[1].counters();
-        assert_eq!((east.untimed(), east.refused(), east.lost()), (1, 3, 0));
+        for other in &others {
+            assert_eq!(send(&mut pair, &encode(other)), 0);
+        }
+        assert_eq!(send(&mut pair, b"{}"), 0);
+        assert_eq!(pair.counters(1).refused(), 4);
+        assert_eq!(send(&mut pair, &encode(&good)), 1);
+    }
+
+    // C5, C6
+    #[test]
+    fn a_note_without_the_key_or_for_the_second_time_moves_no_actuator() {
+        let mut pair = Pair::new();
+        pair.compare_clocks(1000..1200);
+        let forger = End::new(&floor(), 0, 1, &Key::new([8; 32]));
+        forger.set_clock(Instant::from_millis(1300));
+        let good = encode(&note(&pair));
+        let mut forged = Vec::new();
+        forger.session.seal_note(&good, &mut forged);
+        pair.0[0].set_clock(Instant::from_millis(1300));
+        let mut sealed = Vec::new();
+        pair.0[0].session.seal_note(&good, &mut sealed);
+        for bytes in [&forged, &good, &sealed, &sealed] {
+            pair.0[1].arrived.push(bytes.clone());
+        }
+        assert_eq!(pair.take(1, 1300).0.len(), 1, "the one that is genuine, once");
+        let refused = Refusals { forged: 1, malformed: 1, repeated: 1, ..Refusals::default() };
+        assert_eq!(pair.0[1].session.refusals(), refused);
     }
 }

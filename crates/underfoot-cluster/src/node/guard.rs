@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use underfoot::units::Instant;
 
-use crate::message::{Echo, GatewayMessage, Standing, VERSION};
+use crate::message::{GatewayMessage, Standing, VERSION};
 
 /// How long a gateway may be silent; it tells something every 50 ms.
 const SILENT_AFTER: Duration = Duration::from_millis(150);
@@ -39,7 +39,8 @@ pub enum Reason {
 
 #[derive(Clone, Copy, Debug)]
 struct Known {
-    echo: Echo,
+    gateway: u64,
+    heard: Instant,
     standing: Standing,
     is_silent: bool,
 }
@@ -59,11 +60,6 @@ impl Guard {
         Self { area: area.to_owned(), gateways: Vec::new(), is_muted: false }
     }
 
-    /// What to tell gateways of when they were heard.
-    pub fn echoes(&self) -> impl Iterator<Item = Echo> + '_ {
-        self.gateways.iter().map(|known| known.echo)
-    }
-
     /// Takes note of what a gateway said, received at `now` on the node's clock.
     pub fn hear(&mut self, message: &GatewayMessage, now: Instant) -> Vec<Action> {
         let Some((_, standing)) = message.areas.iter().find(|(area, _)| *area == self.area) else {
@@ -72,9 +68,9 @@ impl Guard {
         if message.version != VERSION {
             return Vec::new();
         }
-        let echo = Echo { gateway: message.gateway, sent: message.sent, received: now.micros() };
-        let next = Known { echo, standing: *standing, is_silent: false };
-        let before = match self.gateways.iter_mut().find(|known| known.echo.gateway == message.gateway) {
+        let gateway = message.gateway;
+        let next = Known { gateway, heard: now, standing: *standing, is_silent: false };
+        let before = match self.gateways.iter_mut().find(|known| known.gateway == gateway) {
             Some(known) => Some(std::mem::replace(known, next)),
             None => {
                 if self.gateways.len() == MOST {
@@ -99,8 +95,7 @@ impl Guard {
     pub fn tick(&mut self, now: Instant) -> Vec<Action> {
         let mut actions = Vec::new();
         for known in &mut self.gateways {
-            let heard = Instant::from_micros(known.echo.received);
-            if !known.is_silent && now.since(heard) > SILENT_AFTER {
+            if !known.is_silent && now.since(known.heard) > SILENT_AFTER {
                 known.is_silent = true;
                 if known.standing == Standing::Live {
                     actions.push(Action::Cancel(Reason::Silent));
@@ -108,8 +103,7 @@ impl Guard {
             }
         }
         // A gateway that started again has another number.
-        self.gateways
-            .retain(|known| now.since(Instant::from_micros(known.echo.received)) < Duration::from_secs(60));
+        self.gateways.retain(|known| now.since(known.heard) < Duration::from_secs(60));
         actions
     }
 
@@ -129,21 +123,20 @@ impl Guard {
 mod tests {
     use super::*;
 
-    fn said(standing: Standing, sent: u64) -> GatewayMessage {
+    fn said(standing: Standing) -> GatewayMessage {
         GatewayMessage {
             version: VERSION,
             gateway: 9,
-            sent,
             areas: vec![("west".into(), standing)],
             ..GatewayMessage::default()
         }
     }
 
+    // C8
     #[test]
     fn what_feet_hold_is_cancelled_once_when_the_gateway_no_longer_hears_or_speaks() {
         let mut guard = Guard::new("west");
-        let hear =
-            |guard: &mut Guard, standing, ms| guard.hear(&said(standing, ms), Instant::from_millis(ms));
+        let hear = |guard: &mut Guard, standing, ms| guard.hear(&said(standing), Instant::from_millis(ms));
         assert_eq!(hear(&mut guard, Standing::Waiting, 0), []);
         assert_eq!(hear(&mut guard, Standing::Live, 50), [Action::Heard]);
         assert_eq!(guard.tick(Instant::from_millis(200)), []);
@@ -152,13 +145,12 @@ mod tests {
         assert_eq!(hear(&mut guard, Standing::Live, 500), [Action::Heard]);
         assert_eq!(hear(&mut guard, Standing::Lost, 550), [Action::Cancel(Reason::Late)]);
         assert_eq!(hear(&mut guard, Standing::Lost, 600), []);
-        assert_eq!(guard.echoes().map(|echo| echo.received).collect::<Vec<_>>(), [600_000]);
     }
 
     #[test]
     fn a_node_whose_area_is_disputed_is_mute_until_it_no_longer_is() {
         let mut guard = Guard::new("west");
-        let mut hear = |standing| guard.hear(&said(standing, 1), Instant::from_millis(1));
+        let mut hear = |standing| guard.hear(&said(standing), Instant::from_millis(1));
         assert_eq!(hear(Standing::Disputed), [Action::Mute]);
         assert_eq!(hear(Standing::Disputed), []);
         assert_eq!(hear(Standing::Lost), [Action::Unmute]);

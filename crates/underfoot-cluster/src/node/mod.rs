@@ -11,11 +11,13 @@ mod border;
 mod draft;
 mod guard;
 mod layouts;
+mod seal;
 mod sink;
 
 pub use asked::AskedRequests;
-pub use border::{Border, BorderCounters, SendNote};
+pub use border::{Border, BorderCounters, ReceivedNote, SendNote};
 pub use draft::Draft;
 pub use guard::{Action, Guard, Reason};
 pub use layouts::NodeLayouts;
+pub use seal::{NeighbourSeal, NeighbourSession};
 pub use sink::NodeSink;

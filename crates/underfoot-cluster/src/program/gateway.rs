@@ -3,12 +3,12 @@
 use std::io;
 use std::net::SocketAddr;
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
+use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::floor::Network;
+use underfoot::floor::{Floor, Network};
 use underfoot::outgoing::{TuioProfiles, write_control, write_error, write_mute, write_page};
 use underfoot::schema;
 #[cfg(unix)]
@@ -19,13 +19,16 @@ use underfoot::sink::{
 use underfoot::source::{SensorSource, UdpSource};
 use underfoot::units::Instant;
 use underfoot::wire::{Prefix, Request};
+use underfoot_cluster::auth::{Kind, Opened, Role};
 use underfoot_cluster::gateway::{Answer, Counters, Gateway, Told};
 use underfoot_cluster::message::{NodeMessage, ToNodes, decode, encode};
 use underfoot_cluster::transport::Transport;
 
+use super::key::{KeyArgs, session};
 use super::notices::Notices;
+use super::refused::{self, RefusalNotices};
 use super::slowed::slow;
-use super::{Failure, drawn, endpoints, layout, stop_flag};
+use super::{Failure, endpoints, layout, locked, stop_flag};
 
 /// What the gateway is asked to do.
 #[derive(clap::Args, Debug)]
@@ -65,6 +68,8 @@ pub(crate) struct Args {
     /// Print contacts among them as well, 100 times a second.
     #[arg(long, requires = "json")]
     json_contacts: bool,
+    #[command(flatten)]
+    key: KeyArgs,
     /// Stop after so many seconds.
     #[arg(long, value_name = "S")]
     seconds: Option<f64>,
@@ -76,6 +81,12 @@ pub(crate) struct Args {
 /// Messages that may wait: half a second of sixteen nodes.
 const WAITING: usize = 4096;
 
+/// Senders that are remembered besides two nodes for each area: recordings of earlier starts.
+const SPARE_NODES: usize = 64;
+
+/// Noun of reports about rejected messages.
+const MESSAGES: &str = "messages to the gateway";
+
 /// How long nothing may come before it is looked at what that means.
 const PATIENCE: Duration = Duration::from_millis(2);
 
@@ -85,28 +96,13 @@ const TELL_EVERY: Duration = Duration::from_millis(50);
 /// Joins what nodes tell until told to stop.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = schema::load_floor(&args.floor)?;
-    let mut gateway = Gateway::new(&floor, drawn())?;
-    let stop = stop_flag(args.seconds)?;
     let listen = endpoints(args.listen.clone(), &floor);
-    let mut sinks = Fanout::new();
-    for &target in &args.osc {
-        sinks.push(OscSink::under(target, args.osc_prefix.clone())?);
-    }
-    for (targets, version) in
-        [(&args.tuio, TuioVersion::One(TuioProfiles::default())), (&args.tuio2, TuioVersion::Two)]
-    {
-        for &target in targets {
-            sinks.push(TuioSink::new(target, &floor.geometry, version)?);
-        }
-    }
-    if args.json {
-        let lines = JsonSink::new(io::stdout())?;
-        sinks.push(if args.json_contacts { lines.with_contacts() } else { lines });
-    }
-    #[cfg(unix)]
-    if let Some(watchdog) = Watchdog::of_environment() {
-        sinks.push(watchdog);
-    }
+    let (key, made) = args.key.find((&floor, &args.floor), &listen, [])?;
+    let session = session(Role::Gateway, &key, 2 * floor.areas.len() + SPARE_NODES)?;
+    let mut gateway = Gateway::new(&floor, session.nonce())?;
+    let session = Arc::new(Mutex::new(session));
+    let stop = stop_flag(args.seconds)?;
+    let mut sinks = outputs(args, &floor)?;
     let mut requests = args.commands.map(|address| RequestSocket::open(address, args)).transpose()?;
     let changes = match &args.layout {
         Some(path) => {
@@ -117,6 +113,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         None => None,
     };
     let notices = Notices::start();
+    made.into_iter().for_each(|made| notices.say(made));
     // What joins, and Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let started = HostInstant::now();
@@ -124,19 +121,30 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let now = move || slow(Instant::START + started.elapsed(), times);
     let (messages, received) = sync_channel(WAITING);
     let dropped = Arc::<AtomicU64>::default();
+    let areas: Vec<String> = floor.areas.iter().map(|area| area.id.clone()).collect();
     let transport = {
-        let dropped = Arc::clone(&dropped);
-        Transport::gateway(&listen, move |bytes| {
-            if messages.try_send((now(), decode::<NodeMessage>(bytes).ok())).is_err() {
+        let (dropped, session) = (Arc::clone(&dropped), Arc::clone(&session));
+        Transport::gateway(&listen, &areas, &key, move |bytes| {
+            let at = now();
+            let Ok(Opened { head, echo, body, .. }) = locked(&session).open(bytes, at) else { return };
+            let message = bytes.get(body).and_then(|body| decode::<NodeMessage>(body).ok());
+            let message = message.map(|message| message.in_envelope(&head, echo));
+            if messages.try_send((at, message)).is_err() {
                 dropped.fetch_add(1, Ordering::Relaxed);
             }
         })?
     };
-    let areas = floor.areas.len();
+    let send = |message: &ToNodes| {
+        let mut sealed = Vec::new();
+        locked(&session).seal(Kind::Gateway, &encode(message), now(), &mut sealed);
+        transport.send(sealed);
+    };
+    let areas = areas.len();
     notices.say(format!("Waiting for the nodes of {areas} areas on {}. Ctrl-C ends it.", listen.join(", ")));
     let mut latest = Instant::START;
     let mut due = Instant::START;
     let mut garbled = 0;
+    let mut refused = RefusalNotices::default();
     while !stop.load(Ordering::Relaxed) {
         let arrived = wait(&received);
         for (at, message) in arrived {
@@ -163,17 +171,44 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
         sinks.poll(latest);
         if let Some(layout) = gateway.layout_message(latest) {
-            transport.send(encode(&ToNodes::Layout(layout)));
+            send(&ToNodes::Layout(layout));
         }
         if gateway.take_news() || latest >= due {
             due = latest + TELL_EVERY;
-            transport.send(encode(&ToNodes::Beat(gateway.message(now()))));
+            send(&ToNodes::Beat(gateway.message(now())));
         }
+        let refusals = locked(&session).refusals();
+        refused.look(refusals, MESSAGES, latest).into_iter().for_each(|notice| notices.say(notice));
     }
     tell(&gateway.end(latest), &mut sinks, &notices);
     let dropped = dropped.load(Ordering::Relaxed);
     report(gateway.counters(), garbled, dropped, sinks.dropped());
+    refused::report(locked(&session).refusals(), MESSAGES);
     Ok(())
+}
+
+/// The outputs that are asked for.
+fn outputs(args: &Args, floor: &Floor) -> Result<Fanout, Failure> {
+    let mut sinks = Fanout::new();
+    for &target in &args.osc {
+        sinks.push(OscSink::under(target, args.osc_prefix.clone())?);
+    }
+    for (targets, version) in
+        [(&args.tuio, TuioVersion::One(TuioProfiles::default())), (&args.tuio2, TuioVersion::Two)]
+    {
+        for &target in targets {
+            sinks.push(TuioSink::new(target, &floor.geometry, version)?);
+        }
+    }
+    if args.json {
+        let lines = JsonSink::new(io::stdout())?;
+        sinks.push(if args.json_contacts { lines.with_contacts() } else { lines });
+    }
+    #[cfg(unix)]
+    if let Some(watchdog) = Watchdog::of_environment() {
+        sinks.push(watchdog);
+    }
+    Ok(sinks)
 }
 
 /// Where apps ask, and are answered.
@@ -248,12 +283,13 @@ fn tell(told: &[Told], sinks: &mut Fanout, notices: &Notices) {
 }
 
 fn report(counters: Counters, garbled: u64, dropped: u64, unsent: u64) {
-    let Counters { messages, refused, stale, withheld, late, lost, denied } = counters;
+    let Counters { messages, refused, stale, withheld, late, lost, denied, unpressed } = counters;
     let all = [
         (refused + garbled, "messages refused"),
         (dropped, "messages dropped, since they came faster than they could be joined"),
         (stale, "messages older than 100 ms, or of a clock that was set"),
         (withheld, "events of areas or presses that had been given up"),
+        (unpressed, "holds refused, since their controls were not pressed"),
         (late, "events told out of order"),
         (lost, "events that never came"),
         (denied, "requests not met"),

@@ -1,17 +1,21 @@
 //! What the program's commands share.
 
 pub(crate) mod gateway;
+pub(crate) mod key;
 mod layout;
+mod neighbourhood;
 pub(crate) mod node;
 mod notices;
+mod refused;
 mod slowed;
 mod sound;
 mod stepped;
+mod teller;
 mod worker;
 
-use std::hash::{BuildHasher, Hasher, RandomState};
-use std::sync::Arc;
+use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
 
@@ -23,6 +27,7 @@ use underfoot::runtime::StartError;
 use underfoot::schema::Diagnostics;
 use underfoot::sink::SinkError;
 use underfoot::source::SourceError;
+use underfoot_cluster::auth::KeyError;
 use underfoot_cluster::gateway::NoGateway;
 use underfoot_cluster::transport::{ENDPOINT, TransportError};
 
@@ -47,6 +52,23 @@ pub(crate) enum Failure {
     /// The floor has no areas.
     #[error(transparent)]
     NoGateway(#[from] NoGateway),
+    /// The floor's key is missing or not private.
+    #[error(transparent)]
+    Key(#[from] KeyError),
+    /// The floor names no key, and is not on one computer.
+    #[error(
+        "{far} may be on another computer, and the computers of a floor identify each other by a key: \
+         `underfoot-cluster key {}` makes one; copy it to all of them, and write `key: \"{}\"` into {}",
+        floor.with_extension("key").display(),
+        floor.with_extension("key").file_name().unwrap_or_default().display(),
+        floor.display()
+    )]
+    NoKey {
+        /// The address.
+        far: String,
+        /// The floor file.
+        floor: PathBuf,
+    },
     /// Anything else, said in full.
     #[error("{0}")]
     Other(String),
@@ -58,6 +80,11 @@ fn endpoints(asked: Vec<String>, floor: &Floor) -> Vec<String> {
         return asked;
     }
     vec![floor.gateway.map_or_else(|| ENDPOINT.to_owned(), |gateway| format!("tcp/{gateway}"))]
+}
+
+/// The content of `mutex`, also after a panic of another thread.
+fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// A flag that Ctrl-C, a polite kill, a terminal that is closed, and the end of `span` set.
@@ -77,11 +104,4 @@ fn stop_flag(span: Option<f64>) -> Result<Arc<AtomicBool>, Failure> {
         });
     }
     Ok(stop)
-}
-
-/// A number that no other program has drawn, in all likelihood: the standard library's hash keys are random.
-fn drawn() -> u64 {
-    let mut hasher = RandomState::new().build_hasher();
-    hasher.write_u32(std::process::id());
-    hasher.finish()
 }

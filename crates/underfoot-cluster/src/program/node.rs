@@ -1,35 +1,35 @@
 //! `underfoot-cluster node`: one area is served, and told of.
 
-use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4, UdpSocket};
+use std::net::{Ipv4Addr, SocketAddr, SocketAddrV4};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
-use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant as HostInstant};
+use std::sync::mpsc::sync_channel;
+use std::sync::{Arc, Mutex};
+use std::time::Duration;
 
 use underfoot::floor::{Area, Floor};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
-use underfoot::serve::Command;
 #[cfg(unix)]
 use underfoot::sink::Watchdog;
 use underfoot::sink::{Fanout, Rank, claim_priority};
 use underfoot::source::{SensorSource, UdpSource};
-use underfoot::units::HostClock;
-use underfoot::wire::ControlMessage;
-use underfoot_cluster::message::{
-    LayoutName, NodeMessage, NodeValue, ToNodes, VERSION, decode, encode, fingerprint,
-};
-use underfoot_cluster::node::{Action, Border, Draft, Guard, NodeSink, Reason, SendNote};
+use underfoot_cluster::auth::{Opened, Role};
+use underfoot_cluster::message::{LayoutName, NodeMessage, ToNodes, VERSION, decode, fingerprint};
+use underfoot_cluster::node::{Guard, NodeSink};
 use underfoot_cluster::transport::Transport;
 
+use super::key::{KeyArgs, session as session_of};
+use super::neighbourhood::Neighbourhood;
 use super::notices::Notices;
+use super::refused;
 use super::slowed::{SlowedSource, slowed};
 use super::sound::SoundArgs;
-use super::stepped::SteppedSource;
+use super::stepped::{SteppedSource, Steps};
+use super::teller::{Commander, DATAGRAMS, MESSAGES, Teller};
 use super::worker::Worker;
-use super::{Failure, drawn, endpoints, layout, stop_flag};
+use super::{Failure, endpoints, layout, locked, stop_flag};
 
 /// What a node is asked to do.
 #[derive(clap::Args, Debug)]
@@ -53,6 +53,8 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ENDPOINT")]
     gateway: Vec<String>,
     #[command(flatten)]
+    key: KeyArgs,
+    #[command(flatten)]
     sound: SoundArgs,
     /// On how many threads the feet of a crowd are sensed. Those beyond the first sleep while fewer than a hundred feet
     /// are in the area, and keep a core busy each while there are more.
@@ -72,17 +74,11 @@ pub(crate) struct Args {
 /// Where packets arrive unless anything says otherwise.
 const LISTEN: SocketAddr = SocketAddr::V4(SocketAddrV4::new(Ipv4Addr::LOCALHOST, 9000));
 
-/// Notes of neighbours that may wait for the next frame.
-const NOTES: usize = 1024;
+/// Senders that are remembered besides the gateways: recordings of earlier starts.
+const SPARE_GATEWAYS: usize = 8;
 
 /// Messages that may wait for the thread that sends them: a fifth of a second.
 const WAITING: usize = 100;
-
-/// Time between two tellings of all values, with which a gateway compares what it knows.
-const VALUES_EVERY: Duration = Duration::from_millis(500);
-
-/// How often is looked whether gateways are silent.
-const PATIENCE: Duration = Duration::from_millis(20);
 
 /// Serves an area until told to stop.
 pub(crate) fn run(args: Args) -> Result<(), Failure> {
@@ -97,27 +93,21 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
     let stop = stop_flag(args.seconds)?;
     let listen = args.listen.or(area.listen).unwrap_or(LISTEN);
     let gateways = endpoints(args.gateway, &floor);
-    let (notes, noted) = sync_channel(NOTES);
-    let neighbours = Border::neighbours(&floor, area).filter_map(|area| Some(area.listen?.ip()));
-    let source = UdpSource::bind(listen, &part)?
-        .also_allowing(floor.forwarding_addresses(area).chain(neighbours))
-        .handing_notes_to(notes);
-    let node = drawn();
-    let border = Border::new(&floor, area, node, sender(&floor, area, listen)?, noted);
+    let (key, made) = args.key.find((&floor, &args.floor), &gateways, [listen])?;
+    let source = UdpSource::bind(listen, &part)?;
+    let steps = args.step_clock.then(Steps::by_signal).transpose()?;
+    let set = steps.as_ref().map_or_else(|| source.clock(), |steps| steps.clock(source.clock()));
+    let clock = if args.slow > 1 { slowed(set, args.slow) } else { set };
+    let Neighbourhood { seal, computers, border, session: neighbours, unheard } =
+        Neighbourhood::of((&floor, area), listen, &key, &clock)?;
     let crossed = border.counters();
+    let source = source.sealed_by(Box::new(seal), computers);
     let (source, forwarded) = source.forwarding(&floor.forwardings(area))?;
-    let (source, clock): (Box<dyn SensorSource>, HostClock) = if args.step_clock {
-        let source = SteppedSource::new(source)?;
-        let clock = source.clock();
-        (Box::new(source), clock)
-    } else {
-        let clock = source.clock();
-        (Box::new(source), clock)
+    let source: Box<dyn SensorSource> = match steps {
+        Some(steps) => Box::new(SteppedSource::new(source, steps)),
+        None => Box::new(source),
     };
-    let (source, clock): (Box<dyn SensorSource>, HostClock) = match args.slow {
-        0 | 1 => (source, clock),
-        times => (Box::new(SlowedSource::new(source, times)), slowed(clock, times)),
-    };
+    let source = if args.slow > 1 { Box::new(SlowedSource::new(source, args.slow)) } else { source };
     let (drafts, drafted) = sync_channel(WAITING);
     let sink = NodeSink::new(drafts);
     let held_up = sink.held_up();
@@ -138,18 +128,25 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         .stop_flag(stop)
         .start()?;
     let notices = Notices::start();
+    made.into_iter().for_each(|made| notices.say(made));
     // What tells, and Zenoh's threads, which inherit it.
     claim_priority(Rank::Telling);
     let guard = Arc::new(Mutex::new(Guard::new(&args.area)));
     let refused = Arc::<AtomicU64>::default();
+    let answering = session_of(Role::Node, &key, gateways.len() + SPARE_GATEWAYS)?;
+    let answering = Arc::new(Mutex::new(answering));
     let worker = Worker::start(session.clone(), area.clone(), floor.geometry, own, notices.clone());
     let transport = {
         let worker = worker.clone();
         let commander = Commander { session: session.clone(), notices: notices.clone() };
         let (guard, clock, refused) = (Arc::clone(&guard), Arc::clone(&clock), Arc::clone(&refused));
-        Transport::node(&gateways, &args.area, move |bytes| {
+        let answering = Arc::clone(&answering);
+        Transport::node(&gateways, &args.area, &key, move |bytes| {
             let now = clock();
-            let message = match decode(bytes) {
+            let Ok(Opened { head, body, .. }) = locked(&answering).open(bytes, now) else { return };
+            let message = match decode(bytes.get(body).unwrap_or_default())
+                .map(|told: ToNodes| told.in_envelope(&head))
+            {
                 Ok(ToNodes::Beat(message)) => message,
                 Ok(ToNodes::Layout(layout)) => return worker.check(layout, now),
                 Err(_) => {
@@ -158,7 +155,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
                 }
             };
             worker.hear(&message, now);
-            let actions = guard.lock().unwrap_or_else(PoisonError::into_inner).hear(&message, now);
+            let actions = locked(&guard).hear(&message, now);
             actions.into_iter().for_each(|action| commander.apply(action));
         })?
     };
@@ -173,11 +170,13 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
             version: VERSION,
             floor: fingerprint(&floor),
             area: args.area,
-            node,
             name: format!("{listen} (process {})", std::process::id()),
             ..NodeMessage::default()
         },
         transport,
+        session: Arc::clone(&answering),
+        neighbours: neighbours.clone(),
+        refused: Default::default(),
         guard,
         clock,
         commander: Commander { session: session.clone(), notices: notices.clone() },
@@ -203,6 +202,7 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         (crossed.untimed(), "cues of neighbours whose clock was not known yet, not played"),
         (crossed.unsent(), "cues that could not be handed to a neighbour"),
         (crossed.refused(), "notes of neighbours not understood"),
+        (unheard.load(Ordering::Relaxed), "notes of neighbours dropped, since they came faster than frames"),
         (forwarded.late(), "packets too old to be forwarded"),
         (forwarded.unsent(), "packets not forwarded, since the system did not take them"),
         (held_up.load(Ordering::Relaxed), "messages held up"),
@@ -210,20 +210,9 @@ pub(crate) fn run(args: Args) -> Result<(), Failure> {
         (refused.load(Ordering::Relaxed), "messages not understood"),
     ];
     lost.iter().filter(|(count, _)| *count > 0).for_each(|(count, what)| eprintln!("{count} {what}."));
+    refused::report(locked(&answering).refusals(), MESSAGES);
+    refused::report(neighbours.refusals(), DATAGRAMS);
     ended(&session)
-}
-
-/// Sends notes to the neighbours of `area`, from a port of its own beside `listen`.
-fn sender(floor: &Floor, area: &Area, listen: SocketAddr) -> Result<SendNote, Failure> {
-    let to: Vec<SocketAddr> = Border::neighbours(floor, area).filter_map(|area| area.listen).collect();
-    let socket = UdpSocket::bind(SocketAddr::new(listen.ip(), 0))
-        .and_then(|socket| socket.set_nonblocking(true).map(|()| socket))
-        .map_err(|error| Failure::Other(format!("cues can't be handed to neighbours: {error}")))?;
-    Ok(Box::new(move |number, note| match to.get(number) {
-        // An error may be the echo of an earlier note to a neighbour that is not there.
-        Some(to) => socket.send_to(note, to).or_else(|_| socket.send_to(note, to)).is_ok(),
-        None => false,
-    }))
 }
 
 /// The area called `id`.
@@ -232,112 +221,6 @@ fn area<'f>(floor: &'f Floor, id: &str) -> Result<&'f Area, Failure> {
         let ids: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
         Failure::Other(format!("the floor has no area \"{id}\": there are {}", ids.join(", ")))
     })
-}
-
-/// Does what the guard says.
-struct Commander {
-    session: Session,
-    notices: Notices,
-}
-
-impl Commander {
-    fn apply(&self, action: Action) {
-        let (commands, notice): (&[ControlMessage], &str) = match action {
-            Action::Heard => (&[], "The gateway hears this node."),
-            Action::Cancel(Reason::Late) => (
-                &[ControlMessage::CancelAll],
-                "The gateway got nothing new for 100 ms: what was held is cancelled.",
-            ),
-            Action::Cancel(Reason::Silent) => {
-                (&[ControlMessage::CancelAll], "The gateway is silent: what was held is cancelled.")
-            }
-            Action::Mute => (
-                &[ControlMessage::CancelAll, ControlMessage::Mute { on: true }],
-                "Another node serves this area too: neither is believed, and nothing is felt. Stop one of them.",
-            ),
-            Action::Unmute => {
-                (&[ControlMessage::Mute { on: false }], "The other node has stopped: this one works again.")
-            }
-            _ => return,
-        };
-        self.notices.say(notice);
-        // A floor that has ended holds nothing.
-        commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
-    }
-}
-
-/// Sends what happens, for as long as anything does.
-struct Teller {
-    /// What all messages have in common, and the number of the last one.
-    head: NodeMessage,
-    transport: Transport,
-    guard: Arc<Mutex<Guard>>,
-    clock: HostClock,
-    commander: Commander,
-    worker: Worker,
-    unsent: u64,
-}
-
-impl Teller {
-    /// Works until the floor has ended; how many messages could not be sent.
-    fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
-        let mut values_told: Option<HostInstant> = None;
-        loop {
-            match drafts.recv_timeout(PATIENCE) {
-                Ok(draft) => {
-                    let is_due = values_told.is_none_or(|told| told.elapsed() >= VALUES_EVERY);
-                    let values = is_due.then(|| self.values());
-                    if is_due {
-                        values_told = Some(HostInstant::now());
-                    }
-                    self.send(draft, values);
-                }
-                Err(RecvTimeoutError::Timeout) => {}
-                Err(RecvTimeoutError::Disconnected) => return self.unsent,
-            }
-            let now = (self.clock)();
-            self.worker.change(now);
-            let actions = self.guard.lock().unwrap_or_else(PoisonError::into_inner).tick(now);
-            actions.into_iter().for_each(|action| self.commander.apply(action));
-        }
-    }
-
-    fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
-        let echoes = self.guard.lock().unwrap_or_else(PoisonError::into_inner).echoes().collect();
-        self.head.sequence += 1;
-        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
-            draft.message();
-        let (layout, answers) = self.worker.report();
-        let mut message = NodeMessage {
-            frame,
-            silent,
-            contacts,
-            earlier,
-            first_event,
-            events,
-            held,
-            values,
-            echoes,
-            page,
-            answers,
-            layout,
-            ..self.head.clone()
-        };
-        // Last, so that nothing but the way of the message follows.
-        message.sent = (self.clock)().micros();
-        if !self.transport.send(encode(&message)) {
-            self.unsent += 1;
-        }
-    }
-
-    /// What the controls hold that no foot holds.
-    fn values(&self) -> Vec<(String, NodeValue)> {
-        let snapshot = self.commander.session.snapshot();
-        let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);
-        let free = all.filter(|(widget, _)| !snapshot.floor.held.contains(&widget.id));
-        free.filter_map(|(widget, state)| Some((widget.id.as_str().to_owned(), state.value?.into())))
-            .collect()
-    }
 }
 
 /// What the floor's end was.

@@ -20,14 +20,13 @@ const STEP: Duration = Duration::from_secs(1);
 /// How soon after the signal.
 const LOOK_EVERY: Duration = Duration::from_millis(1);
 
-/// Packets as they come, on a clock that each SIGUSR1 sets forward.
-pub(super) struct SteppedSource {
-    inner: UdpSource,
-    steps_us: Arc<AtomicU64>,
-}
+/// The steps of a clock so far, in microseconds.
+#[derive(Clone)]
+pub(super) struct Steps(Arc<AtomicU64>);
 
-impl SteppedSource {
-    pub(super) fn new(inner: UdpSource) -> Result<Self, Failure> {
+impl Steps {
+    /// Each SIGUSR1 adds one.
+    pub(super) fn by_signal() -> Result<Self, Failure> {
         let (asked, steps_us) = (Arc::new(AtomicBool::new(false)), Arc::<AtomicU64>::default());
         flag::register(SIGUSR1, Arc::clone(&asked))
             .map_err(|error| Failure::Other(format!("signals can't be handled: {error}")))?;
@@ -40,29 +39,41 @@ impl SteppedSource {
                 thread::sleep(LOOK_EVERY);
             }
         });
-        Ok(Self { inner, steps_us })
+        Ok(Self(steps_us))
     }
 
-    /// The clock that stamps packets.
-    pub(super) fn clock(&self) -> HostClock {
-        let (clock, steps_us) = (self.inner.clock(), Arc::clone(&self.steps_us));
-        Arc::new(move || clock() + stepped(&steps_us))
+    /// `clock` with these steps.
+    pub(super) fn clock(&self, clock: HostClock) -> HostClock {
+        let steps = self.clone();
+        Arc::new(move || clock() + steps.so_far())
+    }
+
+    fn so_far(&self) -> Duration {
+        Duration::from_micros(self.0.load(Ordering::Relaxed))
     }
 }
 
-fn stepped(steps_us: &AtomicU64) -> Duration {
-    Duration::from_micros(steps_us.load(Ordering::Relaxed))
+/// Packets on a clock with steps.
+pub(super) struct SteppedSource {
+    inner: UdpSource,
+    steps: Steps,
+}
+
+impl SteppedSource {
+    pub(super) fn new(inner: UdpSource, steps: Steps) -> Self {
+        Self { inner, steps }
+    }
 }
 
 impl SensorSource for SteppedSource {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
         let next = self.inner.next(patience)?;
-        let later = stepped(&self.steps_us);
+        let later = self.steps.so_far();
         Ok(next.map(|packet| SensorPacket { received: packet.received + later, ..packet }))
     }
 
     fn now(&self) -> Instant {
-        self.inner.now() + stepped(&self.steps_us)
+        self.inner.now() + self.steps.so_far()
     }
 
     fn take_request(&mut self) -> Option<Request> {

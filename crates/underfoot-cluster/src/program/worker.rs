@@ -1,7 +1,7 @@
 //! What a node does of what its gateway asks, on a thread of its own: the thread that hears must go on hearing.
 
 use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::{Arc, Mutex};
 use std::thread;
 
 use underfoot::floor::{Area, Geometry};
@@ -15,8 +15,8 @@ use underfoot_cluster::message::{
 };
 use underfoot_cluster::node::{AskedRequests, NodeLayouts};
 
-use super::layout;
 use super::notices::Notices;
+use super::{layout, locked};
 
 /// Requests and layouts that may wait; what does not fit comes again.
 const WAITING: usize = 1024;
@@ -41,10 +41,6 @@ pub(super) struct Worker {
     area: Area,
     geometry: Geometry,
     notices: Notices,
-}
-
-fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
-    mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 impl Worker {

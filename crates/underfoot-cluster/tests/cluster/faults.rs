@@ -9,7 +9,7 @@ use crate::lines::Line;
 const LIMIT: Duration = Duration::from_millis(150);
 
 /// Somebody who holds the control over the border again and again; the node of the south-east decides it.
-fn holding(times: usize) -> String {
+pub(crate) fn holding(times: usize) -> String {
     let hold = "Wait(ms: 500), Press(widget: \"drive\", force_n: 110, hold_ms: 2500),".repeat(times);
     format!(
         "Scenario(title: \"Holding\", steps: [Wait(ms: 1500), Enter(from: South, at: (6.1, 2.2)), {hold} Leave(to: South)])"
@@ -151,21 +151,25 @@ fn twenty(harm: Harm) {
     assert!(all[19] <= LIMIT, "{all:?}");
 }
 
+// C1
 #[test]
 fn what_a_killed_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
     rounds(Harm::Kill, 1);
 }
 
+// C2, R10
 #[test]
 fn what_a_frozen_node_held_is_cancelled_and_it_comes_back_without_ghosts() {
     rounds(Harm::Freeze, 1);
 }
 
+// C3
 #[test]
 fn what_a_node_held_that_is_cut_off_is_cancelled_and_it_comes_back_without_ghosts() {
     rounds(Harm::Cut, 1);
 }
 
+// C4
 #[test]
 fn what_a_node_held_whose_clock_is_set_is_cancelled_and_it_comes_back_without_ghosts() {
     rounds(Harm::SetClock, 1);
@@ -195,14 +199,13 @@ fn twenty_clocks_that_are_set() {
     twenty(Harm::SetClock);
 }
 
-#[test]
-#[ignore = "a minute in real time"]
-fn a_network_that_loses_packets_and_is_late_presses_nothing_by_itself() {
-    let fault = Fault::new(22);
+/// Holds `drive` so many times while packets of boards are lost and messages between nodes and gateway are late.
+fn hold_over_a_bad_network(holds: usize) {
+    let fault = Fault::new(holds + 2);
     let from = fault.hall.lines.len();
     fault.boards.lose(50);
     fault.hall.links.iter().for_each(|link| link.jitter(20));
-    (0..20).for_each(|_| fault.await_hold());
+    (0..holds).for_each(|_| fault.await_hold());
     let lines = fault.hall.lines.all();
     let count = |what: &str| lines.iter().skip(from).filter(|line| is(line, what)).count();
     let lost = lines.iter().skip(from).filter(|line| matches!(line.area(), Some((_, "lost")))).count();
@@ -212,7 +215,36 @@ fn a_network_that_loses_packets_and_is_late_presses_nothing_by_itself() {
         count("cancelled")
     ));
     fault.check_quiet(from);
-    assert!(count("pressed") >= 20);
+    assert!(count("pressed") >= holds);
+}
+
+// C9
+#[test]
+fn a_bad_network_presses_nothing_by_itself() {
+    hold_over_a_bad_network(2);
+}
+
+#[test]
+#[ignore = "a minute in real time"]
+fn a_network_that_loses_packets_and_is_late_presses_nothing_by_itself() {
+    hold_over_a_bad_network(20);
+}
+
+// C8
+#[test]
+fn a_hold_at_the_gateway_s_death_is_unknown_to_the_next_gateway() {
+    let mut fault = Fault::new(8);
+    fault.await_hold();
+    fault.hall.kill_gateway();
+    fault.hall.await_notice("The gateway is silent: what was held is cancelled.");
+    fault.hall.start_gateway();
+    AREAS.iter().for_each(|area| fault.hall.await_live(area, 0));
+    fault.hall.lines.find(0, "pressed", |line| is(line, "pressed"));
+    let lines = fault.hall.lines.all();
+    let before = lines.iter().take_while(|line| !is(line, "pressed"));
+    let held = before.filter(|line| line.json["held"].as_array().is_some_and(|held| !held.is_empty()));
+    assert_eq!(held.count(), 0);
+    fault.check_quiet(0);
 }
 
 /// Lets somebody hold `drive` twenty times while each cable loses one packet in twenty of everything that a node sends and
@@ -243,6 +275,7 @@ fn hold_over_lossy_cables(resend_soon: bool) -> usize {
     count("cancelled")
 }
 
+// C9
 #[test]
 #[ignore = "a minute or two in real time, with UNDERFOOT_NETNS and nftables"]
 fn cables_that_lose_packets_press_nothing_by_themselves() {

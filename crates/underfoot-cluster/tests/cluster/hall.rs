@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, UdpSocket};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::{Arc, Mutex};
@@ -21,6 +21,7 @@ use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError, UdpSou
 use underfoot::units::Instant;
 use underfoot::widget::{EventKind, WidgetId};
 use underfoot::wire::{SensorEncoder, SensorFormat};
+use underfoot_cluster::auth::Key;
 
 use crate::lines::Lines;
 use crate::link::Link;
@@ -97,6 +98,14 @@ impl Program {
         Self::start_by(ip, folder, args, notices)
     }
 
+    /// The message of a program that refuses to start; its exit status is 1.
+    pub(crate) fn refusal(folder: &Path, args: &[&str]) -> String {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_underfoot-cluster"));
+        let done = command.args(args).current_dir(folder).output().unwrap();
+        assert_eq!(done.status.code(), Some(1), "{done:?}");
+        String::from_utf8(done.stderr).unwrap()
+    }
+
     fn start_by(mut command: Command, folder: &Path, args: &[&str], notices: &Notices) -> Self {
         let mut child = command
             .args(args)
@@ -107,8 +116,11 @@ impl Program {
             .unwrap();
         let mut chatter = BufReader::new(child.stderr.take().unwrap());
         let mut line = String::new();
-        chatter.read_line(&mut line).unwrap();
-        assert!(line.contains("Ctrl-C ends it"), "{line}");
+        while !line.contains("Ctrl-C ends it") {
+            let before = line.len();
+            chatter.read_line(&mut line).unwrap();
+            assert!(line.len() > before, "it has ended: {line}");
+        }
         let name = args[0].to_owned();
         let said = Arc::clone(notices);
         // What it says goes where the test's own output goes.
@@ -173,14 +185,20 @@ pub(crate) struct Hall {
     /// Where the gateway takes requests.
     pub(crate) commands: SocketAddr,
     notices: Notices,
-    _gateway: Program,
+    gateway: Program,
     pub(crate) lines: Lines,
     /// Where nodes run, if each has a network of its own.
     pub(crate) namespaces: Option<Namespaces>,
 }
 
 impl Hall {
+    /// A hall with a key that its floor file names.
     pub(crate) fn open() -> Self {
+        Self::with_key(Some("hall_of_tests.key"))
+    }
+
+    /// A hall whose floor file names the key `key`, which is made, or none.
+    pub(crate) fn with_key(key: Option<&str>) -> Self {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("controls.ron"), LAYOUT).unwrap();
         let namespaces = Namespaces::asked_for();
@@ -196,25 +214,58 @@ impl Hall {
         }
         let address = SocketAddr::from((here, free_port()));
         floor.gateway = Some(address);
+        if let Some(key) = key {
+            Key::make(&folder.path().join(key)).unwrap();
+            floor.key = Some(key.to_owned());
+        }
         std::fs::write(folder.path().join("hall.ron"), schema::write_floor(&floor)).unwrap();
         let layout = layout(&floor);
         let links = AREAS.map(|_| Link::to(address.port()));
         let commands: SocketAddr = ([127, 0, 0, 1], free_port()).into();
-        let at = commands.to_string();
-        let args = [
-            "gateway",
-            "controls.ron",
-            "--floor",
-            "hall.ron",
-            "--json",
-            "--json-contacts",
-            "--commands",
-            &at,
-        ];
         let notices = Notices::default();
-        let mut gateway = Program::start(folder.path(), &args, &notices);
-        let lines = Lines::of(gateway.0.stdout.take().unwrap());
-        Self { folder, floor, layout, links, commands, notices, _gateway: gateway, lines, namespaces }
+        let (gateway, lines) = start_gateway(folder.path(), commands, &notices);
+        Self { folder, floor, layout, links, commands, notices, gateway, lines, namespaces }
+    }
+
+    /// Kills the gateway.
+    pub(crate) fn kill_gateway(&mut self) {
+        self.gateway.0.kill().unwrap();
+        self.gateway.0.wait().unwrap();
+    }
+
+    /// Starts another gateway in place of one that has been killed; its lines are numbered anew.
+    pub(crate) fn start_gateway(&mut self) {
+        (self.gateway, self.lines) = start_gateway(self.folder.path(), self.commands, &self.notices);
+    }
+
+    /// Ends the gateway; all notices of programs so far, with its last report.
+    pub(crate) fn end_gateway(&mut self) -> Vec<String> {
+        self.gateway.signal("-TERM");
+        self.gateway.0.wait().unwrap();
+        self.await_notice("messages of nodes;");
+        // One line for each reason of refusals follows.
+        thread::sleep(Duration::from_millis(200));
+        self.said()
+    }
+
+    /// All notices of programs so far.
+    pub(crate) fn said(&self) -> Vec<String> {
+        self.notices.lock().unwrap().clone()
+    }
+
+    /// A file of the hall.
+    pub(crate) fn file(&self, name: &str) -> PathBuf {
+        self.folder.path().join(name)
+    }
+
+    /// The key of the floor file.
+    pub(crate) fn key(&self) -> Key {
+        Key::read(&self.file(self.floor.key.as_deref().unwrap())).unwrap()
+    }
+
+    /// The gateway's endpoint.
+    pub(crate) fn endpoint(&self) -> String {
+        format!("tcp/{}", self.floor.gateway.unwrap())
     }
 
     /// Starts the node of one area, with nothing but what the floor file says.
@@ -264,7 +315,8 @@ impl Hall {
         self.start(area, &["controls.ron", "--gateway", &self.links[number(area)].endpoint(), "--step-clock"])
     }
 
-    fn start(&self, area: &str, more: &[&str]) -> Program {
+    /// Starts the node of one area, with these options besides.
+    pub(crate) fn start(&self, area: &str, more: &[&str]) -> Program {
         let node = ["node", "--floor", "hall.ron", "--area", area];
         let (folder, args) = (self.folder.path(), [&node[..], more].concat());
         match &self.namespaces {
@@ -307,6 +359,15 @@ impl Hall {
             .unwrap();
         (session, port, lines, frames)
     }
+}
+
+fn start_gateway(folder: &Path, commands: SocketAddr, notices: &Notices) -> (Program, Lines) {
+    let at = commands.to_string();
+    let outputs = ["--json", "--json-contacts", "--commands", &at];
+    let args = [&["gateway", "controls.ron", "--floor", "hall.ron"][..], &outputs].concat();
+    let mut gateway = Program::start(folder, &args, notices);
+    let lines = Lines::of(gateway.0.stdout.take().unwrap());
+    (gateway, lines)
 }
 
 /// Every contact of every frame, and every event.

@@ -8,9 +8,12 @@ mod unit_files;
 
 mod border;
 mod commands;
+mod cost;
 mod faults;
+mod forger;
 mod hall;
 mod halo;
+mod key;
 mod lines;
 mod link;
 mod many;

@@ -13,8 +13,9 @@ use underfoot::sink::EventSink;
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::units::Instant;
 use underfoot::wire::SensorPacket;
+use underfoot_cluster::auth::Echo;
 use underfoot_cluster::gateway::{Gateway, Told};
-use underfoot_cluster::message::{Echo, NodeMessage, VERSION, fingerprint};
+use underfoot_cluster::message::{NodeMessage, VERSION, fingerprint};
 use underfoot_cluster::node::NodeSink;
 
 use crate::hall::{AREAS, Frames, floor, layout, say, script, source};
@@ -74,18 +75,9 @@ fn messages(hall: (&Floor, &Layout, usize), area: &str, node: u64) -> Vec<NodeMe
     let message = numbered.map(|(draft, sequence)| {
         let told = draft.message();
         let sent = told.frame.unwrap_or(0) + 5000;
-        let echoes = vec![Echo { gateway: 9, sent: sent - 200, received: sent }];
+        let echo = Some(Echo { sent: sent - 200, received: sent });
         let area = area.id.clone();
-        NodeMessage {
-            version: VERSION,
-            floor: fingerprint(floor),
-            area,
-            node,
-            sequence,
-            sent,
-            echoes,
-            ..told
-        }
+        NodeMessage { version: VERSION, floor: fingerprint(floor), area, node, sequence, sent, echo, ..told }
     });
     message.filter(|message| message.frame.is_some()).collect()
 }
@@ -108,6 +100,7 @@ fn compare(rounds: usize) {
         gateway.take(message, now);
         gateway.advance(now).iter().filter_map(Told::report).for_each(|report| joined.report(report));
     }
+    assert_eq!(gateway.counters().unpressed, 0, "each hold follows its press");
     // The same moments, to the microsecond.
     say(&format!("{} events", events.len()));
     assert_eq!(joined.events(), events);

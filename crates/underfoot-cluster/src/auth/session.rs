@@ -1,0 +1,550 @@
+//! The messages of one program to and from other computers of its floor.
+
+use std::ops::Range;
+use std::time::Duration;
+
+use underfoot::units::Instant;
+
+use super::envelope::{self, Echo, Head, Kind};
+use super::key::Key;
+use super::refusals::{Refusal, Refusals};
+use super::window::{Novelty, Window};
+
+/// Greatest age of the message that another one answers: nodes wait 150 ms for a gateway, and a message that was on its
+/// way for 100 ms is too late for a hold.
+const FRESH: Duration = Duration::from_millis(250);
+
+/// Time for which a silent sender is remembered; it must be longer than [`FRESH`].
+const REMEMBERED: Duration = Duration::from_secs(1);
+
+/// The kinds of messages that a program exchanges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Role {
+    /// A gateway, with nodes.
+    Gateway,
+    /// A node, with gateways.
+    Node,
+    /// A node, with its neighbours.
+    Neighbour,
+}
+
+impl Role {
+    const fn receives(self, kind: Kind) -> bool {
+        match self {
+            Self::Gateway => matches!(kind, Kind::Node),
+            Self::Node => matches!(kind, Kind::Gateway),
+            Self::Neighbour => matches!(kind, Kind::Note | Kind::Packet),
+        }
+    }
+}
+
+/// Proof of a message's age: its sender wrote it after it had received the message that it answers.
+#[derive(Clone, Copy, Debug)]
+struct Proof {
+    /// When this program sent the answered message.
+    answered: Instant,
+    /// When the sender sent its answer, in microseconds of its clock.
+    sent: u64,
+}
+
+impl Proof {
+    /// Greatest age of another message of that sender, sent at `sent` on its clock.
+    fn age(&self, sent: u64, now: Instant) -> Duration {
+        now.since(self.answered) + Duration::from_micros(self.sent.saturating_sub(sent))
+    }
+}
+
+/// An accepted message.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Opened {
+    /// Its purpose.
+    pub kind: Kind,
+    /// Its sender, number and time.
+    pub head: Head,
+    /// The message that it answers; `None` for a packet of a board.
+    pub echo: Option<Echo>,
+    /// The place of its body among its bytes.
+    pub body: Range<usize>,
+}
+
+/// Another program.
+#[derive(Clone, Debug)]
+struct Peer {
+    nonce: u64,
+    window: Window,
+    /// Receipt of its newest message.
+    echo: Echo,
+    heard: Instant,
+    /// From its last fresh answer.
+    proof: Option<Proof>,
+    /// Messages rejected before its first answer.
+    unanswered: u64,
+    /// When its counter jumped. An answer to a message after that begins a new window.
+    jumped: Option<Instant>,
+}
+
+/// Writes the messages of one program, and accepts those of others.
+#[derive(Clone, Debug)]
+pub struct Session {
+    role: Role,
+    /// The key of each kind, in the order of [`Kind::ALL`].
+    keys: [[u8; 32]; Kind::ALL.len()],
+    nonce: u64,
+    counter: u64,
+    peers: Vec<Peer>,
+    most_peers: usize,
+    refusals: Refusals,
+}
+
+impl Session {
+    /// A session with the floor's `key`. `nonce` must be random and new for each session; `most_peers` is the number of
+    /// other programs that are remembered, at least one.
+    #[must_use]
+    pub fn new(role: Role, key: &Key, nonce: u64, most_peers: usize) -> Self {
+        Self {
+            role,
+            keys: Kind::ALL.map(|kind| key.derived(kind.context())),
+            nonce,
+            counter: 0,
+            peers: Vec::new(),
+            most_peers: most_peers.max(1),
+            refusals: Refusals::default(),
+        }
+    }
+
+    /// Its nonce, which identifies it to others.
+    #[must_use]
+    pub const fn nonce(&self) -> u64 {
+        self.nonce
+    }
+
+    /// Number of rejected messages so far.
+    #[must_use]
+    pub const fn refusals(&self) -> Refusals {
+        self.refusals
+    }
+
+    /// Writes a message with this `body`, sent at `now`, into `out`, whose content it replaces. Packets of boards carry
+    /// no answers.
+    pub fn seal(&mut self, kind: Kind, body: &[u8], now: Instant, out: &mut Vec<u8>) {
+        self.counter += 1;
+        let head = Head { from: self.nonce, counter: self.counter, sent: now.micros() };
+        let heard = self.peers.iter().filter(|peer| kind != Kind::Packet && now.since(peer.heard) <= FRESH);
+        let answers = heard.map(|peer| (peer.nonce, peer.echo));
+        envelope::write((kind, &self.keys[kind as usize - 1]), &head, answers, body, out);
+    }
+
+    /// Reads a message that was received at `now`.
+    ///
+    /// # Errors
+    /// The reason for rejecting it, which is also counted.
+    pub fn open(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
+        let opened = self.look(bytes, now);
+        if let Err(refusal) = opened {
+            self.refusals.count(refusal);
+        }
+        opened
+    }
+
+    fn look(&mut self, bytes: &[u8], now: Instant) -> Result<Opened, Refusal> {
+        let kind =
+            envelope::kind(bytes).filter(|kind| self.role.receives(*kind)).ok_or(Refusal::Malformed)?;
+        if !envelope::is_genuine(bytes, &self.keys[kind as usize - 1]) {
+            return Err(Refusal::Forged);
+        }
+        let parts = envelope::parts(bytes).ok_or(Refusal::Malformed)?;
+        let head = parts.head;
+        // Its own message, reflected.
+        if head.from == self.nonce {
+            return Err(Refusal::Repeated);
+        }
+        let echo = parts.answer_to(self.nonce);
+        let proof = echo.map(|echo| Proof { answered: Instant::from_micros(echo.sent), sent: head.sent });
+        let peer = self.peer(&head, now)?;
+        peer.note(&head, proof, now)?;
+        let Some(proof) = proof.or(peer.proof.filter(|_| kind == Kind::Packet)) else {
+            peer.unanswered += 1;
+            return Err(Refusal::Unanswered);
+        };
+        if proof.answered > now || proof.age(head.sent, now) > FRESH {
+            return Err(Refusal::Stale);
+        }
+        peer.proof = Some(proof);
+        self.refusals.unanswered -= std::mem::take(&mut peer.unanswered);
+        Ok(Opened { kind, head, echo, body: parts.body.0..parts.body.1 })
+    }
+
+    /// The sender of a message with this `head`, which is added if it is new.
+    fn peer(&mut self, head: &Head, now: Instant) -> Result<&mut Peer, Refusal> {
+        self.peers.retain(|peer| now.since(peer.heard) <= REMEMBERED);
+        let known = self.peers.iter().position(|peer| peer.nonce == head.from);
+        let index = match known {
+            Some(index) => index,
+            None => {
+                let peer = Peer::met(head, now).ok_or(Refusal::Jumped)?;
+                self.make_room();
+                self.peers.push(peer);
+                self.peers.len() - 1
+            }
+        };
+        self.peers.get_mut(index).ok_or(Refusal::Malformed)
+    }
+
+    /// Forgets one sender if there is no room for another: the one that has been silent for longest, of those without an
+    /// answer if there are any.
+    fn make_room(&mut self) {
+        if self.peers.len() < self.most_peers {
+            return;
+        }
+        let all = self.peers.iter().enumerate();
+        let first = all.min_by_key(|(_, peer)| (peer.proof.is_some(), peer.heard)).map(|(index, _)| index);
+        first.map(|index| self.peers.swap_remove(index));
+    }
+}
+
+impl Peer {
+    /// The sender of a first message; `None` if its counter is beyond that of any sender.
+    fn met(head: &Head, now: Instant) -> Option<Self> {
+        Some(Self {
+            nonce: head.from,
+            // `note` adds the message itself.
+            window: Window::beginning(head.counter.saturating_sub(1))?,
+            echo: Echo { sent: head.sent, received: now.micros() },
+            heard: now,
+            proof: None,
+            unanswered: 0,
+            jumped: None,
+        })
+    }
+
+    /// Checks the counter of a message, and adds it; `proof` is from its answer, if it has one.
+    fn note(&mut self, head: &Head, proof: Option<Proof>, now: Instant) -> Result<(), Refusal> {
+        let mut novelty = self.window.look(head.counter);
+        if novelty == Novelty::Jumped {
+            let is_new = self.jumped.zip(proof).is_some_and(|(jumped, proof)| proof.answered > jumped);
+            let anew = Window::beginning(head.counter.saturating_sub(1)).filter(|_| is_new);
+            let Some(window) = anew else {
+                self.jumped.get_or_insert(now);
+                return Err(Refusal::Jumped);
+            };
+            (self.window, self.jumped, novelty) = (window, None, Novelty::Newest);
+        }
+        if novelty == Novelty::Repeated {
+            return Err(Refusal::Repeated);
+        }
+        self.window.note(head.counter);
+        if novelty == Novelty::Newest {
+            (self.heard, self.echo) = (now, Echo { sent: head.sent, received: now.micros() });
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn at(ms: u64) -> Instant {
+        Instant::from_millis(ms)
+    }
+
+    fn key() -> Key {
+        Key::new([7; 32])
+    }
+
+    fn session(role: Role, nonce: u64) -> Session {
+        Session::new(role, &key(), nonce, 4)
+    }
+
+    fn sealed(from: &mut Session, kind: Kind, ms: u64) -> Vec<u8> {
+        let mut out = Vec::new();
+        from.seal(kind, b"body", at(ms), &mut out);
+        out
+    }
+
+    fn opened(by: &mut Session, bytes: &[u8], ms: u64) -> Result<Head, Refusal> {
+        by.open(bytes, at(ms)).map(|opened| {
+            assert_eq!(&bytes[opened.body], b"body");
+            opened.head
+        })
+    }
+
+    /// A gateway and a node that have answered each other at 1000 ms.
+    fn pair() -> (Session, Session) {
+        let (mut gateway, mut node) = (session(Role::Gateway, 1), session(Role::Node, 2));
+        meet(&mut gateway, &mut node, 1000);
+        (gateway, node)
+    }
+
+    fn meet(gateway: &mut Session, node: &mut Session, ms: u64) {
+        let beat = sealed(gateway, Kind::Gateway, ms);
+        assert_eq!(opened(node, &beat, ms), Err(Refusal::Unanswered));
+        let message = sealed(node, Kind::Node, ms);
+        assert!(opened(gateway, &message, ms).is_ok());
+        let beat = sealed(gateway, Kind::Gateway, ms);
+        assert!(opened(node, &beat, ms).is_ok());
+    }
+
+    #[test]
+    fn programs_that_answer_each_other_are_accepted_within_a_round_trip() {
+        let (gateway, node) = pair();
+        assert_eq!(gateway.refusals(), Refusals::default());
+        assert_eq!(
+            node.refusals(),
+            Refusals::default(),
+            "messages before the first answer are no longer counted"
+        );
+    }
+
+    #[test]
+    fn a_message_carries_the_receipt_of_the_one_that_it_answers() {
+        let (mut gateway, mut node) = pair();
+        let beat = sealed(&mut gateway, Kind::Gateway, 1040);
+        opened(&mut node, &beat, 9_041).unwrap_err();
+        let message = sealed(&mut node, Kind::Node, 9_045);
+        let Opened { head, echo, .. } = gateway.open(&message, at(1046)).unwrap();
+        assert_eq!((head.from, head.counter, head.sent), (2, 2, 9_045_000));
+        assert_eq!(echo, Some(Echo { sent: 1_040_000, received: 9_041_000 }));
+    }
+
+    // C6
+    #[test]
+    fn a_message_counts_once() {
+        let (mut gateway, mut node) = pair();
+        let message = sealed(&mut node, Kind::Node, 1010);
+        assert!(opened(&mut gateway, &message, 1011).is_ok());
+        assert_eq!(opened(&mut gateway, &message, 1012), Err(Refusal::Repeated));
+        assert_eq!(gateway.refusals().repeated, 1);
+    }
+
+    // C5
+    #[test]
+    fn a_message_with_another_key_is_forged() {
+        let (mut gateway, mut node) = pair();
+        let mut other = Session::new(Role::Node, &Key::new([8; 32]), 2, 4);
+        let mut forged = sealed(&mut other, Kind::Node, 1010);
+        assert_eq!(opened(&mut gateway, &forged, 1011), Err(Refusal::Forged));
+        forged = sealed(&mut node, Kind::Node, 1010);
+        // The counter: the next one, and the greatest.
+        for counter in [4_u64, u64::MAX] {
+            forged[12..20].copy_from_slice(&counter.to_be_bytes());
+            assert_eq!(opened(&mut gateway, &forged, 1011), Err(Refusal::Forged));
+        }
+        let message = sealed(&mut node, Kind::Node, 1012);
+        assert!(opened(&mut gateway, &message, 1013).is_ok(), "the forged counters have no effect");
+        assert_eq!(gateway.refusals(), Refusals { forged: 3, ..Refusals::default() });
+    }
+
+    // C6
+    #[test]
+    fn a_recording_is_worthless_after_the_receiver_s_next_start() {
+        let (_, mut node) = pair();
+        let recorded = sealed(&mut node, Kind::Node, 1010);
+        let mut gateway = session(Role::Gateway, 3);
+        for ms in [1011, 1012] {
+            assert!(opened(&mut gateway, &recorded, ms).is_err());
+        }
+        assert_eq!(gateway.refusals(), Refusals { unanswered: 1, repeated: 1, ..Refusals::default() });
+        // The node itself is accepted once it has answered.
+        let beat = sealed(&mut gateway, Kind::Gateway, 1020);
+        opened(&mut node, &beat, 1021).unwrap();
+        let message = sealed(&mut node, Kind::Node, 1022);
+        assert!(opened(&mut gateway, &message, 1023).is_ok());
+    }
+
+    // C6
+    #[test]
+    fn a_recording_is_worthless_after_the_sender_s_next_start() {
+        let (mut gateway, mut old) = pair();
+        let recorded: Vec<_> = (0..3).map(|_| sealed(&mut old, Kind::Node, 1010)).collect();
+        assert!(opened(&mut gateway, &recorded[1], 1011).is_ok());
+        let mut node = session(Role::Node, 3);
+        meet(&mut gateway, &mut node, 2000);
+        for message in &recorded {
+            assert_eq!(opened(&mut gateway, message, 2300), Err(Refusal::Stale));
+        }
+        let message = sealed(&mut node, Kind::Node, 2010);
+        assert!(opened(&mut gateway, &message, 2011).is_ok());
+    }
+
+    // C6
+    #[test]
+    fn a_message_that_is_held_back_is_stale() {
+        let (mut gateway, mut node) = pair();
+        let held_back: Vec<_> = (0..2).map(|_| sealed(&mut node, Kind::Node, 1010)).collect();
+        assert!(opened(&mut gateway, &held_back[0], 1250).is_ok(), "250 ms after the beat that it answers");
+        assert_eq!(opened(&mut gateway, &held_back[1], 1251), Err(Refusal::Stale));
+    }
+
+    /// Two neighbours that have answered each other at 1000 ms; the clock of the second is 70 s ahead.
+    fn neighbours() -> (Session, Session) {
+        let (mut west, mut east) = (session(Role::Neighbour, 1), session(Role::Neighbour, 2));
+        let note = sealed(&mut west, Kind::Note, 1000);
+        opened(&mut east, &note, 71_000).unwrap_err();
+        let note = sealed(&mut east, Kind::Note, 71_000);
+        opened(&mut west, &note, 1000).unwrap();
+        let note = sealed(&mut west, Kind::Note, 1000);
+        opened(&mut east, &note, 71_000).unwrap();
+        (west, east)
+    }
+
+    #[test]
+    fn a_packet_is_as_new_as_its_sender_s_last_note() {
+        let (mut west, mut east) = neighbours();
+        let packets: Vec<_> = (0..4).map(|_| sealed(&mut west, Kind::Packet, 1010)).collect();
+        assert!(opened(&mut east, &packets[0], 71_011).is_ok());
+        assert_eq!(opened(&mut east, &packets[0], 71_012), Err(Refusal::Repeated));
+        assert!(opened(&mut east, &packets[1], 71_250).is_ok(), "250 ms after what the last note answers");
+        assert_eq!(opened(&mut east, &packets[2], 71_251), Err(Refusal::Stale));
+        // An attacker holds the packet back and lets notes pass.
+        for ms in [1100, 1200, 1300] {
+            let note = sealed(&mut east, Kind::Note, 70_000 + ms);
+            opened(&mut west, &note, ms).unwrap();
+            let note = sealed(&mut west, Kind::Note, ms);
+            opened(&mut east, &note, 70_000 + ms).unwrap();
+        }
+        assert_eq!(opened(&mut east, &packets[3], 71_300), Err(Refusal::Stale), "290 ms old");
+        let packet = sealed(&mut west, Kind::Packet, 1300);
+        assert!(opened(&mut east, &packet, 71_301).is_ok());
+    }
+
+    // C5
+    #[test]
+    fn a_packet_without_a_note_before_it_is_rejected() {
+        let (_, mut east) = neighbours();
+        let mut stranger = session(Role::Neighbour, 3);
+        let packet = sealed(&mut stranger, Kind::Packet, 1010);
+        assert_eq!(opened(&mut east, &packet, 71_010), Err(Refusal::Unanswered));
+    }
+
+    #[test]
+    fn a_message_for_others_or_from_itself_is_rejected() {
+        let (mut gateway, mut node) = pair();
+        let beat = sealed(&mut gateway, Kind::Gateway, 1010);
+        assert_eq!(opened(&mut gateway, &beat, 1010), Err(Refusal::Malformed), "gateways receive from nodes");
+        let mut east = session(Role::Neighbour, 9);
+        let note = sealed(&mut east, Kind::Note, 1010);
+        assert_eq!(opened(&mut east, &note, 1010), Err(Refusal::Repeated), "its own");
+        assert_eq!(opened(&mut node, &note, 1010), Err(Refusal::Malformed));
+        assert_eq!(opened(&mut node, b"{}", 1010), Err(Refusal::Malformed));
+    }
+
+    // C5
+    #[test]
+    fn a_counter_that_jumps_locks_nobody_out() {
+        let (mut gateway, mut node) = pair();
+        let honest = node.clone();
+        for counter in [1 << 40, u64::MAX - 1] {
+            node.counter = counter;
+            let jump = sealed(&mut node, Kind::Node, 1010);
+            assert_eq!(opened(&mut gateway, &jump, 1011), Err(Refusal::Jumped));
+        }
+        node = honest;
+        let message = sealed(&mut node, Kind::Node, 1012);
+        assert!(opened(&mut gateway, &message, 1013).is_ok());
+    }
+
+    #[test]
+    fn a_counter_that_goes_on_beyond_a_jump_is_challenged_anew() {
+        let (mut gateway, mut node) = pair();
+        node.counter = 1 << 40;
+        for _ in 0..2 {
+            let jump = sealed(&mut node, Kind::Node, 1010);
+            assert_eq!(opened(&mut gateway, &jump, 1011), Err(Refusal::Jumped));
+        }
+        let beat = sealed(&mut gateway, Kind::Gateway, 1020);
+        opened(&mut node, &beat, 1020).unwrap();
+        let message = sealed(&mut node, Kind::Node, 1021);
+        assert!(opened(&mut gateway, &message, 1021).is_ok());
+        assert_eq!(opened(&mut gateway, &message, 1022), Err(Refusal::Repeated));
+    }
+
+    #[test]
+    fn a_sender_is_accepted_with_any_counter_after_a_pause() {
+        let (mut gateway, mut node) = pair();
+        node.counter = 1 << 40;
+        let beat = sealed(&mut gateway, Kind::Gateway, 60_000);
+        opened(&mut node, &beat, 60_000).unwrap_err();
+        let message = sealed(&mut node, Kind::Node, 60_001);
+        assert!(opened(&mut gateway, &message, 60_001).is_ok());
+    }
+
+    #[test]
+    fn recordings_of_many_old_starts_displace_no_sender() {
+        let (mut gateway, mut node) = pair();
+        for nonce in 100..200 {
+            let mut old = session(Role::Node, nonce);
+            let recorded = sealed(&mut old, Kind::Node, 1);
+            assert_eq!(opened(&mut gateway, &recorded, 1010), Err(Refusal::Unanswered));
+            assert!(gateway.peers.len() <= 4);
+        }
+        let message = sealed(&mut node, Kind::Node, 1011);
+        assert!(opened(&mut gateway, &message, 1011).is_ok());
+    }
+
+    #[derive(Clone, Debug)]
+    enum Step {
+        /// So many milliseconds pass.
+        Wait(u64),
+        /// The node or the gateway sends; the message arrives at once, or is held back.
+        Tell { by_node: bool, arrives: bool },
+        /// An attacker delivers a message, by its number, to the node or the gateway.
+        Deliver { number: usize, to_node: bool },
+        /// The node or the gateway starts again.
+        Restart { node: bool },
+    }
+
+    fn step() -> impl Strategy<Value = Step> {
+        prop_oneof![
+            (0_u64..120).prop_map(Step::Wait),
+            (any::<bool>(), any::<bool>()).prop_map(|(by_node, arrives)| Step::Tell { by_node, arrives }),
+            (any::<usize>(), any::<bool>()).prop_map(|(number, to_node)| Step::Deliver { number, to_node }),
+            any::<bool>().prop_map(|node| Step::Restart { node }),
+        ]
+    }
+
+    proptest! {
+        /// An attacker on the way holds messages back, repeats and reorders them, over any restarts.
+        #[test]
+        fn each_message_counts_once_and_within_250_ms(steps in prop::collection::vec(step(), 1..200)) {
+            let mut ends = [session(Role::Gateway, 1), session(Role::Node, 2)];
+            let mut nonce = 2;
+            let mut now = 1000;
+            // Bytes and time of each message.
+            let mut sent: Vec<(Vec<u8>, u64)> = Vec::new();
+            let mut accepted: Vec<usize> = Vec::new();
+            for step in steps {
+                let delivery = match step {
+                    Step::Wait(ms) => {
+                        now += ms;
+                        None
+                    }
+                    Step::Tell { by_node, arrives } => {
+                        let kind = if by_node { Kind::Node } else { Kind::Gateway };
+                        sent.push((sealed(&mut ends[usize::from(by_node)], kind, now), now));
+                        arrives.then_some((sent.len() - 1, !by_node))
+                    }
+                    Step::Deliver { number, to_node } => {
+                        (!sent.is_empty()).then(|| (number % sent.len(), to_node))
+                    }
+                    Step::Restart { node } => {
+                        nonce += 1;
+                        let role = if node { Role::Node } else { Role::Gateway };
+                        ends[usize::from(node)] = session(role, nonce);
+                        None
+                    }
+                };
+                if let Some((number, to_node)) = delivery {
+                    let (bytes, sent_at) = &sent[number];
+                    if opened(&mut ends[usize::from(to_node)], bytes, now).is_ok() {
+                        prop_assert!(!accepted.contains(&number), "twice");
+                        prop_assert!(now - sent_at <= 250, "{} ms old", now - sent_at);
+                        accepted.push(number);
+                    }
+                }
+            }
+        }
+    }
+}

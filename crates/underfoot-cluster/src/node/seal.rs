@@ -1,0 +1,96 @@
+//! Datagrams between neighbours: packets of boards and notes, in envelopes of [`crate::auth`].
+
+use std::fmt;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::mpsc::SyncSender;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use underfoot::source::{Seal, Sealed};
+use underfoot::units::HostClock;
+
+use super::border::ReceivedNote;
+use crate::auth::{Kind, Opened, Refusals, Session};
+
+/// The session of a node with its neighbours, on the node's clock. Clones are the same session.
+#[derive(Clone)]
+pub struct NeighbourSession {
+    session: Arc<Mutex<Session>>,
+    clock: HostClock,
+}
+
+impl fmt::Debug for NeighbourSession {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("NeighbourSession").finish_non_exhaustive()
+    }
+}
+
+impl NeighbourSession {
+    /// `session` on `clock`.
+    #[must_use]
+    pub fn new(session: Session, clock: HostClock) -> Self {
+        Self { session: Arc::new(Mutex::new(session)), clock }
+    }
+
+    fn locked(&self) -> MutexGuard<'_, Session> {
+        self.session.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Writes `note` in an envelope into `out`, whose content it replaces.
+    pub fn seal_note(&self, note: &[u8], out: &mut Vec<u8>) {
+        self.locked().seal(Kind::Note, note, (self.clock)(), out);
+    }
+
+    /// Number of rejected datagrams so far, by reason.
+    #[must_use]
+    pub fn refusals(&self) -> Refusals {
+        self.locked().refusals()
+    }
+}
+
+/// Seals packets for neighbours, opens theirs, and passes their notes on.
+#[derive(Debug)]
+pub struct NeighbourSeal {
+    session: NeighbourSession,
+    notes: SyncSender<ReceivedNote>,
+    sealed: Vec<u8>,
+    dropped: Arc<AtomicU64>,
+}
+
+impl NeighbourSeal {
+    /// A seal that passes notes to `notes`; if that is full, they are dropped and counted.
+    #[must_use]
+    pub fn new(session: NeighbourSession, notes: SyncSender<ReceivedNote>) -> Self {
+        Self { session, notes, sealed: Vec::new(), dropped: Arc::default() }
+    }
+
+    /// Number of dropped notes so far.
+    #[must_use]
+    pub fn dropped(&self) -> Arc<AtomicU64> {
+        Arc::clone(&self.dropped)
+    }
+}
+
+impl Seal for NeighbourSeal {
+    fn seal(&mut self, message: &[u8]) -> &[u8] {
+        let NeighbourSession { session, clock } = &self.session;
+        let mut session = session.lock().unwrap_or_else(PoisonError::into_inner);
+        session.seal(Kind::Packet, message, clock(), &mut self.sealed);
+        &self.sealed
+    }
+
+    fn open(&mut self, datagram: &[u8]) -> Sealed {
+        let now = (self.session.clock)();
+        let opened = self.session.locked().open(datagram, now);
+        match opened {
+            Ok(Opened { kind: Kind::Packet, body, .. }) => Sealed::Forwarded(body),
+            Ok(Opened { kind: Kind::Note, head, echo, body }) => {
+                let body = datagram.get(body).unwrap_or_default().to_vec();
+                if self.notes.try_send(ReceivedNote { head, echo, body }).is_err() {
+                    self.dropped.fetch_add(1, Ordering::Relaxed);
+                }
+                Sealed::Taken
+            }
+            Ok(_) | Err(_) => Sealed::Refused,
+        }
+    }
+}

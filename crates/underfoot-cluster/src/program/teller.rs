@@ -1,0 +1,147 @@
+//! The thread of a node that sends its messages, and the orders that it follows.
+
+use std::sync::mpsc::{Receiver, RecvTimeoutError};
+use std::sync::{Arc, Mutex};
+use std::time::{Duration, Instant as HostInstant};
+
+use underfoot::runtime::Session;
+use underfoot::serve::Command;
+use underfoot::units::{HostClock, Instant};
+use underfoot::wire::ControlMessage;
+use underfoot_cluster::auth::{Kind as AuthKind, Session as AuthSession};
+use underfoot_cluster::message::{NodeMessage, NodeValue, encode};
+use underfoot_cluster::node::{Action, Draft, Guard, NeighbourSession, Reason};
+use underfoot_cluster::transport::Transport;
+
+use super::locked;
+use super::notices::Notices;
+use super::refused::RefusalNotices;
+use super::worker::Worker;
+
+/// Nouns of reports about rejected messages.
+pub(super) const MESSAGES: &str = "messages of gateways";
+pub(super) const DATAGRAMS: &str = "datagrams of neighbours";
+
+/// Time between two tellings of all values, with which a gateway compares what it knows.
+const VALUES_EVERY: Duration = Duration::from_millis(500);
+
+/// How often is looked whether gateways are silent.
+const PATIENCE: Duration = Duration::from_millis(20);
+
+/// Does what the guard says.
+pub(super) struct Commander {
+    pub(super) session: Session,
+    pub(super) notices: Notices,
+}
+
+impl Commander {
+    pub(super) fn apply(&self, action: Action) {
+        let (commands, notice): (&[ControlMessage], &str) = match action {
+            Action::Heard => (&[], "The gateway hears this node."),
+            Action::Cancel(Reason::Late) => (
+                &[ControlMessage::CancelAll],
+                "The gateway got nothing new for 100 ms: what was held is cancelled.",
+            ),
+            Action::Cancel(Reason::Silent) => {
+                (&[ControlMessage::CancelAll], "The gateway is silent: what was held is cancelled.")
+            }
+            Action::Mute => (
+                &[ControlMessage::CancelAll, ControlMessage::Mute { on: true }],
+                "Another node serves this area too: neither is believed, and nothing is felt. Stop one of them.",
+            ),
+            Action::Unmute => {
+                (&[ControlMessage::Mute { on: false }], "The other node has stopped: this one works again.")
+            }
+            _ => return,
+        };
+        self.notices.say(notice);
+        // A floor that has ended holds nothing.
+        commands.iter().for_each(|command| _ = self.session.send(Command::Control(command.clone())));
+    }
+}
+
+/// Sends what happens, for as long as anything does.
+pub(super) struct Teller {
+    /// What all messages have in common.
+    pub(super) head: NodeMessage,
+    pub(super) transport: Transport,
+    pub(super) session: Arc<Mutex<AuthSession>>,
+    pub(super) neighbours: NeighbourSession,
+    /// About messages of gateways and datagrams of neighbours.
+    pub(super) refused: [RefusalNotices; 2],
+    pub(super) guard: Arc<Mutex<Guard>>,
+    pub(super) clock: HostClock,
+    pub(super) commander: Commander,
+    pub(super) worker: Worker,
+    pub(super) unsent: u64,
+}
+
+impl Teller {
+    /// Works until the floor has ended; how many messages could not be sent.
+    pub(super) fn run(mut self, drafts: &Receiver<Draft>) -> u64 {
+        let mut values_told: Option<HostInstant> = None;
+        loop {
+            match drafts.recv_timeout(PATIENCE) {
+                Ok(draft) => {
+                    let is_due = values_told.is_none_or(|told| told.elapsed() >= VALUES_EVERY);
+                    let values = is_due.then(|| self.values());
+                    if is_due {
+                        values_told = Some(HostInstant::now());
+                    }
+                    self.send(draft, values);
+                }
+                Err(RecvTimeoutError::Timeout) => {}
+                Err(RecvTimeoutError::Disconnected) => return self.unsent,
+            }
+            let now = (self.clock)();
+            self.worker.change(now);
+            let actions = locked(&self.guard).tick(now);
+            actions.into_iter().for_each(|action| self.commander.apply(action));
+            self.report_refusals(now);
+        }
+    }
+
+    fn report_refusals(&mut self, now: Instant) {
+        let refusals =
+            [(locked(&self.session).refusals(), MESSAGES), (self.neighbours.refusals(), DATAGRAMS)];
+        for (notices, (refusals, noun)) in self.refused.iter_mut().zip(refusals) {
+            let due = notices.look(refusals, noun, now);
+            due.into_iter().for_each(|notice| self.commander.notices.say(notice));
+        }
+    }
+
+    fn send(&mut self, draft: Draft, values: Option<Vec<(String, NodeValue)>>) {
+        let NodeMessage { frame, silent, contacts, earlier, first_event, events, held, page, .. } =
+            draft.message();
+        let (layout, answers) = self.worker.report();
+        let message = NodeMessage {
+            frame,
+            silent,
+            contacts,
+            earlier,
+            first_event,
+            events,
+            held,
+            values,
+            page,
+            answers,
+            layout,
+            ..self.head.clone()
+        };
+        let (body, mut sealed) = (encode(&message), Vec::new());
+        // Last, so that nothing but the way of the message follows the time in it.
+        locked(&self.session).seal(AuthKind::Node, &body, (self.clock)(), &mut sealed);
+        if !self.transport.send(sealed) {
+            self.unsent += 1;
+        }
+    }
+
+    /// What the controls hold that no foot holds.
+    fn values(&self) -> Vec<(String, NodeValue)> {
+        let snapshot = self.commander.session.snapshot();
+        let all = snapshot.layout.widgets.iter().zip(&snapshot.floor.widgets);
+        let free = all.filter(|(widget, _)| !snapshot.floor.held.contains(&widget.id));
+        free.filter_map(|(widget, state)| Some((widget.id.as_str().to_owned(), state.value?.into())))
+            .collect()
+    }
+}
