@@ -187,7 +187,8 @@ impl Server {
     /// What came in and what was refused, from the socket to the frames.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
-        let own = LinkCounters { denied: self.answers.denied, ..LinkCounters::default() };
+        let Answers { denied, cleaned, .. } = self.answers;
+        let own = LinkCounters { denied, cleaned, ..LinkCounters::default() };
         self.source.counters() + self.assembler.counters() + own
     }
 
@@ -332,6 +333,7 @@ impl Server {
 
     /// Renews the snapshot whatever its age.
     pub(crate) fn show_now(&mut self) {
+        self.tell_everything();
         self.is_stale = true;
         self.show(self.source.now());
     }

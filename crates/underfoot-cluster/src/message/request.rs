@@ -3,6 +3,7 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Argument;
 use underfoot::engine::{ControlState, ValueRange};
+use underfoot::label::{MAX_LABEL, cleaned};
 use underfoot::widget::{Indicator, Scale, WidgetId};
 use underfoot::wire::{ControlMessage, read_json, write_json};
 
@@ -101,18 +102,21 @@ impl From<&ControlState> for NodeState {
 }
 
 impl NodeState {
-    /// The state as outputs take it.
+    /// The state as outputs take it. Names and labels lose what no label may hold.
     #[must_use]
     pub fn state(&self) -> ControlState {
+        let text = |text: &str| cleaned(text, MAX_LABEL).into_owned();
         let scale = |[min, max, step, detent]: [f32; 4]| Scale { min, max, step, detent };
         let range = self.range.as_ref().map(|range| match range {
             NodeRange::Number(numbers) => ValueRange::Number(scale(*numbers)),
             NodeRange::Pair(x, y) => ValueRange::Pair(scale(*x), scale(*y)),
-            NodeRange::Choices(choices) => ValueRange::Choices(choices.clone()),
+            NodeRange::Choices(choices) => {
+                ValueRange::Choices(choices.iter().map(|choice| text(choice)).collect())
+            }
         });
         let indicator = Indicator::ALL.into_iter().find(|one| one.name() == self.indicator);
         ControlState {
-            id: WidgetId::new(&self.id),
+            id: WidgetId::new(&text(&self.id)),
             value: self.value.and_then(NodeValue::value),
             range,
             enabled: self.enabled,
@@ -120,8 +124,8 @@ impl NodeState {
             pressed: self.pressed,
             armed: self.armed,
             indicator: indicator.unwrap_or_default(),
-            label: self.label.clone(),
-            page: self.page.as_deref().map(WidgetId::new),
+            label: text(&self.label),
+            page: self.page.as_deref().map(|page| WidgetId::new(&text(page))),
         }
     }
 }
