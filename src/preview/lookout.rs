@@ -145,6 +145,7 @@ fn differ(one: &Snapshot, other: &Snapshot) -> bool {
         || one.ranges != other.ranges
         || one.held != other.held
         || one.health.counts != other.health.counts
+        || one.link_cause != other.link_cause
         || one.health.troubles.len() != other.health.troubles.len()
         || one.ignored.last() != other.ignored.last()
         || one.answered.last() != other.answered.last()

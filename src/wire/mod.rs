@@ -5,6 +5,7 @@
 //! back, for simulated boards.
 
 mod argument;
+mod cause;
 mod command;
 #[cfg(any(feature = "internals", test))]
 pub mod corrupt;
@@ -21,6 +22,8 @@ mod prefix;
 mod sensor_message;
 mod split;
 
+pub(crate) use cause::guess_format;
+pub use cause::{BOARD_RATES_HZ, LinkCause};
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
 pub use link::LinkState;

@@ -27,4 +27,5 @@ mod service;
 mod soak;
 mod storage;
 mod web;
+mod strange_boards;
 mod wiring;

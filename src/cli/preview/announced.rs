@@ -9,7 +9,7 @@ use underfoot::layout::Layout;
 use underfoot::preview::{LayoutCause, LayoutNews, Warnings};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
-use underfoot::wire::{LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 /// A recording or a server's floor, that tells the window of layouts that came later.
 pub(super) struct AnnouncingSource<S> {
@@ -68,3 +68,7 @@ impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
         self.source.counters()
     }
 }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.source.last_refused()
+    }

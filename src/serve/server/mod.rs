@@ -22,6 +22,7 @@ use self::link::LinkWatch;
 use self::outputs::Outputs;
 use self::requests::Answers;
 use self::sensors::SensorWatch;
+use super::cause::{CauseWatch, Facts};
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
@@ -100,6 +101,7 @@ pub struct Server {
     seen: Instant,
     /// When the snapshot was last renewed.
     shown: Instant,
+    causes: CauseWatch,
     /// Whether it must be, although no frame may come.
     is_stale: bool,
 }
@@ -127,6 +129,7 @@ impl Server {
             is_stale: false,
         }
     }
+            causes: CauseWatch::new(floor.boards.iter().map(|board| board.address.clone())),
 
     /// Begins the addresses of its answers with `prefix`; its source and sinks have prefixes of their own.
     #[must_use]
@@ -217,6 +220,7 @@ impl Server {
         snapshot.muted.clone_from(self.haptics.muted());
         snapshot.feel = self.feel_counters();
         snapshot.unsent_events = self.unsent_events();
+        snapshot.link_cause = self.causes.cause().cloned();
     }
 
     /// Works until the source ends or fails or `stop` is set, which is noticed within some milliseconds;
@@ -258,6 +262,7 @@ impl Server {
                 self.assembler.poll(now);
                 self.haptics.play_until(now.before(IDLE_LAG));
                 is_silent = true;
+                self.causes.note(&packet);
             }
             Err(SourceError::Ended) => {
                 self.cancel_all();
@@ -291,6 +296,7 @@ impl Server {
         self.outputs.step(&step, at);
         self.haptics.play_until(at + FRAME);
         self.show(at);
+        self.causes.note_frame(frame, !step.contacts.is_empty(), self.source.now());
         true
     }
 
@@ -321,7 +327,8 @@ impl Server {
             self.outputs.report(Report::Device(now, status));
         }
         let (counters, link) = (self.counters(), self.link.state());
-        if let Some(health) = self.sensors.health_news(&self.assembler, &counters, link, now) {
+        self.note_cause(&counters, now);
+        if let Some(health) = self.sensors.health_news(&self.assembler, link, now) {
             self.outputs.report(Report::Health(now, health));
         }
     }
@@ -334,6 +341,18 @@ impl Server {
     /// Renews the snapshot whatever its age.
     pub(crate) fn show_now(&mut self) {
         self.tell_everything();
+    /// Reports the cause for which no frame can be used, where that has changed.
+    fn note_cause(&mut self, counters: &LinkCounters, now: Instant) {
+        let (link, refused) = (self.link.state(), self.source.last_refused());
+        let facts = Facts { assembler: &self.assembler, link, counters, refused };
+        if self.causes.update(&facts, now) {
+            let cause = self.causes.cause();
+            self.link.note_cause(cause, now);
+            self.outputs.report(Report::LinkCause(now, cause));
+            self.is_stale = true;
+        }
+    }
+
         self.is_stale = true;
         self.show(self.source.now());
     }

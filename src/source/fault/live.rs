@@ -8,7 +8,10 @@ use super::{FaultInjector, Faults};
 use crate::floor::SensorId;
 use crate::sim::SensorFault;
 use crate::units::Instant;
-use crate::wire::{LinkCounters, SensorPacket};
+use crate::wire::{LinkCause, LinkCounters, SensorPacket};
+
+/// Changes that may wait for the simulated floor, which takes them each millisecond.
+const CHANGES_WAITING: usize = 256;
 
 /// Switches the faults of a [`RehearsalSource`] from elsewhere.
 #[derive(Clone, Debug)]
@@ -75,6 +78,10 @@ impl SensorSource for RehearsalSource {
 
     fn counters(&self) -> LinkCounters {
         self.injector.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.injector.last_refused()
     }
 }
 

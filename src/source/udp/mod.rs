@@ -29,7 +29,9 @@ use super::{SensorSource, SourceError};
 use crate::floor::{Floor, Forwarding, Network};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, Decoder, Limits, LinkCounters, Prefix, Request, SensorPacket, WireError};
+use crate::wire::{
+    Batch, Decoder, Limits, LinkCause, LinkCounters, Prefix, Request, SensorPacket, WireError, guess_format,
+};
 
 /// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
@@ -40,6 +42,9 @@ const MAX_UNWAITED: usize = 64;
 /// How often requests on their own port are looked for, and most that are examined then.
 const REQUESTS_EVERY: Duration = Duration::from_millis(1);
 const MAX_REQUESTS: usize = 32;
+
+/// How long the last refusal of something from boards is kept although requests are refused.
+const KEPT_REFUSAL: Duration = Duration::from_secs(1);
 
 /// How often the kernel is asked how many datagrams it dropped.
 const DROPS_EVERY: Duration = Duration::from_secs(1);
@@ -80,6 +85,8 @@ pub struct UdpSource {
     drops_read: Instant,
     kernel_drops: u64,
     log: RefusalLog,
+    /// The last refusal by its cause, and when it was noted.
+    last_refused: Option<(LinkCause, Instant)>,
 }
 
 impl UdpSource {
@@ -122,6 +129,7 @@ impl UdpSource {
             drops_read: Instant::START,
             kernel_drops: 0,
             log: RefusalLog::default(),
+            last_refused: None,
         })
     }
 
@@ -268,36 +276,39 @@ impl UdpSource {
     fn sort(&mut self, sender: SocketAddr, length: usize, on_own_port: bool, now: Instant) {
         self.counters.datagrams += 1;
         if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
-            refusal.count(&mut self.counters);
-            return self.log.not_admitted(now, sender, refusal);
+            return self.turn_away(sender, refusal, now);
         }
         let datagram = self.buffer.get(..length).unwrap_or_default();
         // OSC begins with a slash or a hash.
         if let Some(notes) = self.notes.as_ref().filter(|_| datagram.starts_with(b"{")) {
             if on_own_port || !self.admission.is_board(sender.ip()) {
-                Refusal::Foreign.count(&mut self.counters);
-                return self.log.not_admitted(now, sender, Refusal::Foreign);
+                return self.turn_away(sender, Refusal::Foreign, now);
             }
             if notes.try_send(datagram.to_vec()).is_err() {
                 self.counters.overflowed += 1;
             }
             return;
         }
-        let decoded = self.decoder.decode(datagram, self.received, &mut self.batch);
-        let wait = match decoded.and_then(|()| self.wait()) {
-            Ok(wait) => wait,
-            Err(error) => {
-                error.count(&mut self.counters);
-                self.log.refused(now, sender, &error);
-                return self.answer_refusal(sender, on_own_port, &error, now);
+        if let Err(error) = self.decoder.decode(datagram, self.received, &mut self.batch) {
+            if let WireError::Malformed(_) = error {
+                let why = guess_format(datagram).map_or_else(|| error.to_string(), str::to_owned);
+                self.note_refused(LinkCause::NotOsc { why }, now);
             }
-        };
-        if let Err(refusal) = self.admission.batch(sender, on_own_port, &self.batch, now) {
-            refusal.count(&mut self.counters);
-            return self.log.not_admitted(now, sender, refusal);
+            return self.refuse(sender, on_own_port, &error, now);
         }
-        if let Some(forwarder) = self.forwarder.as_ref().filter(|_| !self.batch.packets.is_empty()) {
-            forwarder.forward(datagram, now.since(self.received));
+        let wait = self.wait().unwrap_or_else(|error| {
+            // Only requests wait: the packets beside them are used.
+            self.batch.controls.clear();
+            self.batch.refused.push(error);
+            Duration::ZERO
+        });
+        self.refuse_parts(sender, on_own_port, now);
+        let refusals = self.admission.batch(sender, on_own_port, &mut self.batch, now);
+        let is_whole = refusals.is_empty();
+        refusals.into_iter().for_each(|refusal| self.turn_away(sender, refusal, now));
+        let forwarder = self.forwarder.as_ref().filter(|_| is_whole && !self.batch.packets.is_empty());
+        if let Some(forwarder) = forwarder {
+            forwarder.forward(self.buffer.get(..length).unwrap_or_default(), now.since(self.received));
         }
         self.packets.extend(self.batch.packets.drain(..));
         let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
@@ -309,6 +320,62 @@ impl UdpSource {
             } else {
                 self.timed.push(now + wait, request);
             }
+        }
+    }
+
+    /// Counts and logs what may not come from `sender`.
+    fn turn_away(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
+        refusal.count(&mut self.counters);
+        self.log.not_admitted(now, sender, refusal);
+        let why = || format!("{}: {refusal}", sender.ip().to_canonical());
+        match refusal {
+            Refusal::Foreign | Refusal::Packets | Refusal::Elsewhere(..) => {
+                self.note_refused(LinkCause::SenderRefused { why: why() }, now);
+            }
+            Refusal::Requests | Refusal::TooMany => {
+                self.note_refused(LinkCause::Unknown { last_refused: why() }, now);
+            }
+        }
+    }
+
+    /// Counts and logs a refused datagram or message, and answers its sender if that asked something of this floor.
+    fn refuse(&mut self, sender: SocketAddr, on_own_port: bool, error: &WireError, now: Instant) {
+        error.count(&mut self.counters);
+        if let Some(cause) = self.decoder.cause_of(error) {
+            self.note_refused(cause, now);
+        }
+        self.log.refused(now, sender, error);
+        self.answer_refusal(sender, on_own_port, error, now);
+    }
+
+    /// Refuses the messages of the batch that are not used. Those for other receivers are skipped where the rest of
+    /// their bundle is used.
+    fn refuse_parts(&mut self, sender: SocketAddr, on_own_port: bool, now: Instant) {
+        let mut refused = std::mem::take(&mut self.batch.refused);
+        let is_used = self.batch.is_used();
+        for error in refused.drain(..) {
+            match &error {
+                WireError::UnknownAddress { address, .. }
+                    if is_used && self.decoder.is_answered(&error).is_none() =>
+                {
+                    self.counters.skipped += 1;
+                    self.log.skipped(now, sender, address);
+                }
+                _ => self.refuse(sender, on_own_port, &error, now),
+            }
+        }
+        // Kept for its room.
+        self.batch.refused = refused;
+    }
+
+    /// Keeps the cause of a refusal. Those of requests don't take the place of what was refused of boards lately.
+    fn note_refused(&mut self, cause: LinkCause, now: Instant) {
+        let is_of_boards = |cause: &LinkCause| !matches!(cause, LinkCause::Unknown { .. });
+        let keeps = self.last_refused.as_ref().is_some_and(|(last, at)| {
+            is_of_boards(last) && !is_of_boards(&cause) && now.since(*at) < KEPT_REFUSAL
+        });
+        if !keeps {
+            self.last_refused = Some((cause, now));
         }
     }
 
@@ -404,6 +471,10 @@ impl SensorSource for UdpSource {
             let now = Instant::START + self.started.elapsed();
             self.log.unanswered(now, to, &error);
         }
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.last_refused.as_ref().map(|(cause, _)| cause.clone())
     }
 
     fn counters(&self) -> LinkCounters {
