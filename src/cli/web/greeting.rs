@@ -22,7 +22,7 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
     {
         floor.tare = tare;
     }
-    Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.takes_layouts)
+    Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.checks.is_some())
 }
 
 /// The floor and its controls as a line.
