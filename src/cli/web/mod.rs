@@ -168,13 +168,14 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
     while !shared.over.load(Ordering::Relaxed) {
         match listener.accept() {
             Ok((stream, peer)) => {
-                if let Some(why) = rooms.why_not(peer.ip()) {
+                let now = Instant::now();
+                if let Some(why) = rooms.why_not(peer.ip(), now) {
                     refusals.refuse(stream, why);
                     continue;
                 }
                 let own = Arc::clone(shared);
                 match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
-                    Ok(room) => rooms.take(peer.ip(), room),
+                    Ok(room) => rooms.take(peer.ip(), room, now),
                     Err(error) => warn!("a web client can't be served: {error}"),
                 }
             }

@@ -1,9 +1,10 @@
 //! Places for clients: how many at once, how many of one address, and one for this machine.
 
+use std::collections::VecDeque;
 use std::net::{IpAddr, Ipv6Addr, TcpStream};
 use std::sync::mpsc::{SyncSender, sync_channel};
 use std::thread::{Builder, JoinHandle};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use tracing::warn;
 
@@ -21,27 +22,45 @@ const WAITING: usize = 16;
 /// How long one that is turned away may take to read why.
 const PATIENCE: Duration = Duration::from_millis(100);
 
+/// Most clients that come in a second, of one address and in all: each is told the whole floor first, which takes some
+/// milliseconds.
+const MOST_A_SECOND: usize = 32;
+const MOST_OF_ALL_A_SECOND: usize = 64;
+const SECOND: Duration = Duration::from_secs(1);
+
 /// The clients that are in.
 #[derive(Default)]
-pub(super) struct Rooms(Vec<(IpAddr, JoinHandle<()>)>);
+pub(super) struct Rooms {
+    taken: Vec<(IpAddr, JoinHandle<()>)>,
+    /// Those that were let in within the last second, and when.
+    came: VecDeque<(IpAddr, Instant)>,
+}
 
 impl Rooms {
-    /// Why a client from `ip` is not let in, if that is so.
-    pub(super) fn why_not(&mut self, ip: IpAddr) -> Option<&'static str> {
-        self.0.retain(|(_, room)| !room.is_finished());
-        let taken: Vec<IpAddr> = self.0.iter().map(|(ip, _)| *ip).collect();
+    /// Why a client from `ip` is not let in at `now`, if that is so.
+    pub(super) fn why_not(&mut self, ip: IpAddr, now: Instant) -> Option<&'static str> {
+        self.taken.retain(|(_, room)| !room.is_finished());
+        while self.came.pop_front_if(|(_, came)| now.duration_since(*came) >= SECOND).is_some() {}
+        let of_this = self.came.iter().filter(|(other, _)| network(*other) == network(ip)).count();
+        // Others take none of what this machine may.
+        let is_crowd = self.came.len() >= MOST_OF_ALL_A_SECOND && !ip.to_canonical().is_loopback();
+        if of_this >= MOST_A_SECOND || is_crowd {
+            return Some("too many clients at once: come again in a second");
+        }
+        let taken: Vec<IpAddr> = self.taken.iter().map(|(ip, _)| *ip).collect();
         why_not(ip, &taken)
     }
 
-    /// Lets a client in, which is served by `room`.
-    pub(super) fn take(&mut self, ip: IpAddr, room: JoinHandle<()>) {
-        self.0.push((ip, room));
+    /// Lets a client in that came at `now`, and is served by `room`.
+    pub(super) fn take(&mut self, ip: IpAddr, room: JoinHandle<()>, now: Instant) {
+        self.taken.push((ip, room));
+        self.came.push_back((ip, now));
     }
 
     /// Waits until all have gone.
     pub(super) fn wait(self) {
         // A thread that panicked has said so.
-        self.0.into_iter().for_each(|(_, room)| drop(room.join()));
+        self.taken.into_iter().for_each(|(_, room)| drop(room.join()));
     }
 }
 
@@ -105,6 +124,24 @@ mod tests {
 
     fn elsewhere(number: u8) -> IpAddr {
         [192, 168, 1, number].into()
+    }
+
+    #[test]
+    fn a_page_that_connects_again_and_again_is_let_in_so_often() {
+        let (mut rooms, begun) = (Rooms::default(), Instant::now());
+        let mut let_in = 0;
+        for ms in 0..5000 {
+            let now = begun + Duration::from_millis(ms);
+            if rooms.why_not(HERE, now).is_none() {
+                let room = std::thread::spawn(|| {});
+                while !room.is_finished() {
+                    std::thread::yield_now();
+                }
+                rooms.take(HERE, room, now);
+                let_in += 1;
+            }
+        }
+        assert_eq!(let_in, 5 * MOST_A_SECOND);
     }
 
     #[test]
