@@ -100,6 +100,10 @@ pub mod feel;
 pub mod floor;
 mod format;
 pub mod ground;
+#[cfg(feature = "internals")]
+pub mod label;
+#[cfg(not(feature = "internals"))]
+mod label;
 pub mod layout;
 #[cfg(feature = "record")]
 pub mod mirror;

@@ -28,12 +28,17 @@ impl RateLimit {
     ///
     /// A clock that goes back gives no tokens.
     pub(crate) fn take(&mut self, now: Instant) -> Option<u64> {
+        self.take_many(now, 1)
+    }
+
+    /// The same for something that costs as much as `count` others. More than the burst may happen once that is whole.
+    pub(crate) fn take_many(&mut self, now: Instant, count: u32) -> Option<u64> {
         let spent = self.full_at.since(now);
-        if spent > self.every * self.burst.saturating_sub(1) {
+        if spent > self.every * self.burst.saturating_sub(count) {
             self.held_back += 1;
             return None;
         }
-        self.full_at = self.full_at.max(now) + self.every;
+        self.full_at = self.full_at.max(now) + self.every * count;
         Some(std::mem::take(&mut self.held_back))
     }
 }
@@ -50,6 +55,18 @@ mod tests {
         assert_eq!(limit.take(Instant::from_millis(10_499)), None);
         assert_eq!(limit.take(Instant::from_millis(10_500)), Some(3));
         assert_eq!(limit.take(Instant::from_millis(10_501)), None);
+    }
+
+    #[test]
+    fn what_costs_more_may_happen_less_often() {
+        let mut limit = RateLimit::new(100, Duration::from_millis(1));
+        let passed = |limit: &mut RateLimit, ms| limit.take_many(Instant::from_millis(ms), 40).is_some();
+        assert_eq!([(); 3].map(|()| passed(&mut limit, 500)), [true, true, false]);
+        assert!(!passed(&mut limit, 519) && passed(&mut limit, 520));
+        let mut large = RateLimit::new(10, Duration::from_millis(1));
+        assert!(large.take_many(Instant::from_millis(500), 1000).is_some());
+        assert!(large.take_many(Instant::from_millis(1499), 1000).is_none());
+        assert!(large.take_many(Instant::from_millis(1500), 1000).is_some());
     }
 
     #[test]

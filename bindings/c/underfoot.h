@@ -53,6 +53,8 @@ enum {
     UF_MUTE = 7,    /* something else is muted */
     UF_CRACK = 8,   /* a ground cracked at `x_m`, `y_m` */
     UF_END = 9,     /* the last event: `text` is "stopped", "source_ended", or "failed: ..." or "panicked: ..." */
+    UF_LINK_CAUSE = 10, /* why boards that send give no usable frame: `text` is a name that never changes, a colon and a
+                         * sentence, such as "rate_low: board 0 sends ..."; "" when it is over */
     UF_OTHER = 100  /* something that this header has no number for; `name` has the word */
 };
 
@@ -83,7 +85,7 @@ typedef struct uf_event {
     double t_s;              /* on the floor's sample clock */
     char id[UF_ID_SIZE];     /* of the control or page; "" if it is about the floor */
     char name[UF_NAME_SIZE]; /* the word for what happened, as in JSON lines */
-    char text[UF_TEXT_SIZE]; /* of a link and of the end; "" otherwise */
+    char text[UF_TEXT_SIZE]; /* of a link, of its cause and of the end; "" otherwise */
     uint32_t value_type;     /* UF_NOTHING ... */
     float value[2];
     float force_n;
@@ -132,6 +134,10 @@ int uf_get(const uf_session *session, const char *id, uf_value *value);
 /* The feet on the floor: writes as many as `capacity` into `contacts`, elements of `element_size` bytes, which is
  * sizeof(uf_contact), and answers how many there are; negative on failure. */
 int uf_contacts(const uf_session *session, uf_contact *contacts, size_t capacity, size_t element_size);
+
+/* Why boards that send give no usable frame, or why no load was ever seen, as the text of UF_LINK_CAUSE, cut to `size`
+ * bytes with the closing 0; "" if all is well or nothing is sent. Answers UF_OK or UF_BAD_ARGUMENT. */
+int uf_link_cause(const uf_session *session, char *text, size_t size);
 
 /* Events that were dropped because nobody took them. */
 uint64_t uf_dropped(const uf_session *session);

@@ -3,7 +3,6 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::AtomicU64;
-use std::sync::mpsc::Sender;
 use std::time::Duration;
 
 use underfoot::feel::{CueSender, Renderer, RendererConfig, renderer};
@@ -121,14 +120,13 @@ impl ActuateArgs {
         latency: LatencyStages,
         lost: Arc<AtomicU64>,
         prepare: impl FnMut(&mut Renderer) + Send + 'static,
-        notice: Sender<String>,
+        notice: impl FnOnce(String) + Send + 'static,
     ) -> impl FnOnce(&Floor, Instant, &HostClock) -> Result<Actuators, SinkError> + Send + 'static {
         let args = self.clone();
         move |floor, start, clock| {
             let Actuation { feel, sink, notice: text } =
                 args.start(floor, start, clock, latency, &lost, prepare)?;
-            // Who no longer listens need not know.
-            let _ = notice.send(text);
+            notice(text);
             Ok(Actuators { feel, sink })
         }
     }

@@ -55,7 +55,9 @@ fn keep(session: &Session, ended: &Receiver<()>, listen: SocketAddr) {
     while let Err(RecvTimeoutError::Timeout) = ended.recv_timeout(EVERY) {
         let (now, seen) = (Instant::now(), session.snapshot().floor);
         let arriving = rate.update(now, seen.counters.packets);
-        if let Some(advice) = silence.update(now, seen.link, &seen.counters, listen) {
+        let advice = silence.update(now, seen.link, &seen.counters, listen);
+        // The cause has been logged, and says more.
+        if let Some(advice) = advice.filter(|_| seen.link_cause.is_none()) {
             warn!("{advice}");
         }
         if is_shown {
@@ -169,9 +171,11 @@ fn line(seen: &Snapshot, arriving: u64, warnings: u64) -> String {
         LinkState::Partial => "some boards missing",
         LinkState::Lost => "FLOOR LOST",
     };
+    let cause = seen.link_cause.as_ref();
+    let link = cause.map_or(link.to_owned(), |cause| format!("{link}: {}", cause.name().replace('_', " ")));
     let arriving = if matches!(seen.link, LinkState::Waiting | LinkState::Lost) { 0 } else { arriving };
     let mut parts = vec![
-        link.to_owned(),
+        link,
         format!("boards {}/{}", seen.boards_live, seen.boards),
         format!("{arriving} packets/s"),
         format!("lost {}", seen.counters.lost),
@@ -209,6 +213,7 @@ mod tests {
     use super::*;
     use underfoot::feel::{DeviceStatus, Muted};
     use underfoot::widget::WidgetId;
+    use underfoot::wire::LinkCause;
 
     const LISTEN: &str = "127.0.0.1:9000";
 
@@ -235,6 +240,13 @@ mod tests {
             line(&seen, 5000, 3).contains("| 0 packets/s"),
             "the last rate of a floor that is lost is no rate"
         );
+    }
+
+    #[test]
+    fn the_line_names_why_a_live_floor_gives_no_frame() {
+        let cause = LinkCause::RateLow { board: 0, hz: 100.0 };
+        let seen = Snapshot { link: LinkState::Live, link_cause: Some(cause), ..Snapshot::default() };
+        assert!(line(&seen, 100, 0).starts_with("live: rate low | boards 0/0 | 100 packets/s"));
     }
 
     #[test]

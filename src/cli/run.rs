@@ -115,6 +115,8 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let latency = LatencyStages::default();
     let lost = Arc::<AtomicU64>::default();
     let (notice, noticed) = mpsc::channel();
+    // Who no longer listens need not know.
+    let notice = move |text| drop(notice.send(text));
     let actuators = args.actuate.opener(latency.clone(), Arc::clone(&lost), |_| {}, notice);
     let mut outputs = args.outputs.open(&served.geometry)?;
     if let Some(web) = &web {
@@ -262,7 +264,7 @@ fn grounds(layout: &Layout, states: &[GroundState]) -> Vec<String> {
 /// What came in and what was not used.
 fn report(counters: &LinkCounters, dropped: u64) {
     errln!(
-        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {} (may not send {}, sent too much {}), bad readings {}; requests not met {}; events not sent {dropped}.",
+        "{} packets, {} frames; lost {}, late {}, repeated {}, refused {} (may not send {}, sent too much {}), skipped {}, bad readings {}; requests not met {}, labels cleaned {}; events not sent {dropped}.",
         counters.packets,
         counters.frames,
         counters.lost,
@@ -271,8 +273,10 @@ fn report(counters: &LinkCounters, dropped: u64) {
         counters.refused(),
         counters.foreign,
         counters.limited,
+        counters.skipped,
         counters.bad_readings,
         counters.denied,
+        counters.cleaned,
     );
     if counters.overflowed > 0 {
         errln!(

@@ -10,7 +10,7 @@ use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Scale, Value, WidgetId};
-use crate::wire::{LinkCounters, LinkState};
+use crate::wire::{LinkCause, LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
 ///
@@ -47,6 +47,9 @@ pub struct Snapshot {
     pub held: Vec<WidgetId>,
     /// Whether sensor packets arrive.
     pub link: LinkState,
+    /// The cause for which something is sent and no frame can be used, or no load was ever seen; `None` where all is
+    /// well, or nothing is sent.
+    pub link_cause: Option<LinkCause>,
     /// Boards that this floor has.
     pub boards: u32,
     /// Boards of which usable packets arrive.

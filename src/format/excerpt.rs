@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use unicode_width::UnicodeWidthStr;
 
+use crate::label::is_hidden;
+
 /// Most characters of a line that are shown.
 const WIDTH: usize = 160;
 
@@ -63,7 +65,7 @@ fn show(part: &str, text: &mut String) {
     for character in part.chars() {
         match character {
             '\t' => text.push_str("    "),
-            c if c.is_control() => text.push('\u{fffd}'),
+            c if is_hidden(c) && !matches!(c, '\u{200c}' | '\u{200d}' | '\u{fe0f}') => text.push('\u{fffd}'),
             c => text.push(c),
         }
     }

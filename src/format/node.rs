@@ -11,6 +11,7 @@ use super::reader::{Reader, bytes};
 use super::remedy::{NAMED_FIELDS, describe, remedy};
 use super::suggest::{listed, nearest};
 use super::words::unit;
+use crate::label::{describe as describe_character, first_unfit};
 
 /// What numbers of a record keep to beyond their own range, because of another field.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -175,7 +176,7 @@ impl<'r> Node<'r> {
         Some(flag.value)
     }
 
-    /// Text of at most `longest` characters.
+    /// Text of at most `longest` characters, all of which can be seen.
     pub(crate) fn text(&self, longest: usize) -> Option<&'r str> {
         let Expr::String(text) = self.expr else { return self.mismatch("text") };
         let length = text.value.chars().count();
@@ -185,7 +186,21 @@ impl<'r> Node<'r> {
             self.report(Problem::error(self.span(), message).expected(expected));
             return None;
         }
+        if let Some(unfit) = first_unfit(&text.value) {
+            let message = format!("`{}` holds {}", self.name, describe_character(unfit.character));
+            let problem = Problem::error(self.place_of(unfit.character), message);
+            self.report(problem.expected("expected characters that can be seen"));
+            return None;
+        }
         Some(&text.value)
+    }
+
+    /// Where `character` stands in the text that this is; all of it where it is written as an escape.
+    fn place_of(&self, character: char) -> Range<usize> {
+        let span = self.span();
+        let written = self.reader.text().get(span.clone()).unwrap_or_default();
+        let at = written.find(character).map(|at| span.start + at);
+        at.map_or(span, |at| at..at + character.len_utf8())
     }
 
     /// A name that can be part of an OSC address: `a` to `z`, `0` to `9` and `_`, at most 64 of them.

@@ -46,6 +46,11 @@ impl<'t> Reader<'t> {
         }
     }
 
+    /// The text of the file.
+    pub(crate) fn text(&self) -> &'t str {
+        self.source.text()
+    }
+
     /// What the file holds.
     pub(crate) fn root(&self, name: &'static str) -> Option<Node<'_>> {
         self.syntax.root.as_ref().map(|expr| Node { reader: self, expr, name })

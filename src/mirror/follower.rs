@@ -5,8 +5,8 @@ use std::time::Duration;
 
 use serde_json::Value;
 
-use super::Greeting;
 use super::greeting::spoken;
+use super::{Greeting, ServerLine};
 use crate::engine::{ControlState, Snapshot};
 use crate::layout::Layout;
 use crate::widget::WidgetId;
@@ -25,7 +25,9 @@ const MOST_TRIES: u8 = 3;
 /// the server's. The server is right.
 #[derive(Clone, Debug, Default)]
 pub struct Follower {
-    controls: BTreeMap<String, Word<Value>>,
+    /// The controls of its layout, and what was said of each.
+    controls: BTreeMap<String, Option<Word<ServerLine>>>,
+    pages: Vec<String>,
     page: Option<Word<String>>,
 }
 
@@ -57,35 +59,41 @@ impl<T> Word<T> {
 impl Follower {
     /// Takes what a greeting said, in place of all that was said before.
     pub fn begin(&mut self, greeting: &Greeting, now: Duration) {
-        self.controls.clear();
+        let ids = greeting.layout.widgets.iter().map(|widget| (widget.id.to_string(), None));
+        self.controls = ids.collect();
+        self.pages = greeting.layout.pages.iter().map(|page| page.id.to_string()).collect();
         greeting.controls.iter().for_each(|control| self.hear_state(control, now));
         self.page = greeting.page.as_ref().map(|page| Word::new(page.clone(), now));
     }
 
-    /// Takes a line of the server's, at `now` on any clock that does not go back.
-    pub fn hear(&mut self, line: &Value, now: Duration) {
-        let text = |field: &str| line.get(field).and_then(Value::as_str);
-        match text("event") {
-            Some("state") => self.hear_state(line, now + SETTLED),
-            Some("changed") => {
-                let control = text("id").and_then(|id| self.controls.get_mut(id));
-                if let (Some(control), Some(value)) = (control, line.get("value")) {
-                    if let Some(state) = control.said.as_object_mut() {
-                        state.insert("value".into(), value.clone());
-                    }
+    /// Takes a line of the server's, at `now` on any clock that does not go back. Nothing is kept of controls and pages
+    /// that its layout does not have.
+    pub fn hear(&mut self, line: &ServerLine, now: Duration) {
+        match line.event() {
+            "state" => self.hear_state(line, now + SETTLED),
+            "changed" => {
+                if let Some(Some(control)) = self.controls.get_mut(&line.id.0) {
+                    control.said.value = line.value.clone();
                     (control.due, control.tries) = (now + SETTLED, 0);
                 }
             }
-            Some("page") => {
-                self.page = text("page").map(|page| Word::new(page.to_owned(), now + SETTLED));
+            "page" => {
+                let known = line.page.as_ref().filter(|page| self.pages.contains(&page.0));
+                self.page = known.map(|page| Word::new(page.0.clone(), now + SETTLED));
             }
             _ => {}
         }
     }
 
-    fn hear_state(&mut self, state: &Value, due: Duration) {
-        if let Some(id) = state.get("id").and_then(Value::as_str) {
-            self.controls.insert(id.to_owned(), Word::new(state.clone(), due));
+    /// How many controls something is kept of.
+    #[cfg(test)]
+    pub(super) fn kept(&self) -> usize {
+        self.controls.len()
+    }
+
+    fn hear_state(&mut self, state: &ServerLine, due: Duration) {
+        if let Some(control) = self.controls.get_mut(&state.id.0) {
+            *control = Some(Word::new(state.clone(), due));
         }
     }
 
@@ -93,9 +101,8 @@ impl Follower {
     pub fn corrections(&mut self, layout: &Layout, here: &Snapshot, now: Duration) -> Vec<ControlMessage> {
         let mut asked = Vec::new();
         for (index, widget) in layout.widgets.iter().enumerate() {
-            let Some(word) = self.controls.get_mut(widget.id.as_str()).filter(|word| now >= word.due) else {
-                continue;
-            };
+            let word = self.controls.get_mut(widget.id.as_str()).and_then(Option::as_mut);
+            let Some(word) = word.filter(|word| now >= word.due) else { continue };
             let Some(state) = ControlState::of(layout, index, here).filter(|state| !state.pressed) else {
                 continue;
             };
@@ -117,29 +124,26 @@ impl Follower {
 }
 
 /// What makes a control that is as `own` says be as `said` says.
-fn differences(id: &WidgetId, own: &Value, said: &Value) -> Vec<ControlMessage> {
-    let differs = |field: &str| {
-        let said = said.get(field).filter(|said| !said.is_null())?;
-        (own.get(field) != Some(said)).then_some(said)
-    };
+fn differences(id: &WidgetId, own: &ServerLine, said: &ServerLine) -> Vec<ControlMessage> {
     let mut asked = Vec::new();
     let mut ask = |request: &str, arguments: &[Value]| {
         asked.extend(read_json(&format!("widget/{id}/{request}"), arguments));
     };
     // The range before the value, which must be in it.
-    for (field, request) in [("range", "range/set"), ("value", "set"), ("label", "label")] {
-        match differs(field) {
-            // Choices, and both ranges of a pair, are the layout's.
-            Some(Value::Array(all)) if all.iter().all(Value::is_number) => ask(request, all),
-            Some(Value::Array(_)) | None => {}
-            Some(one) => ask(request, std::slice::from_ref(one)),
+    for (own, said, request) in [
+        (&own.range, &said.range, "range/set"),
+        (&own.value, &said.value, "set"),
+        (&own.label, &said.label, "label"),
+        (&own.indicator, &said.indicator, "indicator"),
+    ] {
+        if let Some(arguments) = said.arguments().filter(|_| own != said) {
+            ask(request, &arguments);
         }
     }
-    if let Some(lamp) = differs("indicator") {
-        ask("indicator", std::slice::from_ref(lamp));
-    }
-    for (field, set, reset) in [("enabled", "enable", "disable"), ("locked", "lock", "unlock")] {
-        if let Some(on) = differs(field).and_then(Value::as_bool) {
+    for (own, said, set, reset) in
+        [(&own.enabled, &said.enabled, "enable", "disable"), (&own.locked, &said.locked, "lock", "unlock")]
+    {
+        if let Some(on) = said.flag().filter(|_| own != said) {
             ask(if on { set } else { reset }, &[]);
         }
     }

@@ -21,7 +21,10 @@ use crate::wire::Decoder;
 /// The kinds of entries by their numbers.
 const TOPICS: [&str; 6] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END];
 
-/// A frame that is cut, damaged or of another version; nothing of it is taken.
+/// Most entries of one frame: what a stadium's boards send in the milliseconds that it spans.
+const MOST_ENTRIES: usize = 8192;
+
+/// A frame that is cut, damaged, too large or of another version; nothing of it is taken.
 #[derive(Clone, Copy, Debug, Error, PartialEq, Eq)]
 #[error("a frame of the stream makes no sense")]
 pub struct BadFrame;
@@ -71,6 +74,9 @@ fn read_all(bytes: &[u8], decoder: &Decoder) -> Option<Entries> {
         let came = Instant::from_micros(taken.saturating_add_signed(i32::from_le_bytes(*came).into()));
         let entry = Entry::read(TOPICS.get(usize::from(kind))?, message, came, decoder)?;
         entries.push((Instant::from_micros(taken), entry));
+        if entries.len() > MOST_ENTRIES {
+            return None;
+        }
     }
     (version == VERSION).then_some(entries)
 }

@@ -4,7 +4,8 @@ use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use thiserror::Error;
 
-use super::VERSION;
+use super::line::{Few, Word};
+use super::{ServerLine, VERSION};
 use crate::engine::{ControlState, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
@@ -47,22 +48,43 @@ pub struct Greeting {
     pub page: Option<String>,
     /// Whether layouts of others may be put on the floor.
     pub takes_layouts: bool,
-    /// How each control is, as lines of JSON say it.
-    pub controls: Vec<Value>,
+    /// How each control is.
+    pub controls: Vec<ServerLine>,
 }
 
 /// The greeting as it is sent.
-#[derive(Deserialize, Serialize)]
+#[derive(Serialize)]
 struct Words {
-    event: String,
+    event: &'static str,
     version: u8,
-    method: String,
+    method: &'static str,
     t_s: f64,
     page: Option<String>,
     takes_layouts: bool,
     floor: String,
     layout: String,
     controls: Vec<Value>,
+}
+
+/// Most controls of which a greeting tells: as many as a layout has.
+const MOST_CONTROLS: usize = 4096;
+
+/// The greeting as it is read, as much of it as there can be.
+#[derive(Deserialize)]
+struct Read {
+    method: Word,
+    t_s: f64,
+    page: Option<Word>,
+    takes_layouts: bool,
+    floor: String,
+    layout: String,
+    controls: Few<ServerLine, MOST_CONTROLS>,
+}
+
+/// Of another version nothing else need be as it is here.
+#[derive(Deserialize)]
+struct Version {
+    version: u64,
 }
 
 const EVENT: &str = "mirror";
@@ -81,15 +103,17 @@ impl Greeting {
     ) -> String {
         let states = (0..layout.widgets.len()).filter_map(|index| ControlState::of(layout, index, snapshot));
         let words = Words {
-            event: EVENT.into(),
+            event: EVENT,
             version: VERSION,
-            method: if method == Method::Eq4 { EQ4 } else { TRACKER }.into(),
+            method: if method == Method::Eq4 { EQ4 } else { TRACKER },
             t_s: snapshot.at.secs(),
             page: layout.pages.get(snapshot.page).map(|page| page.id.to_string()),
             takes_layouts,
             floor: schema::write_floor(floor),
             layout: schema::write_layout(layout),
-            controls: states.filter_map(|state| spoken(&state)).collect(),
+            controls: states
+                .filter_map(|state| serde_json::from_str(&control_line(Instant::START, &state)).ok())
+                .collect(),
         };
         // Text and numbers always have a form in JSON.
         serde_json::to_string(&words).unwrap_or_default()
@@ -97,22 +121,21 @@ impl Greeting {
 
     /// Whether a line is a greeting, whatever it says.
     #[must_use]
-    pub fn is_in(line: &Value) -> bool {
-        line.get("event").is_some_and(|event| event == EVENT)
+    pub fn is_in(line: &ServerLine) -> bool {
+        line.event() == EVENT
     }
 
     /// Reads what [`Greeting::line`] wrote.
     ///
     /// # Errors
     /// [`MirrorError`] if it is not a greeting, is of another version, or if its floor or layout can't be read.
-    pub fn read(line: Value) -> Result<Self, MirrorError> {
-        // Of another version nothing else need be as it is here.
-        if let Some(version) = line.get("version").and_then(Value::as_u64)
+    pub fn read(line: &str) -> Result<Self, MirrorError> {
+        if let Ok(Version { version }) = serde_json::from_str(line)
             && version != u64::from(VERSION)
         {
             return Err(MirrorError::Version(u8::try_from(version).unwrap_or(u8::MAX)));
         }
-        let words: Words = serde_json::from_value(line)?;
+        let words: Read = serde_json::from_str(line)?;
         let floor = schema::parse_floor(&words.floor, "the server's floor")?;
         let layout = read_layout(&words.layout, &floor.geometry)?;
         // A float becomes the nearest integer of its range.
@@ -121,16 +144,16 @@ impl Greeting {
             floor,
             layout,
             layout_text: words.layout,
-            method: if words.method == EQ4 { Method::Eq4 } else { Method::Tracker },
+            method: if words.method.0 == EQ4 { Method::Eq4 } else { Method::Tracker },
             now,
-            page: words.page,
+            page: words.page.map(|page| page.0),
             takes_layouts: words.takes_layouts,
-            controls: words.controls,
+            controls: words.controls.kept,
         })
     }
 }
 
-/// How a control is, as JSON lines say it.
-pub(super) fn spoken(state: &ControlState) -> Option<Value> {
-    serde_json::from_str(&control_line(Instant::START, state)).ok()
+/// How a control is, as a server's lines say it.
+pub(super) fn spoken(state: &ControlState) -> Option<ServerLine> {
+    ServerLine::read(&control_line(Instant::START, state)).ok()
 }

@@ -4,7 +4,7 @@ use std::io::{self, ErrorKind};
 use std::net::{SocketAddr, TcpStream};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::thread::{self, Builder};
 use std::time::{Duration, Instant};
 
@@ -13,7 +13,7 @@ use tungstenite::handshake::HandshakeError;
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Error, Message, WebSocket};
 
-use super::{Greeting, MirrorInput, MirrorSource};
+use super::{Greeting, MirrorInput, MirrorSource, ServerLine};
 
 /// How often a server that is not there is tried again.
 const AGAIN: Duration = Duration::from_secs(1);
@@ -27,8 +27,13 @@ const SILENT: Duration = Duration::from_secs(2);
 /// How often it is looked whether something is to be asked.
 const LOOK_EVERY: Duration = Duration::from_millis(5);
 
-/// The largest message that is taken: a layout with thousands of controls.
+/// The largest message that is taken: a layout with thousands of controls, on the largest floor with all its
+/// calibration.
 const LARGEST: usize = 16 << 20;
+
+/// What may wait for whoever joined, and for the server; more of the former holds up the server, more of the latter is
+/// dropped.
+const WAITING: usize = 64;
 
 /// Lines that are passed on; whoever senses the same packets knows the rest.
 const PASSED_ON: [&str; 4] = ["state", "changed", "page", "error"];
@@ -41,7 +46,7 @@ pub enum MirrorNews {
     /// It has another layout, or says again how its floor is. Packets go on; the layout comes with them.
     Again(Box<Greeting>),
     /// What it says of its controls and pages, and why it refused a request.
-    Line(Value),
+    Line(Box<ServerLine>),
     /// It is gone, or can't be joined; why. It is tried again.
     Lost(String),
 }
@@ -49,7 +54,7 @@ pub enum MirrorNews {
 /// A connection to a server, on a thread of its own that ends with this.
 #[derive(Debug)]
 pub struct MirrorLink {
-    asks: Sender<String>,
+    asks: SyncSender<String>,
     over: Arc<AtomicBool>,
 }
 
@@ -59,7 +64,7 @@ impl MirrorLink {
     /// # Errors
     /// The system gives no thread.
     pub fn start(address: SocketAddr) -> io::Result<(Self, Receiver<MirrorNews>)> {
-        let ((asks, asked), (news, told)) = (channel(), channel());
+        let ((asks, asked), (news, told)) = (sync_channel(WAITING), sync_channel(WAITING));
         let over = Arc::<AtomicBool>::default();
         let link = Link { address, news, asked, over: Arc::clone(&over) };
         Builder::new().name("mirror link".into()).spawn(move || link.keep())?;
@@ -67,11 +72,11 @@ impl MirrorLink {
     }
 
     /// Asks the server something, as web pages do: `widget/zoom/set` with `[0.5]`. A refusal comes as a line; while it
-    /// is not there, nothing is asked.
+    /// is not there, or takes nothing, nothing is asked.
     pub fn ask(&self, request: &str, arguments: &[Value]) {
         let line = json!({"request": request, "args": arguments}).to_string();
         // A link that has failed has said so.
-        let _ = self.asks.send(line);
+        let _ = self.asks.try_send(line);
     }
 }
 
@@ -84,7 +89,7 @@ impl Drop for MirrorLink {
 
 struct Link {
     address: SocketAddr,
-    news: Sender<MirrorNews>,
+    news: SyncSender<MirrorNews>,
     asked: Receiver<String>,
     over: Arc<AtomicBool>,
 }
@@ -151,13 +156,8 @@ impl Link {
             match socket.read() {
                 Ok(Message::Text(text)) => {
                     heard = Instant::now();
-                    match serde_json::from_str(&text) {
-                        Ok(line) => {
-                            if let Err(why) = self.hear(line, &mut input)? {
-                                return Ok(why);
-                            }
-                        }
-                        Err(error) => return Ok(format!("the server says what is not JSON: {error}")),
+                    if let Err(why) = self.hear(&text, &mut input)? {
+                        return Ok(why);
                     }
                 }
                 Ok(Message::Binary(frame)) => {
@@ -190,15 +190,18 @@ impl Link {
     }
 
     /// Takes a line; why the server can't be shown.
-    fn hear(&self, line: Value, input: &mut Option<MirrorInput>) -> Result<Result<(), String>, Over> {
+    fn hear(&self, text: &str, input: &mut Option<MirrorInput>) -> Result<Result<(), String>, Over> {
+        let line = match ServerLine::read(text) {
+            Ok(line) => line,
+            Err(error) => return Ok(Err(format!("the server says what makes no sense: {error}"))),
+        };
         if !Greeting::is_in(&line) {
-            let event = line.get("event").and_then(Value::as_str).unwrap_or_default();
-            if PASSED_ON.contains(&event) {
-                self.tell(MirrorNews::Line(line))?;
+            if PASSED_ON.contains(&line.event()) {
+                self.tell(MirrorNews::Line(Box::new(line)))?;
             }
             return Ok(Ok(()));
         }
-        let greeting = match Greeting::read(line) {
+        let greeting = match Greeting::read(text) {
             Ok(greeting) => Box::new(greeting),
             Err(error) => return Ok(Err(error.to_string())),
         };

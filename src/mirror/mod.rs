@@ -13,6 +13,7 @@ mod feed;
 mod follower;
 mod frame;
 mod greeting;
+mod line;
 #[cfg(feature = "web")]
 mod link;
 mod source;
@@ -24,6 +25,7 @@ pub use feed::MirrorFeed;
 pub use follower::Follower;
 pub use frame::BadFrame;
 pub use greeting::{Greeting, MirrorError};
+pub use line::ServerLine;
 #[cfg(feature = "web")]
 pub use link::{MirrorLink, MirrorNews};
 pub use source::{MirrorInput, MirrorSource};

@@ -1,9 +1,9 @@
 //! The stream as a source of packets.
 
 use std::collections::VecDeque;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, sync_channel};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant as HostInstant};
 
@@ -16,8 +16,16 @@ use crate::source::{SensorSource, SourceError};
 use crate::units::{HostClock, Instant};
 use crate::wire::{Decoder, LinkCounters, Request, SensorPacket};
 
-/// Frames that may wait to be sensed: four seconds of them. Whoever has more waits.
+/// Frames that may wait to be sensed, four seconds of them, and what they may hold: four seconds of a stadium's boards.
+/// Whoever has more waits.
 const WAITING: usize = 1024;
+const MOST_WAITING_BYTES: usize = 64 << 20;
+
+/// What an entry takes besides a layout's text.
+const ENTRY_BYTES: usize = size_of::<(Instant, Entry)>();
+
+/// How often it is looked whether there is room.
+const LOOK_EVERY: Duration = Duration::from_millis(2);
 
 /// How late a frame may be before time goes on without it: less than what makes a board count as lost, and more than
 /// a network of one building holds a frame up.
@@ -27,6 +35,7 @@ const LATE: Duration = Duration::from_millis(40);
 #[derive(Debug)]
 pub struct MirrorInput {
     frames: SyncSender<Entries>,
+    waiting: Waiting,
     decoder: Decoder,
     counters: Arc<Counters>,
 }
@@ -47,18 +56,59 @@ impl MirrorInput {
         let entries = frame::read(bytes, &self.decoder).inspect_err(|_| {
             self.counters.bad.fetch_add(1, Ordering::Relaxed);
         })?;
-        // A floor that has ended needs no more packets.
-        let _ = self.frames.send(entries);
+        self.hand(entries);
         Ok(())
     }
+
+    fn hand(&self, entries: Entries) {
+        let bytes = size_of_all(&entries);
+        while self.waiting.is_full(bytes) {
+            thread::sleep(LOOK_EVERY);
+        }
+        self.waiting.add(bytes);
+        // A floor that has ended needs no more packets.
+        let _ = self.frames.send(entries);
+    }
+}
+
+/// Bytes of frames that wait; `None` once nobody takes them any more.
+#[derive(Clone, Debug, Default)]
+struct Waiting(Arc<Mutex<Option<usize>>>);
+
+impl Waiting {
+    fn lock(&self) -> MutexGuard<'_, Option<usize>> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// Whether so many more have to wait outside.
+    fn is_full(&self, more: usize) -> bool {
+        self.lock().is_some_and(|bytes| bytes > 0 && bytes + more > MOST_WAITING_BYTES)
+    }
+
+    fn add(&self, more: usize) {
+        if let Some(bytes) = &mut *self.lock() {
+            *bytes += more;
+        }
+    }
+
+    fn take(&self, less: usize) {
+        if let Some(bytes) = &mut *self.lock() {
+            *bytes = bytes.saturating_sub(less);
+        }
+    }
+}
+
+/// What these entries take in memory.
+fn size_of_all(entries: &Entries) -> usize {
+    let text = |(_, entry): &(Instant, Entry)| if let Entry::Layout(text) = entry { text.len() } else { 0 };
+    entries.iter().map(|entry| ENTRY_BYTES + text(entry)).sum()
 }
 
 impl MirrorInput {
     /// Says which layout the server has; the same one again changes nothing.
     pub(super) fn put_layout(&self, text: String) {
         let at = Instant::from_micros(self.counters.now_us.load(Ordering::Relaxed));
-        // As above.
-        let _ = self.frames.send(vec![(at, Entry::Layout(text))]);
+        self.hand(vec![(at, Entry::Layout(text))]);
     }
 }
 
@@ -69,6 +119,7 @@ impl MirrorInput {
 #[derive(Debug)]
 pub struct MirrorSource {
     frames: Receiver<Entries>,
+    waiting: Waiting,
     ahead: VecDeque<(Instant, Entry)>,
     now: Instant,
     /// The server's time at the end of the last frame, and when that came.
@@ -87,9 +138,16 @@ impl MirrorSource {
         let (sender, frames) = sync_channel(WAITING);
         let counters = Arc::<Counters>::default();
         counters.now_us.store(now.micros(), Ordering::Relaxed);
-        let input = MirrorInput { frames: sender, decoder: decoder(), counters: Arc::clone(&counters) };
+        let waiting = Waiting::default();
+        *waiting.lock() = Some(0);
+        let input = MirrorInput {
+            frames: sender,
+            waiting: waiting.clone(),
+            decoder: decoder(),
+            counters: Arc::clone(&counters),
+        };
         let arrived = (now, HostInstant::now());
-        (input, Self { frames, ahead: VecDeque::new(), now, arrived, geometry, layout, counters })
+        (input, Self { frames, waiting, ahead: VecDeque::new(), now, arrived, geometry, layout, counters })
     }
 
     /// The server's clock, as far as it is known here.
@@ -121,6 +179,7 @@ impl MirrorSource {
     fn wait(&mut self, patience: Duration) {
         match self.frames.recv_timeout(patience) {
             Ok(entries) => {
+                self.waiting.take(size_of_all(&entries));
                 let until = entries.last().map_or(self.now, |(taken, _)| self.now.max(*taken));
                 self.arrived = (until, HostInstant::now());
                 self.ahead.extend(entries);
@@ -136,6 +195,13 @@ impl MirrorSource {
                 }
             }
         }
+    }
+}
+
+impl Drop for MirrorSource {
+    /// Whoever waits for room waits no longer.
+    fn drop(&mut self) {
+        *self.waiting.lock() = None;
     }
 }
 

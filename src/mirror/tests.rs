@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use serde_json::{Value, json};
 
 use super::frame::{self, BadFrame};
-use super::{Follower, Greeting, MirrorError, MirrorSource};
+use super::{Follower, Greeting, MirrorError, MirrorSource, ServerLine};
 use crate::engine::{Engine, Snapshot};
 use crate::floor::Floor;
 use crate::layout::Layout;
@@ -35,7 +35,7 @@ fn seen(engine: &Engine) -> Snapshot {
 
 fn greeting_of(engine: &Engine, layout: &Layout) -> Greeting {
     let line = Greeting::line(&Floor::default(), layout, &seen(engine), Method::Tracker, true);
-    Greeting::read(serde_json::from_str(&line).unwrap()).unwrap()
+    Greeting::read(&line).unwrap()
 }
 
 fn packet(board: u16, sequence: u32, received_us: u64) -> SensorPacket {
@@ -169,21 +169,78 @@ fn a_greeting_says_the_floor_as_it_is_and_how_its_controls_are() {
     let mut floor = Floor::default();
     floor.tare[7][2] = Newtons(3.5);
     let line = Greeting::line(&floor, &layout, &seen(&engine), Method::Eq4, false);
-    let line: Value = serde_json::from_str(&line).unwrap();
-    assert!(Greeting::is_in(&line) && !Greeting::is_in(&json!({"event": "floor"})));
-    let read = Greeting::read(line.clone()).unwrap();
+    assert!(Greeting::is_in(&said(&line)) && !Greeting::is_in(&said(r#"{"event": "floor"}"#)));
+    let read = Greeting::read(&line).unwrap();
     assert_eq!((read.floor, read.method, read.takes_layouts), (floor, Method::Eq4, false));
     assert_eq!(read.layout.widgets.len(), layout.widgets.len());
-    let home = read.controls.iter().find(|control| control["id"] == "home").unwrap();
-    assert_eq!(home["enabled"], json!(false));
+    let home = read.controls.iter().find(|control| control.id.0 == "home").unwrap();
+    assert_eq!(home.enabled.flag(), Some(false));
 
-    let mut newer = line.clone();
-    newer["version"] = json!(2);
-    assert!(matches!(Greeting::read(newer), Err(MirrorError::Version(2))));
-    let mut broken = line;
-    broken["layout"] = json!("Layout(");
-    assert!(matches!(Greeting::read(broken), Err(MirrorError::Diagnostics(_))));
-    assert!(matches!(Greeting::read(json!({"event": "mirror"})), Err(MirrorError::Greeting(_))));
+    let with = |field: &str, value: Value| {
+        let mut other: Value = serde_json::from_str(&line).unwrap();
+        other[field] = value;
+        Greeting::read(&other.to_string())
+    };
+    assert!(matches!(with("version", json!(2)), Err(MirrorError::Version(2))));
+    assert!(matches!(with("layout", json!("Layout(")), Err(MirrorError::Diagnostics(_))));
+    assert!(matches!(Greeting::read(r#"{"event": "mirror"}"#), Err(MirrorError::Greeting(_))));
+}
+
+fn said(line: &str) -> ServerLine {
+    ServerLine::read(line).unwrap()
+}
+
+#[test]
+fn nothing_is_kept_of_controls_and_pages_that_the_layout_lacks() {
+    let layout = layout("map");
+    let mut follower = Follower::default();
+    follower.begin(&greeting_of(&engine(&layout), &layout), Duration::ZERO);
+    for number in 0..1000 {
+        let line = format!(r#"{{"event":"state","id":"c{number}","value":1,"page":"p{number}"}}"#);
+        follower.hear(&said(&line), Duration::ZERO);
+        follower.hear(&said(&format!(r#"{{"event":"page","page":"p{number}"}}"#)), Duration::ZERO);
+    }
+    assert!(follower.kept() <= layout.widgets.len(), "{}", follower.kept());
+}
+
+#[test]
+fn a_frame_of_more_entries_than_boards_send_is_refused() {
+    let silence = (Instant::from_millis(1), Entry::Silence);
+    let frame = |count: usize| frame::read(&framed(&vec![silence.clone(); count]), &decoder());
+    assert!(frame(8192).is_ok());
+    assert_eq!(frame(8193), Err(BadFrame));
+}
+
+/// What waits is bounded by its bytes, and whoever has more waits until there is room or nobody takes it.
+#[test]
+fn frames_beyond_what_may_wait_are_held_up() {
+    let layout = layout("map");
+    let (input, mut source) = MirrorSource::new(&greeting_of(&engine(&layout), &layout));
+    let text = "x".repeat(8 << 20);
+    let large = framed(&vec![(Instant::from_millis(1), Entry::Layout(text))]);
+    let taken = std::sync::Arc::new(std::sync::atomic::AtomicUsize::new(0));
+    let count = std::sync::Arc::clone(&taken);
+    let sender = std::thread::spawn(move || {
+        for _ in 0..20 {
+            input.put(&large).unwrap();
+            count.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+        }
+    });
+    let waiting = || taken.load(std::sync::atomic::Ordering::Relaxed);
+    let end = std::time::Instant::now() + Duration::from_secs(20);
+    while waiting() < 7 {
+        assert!(std::time::Instant::now() < end, "{} were taken", waiting());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    std::thread::sleep(Duration::from_millis(100));
+    assert!(waiting() <= 8, "64 MiB may wait, not {} times 8", waiting());
+    source.next(Duration::from_millis(1)).unwrap();
+    while waiting() < 8 {
+        assert!(std::time::Instant::now() < end, "{} were taken", waiting());
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    drop(source);
+    sender.join().unwrap();
 }
 
 /// Does what `follower` asks, as a server does.
@@ -223,7 +280,7 @@ fn controls_become_what_the_server_says_and_then_nothing_more_is_asked() {
     assert_eq!(follow(&mut follower, &mut here, &layout, 1000), 0);
 
     // A change that this side has not sensed is asked for after a while; what both sense, never.
-    let changed = json!({"event": "changed", "id": "zoom", "value": 0.5});
+    let changed = said(r#"{"event": "changed", "id": "zoom", "value": 0.5}"#);
     follower.hear(&changed, Duration::from_millis(2000));
     assert_eq!(follow(&mut follower, &mut here, &layout, 2100), 0);
     assert_eq!(follow(&mut follower, &mut here, &layout, 2300), 1);
@@ -235,7 +292,7 @@ fn what_is_refused_is_not_asked_for_ever() {
     let layout = layout("map");
     let mut follower = Follower::default();
     follower.begin(&greeting_of(&engine(&layout), &layout), Duration::ZERO);
-    follower.hear(&json!({"event": "changed", "id": "zoom", "value": 99.0}), Duration::ZERO);
+    follower.hear(&said(r#"{"event": "changed", "id": "zoom", "value": 99.0}"#), Duration::ZERO);
     let here = seen(&engine(&layout));
     let asked = (0..100).map(|tenth| Duration::from_millis(100 * tenth));
     let count: usize = asked.map(|now| follower.corrections(&layout, &here, now).len()).sum();

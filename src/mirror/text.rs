@@ -7,6 +7,7 @@ use glam::Vec2;
 use serde::Deserialize;
 use thiserror::Error;
 
+use super::line::{Few, Reason, Said, Word};
 use crate::engine::{Engine, FootRole, FootState, Snapshot};
 use crate::floor::{Area, Floor, Geometry};
 use crate::layout::Layout;
@@ -35,6 +36,12 @@ pub struct TextMirror {
     snapshot: Snapshot,
 }
 
+/// Most feet that are shown: more than fit into the longest line of a floor.
+const MOST_CONTACTS: usize = 2048;
+
+/// Most held controls of which one line tells: as many as a layout has.
+const MOST_HELD: usize = 4096;
+
 /// What can stand in a line; see [`crate::sink::JsonSink`].
 #[derive(Deserialize)]
 struct Line<'a> {
@@ -43,7 +50,8 @@ struct Line<'a> {
     event: Option<Cow<'a, str>>,
     #[serde(borrow)]
     id: Option<Cow<'a, str>>,
-    value: Option<serde_json::Value>,
+    #[serde(default)]
+    value: Said,
     #[serde(default)]
     force_n: f32,
     #[serde(default)]
@@ -51,13 +59,13 @@ struct Line<'a> {
     #[serde(default)]
     y_m: f32,
     contact: Option<u32>,
-    contacts: Option<Vec<ContactLine>>,
-    held: Option<Vec<String>>,
-    page: Option<String>,
-    area: Option<String>,
-    state: Option<String>,
+    contacts: Option<Few<ContactLine, MOST_CONTACTS>>,
+    held: Option<Few<Word, MOST_HELD>>,
+    page: Option<Word>,
+    area: Option<Word>,
+    state: Option<Word>,
     #[serde(default)]
-    why: String,
+    why: Reason,
     #[serde(default)]
     uncertainty_s: f64,
     #[serde(default)]
@@ -143,14 +151,17 @@ impl TextMirror {
         let at = Instant::START + Duration::try_from_secs_f64(line.t_s).unwrap_or_default();
         self.snapshot.at = self.snapshot.at.max(at);
         if let Some(held) = line.held {
-            self.snapshot.held = held.iter().map(|id| WidgetId::new(id)).collect();
+            let ids = held.kept.iter().map(|id| id.0.as_str());
+            let known = ids.filter(|id| self.layout.widget_index(id).is_some()).map(WidgetId::new);
+            // No more than there are, however often a line names them.
+            self.snapshot.held = known.take(self.layout.widgets.len()).collect();
             return Ok(None);
         }
         match line.event.as_deref().unwrap_or_default() {
             "contacts" => self.take_contacts(line.contacts.unwrap_or_default()),
             "area" => self.take_area(at, line),
-            "link" => self.take_link(line.state.as_deref().unwrap_or_default()),
-            "page" => self.take_page(line.page.as_deref()),
+            "link" => self.take_link(line.state.map(|state| state.0).unwrap_or_default().as_str()),
+            "page" => self.take_page(line.page.as_ref().map(|page| page.0.as_str())),
             "gap" => self.snapshot.unsent_events += line.dropped,
             "state" => self.take_state(&line),
             name => return Ok(self.take_event(at, name, &line)),
@@ -160,7 +171,7 @@ impl TextMirror {
 
     /// Nothing more is told: what was known of feet, and what they held, is not believed any longer.
     pub fn end(&mut self) {
-        self.take_contacts(Vec::new());
+        self.take_contacts(Few::default());
         self.show_link(LinkState::Lost);
         self.areas.iter_mut().for_each(|(_, news)| news.state = AreaState::Lost);
         self.snapshot.held.clear();
@@ -170,10 +181,11 @@ impl TextMirror {
         });
     }
 
-    fn take_contacts(&mut self, contacts: Vec<ContactLine>) {
+    fn take_contacts(&mut self, contacts: Few<ContactLine, MOST_CONTACTS>) {
         self.snapshot.counters.frames += 1;
+        self.snapshot.unsent_events += contacts.left_out;
         self.snapshot.contacts.clear();
-        self.snapshot.contacts.extend(contacts.into_iter().map(|contact| Contact {
+        self.snapshot.contacts.extend(contacts.kept.into_iter().map(|contact| Contact {
             id: ContactId(contact.id),
             centroid: Vec2::new(contact.x_m, contact.y_m),
             force: Newtons(contact.force_n),
@@ -210,15 +222,16 @@ impl TextMirror {
     }
 
     fn take_area(&mut self, at: Instant, line: Line<'_>) {
-        let named = |(area, _): &&mut (Area, AreaNews)| Some(&area.id) == line.area.as_ref();
+        let named = |(area, _): &&mut (Area, AreaNews)| line.area.as_ref().is_some_and(|id| id.0 == area.id);
         let Some((_, news)) = self.areas.iter_mut().find(named) else { return };
-        let Some(state) =
-            AreaState::ALL.into_iter().find(|state| Some(state.name()) == line.state.as_deref())
+        let Some(state) = AreaState::ALL
+            .into_iter()
+            .find(|state| line.state.as_ref().is_some_and(|name| name.0 == state.name()))
         else {
             return;
         };
         let uncertainty = Duration::try_from_secs_f64(line.uncertainty_s).unwrap_or_default();
-        *news = AreaNews { at, area: news.area.clone(), state, why: line.why, uncertainty };
+        *news = AreaNews { at, area: news.area.clone(), state, why: line.why.0, uncertainty };
         self.show_areas();
     }
 
@@ -274,7 +287,7 @@ impl TextMirror {
     fn take_state(&mut self, line: &Line<'_>) {
         let Some(index) = line.id.as_deref().and_then(|id| self.layout.widget_index(id)) else { return };
         let Some(state) = self.snapshot.widgets.get_mut(index) else { return };
-        state.value = line.value.as_ref().and_then(|value| like(state.value?, value)).or(state.value);
+        state.value = state.value.map(|known| like(known, &line.value).unwrap_or(known));
         state.disabled = line.enabled.map_or(state.disabled, |enabled| !enabled);
         state.locked = line.locked.unwrap_or(state.locked);
         state.armed = line.armed.unwrap_or(state.armed);
@@ -285,7 +298,7 @@ impl TextMirror {
         let id = line.id.as_deref()?;
         let index = self.layout.widget_index(id)?;
         let state = self.snapshot.widgets.get_mut(index)?;
-        let kind = EventKind::of(name, line.value.as_ref().and_then(|value| detail(state.value, value)))?;
+        let kind = EventKind::of(name, detail(state.value, &line.value))?;
         let contact = line.contact.map(ContactId);
         match kind {
             EventKind::Pressed => state.pressed = true,
@@ -311,25 +324,25 @@ impl TextMirror {
 }
 
 /// What an event says besides its name, of a control that holds such a value as `known`.
-fn detail(known: Option<Value>, said: &serde_json::Value) -> Option<Detail> {
-    let direction = || Direction::ALL.into_iter().find(|direction| Some(direction.name()) == said.as_str());
+fn detail(known: Option<Value>, said: &Said) -> Option<Detail> {
+    let is_said = |direction: &Direction| matches!(said, Said::Text(name) if name == direction.name());
+    let direction = || Direction::ALL.into_iter().find(is_said);
     let value = known.and_then(|known| like(known, said));
     value.map(Detail::Value).or_else(|| direction().map(Detail::Direction))
 }
 
 /// A value of the same kind as `known`; `None` if it is of another, or not finite.
-fn like(known: Value, said: &serde_json::Value) -> Option<Value> {
-    let number = |said: &serde_json::Value| {
-        said.as_f64().map(|number| number as f32).filter(|number| number.is_finite())
-    };
-    match known {
-        Value::Switch(_) => said.as_bool().map(Value::Switch),
-        Value::Number(_) => number(said).map(Value::Number),
-        Value::Choice(_) => u16::try_from(said.as_u64()?).ok().map(Value::Choice),
-        Value::Pair(_) => match said.as_array()?.as_slice() {
-            [x, y] => Some(Value::Pair(Vec2::new(number(x)?, number(y)?))),
-            _ => None,
-        },
+fn like(known: Value, said: &Said) -> Option<Value> {
+    let single = |number: f64| Some(number as f32).filter(|number| number.is_finite());
+    match (known, said) {
+        (Value::Switch(_), Said::Flag(on)) => Some(Value::Switch(*on)),
+        (Value::Number(_), Said::Number(number)) => single(*number).map(Value::Number),
+        (Value::Choice(_), Said::Number(number)) => {
+            let is_choice = number.fract() == 0.0 && (0.0..=f64::from(u16::MAX)).contains(number);
+            is_choice.then_some(Value::Choice(*number as u16))
+        }
+        (Value::Pair(_), Said::Numbers([x, y])) => Some(Value::Pair(Vec2::new(single(*x)?, single(*y)?))),
+        _ => None,
     }
 }
 

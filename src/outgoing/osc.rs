@@ -6,7 +6,7 @@ use crate::engine::{ControlState, ValueRange};
 use crate::feel::{DeviceStatus, Muted};
 use crate::sense::{Contact, SensorHealth};
 use crate::widget::{Detail, Value, WidgetEvent, WidgetId};
-use crate::wire::{LinkState, Prefix, write};
+use crate::wire::{LinkCause, LinkState, Prefix, write};
 
 /// Most contacts in one datagram: it stays below 1500 bytes, what every network carries whole.
 const CONTACTS_PER_DATAGRAM: usize = 20;
@@ -77,12 +77,20 @@ const NAMED_TILES: usize = 100;
 /// Writes how the floor is doing as the OSC message `/underfoot/health`.
 ///
 /// First the state of its link, a string: `waiting`, `live`, `partial` or `lost`. Then four numbers of
-/// sensors (ints): degraded, silent, faulty, and those that nobody has calibrated. Then the sensors in
-/// trouble, a string each (`tile (2, 1) sw: stuck`), eight at most.
-pub fn write_health(prefix: &Prefix, state: LinkState, health: &SensorHealth, bytes: &mut Vec<u8>) {
+/// sensors (ints): degraded, silent, faulty, and those that nobody has calibrated. Then, if something is
+/// sent and no frame can be used, its cause, a string (`link: rate_low: board 0 sends 100 packets a second ...`).
+/// Then the sensors in trouble, a string each (`tile (2, 1) sw: stuck`), eight at most.
+pub fn write_health(
+    prefix: &Prefix,
+    state: LinkState,
+    cause: Option<&LinkCause>,
+    health: &SensorHealth,
+    bytes: &mut Vec<u8>,
+) {
     let SensorHealth { counts: [_, degraded, stale, faulty], uncalibrated, troubles, .. } = health;
     let mut args = vec![OscType::String(state.name().into())];
     args.extend([degraded, stale, faulty, uncalibrated].map(|&count| OscType::Int(count.cast_signed())));
+    args.extend(cause.map(|cause| OscType::String(format!("link: {}: {cause}", cause.name()))));
     let named = troubles.iter().take(NAMED_SENSORS);
     args.extend(named.map(|(sensor, trouble)| OscType::String(format!("{sensor}: {trouble}"))));
     write(&message(prefix.address("health"), args), bytes);
@@ -315,10 +323,14 @@ mod tests {
         let troubles = (0..20).map(|column| (sensor(column), Trouble::Stuck)).collect();
         let health =
             SensorHealth { counts: [120, 3, 1, 20], uncalibrated: 2, troubles, ..SensorHealth::default() };
-        write_health(&Prefix::default(), LinkState::Partial, &health, &mut bytes);
+        write_health(&Prefix::default(), LinkState::Partial, None, &health, &mut bytes);
         let mut args = vec![OscType::String("partial".into())];
         args.extend([3, 1, 20, 2].map(OscType::Int));
         args.extend((0..8).map(|column| OscType::String(format!("tile ({column}, 1) sw: stuck"))));
+        assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args.clone()));
+        let cause = LinkCause::SequenceFalls { board: 2 };
+        write_health(&Prefix::default(), LinkState::Partial, Some(&cause), &health, &mut bytes);
+        args.insert(5, OscType::String(format!("link: sequence_falls: {cause}")));
         assert_eq!(decoded(&bytes), message("/underfoot/health".into(), args));
     }
 

@@ -2,7 +2,7 @@
 
 use eframe::egui;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 use std::time::{Duration, Instant};
 
 use eframe::egui::Ui;
@@ -91,7 +91,7 @@ pub(super) struct App {
     pub(super) floor_check: Option<FloorCheck>,
     /// `None` where nothing can be designed.
     pub(super) designer: Option<Designer>,
-    commands: Sender<PreviewCommand>,
+    commands: SyncSender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
     pub(super) window_frames: Rate,
@@ -256,8 +256,8 @@ impl App {
 
     /// Tells the program; one that hung up does not want to know.
     pub(super) fn command(&self, command: PreviewCommand) {
-        if self.commands.send(command).is_err() {
-            tracing::debug!("nobody takes the window's commands any more");
+        if let Err(error) = self.commands.try_send(command) {
+            tracing::debug!("the program takes no command of the window: {error}");
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, SyncSender};
 
 use glam::Vec2;
 
@@ -71,7 +71,7 @@ pub struct PreviewInput {
     /// The layout as text, to be designed in the window; `None` where that can't be done.
     pub design: Option<DesignInput>,
     /// What the person at the window wants.
-    pub commands: Sender<PreviewCommand>,
+    pub commands: SyncSender<PreviewCommand>,
 }
 
 impl PreviewInput {

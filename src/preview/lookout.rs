@@ -1,6 +1,6 @@
 //! Looks at the floor for the window, so that the window draws only when there is something new to draw.
 
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, SyncSender, TrySendError, sync_channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
@@ -107,25 +107,36 @@ impl Pace {
     }
 }
 
+/// What may wait behind a relay, for one frame of the window; more waits before it.
+const PASSED_ON: usize = 1024;
+
 /// Passes on what comes.
 struct Relay<T> {
     from: Receiver<T>,
-    to: Sender<T>,
+    to: SyncSender<T>,
+    /// What found no room.
+    late: Option<T>,
 }
 
 impl<T> Relay<T> {
     /// Puts a relay before a receiver.
     fn before(receiver: &mut Receiver<T>) -> Self {
-        let (to, after) = channel();
-        Self { from: std::mem::replace(receiver, after), to }
+        let (to, after) = sync_channel(PASSED_ON);
+        Self { from: std::mem::replace(receiver, after), to, late: None }
     }
 
     /// Whether anything came; `None` once nobody takes it any more.
     fn pass_on(&mut self) -> Option<bool> {
         let mut some = false;
-        for one in self.from.try_iter() {
-            self.to.send(one).ok()?;
-            some = true;
+        while let Some(one) = self.late.take().or_else(|| self.from.try_recv().ok()) {
+            match self.to.try_send(one) {
+                Ok(()) => some = true,
+                Err(TrySendError::Full(one)) => {
+                    self.late = Some(one);
+                    break;
+                }
+                Err(TrySendError::Disconnected(_)) => return None,
+            }
         }
         Some(some)
     }
@@ -134,6 +145,7 @@ impl<T> Relay<T> {
 /// Whether a person could see a difference.
 fn differ(one: &Snapshot, other: &Snapshot) -> bool {
     one.link != other.link
+        || one.link_cause != other.link_cause
         || one.page != other.page
         || one.layout_revision != other.layout_revision
         || one.boards_live != other.boards_live

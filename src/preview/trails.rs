@@ -13,6 +13,9 @@ const STEP_M: f32 = 0.004;
 /// Most places of one contact: a mouse at 60 frames a second leaves no more.
 const MOST: usize = 128;
 
+/// Most contacts that leave a trail: a crowd's feet within two seconds.
+const MOST_CONTACTS: usize = 512;
+
 /// The latest places of each contact.
 #[derive(Debug, Default)]
 pub(super) struct Trails {
@@ -25,7 +28,11 @@ impl Trails {
     /// Takes in where contacts are at `now_s`.
     pub(super) fn update(&mut self, now_s: f64, snapshot: &Snapshot) {
         for contact in &snapshot.contacts {
-            let at = self.of.iter().position(|(id, _)| *id == contact.id).unwrap_or_else(|| {
+            let known = self.of.iter().position(|(id, _)| *id == contact.id);
+            if known.is_none() && self.of.len() >= MOST_CONTACTS {
+                continue;
+            }
+            let at = known.unwrap_or_else(|| {
                 self.of.push((contact.id, Vec::new()));
                 self.trails.push(Trail::default());
                 self.of.len() - 1

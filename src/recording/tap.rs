@@ -10,7 +10,7 @@ use crate::floor::Geometry;
 use crate::layout::Layout;
 use crate::source::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{LinkCounters, Request, SensorPacket};
+use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 /// Entries, each with the moment at which the server took it.
 pub(crate) type Entries = Vec<(Instant, Entry)>;
@@ -145,6 +145,10 @@ impl SensorSource for TappedSource {
 
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.inner.last_refused()
     }
 }
 

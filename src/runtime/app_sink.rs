@@ -3,7 +3,7 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::SyncSender;
 use std::time::Instant as HostInstant;
 
 use triple_buffer::Input;
@@ -37,7 +37,7 @@ impl Waker {
     /// held.
     pub(super) fn start(
         mut wake: Box<dyn FnMut() + Send>,
-        commands: Sender<Command>,
+        commands: SyncSender<Command>,
     ) -> std::io::Result<Self> {
         let due = Arc::new(AtomicBool::new(false));
         let begun = Arc::clone(&due);

@@ -5,7 +5,7 @@ use std::net::ToSocketAddrs;
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::atomic::AtomicBool;
-use std::sync::mpsc::{channel, sync_channel};
+use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
 use std::thread::Builder as ThreadBuilder;
 
@@ -32,6 +32,9 @@ use crate::sink::{CrackRateLimiter, EventSink, Fanout, LatencyStages, SinkError}
 use crate::source::{SensorSource, SourceError, UdpSource};
 use crate::units::{HostClock, Instant};
 use crate::wire::Prefix;
+
+/// Commands that may wait for the sensing thread: a second of a person at a window with a mouse.
+const COMMANDS_WAITING: usize = 256;
 
 /// What a session is made of, before it starts.
 pub struct SessionBuilder {
@@ -295,7 +298,7 @@ impl SessionBuilder {
         let held = Arc::new(HeldWatch::new(held));
         let (snapshots, latest) = triple_buffer(&engine::Snapshot::default());
         let shown = Arc::new(Shown::new(latest, layout.clone()));
-        let (commands, received) = channel();
+        let (commands, received) = sync_channel(COMMANDS_WAITING);
         let waker = self.wake.map(|wake| Waker::start(wake, commands.clone())).transpose();
         let waker = waker.map_err(StartError::Thread)?.map(Arc::new);
         // The app hears first, also where another sink fails.

@@ -21,7 +21,7 @@ impl Session {
         let on = seen.layout.widgets.iter().zip(&seen.floor.widgets).filter(|(_, state)| !state.disabled);
         let ids: Vec<WidgetId> = on.map(|(widget, _)| widget.id.clone()).collect();
         for id in &ids {
-            self.send(Command::Control(ControlMessage::Disable { id: id.clone() }));
+            self.insist(Command::Control(ControlMessage::Disable { id: id.clone() }));
         }
         ControlsOff { session: self.clone(), ids }
     }
@@ -30,7 +30,7 @@ impl Session {
 impl Drop for ControlsOff {
     fn drop(&mut self) {
         for id in self.ids.drain(..) {
-            self.session.send(Command::Control(ControlMessage::Enable { id }));
+            self.session.insist(Command::Control(ControlMessage::Enable { id }));
         }
     }
 }

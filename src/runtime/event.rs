@@ -40,6 +40,9 @@ pub enum Kind {
     Page,
     /// Whether sensor packets arrive. [`LinkState::Lost`] has cancelled what was held.
     Link(LinkState),
+    /// Why something is sent and no frame can be used, or no load was ever seen: [`Event::message`] has its name and a
+    /// sentence, and is empty when it is over; [`crate::engine::Snapshot::link_cause`] has it as a type.
+    LinkCause,
     /// How the sensors are doing, once a second at most.
     Health,
     /// How the device that moves the actuators is doing, once a second at most.
@@ -66,6 +69,7 @@ impl Kind {
             Self::State => "state",
             Self::Page => "page",
             Self::Link(_) => "link",
+            Self::LinkCause => "link_cause",
             Self::Health => "health",
             Self::Device => "device",
             Self::Muted => "mute",
@@ -120,7 +124,7 @@ impl Event {
         self.id.as_ref().map_or("", WidgetId::as_str)
     }
 
-    /// What was said at the end that was a failure; empty otherwise.
+    /// The reason of an end that is a failure, and the cause of [`Kind::LinkCause`]; empty otherwise.
     #[must_use]
     pub fn message(&self) -> &str {
         &self.message
@@ -137,6 +141,10 @@ impl Event {
             OwnedReport::Control(_, state) => (Some(state.id.clone()), Kind::State),
             OwnedReport::Page(shown) => (Some(shown.page), Kind::Page),
             OwnedReport::Link(_, state) => (None, Kind::Link(state)),
+            OwnedReport::LinkCause(_, cause) => {
+                let message = cause.map(|cause| format!("{}: {cause}", cause.name())).unwrap_or_default();
+                return Some(Self { message, ..Self::new(at, None, Kind::LinkCause) });
+            }
             OwnedReport::Health(..) => (None, Kind::Health),
             OwnedReport::Device(..) => (None, Kind::Device),
             OwnedReport::Muted(..) => (None, Kind::Muted),

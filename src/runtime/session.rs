@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{RecvTimeoutError, Sender, sync_channel};
+use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::JoinHandle;
 use std::time::Duration;
@@ -33,7 +33,7 @@ pub(super) struct Inner {
     pub(super) queue: Arc<Queue>,
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
-    pub(super) commands: Sender<Command>,
+    pub(super) commands: SyncSender<Command>,
     pub(super) stop: Arc<AtomicBool>,
     pub(super) thread: Mutex<Option<JoinHandle<()>>>,
 }
@@ -167,13 +167,20 @@ impl Session {
     /// [`crate::engine::Snapshot::layout_revision`] from which on snapshots belong to it.
     pub fn set_layout(&self, layout: Layout) -> u64 {
         self.0.shown.give(layout, |layout| {
-            self.send(Command::SetLayout(Box::new(layout)));
+            self.insist(Command::SetLayout(Box::new(layout)));
         })
     }
 
-    /// Asks for anything else, without an answer; whether somebody is there to do it.
+    /// Asks for anything else, without an answer; never waits. False if the floor has ended, or if 256 commands wait
+    /// for it already: then nothing is done.
     pub fn send(&self, command: Command) -> bool {
-        self.0.commands.send(command).is_ok()
+        self.0.commands.try_send(command).is_ok()
+    }
+
+    /// Asks for something that must be done, and waits for room: the sensing thread takes commands every 5 ms.
+    pub(super) fn insist(&self, command: Command) {
+        // A floor that has ended does nothing any more.
+        let _ = self.0.commands.send(command);
     }
 
     /// Ends the floor: what is held is cancelled, and [`super::Kind::Ended`] follows. Does not wait for it.
@@ -195,7 +202,7 @@ impl Session {
     pub fn ask(&self, message: ControlMessage) -> Result<(), Refusal> {
         let (answer, answered) = sync_channel(1);
         if !self.send(Command::Ask(message, answer)) {
-            return Err(Refusal::Ended);
+            return Err(if self.has_ended() { Refusal::Ended } else { Refusal::NoAnswer });
         }
         match answered.recv_timeout(PATIENCE) {
             Ok(done) => Ok(done?),

@@ -62,6 +62,8 @@ impl Shown {
     /// Notes a layout and gives it to the engine by `give`, so that both number layouts alike.
     pub(super) fn give(&self, layout: Layout, give: impl FnOnce(Layout)) -> u64 {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
+        // Also where nobody reads.
+        state.catch_up();
         state.given += 1;
         let given = state.given;
         state.later.push_back((given, Arc::new(layout.clone())));
@@ -78,11 +80,17 @@ impl Shown {
 
     pub(super) fn read(&self) -> Snapshot {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        let State { latest, layout, later, .. } = &mut *state;
-        let floor = latest.read().clone();
-        while let Some((_, next)) = later.pop_front_if(|(revision, _)| *revision <= floor.layout_revision) {
-            *layout = next;
+        state.catch_up();
+        Snapshot { layout: Arc::clone(&state.layout), floor: state.latest.read().clone() }
+    }
+}
+
+impl State {
+    /// Forgets the layouts before the one that the latest state belongs to.
+    fn catch_up(&mut self) {
+        let revision = self.latest.read().layout_revision;
+        while let Some((_, next)) = self.later.pop_front_if(|(given, _)| *given <= revision) {
+            self.layout = next;
         }
-        Snapshot { layout: Arc::clone(layout), floor }
     }
 }

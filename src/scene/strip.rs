@@ -34,6 +34,9 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
     };
     scene.add_text(lettering, format_args!("{columns} × {rows} tiles · {:.2} × {:.2} m", size.x, size.y));
     if view.show.contacts {
+        let cause = view.snapshot.link_cause.as_ref();
+        let cause =
+            cause.map(|cause| format!("{}: {}", view.snapshot.link.name(), cause.name().replace('_', " ")));
         let (state, colour) = match view.snapshot.link {
             LinkState::Waiting => ("no packets yet", theme.warning),
             // Nominal parts are what every floor begins with, and no fault.
@@ -45,6 +48,7 @@ pub(super) fn header(scene: &mut Scene, view: &View<'_>, strip: Rect) {
             LinkState::Partial => ("some boards are silent", theme.warning),
             LinkState::Lost => ("no sensor packets", theme.fault),
         };
+        let (state, colour) = cause.as_deref().map_or((state, colour), |cause| (cause, theme.fault));
         lettering = Lettering {
             at: Vec2::new(strip.max.x, top - 0.052),
             anchor: Anchor::End,

@@ -5,6 +5,7 @@
 //! a disk or another program. `take_tare`, `ForceWatch`, `WiringWalk` and
 //! `WalkTest` are for the people who set a floor up.
 
+mod cause;
 mod changes;
 #[cfg(any(feature = "internals", test))]
 mod measure;

@@ -18,15 +18,15 @@ pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(),
         ControlMessage::Disable { id } => engine.set_enabled(id.as_str(), false),
         ControlMessage::Lock { id } => engine.set_locked(id.as_str(), true),
         ControlMessage::Unlock { id } => engine.set_locked(id.as_str(), false),
-        ControlMessage::Label { id, text } => engine.set_label(id.as_str(), text),
         ControlMessage::Indicate { id, indicator } => engine.set_indicator(id.as_str(), *indicator),
         ControlMessage::SetRange { id, least, greatest } => engine.set_range(id.as_str(), *least, *greatest),
         ControlMessage::ShowPage { page } => engine.set_page(page.as_str()),
         ControlMessage::Get { id } => engine.control(id.as_str()).map(drop).ok_or(SetError::Unknown),
-        // Not for the engine: the server's own business.
+        // The server does these itself.
         ControlMessage::GetPage
         | ControlMessage::GetAll
         | ControlMessage::CancelAll
+        | ControlMessage::Label { .. }
         | ControlMessage::Mute { .. }
         | ControlMessage::MuteTile { .. }
         | ControlMessage::GetMute => Ok(()),

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 
 use thiserror::Error;
 
@@ -30,7 +30,7 @@ pub enum ArrivalError {
 /// over when that of `driver` is and nobody who was sent is left.
 #[must_use]
 pub fn arrivals(driver: Box<dyn FootDriver>) -> (ArrivalHandle, Arrivals) {
-    let (sender, sent) = channel();
+    let (sender, sent) = sync_channel(MOST);
     let playing = Arc::<AtomicUsize>::default();
     let handle = ArrivalHandle { sender, playing: Arc::clone(&playing) };
     (handle, Arrivals { driver, sent, playing, present: Vec::new(), theirs: Vec::new() })
@@ -39,7 +39,7 @@ pub fn arrivals(driver: Box<dyn FootDriver>) -> (ArrivalHandle, Arrivals) {
 /// Sends people onto a floor.
 #[derive(Clone, Debug)]
 pub struct ArrivalHandle {
-    sender: Sender<Script>,
+    sender: SyncSender<Script>,
     playing: Arc<AtomicUsize>,
 }
 
@@ -53,7 +53,8 @@ impl ArrivalHandle {
         self.playing
             .fetch_update(Ordering::Relaxed, Ordering::Relaxed, one_more)
             .map_err(|_| ArrivalError::Crowded)?;
-        self.sender.send(script).map_err(|_| ArrivalError::Ended)
+        // There is room for all that may play.
+        self.sender.try_send(script).map_err(|_| ArrivalError::Ended)
     }
 
     /// How many scripts are being played, or will be from the next millisecond on.

@@ -1,13 +1,16 @@
 //! Feet moved by hand: led along paths from another thread, moved at the sensor rate.
 
 use std::collections::VecDeque;
-use std::sync::mpsc::{Receiver, Sender, TryRecvError, channel};
+use std::sync::mpsc::{Receiver, SyncSender, TryRecvError, sync_channel};
 
 use glam::Vec2;
 
 use super::foot::{Foot, FootDriver};
 use super::track::turn_between;
 use crate::units::{Instant, Newtons};
+
+/// Paths that may wait for the simulated floor, which takes them each millisecond: a second of a window's frames.
+const PATHS_WAITING: usize = 64;
 
 /// A handle to lead feet with, and the driver that moves them.
 ///
@@ -16,14 +19,14 @@ use crate::units::{Instant, Newtons};
 /// lift off and the performance is over.
 #[must_use]
 pub fn feet_by_hand() -> (FootHandle, HandDriver) {
-    let (paths, led) = channel();
+    let (paths, led) = sync_channel(PATHS_WAITING);
     (FootHandle { paths }, HandDriver { led, followers: Vec::new(), last: None })
 }
 
 /// Says where feet shall go.
 #[derive(Debug)]
 pub struct FootHandle {
-    paths: Sender<Led>,
+    paths: SyncSender<Led>,
 }
 
 /// The paths of all feet, and how long they take, in seconds.
@@ -38,8 +41,8 @@ impl FootHandle {
     /// without a path, or beyond the list's end, lifts where it is; so does one led to a place that is not finite. A
     /// time that is not finite counts as none. Never blocks.
     pub fn lead(&mut self, over_s: f32, feet: Vec<Vec<Foot>>) {
-        // A floor that has ended has no feet to lead.
-        let _ = self.paths.send((over_s, feet));
+        // A floor that has ended has no feet to lead, and one that stands still moves none.
+        let _ = self.paths.try_send((over_s, feet));
     }
 }
 

@@ -64,7 +64,7 @@ pub(crate) use worker::Worker;
 internal! {
     use crack_rate::{CrackNews};
     use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
-    use priority::{Rank, claim_priority};
+    use priority::{Rank, claim_priority, step_back};
 }
 
 /// Something that plays the renderer's samples.

@@ -17,7 +17,7 @@ use crate::outgoing::{
 };
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
-use crate::wire::{LinkState, Prefix};
+use crate::wire::{LinkCause, LinkState, Prefix};
 
 /// Sends events, contacts and how link and sensors are doing as OSC over UDP.
 ///
@@ -63,7 +63,8 @@ impl OscSink {
         let out = UdpOut::new(target, "OSC")?;
         let undelivered = out.undelivered();
         let latest = Arc::new(Latest::default());
-        let sender = Sender { out, prefix, link: LinkState::default(), health: SensorHealth::default() };
+        let (link, health) = (LinkState::default(), SensorHealth::default());
+        let sender = Sender { out, prefix, link, cause: None, health };
         let worker = Worker::spawn("osc out", {
             let latest = latest.clone();
             move |jobs| sender.run(jobs, &latest)
@@ -145,8 +146,9 @@ impl Drop for OscSink {
 struct Sender {
     out: UdpOut,
     prefix: Prefix,
-    /// What was last reported of link and sensors: each message tells of both.
+    /// The last reports of link and sensors: each message has all of them.
     link: LinkState,
+    cause: Option<LinkCause>,
     health: SensorHealth,
 }
 
@@ -177,10 +179,14 @@ impl Sender {
             }
             OwnedReport::Link(_, state) => {
                 self.link = state;
-                write_health(prefix, state, &self.health, bytes);
+                write_health(prefix, state, self.cause.as_ref(), &self.health, bytes);
+            }
+            OwnedReport::LinkCause(_, cause) => {
+                write_health(prefix, self.link, cause.as_ref(), &self.health, bytes);
+                self.cause = cause;
             }
             OwnedReport::Health(_, health) => {
-                write_health(prefix, self.link, &health, bytes);
+                write_health(prefix, self.link, self.cause.as_ref(), &health, bytes);
                 self.health = health;
             }
             OwnedReport::Device(_, status) => write_device(prefix, &status, bytes),

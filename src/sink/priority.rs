@@ -22,6 +22,22 @@ pub fn claim_priority(rank: Rank) -> Priority {
     claim(rank)
 }
 
+/// Lets the calling thread go after everybody else's: it works while nobody else has anything to do. Where the system
+/// knows no such order (it is asked on Linux only), nothing is done.
+pub fn step_back() {
+    #[cfg(target_os = "linux")]
+    {
+        use thread_priority::{
+            NormalThreadSchedulePolicy, ThreadPriority, ThreadSchedulePolicy, set_thread_priority_and_policy,
+            thread_native_id,
+        };
+        let idle = ThreadSchedulePolicy::Normal(NormalThreadSchedulePolicy::Idle);
+        if let Err(error) = set_thread_priority_and_policy(thread_native_id(), ThreadPriority::Min, idle) {
+            tracing::debug!("a thread that should go after others goes beside them: {error:?}");
+        }
+    }
+}
+
 #[cfg(unix)]
 fn claim(rank: Rank) -> Priority {
     use RealtimeThreadSchedulePolicy::{Fifo, RoundRobin};

@@ -8,7 +8,7 @@ use crate::ground::GroundEvent;
 use crate::sense::{Contact, SensorHealth};
 use crate::units::Instant;
 use crate::widget::WidgetEvent;
-use crate::wire::LinkState;
+use crate::wire::{LinkCause, LinkState};
 
 /// One thing that other programs are told; times are on the floor's sample clock.
 #[derive(Clone, Copy, Debug)]
@@ -24,6 +24,8 @@ pub enum Report<'a> {
     Ground(&'a GroundEvent),
     /// The floor's link has changed its state.
     Link(Instant, LinkState),
+    /// The cause for which something is sent and no frame can be used has changed; `None` when it is gone.
+    LinkCause(Instant, Option<&'a LinkCause>),
     /// How the sensors are doing has changed; told once a second at most.
     Health(Instant, &'a SensorHealth),
     /// How the device that moves the actuators is doing has changed; told once a second at most.
@@ -48,6 +50,7 @@ pub(crate) enum OwnedReport {
     Page(PageShown),
     Crack(CrackNews),
     Link(Instant, LinkState),
+    LinkCause(Instant, Option<LinkCause>),
     Health(Instant, SensorHealth),
     Device(Instant, DeviceStatus),
     Held(HeldReport),
@@ -66,6 +69,7 @@ impl OwnedReport {
             Report::Page(page) => Self::Page(page.clone()),
             Report::Ground(event) => Self::Crack(cracks.news(event)?),
             Report::Link(at, state) => Self::Link(at, state),
+            Report::LinkCause(at, cause) => Self::LinkCause(at, cause.cloned()),
             Report::Health(at, health) => Self::Health(at, health.clone()),
             Report::Device(at, status) => Self::Device(at, status.clone()),
             Report::Held(report) => Self::Held(report.clone()),
@@ -86,6 +90,7 @@ impl OwnedReport {
             Self::Area(news) => news.at,
             Self::Contacts(at, _)
             | Self::Link(at, _)
+            | Self::LinkCause(at, _)
             | Self::Health(at, _)
             | Self::Device(at, _)
             | Self::Alive(at, _)

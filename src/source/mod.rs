@@ -25,7 +25,7 @@ use thiserror::Error;
 
 use crate::layout::Layout;
 use crate::units::Instant;
-use crate::wire::{LinkCounters, Request, SensorPacket};
+use crate::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 /// A floor's stream of sensor packets, with the clock they are stamped by.
 pub trait SensorSource: Send {
@@ -63,6 +63,12 @@ pub trait SensorSource: Send {
     /// What the source itself received and refused so far; zero where it can refuse nothing.
     fn counters(&self) -> LinkCounters {
         LinkCounters::default()
+    }
+
+    /// The cause for which something from boards was refused last, or [`LinkCause::Unknown`] with the reason where it
+    /// was something else; `None` where nothing was refused so far.
+    fn last_refused(&self) -> Option<LinkCause> {
+        None
     }
 }
 

@@ -6,8 +6,7 @@ use rosc::OscType;
 use crate::floor::TileId;
 use crate::widget::{Indicator, Value};
 
-/// Most characters of a label, as in layouts.
-pub const MAX_LABEL: usize = 64;
+pub use crate::label::MAX_LABEL;
 
 /// What a command takes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -43,18 +42,6 @@ pub(super) enum Argument {
     TileFlag(TileId, bool),
 }
 
-/// Whether a character may stand in a label: not if it controls a terminal or turns the direction of what follows,
-/// with which one label can pass for another.
-///
-/// # Source
-/// Unicode Standard Annex 9, explicit and implicit directional marks; line and paragraph separators.
-#[must_use]
-pub fn is_shown(c: char) -> bool {
-    let turns =
-        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
-    !c.is_control() && !turns && !matches!(c, '\u{2028}' | '\u{2029}')
-}
-
 impl ArgumentKind {
     pub(super) fn read(self, args: &[OscType]) -> Option<Argument> {
         match (self, args) {
@@ -69,7 +56,7 @@ impl ArgumentKind {
                 _ => None,
             },
             (Self::Label, [OscType::String(text)]) if text.chars().count() <= MAX_LABEL => {
-                Some(Argument::Text(text.chars().filter(|&c| is_shown(c)).collect()))
+                Some(Argument::Text(text.clone()))
             }
             (Self::Page, [OscType::String(text)]) => Some(Argument::Text(text.clone())),
             (Self::Switch, []) => Some(Argument::Flag(true)),

@@ -38,6 +38,8 @@ pub struct LinkCounters {
     pub malformed: u64,
     /// Messages for an address that no board of this floor and no control has.
     pub unknown_address: u64,
+    /// Messages for other receivers, in bundles of which the rest was used.
+    pub skipped: u64,
     /// Messages for a board that don't carry what the floor says: missing sequence, wrong types, wrong count.
     pub wrong_shape: u64,
     /// Datagrams from senders that may not send them: packets or requests.
@@ -52,12 +54,14 @@ pub struct LinkCounters {
     /// Requests of apps that were understood and could not be met: no such control or page, a value that doesn't
     /// suit it, a control that is locked or in use.
     pub denied: u64,
+    /// Labels from apps of which something was left out: characters that no label may hold, and those beyond 64.
+    pub cleaned: u64,
     /// Times a sensor was found in trouble: broken, stuck, drifted too far, noisy.
     pub sensor_troubles: u64,
 }
 
 impl LinkCounters {
-    /// Datagrams and messages that were refused, for whatever reason.
+    /// Datagrams and messages that were refused, for whatever reason; without those that were skipped.
     #[must_use]
     pub const fn refused(&self) -> u64 {
         self.malformed + self.unknown_address + self.wrong_shape + self.foreign + self.limited
@@ -82,12 +86,14 @@ impl Add for LinkCounters {
             slips: self.slips + other.slips,
             malformed: self.malformed + other.malformed,
             unknown_address: self.unknown_address + other.unknown_address,
+            skipped: self.skipped + other.skipped,
             wrong_shape: self.wrong_shape + other.wrong_shape,
             foreign: self.foreign + other.foreign,
             limited: self.limited + other.limited,
             bad_readings: self.bad_readings + other.bad_readings,
             overflowed: self.overflowed + other.overflowed,
             denied: self.denied + other.denied,
+            cleaned: self.cleaned + other.cleaned,
             sensor_troubles: self.sensor_troubles + other.sensor_troubles,
         }
     }

@@ -2,18 +2,19 @@
 
 use std::collections::HashMap;
 
-use rosc::{OscMessage, OscPacket, OscTime, OscType};
+use rosc::{OscPacket, OscTime, OscType};
 use thiserror::Error;
 
 use super::command::{self, NoCommand};
-use super::guard::{self, Limits, Malformed};
+use super::guard::{self, Form, Limits, Malformed};
 use super::message::ControlMessage;
 use super::sensor_message::RawMessage;
-use super::{LinkCounters, Prefix, SensorPacket};
+use super::{LinkCause, LinkCounters, Prefix, SensorPacket};
 use crate::floor::Floor;
+use crate::format::suggest::nearest;
 use crate::units::Instant;
 
-/// Why a datagram is refused as a whole.
+/// Why a datagram, or one message of a bundle, is refused.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum WireError {
     /// It is not well-formed OSC, or larger than what may come.
@@ -24,6 +25,8 @@ pub enum WireError {
     UnknownAddress {
         /// The address, as sent.
         address: String,
+        /// Whether its arguments look like readings of a board.
+        is_reading: bool,
     },
     /// A bundle of requests is to be met later than within a second.
     #[error("its time tag lies {seconds} s ahead: requests wait for 1 s at most")]
@@ -31,7 +34,21 @@ pub enum WireError {
         /// How far ahead it lies.
         seconds: u32,
     },
-    /// The arguments are not what this address takes.
+    /// The arguments are not what this board sends by the floor file.
+    #[error(
+        "{address:?} takes an int32 sequence and {channels} counts (i), newtons (f), or one blob of u16 counts, not {found}"
+    )]
+    WrongReadings {
+        /// The board's number.
+        board: u16,
+        /// How many channels it has.
+        channels: usize,
+        /// The address, as sent.
+        address: String,
+        /// Its arguments, by type tags.
+        found: String,
+    },
+    /// The arguments are not what this request takes.
     #[error("{address:?} takes {expected}, not {found}")]
     WrongShape {
         /// The address, as sent.
@@ -50,12 +67,12 @@ impl WireError {
             Self::Malformed(_) => counters.malformed += 1,
             Self::UnknownAddress { .. } => counters.unknown_address += 1,
             Self::TooEarly { .. } => counters.denied += 1,
-            Self::WrongShape { .. } => counters.wrong_shape += 1,
+            Self::WrongReadings { .. } | Self::WrongShape { .. } => counters.wrong_shape += 1,
         }
     }
 }
 
-/// What one datagram held, in the order it was written; kept and refilled to save allocations.
+/// The messages of one datagram, in the order in which they were written; kept and refilled to save allocations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Batch {
     /// Samples of boards.
@@ -64,6 +81,8 @@ pub struct Batch {
     pub controls: Vec<ControlMessage>,
     /// When that is to be met: the latest time tag of the bundles that hold it; `None` at once.
     pub due: Option<OscTime>,
+    /// Well-formed messages of a bundle that are not used: for another receiver, or of the wrong shape.
+    pub refused: Vec<WireError>,
 }
 
 impl Batch {
@@ -72,6 +91,13 @@ impl Batch {
         self.packets.clear();
         self.controls.clear();
         self.due = None;
+        self.refused.clear();
+    }
+
+    /// Whether some message of the datagram is used.
+    #[must_use]
+    pub fn is_used(&self) -> bool {
+        !self.packets.is_empty() || !self.controls.is_empty()
     }
 }
 
@@ -121,10 +147,12 @@ impl Decoder {
     ///
     /// A count outside 0 to 65535 becomes `None` in its place; NaN and
     /// infinities among newtons are kept as they came, for [`crate::sense::Assembler`] to judge.
+    /// Messages of a bundle that are for another receiver or have the wrong shape are left out and
+    /// listed in [`Batch::refused`].
     ///
     /// # Errors
-    /// [`WireError`] if any part of the datagram is not right; `batch` is then
-    /// empty, so that a datagram is never half applied.
+    /// [`WireError`] if any part of the datagram is malformed, or if its only message is not used;
+    /// `batch` is then empty.
     pub fn decode(&self, datagram: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
         batch.clear();
         let result = self.fill(datagram, received, batch);
@@ -142,15 +170,32 @@ impl Decoder {
             batch.packets.push(packet);
             return Ok(());
         }
-        guard::check(datagram, &Limits::SENSORS)?;
-        self.element(datagram, received, batch)
+        guard::check_parts(datagram, &Limits::SENSORS)?;
+        match guard::Bundle::of(datagram) {
+            Some(bundle) => self.bundle(&bundle, received, batch),
+            None => self.message(datagram, received, batch),
+        }
     }
 
-    /// Reads a bundle or a message. Recursion is safe here: the guard has limited the depth.
-    fn element(&self, bytes: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        let Some(bundle) = guard::Bundle::of(bytes) else { return self.message(bytes, received, batch) };
+    /// Reads a bundle. Recursion is safe here: the guard has limited the depth.
+    fn bundle(
+        &self,
+        bundle: &guard::Bundle<'_>,
+        received: Instant,
+        batch: &mut Batch,
+    ) -> Result<(), WireError> {
         let before = batch.controls.len();
-        bundle.elements().try_for_each(|element| self.element(element, received, batch))?;
+        for element in bundle.elements() {
+            let read = match guard::Bundle::of(element) {
+                Some(inner) => self.bundle(&inner, received, batch),
+                None => self.message(element, received, batch),
+            };
+            match read {
+                Err(error @ WireError::Malformed(_)) => return Err(error),
+                Err(error) => batch.refused.push(error),
+                Ok(()) => {}
+            }
+        }
         if batch.controls.len() > before {
             let time = |tag: &OscTime| (tag.seconds, tag.fractional);
             batch.due = batch.due.into_iter().chain([bundle.time_tag]).max_by_key(time);
@@ -159,22 +204,36 @@ impl Decoder {
     }
 
     fn message(&self, bytes: &[u8], received: Instant, batch: &mut Batch) -> Result<(), WireError> {
-        if let Some(packet) = RawMessage::split(bytes).and_then(|raw| self.sensors(&raw, received)) {
+        let Some(raw) = RawMessage::split(bytes) else { return Err(Malformed::Neither { at: 0 }.into()) };
+        if let Some(packet) = self.sensors(&raw, received) {
             batch.packets.push(packet);
             return Ok(());
         }
-        // The guard passes nothing that rosc refuses (a property test says so); should they ever
-        // disagree, the datagram is refused.
-        let Ok((b"", OscPacket::Message(message))) = rosc::decoder::decode_udp(bytes) else {
-            return Err(Malformed::Neither { at: 0 }.into());
-        };
-        match self.boards.get(message.addr.as_bytes()) {
-            Some(shape) => Err(shape.refuses(message)),
-            None => {
-                batch.controls.extend(self.controls(&message)?);
-                Ok(())
-            }
+        if let Some(shape) = self.boards.get(raw.address) {
+            return Err(shape.refuses(&raw));
         }
+        let address = raw.address_text();
+        let controls = match guard::form(bytes, &Limits::SENSORS) {
+            // The guard passes nothing that rosc refuses (a property test says so); should they ever
+            // disagree, the datagram is refused.
+            Ok(Form::Whole) => match rosc::decoder::decode_udp(bytes) {
+                Ok((b"", OscPacket::Message(message))) => self.controls(address, Some(&message.args)),
+                _ => return Err(Malformed::Neither { at: 0 }.into()),
+            },
+            Ok(Form::Bare { .. }) => self.controls(address, Some(&[])),
+            Ok(Form::Untagged { .. } | Form::Unknown { .. }) | Err(_) => self.controls(address, None),
+        };
+        batch.controls.extend(controls.map_err(|error| match error {
+            NoCommand::Unknown => WireError::UnknownAddress {
+                address: address.to_owned(),
+                is_reading: raw.looks_like_readings(),
+            },
+            NoCommand::Expected(expected) => {
+                let (address, found) = (address.to_owned(), raw.found());
+                WireError::WrongShape { address, expected: expected.into(), found }
+            }
+        })?);
+        Ok(())
     }
 
     /// The packet, if this is one of a board of this floor.
@@ -185,15 +244,10 @@ impl Decoder {
         (packet.readings.len() == shape.channels).then_some(packet)
     }
 
-    fn controls(&self, message: &OscMessage) -> Result<Vec<ControlMessage>, WireError> {
-        command::read(&self.prefix, &message.addr, &message.args).map_err(|error| match error {
-            NoCommand::Unknown => WireError::UnknownAddress { address: message.addr.clone() },
-            NoCommand::Expected(expected) => WireError::WrongShape {
-                address: message.addr.clone(),
-                expected: expected.into(),
-                found: type_tags(&message.args),
-            },
-        })
+    /// The requests at `address` with these arguments; `None` for arguments that can't be read.
+    fn controls(&self, address: &str, args: Option<&[OscType]>) -> Result<Vec<ControlMessage>, NoCommand> {
+        // No request takes nil.
+        command::read(&self.prefix, address, args.unwrap_or(&[OscType::Nil]))
     }
 
     /// The address of a request that was refused for this reason, if its sender hears why.
@@ -203,10 +257,8 @@ impl Decoder {
     #[must_use]
     pub fn is_answered<'e>(&self, error: &'e WireError) -> Option<&'e str> {
         match error {
-            WireError::WrongShape { address, .. } if !self.boards.contains_key(address.as_bytes()) => {
-                Some(address)
-            }
-            WireError::UnknownAddress { address } => {
+            WireError::WrongShape { address, .. } => Some(address),
+            WireError::UnknownAddress { address, .. } => {
                 let path = self.prefix.path(address)?;
                 (!command::is_sent_by_floors(path)).then_some(address)
             }
@@ -216,54 +268,46 @@ impl Decoder {
     }
 }
 
+impl Decoder {
+    /// The fault of boards that `error` is a sign of; [`LinkCause::Unknown`] with the error where it is about a request.
+    ///
+    /// `None` for what is malformed: the datagram tells more of that.
+    pub(crate) fn cause_of(&self, error: &WireError) -> Option<LinkCause> {
+        Some(match error {
+            WireError::Malformed(_) => return None,
+            WireError::WrongReadings { board, channels, found, .. } => {
+                LinkCause::WrongReadings { board: *board, channels: *channels, found: found.clone() }
+            }
+            WireError::UnknownAddress { address, is_reading: true } => {
+                LinkCause::OtherAddress { found: address.clone(), expected: self.nearest_board(address) }
+            }
+            WireError::UnknownAddress { .. } | WireError::WrongShape { .. } | WireError::TooEarly { .. } => {
+                LinkCause::Unknown { last_refused: error.to_string() }
+            }
+        })
+    }
+
+    /// The board's address that `address` was most likely meant to be; empty on a floor without boards.
+    fn nearest_board(&self, address: &str) -> String {
+        let addresses = || {
+            self.boards.iter().filter_map(|(bytes, shape)| Some((std::str::from_utf8(bytes).ok()?, shape)))
+        };
+        let nearest = nearest(address, addresses().map(|(address, _)| address));
+        let first = || addresses().min_by_key(|(_, shape)| shape.number).map(|(address, _)| address);
+        nearest.or_else(first).unwrap_or_default().to_owned()
+    }
+}
+
 impl BoardShape {
-    fn refuses(self, message: OscMessage) -> WireError {
-        WireError::WrongShape {
-            expected: format!(
-                "an int32 sequence and {} counts (i), newtons (f), or one blob of u16 counts",
-                self.channels
-            ),
-            found: type_tags(&message.args),
-            address: message.addr,
-        }
-    }
-}
-
-/// The type tags of `args` as OSC writes them, shortened to what fits in a log line.
-fn type_tags(args: &[OscType]) -> String {
-    const SHOWN: usize = 40;
-    let mut tags: String = args.iter().take(SHOWN).map(tag).collect();
-    if args.is_empty() {
-        tags.push_str("nothing");
-    } else if args.len() > SHOWN {
-        tags.push_str(&format!("... ({} arguments)", args.len()));
-    }
-    tags
-}
-
-fn tag(arg: &OscType) -> char {
-    match arg {
-        OscType::Int(_) => 'i',
-        OscType::Float(_) => 'f',
-        OscType::String(_) => 's',
-        OscType::Blob(_) => 'b',
-        OscType::Time(_) => 't',
-        OscType::Long(_) => 'h',
-        OscType::Double(_) => 'd',
-        OscType::Char(_) => 'c',
-        OscType::Color(_) => 'r',
-        OscType::Midi(_) => 'm',
-        OscType::Bool(true) => 'T',
-        OscType::Bool(false) => 'F',
-        OscType::Array(_) => '[',
-        OscType::Nil => 'N',
-        OscType::Inf => 'I',
+    fn refuses(self, message: &RawMessage<'_>) -> WireError {
+        let (address, found) = (message.address_text().to_owned(), message.found());
+        WireError::WrongReadings { board: self.number, channels: self.channels, address, found }
     }
 }
 
 #[cfg(test)]
 mod tests {
-    use rosc::{OscBundle, OscTime, encoder};
+    use rosc::{OscMessage, encoder};
 
     use super::*;
     use crate::floor::Geometry;
@@ -342,7 +386,7 @@ mod tests {
             [too_few, too_many, far_too_many, mixed, no_sequence, odd_blob, short_blob, huge_blob, vec![]]
         {
             let verdict = readings(args.clone());
-            assert!(matches!(verdict, Err(WireError::WrongShape { .. })), "{args:?}: {verdict:?}");
+            assert!(matches!(verdict, Err(WireError::WrongReadings { .. })), "{args:?}: {verdict:?}");
         }
     }
 
@@ -353,7 +397,7 @@ mod tests {
             ["/*", "//", "/", "/underfoot/board/*", "/underfoot/board/[0-9]", "/underfoot/board/00"]
         {
             let verdict = decode(&bytes(address, ints(&[9, 1, 2, 3, 4])));
-            assert_eq!(verdict, Err(WireError::UnknownAddress { address: address.into() }));
+            assert_eq!(verdict, Err(WireError::UnknownAddress { address: address.into(), is_reading: true }));
         }
         // P11: a name of 60 kB is past the size limit, one of 6 kB past that of addresses.
         for length in [60_000, 6000] {
@@ -362,23 +406,156 @@ mod tests {
         }
     }
 
+    fn bundle(elements: &[Vec<u8>]) -> Vec<u8> {
+        // P10: the time tag may be anything.
+        let mut bytes = b"#bundle\0\xFF\xFF\xFF\xFF\0\0\0\0".to_vec();
+        for element in elements {
+            bytes.extend(u32::try_from(element.len()).unwrap().to_be_bytes());
+            bytes.extend(element);
+        }
+        bytes
+    }
+
+    fn good_readings() -> Vec<u8> {
+        bytes("/underfoot/board/0", ints(&[9, 1, 2, 3, 4]))
+    }
+
+    /// A message written by hand, without the checks of an encoder.
+    fn raw(address: &str, tags: Option<&str>, arguments: &[u8]) -> Vec<u8> {
+        let mut bytes = Vec::new();
+        for text in [Some(address.to_owned()), tags.map(|tags| format!(",{tags}"))].into_iter().flatten() {
+            bytes.extend(text.as_bytes());
+            bytes.resize((bytes.len() + 1).next_multiple_of(4), 0);
+        }
+        bytes.extend(arguments);
+        bytes
+    }
+
     // P4
     #[test]
-    fn one_bad_element_spoils_the_whole_datagram() {
-        let good = message("/underfoot/board/0", ints(&[9, 1, 2, 3, 4]));
-        let bad = message("/underfoot/board/0", ints(&[9, 1, 2, 3]));
-        let bundle = |content| {
-            // P10: the time tag may be anything.
-            let timetag = OscTime { seconds: u32::MAX, fractional: 0 };
-            encoder::encode(&OscPacket::Bundle(OscBundle { timetag, content })).unwrap()
-        };
-        assert_eq!(decode(&bundle(vec![good.clone(), good.clone()])).unwrap().packets.len(), 2);
+    fn one_malformed_element_spoils_the_whole_datagram() {
+        assert_eq!(decode(&bundle(&[good_readings(), good_readings()])).unwrap().packets.len(), 2);
+        let cut_short = raw("/battery", Some("f"), &[]);
+        let left_over = raw("/battery", Some("i"), &[0; 8]);
+        let no_address = b"battery\0,\0\0\0".to_vec();
+        let endless_array = raw("/battery", Some("[i"), &[0; 4]);
+        for bad in [cut_short, left_over, no_address, endless_array] {
+            let mut batch = Batch::default();
+            decoder().decode(&bundle(&[good_readings()]), NOW, &mut batch).unwrap();
+            let verdict = decoder().decode(&bundle(&[good_readings(), bad.clone()]), NOW, &mut batch);
+            assert!(matches!(verdict, Err(WireError::Malformed(_))), "{bad:?}: {verdict:?}");
+            assert_eq!(batch, Batch::default());
+        }
+    }
 
-        let mut batch = Batch::default();
-        decoder().decode(&bundle(vec![good.clone()]), NOW, &mut batch).unwrap();
-        let verdict = decoder().decode(&bundle(vec![good, bad]), NOW, &mut batch);
-        assert!(matches!(verdict, Err(WireError::WrongShape { .. })));
-        assert_eq!(batch, Batch::default());
+    /// What strangers send beside a board's readings.
+    fn foreign_messages() -> Vec<Vec<u8>> {
+        vec![
+            bytes("/battery", vec![OscType::Float(3.7)]),
+            // Older senders leave the type tags out, with arguments and without.
+            raw("/ping", None, &[]),
+            raw("/level", None, &[0, 0, 0, 1]),
+            // Type tags that no version of OSC has, or not all have.
+            raw("/symbol", Some("S"), b"kick"),
+            raw("/odd", Some("iQz"), &[1, 2, 3, 4, 5, 6, 7, 8]),
+            // More arguments and a longer address than any message to a floor has.
+            bytes("/spectrum", vec![OscType::Float(0.5); 300]),
+            bytes(&format!("/{}", "a".repeat(200)), vec![]),
+            bundle(&[bytes("/cue/1", vec![]), bundle(&[bytes("/cue/2", vec![])])]),
+        ]
+    }
+
+    #[test]
+    fn a_message_for_another_receiver_costs_its_bundle_nothing() {
+        for foreign in foreign_messages() {
+            for elements in [
+                [foreign.clone(), good_readings(), good_readings()],
+                [good_readings(), foreign.clone(), good_readings()],
+                [good_readings(), good_readings(), foreign.clone()],
+            ] {
+                let batch = decode(&bundle(&elements)).unwrap();
+                assert_eq!(batch.packets.len(), 2, "{foreign:?}");
+                assert!(!batch.refused.is_empty(), "{foreign:?}");
+                let is_foreign = |error: &WireError| matches!(error, WireError::UnknownAddress { .. });
+                assert!(batch.refused.iter().all(is_foreign), "{:?}", batch.refused);
+                let nested = decode(&bundle(&[bundle(&elements)])).unwrap();
+                assert_eq!(nested.packets.len(), 2, "{foreign:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_bundle_of_foreign_messages_alone_is_refused_message_by_message() {
+        let batch = decode(&bundle(&foreign_messages())).unwrap();
+        assert!(!batch.is_used());
+        assert_eq!(batch.refused.len(), foreign_messages().len() + 1);
+    }
+
+    #[test]
+    fn a_message_of_the_wrong_shape_costs_only_itself() {
+        let short = bytes("/underfoot/board/0", ints(&[9, 1, 2, 3]));
+        let unclear = bytes("/underfoot/widget/zoom/set", vec![OscType::Nil]);
+        let get = bytes("/underfoot/widget/zoom/get", vec![]);
+        let batch = decode(&bundle(&[short, good_readings(), unclear, get])).unwrap();
+        assert_eq!((batch.packets.len(), batch.controls.len()), (1, 1));
+        assert!(
+            matches!(
+                batch.refused[..],
+                [WireError::WrongReadings { board: 0, channels: 4, .. }, WireError::WrongShape { .. }]
+            ),
+            "{:?}",
+            batch.refused
+        );
+    }
+
+    #[test]
+    fn a_message_without_type_tags_has_no_arguments() {
+        let id = WidgetId::new("zoom");
+        for (path, message) in [
+            ("get", ControlMessage::GetAll),
+            ("page/get", ControlMessage::GetPage),
+            ("mute/get", ControlMessage::GetMute),
+            ("cancel", ControlMessage::CancelAll),
+            ("widget/zoom/get", ControlMessage::Get { id: id.clone() }),
+            ("widget/zoom/enable", ControlMessage::Enable { id: id.clone() }),
+        ] {
+            let bare = raw(&format!("/underfoot/{path}"), None, &[]);
+            assert_eq!(decode(&bare).unwrap().controls, [message.clone()], "{path}");
+            assert_eq!(decode(&bundle(&[good_readings(), bare])).unwrap().controls, [message], "{path}");
+        }
+    }
+
+    #[test]
+    fn arguments_without_type_tags_are_refused() {
+        for (address, arguments) in [
+            ("/underfoot/widget/zoom/set", vec![0x3F, 0, 0, 0]),
+            ("/underfoot/widget/zoom/set", vec![]),
+            // 0 would mean the opposite of no argument.
+            ("/underfoot/widget/zoom/enable", vec![0; 4]),
+            ("/underfoot/mute/set", vec![0, 0, 0, 1]),
+            ("/underfoot/board/0", vec![0; 20]),
+            ("/underfoot/board/0", vec![]),
+        ] {
+            let verdict = decode(&raw(address, None, &arguments));
+            let Err(WireError::WrongShape { found, .. } | WireError::WrongReadings { found, .. }) = &verdict
+            else {
+                panic!("{address}: {verdict:?}")
+            };
+            let expected = if arguments.is_empty() { "nothing" } else { "no type tags" };
+            assert_eq!(found, expected, "{address}");
+        }
+    }
+
+    #[test]
+    fn unknown_type_tags_at_a_known_address_are_refused() {
+        for address in ["/underfoot/board/0", "/underfoot/widget/zoom/set", "/underfoot/get"] {
+            let verdict = decode(&raw(address, Some("iQ"), &[0; 8]));
+            let Err(WireError::WrongShape { found, .. } | WireError::WrongReadings { found, .. }) = verdict
+            else {
+                panic!("{address}: {verdict:?}")
+            };
+            assert_eq!(found, "iQ");
+        }
     }
 
     #[test]

@@ -114,6 +114,58 @@ pub enum Malformed {
 /// # Source
 /// Open Sound Control 1.0 with the type tags of 1.1, as far as rosc knows them.
 pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
+    walk(datagram, limits, |scan, _| match scan.form(limits)? {
+        Form::Whole => Ok(()),
+        Form::Bare { at } => Err(Malformed::CutShort { at }),
+        Form::Untagged { at } | Form::Unknown { at } => Err(Malformed::Text { at }),
+    })
+}
+
+/// Whether the parts of `datagram` can be told apart: as [`check`], but a message may have no type tags or unknown
+/// ones, and one in a bundle may be larger than `limits` allow. [`form`] says which messages can be read.
+pub(super) fn check_parts(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
+    walk(datagram, limits, |scan, is_alone| match scan.form(limits) {
+        Err(Malformed::TooMany { .. }) if !is_alone => Ok(()),
+        form => form.map(drop),
+    })
+}
+
+/// How far a message can be read; `at` is a byte offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    /// To its last byte.
+    Whole,
+    /// It ends behind its address, as older senders write a message without arguments.
+    Bare {
+        /// Where its type tags would stand.
+        at: usize,
+    },
+    /// Bytes follow its address, and no type tags say of which types.
+    Untagged {
+        /// Where its type tags would stand.
+        at: usize,
+    },
+    /// Some of its type tags are unknown, so that nothing is known of its arguments.
+    Unknown {
+        /// Where its type tags stand.
+        at: usize,
+    },
+}
+
+/// How far the message `bytes` can be read.
+///
+/// # Errors
+/// [`Malformed`] if it is larger than `limits` allow, or not well-formed.
+pub(super) fn form(bytes: &[u8], limits: &Limits) -> Result<Form, Malformed> {
+    Scan { bytes, offset: 0, at: 0 }.form(limits)
+}
+
+/// Walks through all messages of `datagram`, each with whether it is alone.
+fn walk(
+    datagram: &[u8],
+    limits: &Limits,
+    mut message: impl FnMut(Scan<'_>, bool) -> Result<(), Malformed>,
+) -> Result<(), Malformed> {
     if datagram.is_empty() {
         return Err(Malformed::Empty);
     }
@@ -140,7 +192,7 @@ pub fn check(datagram: &[u8], limits: &Limits) -> Result<(), Malformed> {
             }
             next = element.start + BUNDLE_HEADER;
         } else {
-            Scan { bytes, offset: element.start, at: 0 }.message(limits)?;
+            message(Scan { bytes, offset: element.start, at: 0 }, ends.is_empty())?;
         }
 
         while ends.last() == Some(&next) {
@@ -213,30 +265,43 @@ struct Scan<'a> {
 }
 
 impl<'a> Scan<'a> {
-    fn message(mut self, limits: &Limits) -> Result<(), Malformed> {
+    fn form(mut self, limits: &Limits) -> Result<Form, Malformed> {
         if self.bytes.first() != Some(&b'/') {
             return Err(Malformed::Neither { at: self.offset });
         }
         let address = self.text()?;
-        if address.len() > limits.address {
-            return Err(Malformed::TooMany { at: self.offset });
-        }
         if !address.bytes().all(|byte| byte.is_ascii_graphic() || byte == b' ') {
             return Err(Malformed::Text { at: self.offset });
         }
-        let tags_at = self.offset + self.at;
-        let tags = self.text()?.strip_prefix(',').ok_or(Malformed::Text { at: tags_at })?;
-        if tags.len() > limits.tags {
-            return Err(Malformed::TooMany { at: tags_at });
+        let at = self.offset + self.at;
+        let form = match self.rest().first() {
+            None => Form::Bare { at },
+            Some(b',') => self.tagged(limits, at)?,
+            Some(_) => Form::Untagged { at },
+        };
+        if address.len() > limits.address {
+            return Err(Malformed::TooMany { at: self.offset });
         }
-        self.arguments(tags, tags_at)?;
+        Ok(form)
+    }
+
+    /// The form of a message whose type tags stand `at`.
+    fn tagged(&mut self, limits: &Limits, at: usize) -> Result<Form, Malformed> {
+        let tags = self.text()?.strip_prefix(',').unwrap_or_default();
+        if !self.arguments(tags, at)? {
+            return Ok(Form::Unknown { at });
+        }
         if self.at < self.bytes.len() {
             return Err(Malformed::LeftOver { at: self.offset + self.at });
         }
-        Ok(())
+        if tags.len() > limits.tags {
+            return Err(Malformed::TooMany { at });
+        }
+        Ok(Form::Whole)
     }
 
-    fn arguments(&mut self, tags: &str, tags_at: usize) -> Result<(), Malformed> {
+    /// Passes over the arguments; false at the first tag that rosc does not know.
+    fn arguments(&mut self, tags: &str, tags_at: usize) -> Result<bool, Malformed> {
         let mut depth = 0;
         for tag in tags.bytes() {
             match tag {
@@ -251,10 +316,11 @@ impl<'a> Scan<'a> {
                 b'[' if depth < Limits::MAX_ARRAY_DEPTH => depth += 1,
                 b'[' => return Err(Malformed::TooDeep { at: tags_at }),
                 b']' if depth > 0 => depth -= 1,
-                _ => return Err(Malformed::Text { at: tags_at }),
+                b']' => return Err(Malformed::Text { at: tags_at }),
+                _ => return Ok(false),
             }
         }
-        if depth == 0 { Ok(()) } else { Err(Malformed::TooDeep { at: tags_at }) }
+        if depth == 0 { Ok(true) } else { Err(Malformed::TooDeep { at: tags_at }) }
     }
 
     fn cut_short(&self) -> Malformed {

@@ -45,7 +45,7 @@ pub enum ControlMessage {
     Label {
         /// Which control.
         id: WidgetId,
-        /// At most `MAX_LABEL` characters, none of which controls a terminal or the direction of writing.
+        /// As it was sent: what no label may hold is left out where it is written on the control.
         text: String,
     },
     /// Switch the lamp.

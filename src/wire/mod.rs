@@ -5,6 +5,7 @@
 //! back, for simulated boards.
 
 mod argument;
+mod cause;
 mod command;
 #[cfg(any(feature = "internals", test))]
 pub mod corrupt;
@@ -21,6 +22,8 @@ mod prefix;
 mod sensor_message;
 mod split;
 
+pub(crate) use cause::guess_format;
+pub use cause::{BOARD_RATES_HZ, LinkCause};
 pub use counters::LinkCounters;
 pub(crate) use encode::write;
 pub use link::LinkState;
@@ -30,7 +33,7 @@ pub use prefix::{BadPrefix, Prefix};
 pub(crate) use split::each_message;
 
 internal! {
-    use argument::{ArgumentKind, MAX_LABEL, is_shown};
+    use argument::{ArgumentKind, MAX_LABEL};
     use command::{COMMANDS, Command};
     use decode::{Batch, Decoder, WireError};
     use encode::{EncodeError, SensorEncoder, SensorFormat};

@@ -20,6 +20,40 @@ impl<'a> RawMessage<'a> {
         Some(Self { address, rest })
     }
 
+    /// The address as text, without what is beyond the longest one that this program knows; empty if it is not text.
+    pub(super) fn address_text(&self) -> &'a str {
+        let text = std::str::from_utf8(self.address).unwrap_or_default();
+        &text[..text.floor_char_boundary(Limits::SENSORS.address)]
+    }
+
+    /// Its type tags, as a message to people writes them: `iffff`, `ib (a blob of 46 bytes)`, `no type tags`.
+    pub(super) fn found(&self) -> String {
+        /// Most type tags that are written.
+        const SHOWN: usize = 40;
+        if self.rest.is_empty() {
+            return "nothing".to_owned();
+        }
+        let Some((tags, arguments)) = text(self.rest) else { return "no type tags".to_owned() };
+        let Some(tags) = tags.strip_prefix(b",") else { return "no type tags".to_owned() };
+        let shown = tags.get(..SHOWN).unwrap_or(tags).escape_ascii();
+        match tags {
+            b"" => "nothing".to_owned(),
+            b"ib" => {
+                let length = arguments.get(4..8).and_then(|length| length.try_into().ok());
+                format!("ib (a blob of {} bytes)", length.map_or(0, u32::from_be_bytes))
+            }
+            _ if tags.len() > SHOWN => format!("{shown}... ({} arguments)", tags.len()),
+            _ => shown.to_string(),
+        }
+    }
+
+    /// Whether its arguments may be readings: several numbers, or a blob.
+    pub(super) fn looks_like_readings(&self) -> bool {
+        let tags = text(self.rest).and_then(|(tags, _)| tags.strip_prefix(b",")).unwrap_or_default();
+        let numbers = tags.iter().filter(|tag| b"ifdh".contains(tag)).count();
+        numbers > 3 || tags.contains(&b'b')
+    }
+
     /// The sequence number and the readings; `None` if the message is anything but those of a board within `limits`,
     /// to the last byte.
     pub(super) fn read(&self, limits: &Limits) -> Option<(u32, Readings)> {

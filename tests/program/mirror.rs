@@ -11,8 +11,12 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use tungstenite::client::IntoClientRequest;
 use tungstenite::{Message, WebSocket, client};
-use underfoot::mirror::{Greeting, MirrorLink, MirrorNews, MirrorSource};
+use underfoot::engine::Snapshot;
+use underfoot::floor::{Floor, Geometry};
+use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
 use underfoot::runtime::Session;
+use underfoot::schema::{Kinds, parse_layout};
+use underfoot::sense::Method;
 use underfoot::sink::JsonSink;
 use underfoot::source::SensorSource;
 use underfoot::units;
@@ -26,6 +30,9 @@ use crate::ports::free_port;
 
 /// How long something that is bound to happen may take.
 const AT_LAST: Duration = Duration::from_secs(30);
+
+/// As often as a server checks a layout of one client, and a little more.
+const A_SECOND: Duration = Duration::from_millis(1050);
 
 fn wait_until(what: &str, mut happened: impl FnMut() -> bool) {
     let end = Instant::now() + AT_LAST;
@@ -260,9 +267,9 @@ fn refused(news: &Receiver<MirrorNews>) -> String {
     let end = Instant::now() + AT_LAST;
     loop {
         if let Ok(MirrorNews::Line(line)) = news.recv_timeout(Duration::from_secs(1))
-            && line["event"] == "error"
+            && line.event() == "error"
         {
-            return line["why"].as_str().unwrap().to_owned();
+            return line.why().to_owned();
         }
         assert!(Instant::now() < end, "nothing is refused");
     }
@@ -298,8 +305,12 @@ fn a_layout_from_a_window_is_checked_and_taken_only_where_that_is_allowed() {
     link.ask("layout", &[json!(dangerous)]);
     assert!(refused(&news).contains("HoldToRun"));
     link.ask("layout", &[json!(HARMLESS.replace("slider", "slidr"))]);
+    assert!(refused(&news).contains("one layout a second"));
+    thread::sleep(A_SECOND);
+    link.ask("layout", &[json!(HARMLESS.replace("slider", "slidr"))]);
     let why = refused(&news);
     assert!(why.contains("slidr") && why.contains("slider"), "{why}");
+    thread::sleep(A_SECOND);
     link.ask("layout", &[other]);
     wait_until("it comes back with the packets", || {
         window.session.snapshot().floor.layout_revision == 1
@@ -334,6 +345,80 @@ fn pages_from_elsewhere_can_t_join_and_a_window_may_keep_controls_off_while_it_i
         let value = window.session.snapshot().value("zoom");
         value == Some(underfoot::widget::Value::Number(0.25))
     });
+}
+
+/// What this process has in memory, in bytes.
+#[cfg(target_os = "linux")]
+fn resident() -> usize {
+    let pages = std::fs::read_to_string("/proc/self/statm").unwrap();
+    4096 * pages.split(' ').nth(1).unwrap().parse::<usize>().unwrap()
+}
+
+/// A server that greets as one of this program does, and then says whatever takes memory, until nobody reads or so many
+/// bytes were said: controls that no layout has, texts without an end, lists, frames that are not.
+#[cfg(target_os = "linux")]
+fn hostile(greeting: String, most: usize) -> (SocketAddr, thread::JoinHandle<usize>) {
+    let listener = std::net::TcpListener::bind("127.0.0.1:0").unwrap();
+    let address = listener.local_addr().unwrap();
+    let serve = move || {
+        let (stream, _) = listener.accept().unwrap();
+        let mut socket = tungstenite::accept(stream).unwrap();
+        let (long, list) = ("x".repeat(20_000), vec!["[1,2]"; 4000].join(","));
+        let mut said = 0;
+        socket.send(Message::text(greeting.as_str())).unwrap();
+        for number in 0.. {
+            let line = match number % 6 {
+                0 => format!(
+                    r#"{{"event":"state","id":"c{number}","value":"{long}","label":"{long}","range":[{list}]}}"#
+                ),
+                1 => format!(
+                    r#"{{"event":"state","id":"zoom","label":"{number}{long}","indicator":[{list}]}}"#
+                ),
+                2 => format!(r#"{{"event":"page","page":"p{number}{long}"}}"#),
+                3 => format!(r#"{{"event":"error","request":"r{number}{long}","why":"{number}{long}"}}"#),
+                4 => format!(r#"{{"event":"health","troubles":[{list}],"n":{number}}}"#),
+                _ => format!(r#"{{"event":"changed","id":"c{number}","value":[{list}]}}"#),
+            };
+            said += line.len();
+            let bad = Message::binary(line.clone().into_bytes());
+            if said > most || socket.send(Message::text(line)).is_err() || socket.send(bad).is_err() {
+                return said;
+            }
+        }
+        said
+    };
+    (address, thread::spawn(serve))
+}
+
+/// A window keeps what its own layout has, whatever its server says.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_hostile_server_takes_no_memory_of_a_window_that_joins_it() {
+    const SAID: usize = 300 << 20;
+    let floor = Floor::of(Geometry::of_paper_tiles(3, 2).unwrap());
+    let layout = parse_layout(HARMLESS, "it", &Kinds::builtin(), &floor.geometry).unwrap().layout;
+    let greeting = Greeting::line(&floor, &layout, &Snapshot::default(), Method::default(), true);
+    let (address, served) = hostile(greeting, SAID);
+    let (_link, news, window) = join(address);
+    let mut follower = Follower::default();
+    follower.begin(&window.greeting, Duration::ZERO);
+    let before = resident();
+    let (mut lines, mut most) = (Vec::new(), before);
+    let begun = Instant::now();
+    while !served.is_finished() {
+        assert!(begun.elapsed() < 10 * AT_LAST, "the server is held up");
+        let Ok(MirrorNews::Line(line)) = news.recv_timeout(Duration::from_millis(100)) else { continue };
+        follower.hear(&line, begun.elapsed());
+        let seen = window.session.snapshot();
+        follower.corrections(&seen.layout, &seen.floor, begun.elapsed());
+        // As many sentences as a window shows.
+        lines.push(line);
+        lines.drain(..lines.len().saturating_sub(20));
+        most = most.max(resident());
+    }
+    assert!(served.join().unwrap() >= SAID);
+    println!("{} MiB said, {} KiB more in memory", SAID >> 20, (most - before) >> 10);
+    assert!(most - before < 48 << 20, "{} KiB", (most - before) >> 10);
 }
 
 /// How much later packets are here than they were sent, through the server; and how much it takes. For an idle machine.

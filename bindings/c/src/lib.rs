@@ -214,6 +214,25 @@ pub unsafe extern "C" fn uf_contacts(
     })
 }
 
+/// Why boards that send give no usable frame; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `text` is null or has `size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_char, size: usize) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let (Some(session), false) = (unsafe { session.as_ref() }, text.is_null() || size == 0) else {
+            return BAD_ARGUMENT;
+        };
+        let cause = session.floor.snapshot().floor.link_cause;
+        let said = cause.map(|cause| format!("{}: {cause}", cause.name())).unwrap_or_default();
+        // SAFETY: not null; the rest is the caller's promise.
+        put(unsafe { std::slice::from_raw_parts_mut(text, size) }, &said);
+        OK
+    })
+}
+
 /// Events that were dropped; see `underfoot.h`.
 ///
 /// # Safety

@@ -30,6 +30,7 @@ impl Event {
         };
         let text = match event.kind {
             Kind::Link(state) => state.name().to_owned(),
+            Kind::LinkCause => event.message().to_owned(),
             Kind::Ended(reason) if event.message().is_empty() => reason.name().to_owned(),
             Kind::Ended(reason) => format!("{}: {}", reason.name(), event.message()),
             _ => String::new(),

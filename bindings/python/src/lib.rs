@@ -265,6 +265,12 @@ impl PySession {
         Ok(self.snapshot()?.floor.link.name())
     }
 
+    /// Name and sentence of the cause for which boards that send give no usable frame.
+    #[getter]
+    fn link_cause(&self) -> PyResult<Option<(&'static str, String)>> {
+        Ok(self.snapshot()?.floor.link_cause.map(|cause| (cause.name(), cause.to_string())))
+    }
+
     /// Number, x, y, force and velocity of each foot on the floor.
     #[allow(clippy::type_complexity)]
     fn contacts(&self) -> PyResult<Vec<(u32, f32, f32, f32, f32, f32)>> {

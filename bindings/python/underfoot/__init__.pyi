@@ -23,7 +23,9 @@ class Event:
     __match_args__ = ("id", "name", "value")
     t_s: float
     """When, on the floor's sample clock."""
-    kind: Literal["control", "state", "page", "link", "health", "device", "mute", "crack", "ended"]
+    kind: Literal[
+        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
+    ]
     name: str
     """The word for what happened, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
     id: str
@@ -36,7 +38,8 @@ class Event:
     contact: int | None
     """Which foot did it; None if none did."""
     text: str
-    """Of a link "waiting", "live", "partial" or "lost"; of the end why; empty otherwise."""
+    """Of a link "waiting", "live", "partial" or "lost"; of its cause a name, a colon and a sentence, empty when it is
+    over; of the end why; empty otherwise."""
 
 class Contact(NamedTuple):
     """A foot on the floor."""
@@ -91,6 +94,10 @@ class Floor:
     def page(self) -> str | None: ...
     @property
     def link(self) -> Literal["waiting", "live", "partial", "lost"]: ...
+    @property
+    def link_cause(self) -> tuple[str, str] | None:
+        """Why boards that send give no usable frame, or why no load was ever seen: a name that never changes, such as
+        "rate_low", and a sentence. None if all is well or nothing is sent."""
     def __getitem__(self, id: str) -> Value | None:
         """What the control holds; None for a button. KeyError for an unknown one."""
     def __setitem__(self, id: str, value: Value) -> None:

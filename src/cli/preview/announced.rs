@@ -2,26 +2,36 @@
 
 use std::net::SocketAddr;
 use std::sync::Arc;
-use std::sync::mpsc::Sender;
+use std::sync::mpsc::{SyncSender, TrySendError};
 use std::time::Duration;
 
 use underfoot::layout::Layout;
 use underfoot::preview::{LayoutCause, LayoutNews, Warnings};
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::Instant;
-use underfoot::wire::{LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 /// A recording or a server's floor, that tells the window of layouts that came later.
 pub(super) struct AnnouncingSource<S> {
     source: S,
-    layouts: Sender<LayoutNews>,
+    layouts: SyncSender<LayoutNews>,
     cause: LayoutCause,
     given: u64,
+    /// The latest layout that the window had no room for.
+    late: Option<LayoutNews>,
 }
 
 impl<S> AnnouncingSource<S> {
-    pub(super) const fn new(source: S, layouts: Sender<LayoutNews>, cause: LayoutCause) -> Self {
-        Self { source, layouts, cause, given: 0 }
+    pub(super) const fn new(source: S, layouts: SyncSender<LayoutNews>, cause: LayoutCause) -> Self {
+        Self { source, layouts, cause, given: 0, late: None }
+    }
+
+    /// Tells the window, now or with the next packet: the sensing thread never waits for it.
+    fn tell(&mut self, news: LayoutNews) {
+        // A window that is closed need not know.
+        if let Err(TrySendError::Full(news)) = self.layouts.try_send(news) {
+            self.late = Some(news);
+        }
     }
 
     /// What to say about a layout.
@@ -35,6 +45,9 @@ impl<S> AnnouncingSource<S> {
 
 impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
     fn next(&mut self, patience: Duration) -> Result<Option<SensorPacket>, SourceError> {
+        if let Some(news) = self.late.take() {
+            self.tell(news);
+        }
         self.source.next(patience)
     }
 
@@ -49,8 +62,7 @@ impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
     fn take_layout(&mut self) -> Option<Layout> {
         let layout = self.source.take_layout()?;
         self.given += 1;
-        // A window that is closed need not know.
-        let _ = self.layouts.send(LayoutNews::Loaded {
+        self.tell(LayoutNews::Loaded {
             layout: Arc::new(layout.clone()),
             revision: self.given,
             name: self.name(&layout),
@@ -66,5 +78,9 @@ impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
 
     fn counters(&self) -> LinkCounters {
         self.source.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.source.last_refused()
     }
 }

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, SyncSender};
 use std::thread;
 
 use underfoot::edit;
@@ -22,7 +22,7 @@ use super::super::watch::Watch;
 #[derive(Clone)]
 pub(super) struct Desk {
     pub(super) session: Session,
-    pub(super) layouts: Sender<LayoutNews>,
+    pub(super) layouts: SyncSender<LayoutNews>,
 }
 
 impl Desk {
@@ -47,7 +47,8 @@ impl Desk {
     pub(super) fn watch(&self, files: &LayoutArgs) -> Result<Option<Watch>, Failure> {
         let layouts = self.layouts.clone();
         Watch::on_change(files, move || {
-            let _ = layouts.send(LayoutNews::Changed);
+            // Where so much waits that there is no room, changes are among it.
+            let _ = layouts.try_send(LayoutNews::Changed);
         })
     }
 }
@@ -66,7 +67,11 @@ pub(super) struct CommandHandler {
 
 impl CommandHandler {
     /// Does what the person at the window wants, on a thread that ends with the window.
-    pub(super) fn process_commands(mut self, commands: Receiver<PreviewCommand>, notices: Sender<String>) {
+    pub(super) fn process_commands(
+        mut self,
+        commands: Receiver<PreviewCommand>,
+        notices: SyncSender<String>,
+    ) {
         thread::spawn(move || {
             for wanted in commands {
                 let command = match wanted {

@@ -3,7 +3,7 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read};
 use std::path::Path;
-use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, channel, sync_channel};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, SyncSender, TryRecvError, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, Builder};
 use std::time::Instant as HostInstant;
@@ -26,7 +26,10 @@ use super::commands::keep_floor;
 use super::feeds::ToWindow;
 
 /// Lines that may wait: who writes them is held up then, and counts what it drops.
-const WAITING: usize = 4096;
+const WAITING: usize = 64;
+
+/// Layouts that may wait; the watcher of files waits then.
+const CHANGES_WAITING: usize = 16;
 
 /// The longest line that is taken, in bytes: a thousand contacts.
 const LONGEST: u64 = 1 << 18;
@@ -69,7 +72,7 @@ impl Followed {
         };
         let shared = Arc::new(Mutex::new(state));
         let told = Arc::clone(&shared);
-        let (changed, changes) = channel();
+        let (changed, changes) = sync_channel(CHANGES_WAITING);
         // A window that is closed need not know.
         let watch = Watch::start(files, floor.geometry, move |layout| drop(changed.send(layout)))?;
         let floor = FollowedFloor {
@@ -202,6 +205,7 @@ impl FollowedFloor {
     }
 
     fn say(&self, notice: impl Into<String>) {
-        let _ = self.window.notices.send(notice.into());
+        // Nor a window that is closed, nor one that draws nothing, waits for sentences.
+        let _ = self.window.notices.try_send(notice.into());
     }
 }

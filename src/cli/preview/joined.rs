@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use underfoot::engine::Snapshot;
 use underfoot::floor::Floor;
 use underfoot::layout::Layout;
-use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource};
+use underfoot::mirror::{Follower, Greeting, MirrorLink, MirrorNews, MirrorSource, ServerLine};
 use underfoot::preview::{
     EventNews, LayoutCause, LayoutNews, PreviewCommand, ProgramChannels, ServerFeed, ServerLink, ServerState,
 };
@@ -29,6 +29,9 @@ use super::feeds::{ToWindow, stop_and_wait};
 
 /// How often controls are compared with what the server says of them.
 const COMPARE_EVERY: Duration = Duration::from_millis(100);
+
+/// How often a layout is sent: a server checks one a second.
+const LAYOUTS_EVERY: Duration = Duration::from_millis(1100);
 
 /// How long the server may take to greet before there is no window.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -86,6 +89,8 @@ impl Joined {
             floor: floor.clone(),
             served: layout_text.clone(),
             tried: None,
+            waiting: None,
+            sent: None,
             controls_off: false,
             snapshots: input,
             follower: Follower::default(),
@@ -166,6 +171,9 @@ struct ServedFloor {
     served: String,
     /// The name of the layout that was last sent to it.
     tried: Option<String>,
+    /// Name and text of the latest one that is to be sent, and when the last one was.
+    waiting: Option<(String, String)>,
+    sent: Option<HostInstant>,
     /// Whether its controls are to be off while the floor is checked.
     controls_off: bool,
     snapshots: triple_buffer::Input<Snapshot>,
@@ -199,8 +207,8 @@ impl ServedFloor {
     }
 
     fn say(&self, notice: impl Into<String>) {
-        // A window that is closed need not know.
-        let _ = self.window.notices.send(notice.into());
+        // Nor a window that is closed, nor one that draws nothing, waits for sentences.
+        let _ = self.window.notices.try_send(notice.into());
     }
 
     fn hear(&mut self, news: MirrorNews) {
@@ -240,20 +248,20 @@ impl ServedFloor {
         self.follower.begin(greeting, self.begun.elapsed());
     }
 
-    fn hear_line(&mut self, line: &Value) {
-        let text = |field: &str| line.get(field).and_then(Value::as_str).unwrap_or_default();
-        if text("event") != "error" {
+    fn hear_line(&mut self, line: &ServerLine) {
+        if line.event() != "error" {
             return self.follower.hear(line, self.begun.elapsed());
         }
-        let why = text("why").to_owned();
-        match self.tried.take_if(|_| text("request") == LAYOUT) {
-            Some(name) => drop(self.window.layouts.send(LayoutNews::Refused { name, diagnostics: why })),
-            None => self.say(format!("The server refuses {}: {why}", text("request"))),
+        let why = line.why().to_owned();
+        match self.tried.take_if(|_| line.request() == LAYOUT) {
+            Some(name) => drop(self.window.layouts.try_send(LayoutNews::Refused { name, diagnostics: why })),
+            None => self.say(format!("The server refuses {}: {why}", line.request())),
         }
     }
 
     /// Passes on what is to be seen, and lets controls be as the server says.
     fn look(&mut self) {
+        self.send_layout();
         if self.run.snapshots.update() {
             self.snapshots.input_buffer_mut().clone_from(self.run.snapshots.output_buffer());
             self.snapshots.publish();
@@ -314,15 +322,27 @@ impl ServedFloor {
         if !self.shared.state().takes_layouts {
             return self.say(KEEPS);
         }
-        self.tried = Some(name);
-        self.link.ask(LAYOUT, &[Value::String(text)]);
+        self.waiting = Some((name, text));
+    }
+
+    /// Sends the latest layout that was tried, as often as a server takes one.
+    fn send_layout(&mut self) {
+        if self.sent.is_some_and(|sent| sent.elapsed() < LAYOUTS_EVERY) {
+            return;
+        }
+        if let Some((name, text)) = self.waiting.take() {
+            self.sent = Some(HostInstant::now());
+            self.tried = Some(name);
+            self.link.ask(LAYOUT, &[Value::String(text)]);
+        }
     }
 
     /// Tells the window of each change of the layout's files.
     fn watch(&self) -> Option<Watch> {
         let news = self.window.layouts.clone();
         let watch = Watch::on_change(&self.files, move || {
-            let _ = news.send(LayoutNews::Changed);
+            // Where so much waits that there is no room, changes are among it.
+            let _ = news.try_send(LayoutNews::Changed);
         });
         watch.inspect_err(|failure| self.say(failure.to_string())).ok().flatten()
     }

@@ -171,7 +171,10 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     // Of several sound cards that are tried, the last one plays.
     let watch_renderer = move |renderer: &mut Renderer| drop(scope_sender.send(renderer.scope()));
     let latency = LatencyStages::default();
-    let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notices.clone());
+    let told = notices.clone();
+    // A window that is closed need not know.
+    let notice = move |text| drop(told.try_send(text));
+    let actuators = args.actuate.opener(latency.clone(), Arc::default(), watch_renderer, notice);
     let (tap, packets) = TappedPackets::new();
     let source = tap.source(stage.source, floor.geometry);
     let mut session = Session::source(Box::new(source), stage.clock)

@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::mpsc::{self, Receiver, RecvTimeoutError, Sender};
+use std::sync::mpsc::{self, Receiver, RecvTimeoutError, SyncSender};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
@@ -25,10 +25,13 @@ use super::feeds::{ToWindow, stop_and_wait};
 
 /// A recording that is being shown; ends with this.
 pub(super) struct Player {
-    orders: Option<Sender<PlaybackOrder>>,
+    orders: Option<SyncSender<PlaybackOrder>>,
     shown: Arc<Shown>,
     thread: Option<JoinHandle<()>>,
 }
+
+/// Orders that may wait for the player: seconds of a mouse that drags the time line.
+const ORDERS_WAITING: usize = 256;
 
 /// What the player's threads tell the window.
 struct Shown {
@@ -53,7 +56,7 @@ impl Player {
         let run = Run::begin(path, speed, &window)?;
         let (floor, layout) = (run.floor.clone(), Arc::clone(&run.layout));
         let shown = Arc::new(Shown { state: Mutex::default(), is_over: AtomicBool::new(false) });
-        let (sender, orders) = mpsc::channel();
+        let (sender, orders) = mpsc::sync_channel(ORDERS_WAITING);
         let playing = Playing {
             path: path.into(),
             run,
@@ -77,8 +80,8 @@ impl Playback for Player {
 
     fn lead(&mut self, order: PlaybackOrder) {
         if let Some(orders) = &self.orders {
-            // A player that failed has said so.
-            let _ = orders.send(order);
+            // A player that failed has said so; one that is so far behind has newer orders soon.
+            let _ = orders.try_send(order);
         }
     }
 }

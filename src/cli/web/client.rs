@@ -13,14 +13,13 @@ use tungstenite::http::{StatusCode, header};
 use tungstenite::protocol::WebSocketConfig;
 use tungstenite::{Bytes, Error, Message, WebSocket, accept_hdr_with_config};
 
-use underfoot::runtime::ControlsOff;
-
-use super::Shared;
 use super::broadcast::Lines;
+use super::budget::Budget;
 use super::greeting::{greeting, mirror_greeting};
 use super::layout;
 use super::origin::may_connect;
-use super::request::process;
+use super::request::{Standing, process};
+use super::{MOST_BYTES, Shared};
 
 /// How often it is looked whether the client asks something.
 const LOOK_EVERY: Duration = Duration::from_millis(10);
@@ -28,8 +27,8 @@ const LOOK_EVERY: Duration = Duration::from_millis(10);
 /// Requests that are taken in one look: a thousand a second, as over OSC.
 const MOST_REQUESTS: usize = 10;
 
-/// Most bytes of a request.
-const MOST_BYTES: usize = 4096;
+/// Bytes of requests that are read in a second: a thousand of usual length.
+const BYTES_A_SECOND: usize = 256 * 1024;
 
 /// What the system keeps for a client that does not read, in bytes: little, since what waits there grows old.
 const WAITING_BYTES: usize = 64 * 1024;
@@ -67,7 +66,7 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, shared: &Shared, joins:
         *refused.status_mut() = StatusCode::FORBIDDEN;
         Err(refused)
     };
-    let most = if joins && shared.takes_layouts { layout::MOST_BYTES } else { MOST_BYTES };
+    let most = if joins && shared.checks.is_some() { layout::MOST_BYTES } else { MOST_BYTES };
     let config = WebSocketConfig::default()
         .max_message_size(Some(most))
         .max_frame_size(Some(most))
@@ -80,8 +79,17 @@ pub(super) fn serve(stream: TcpStream, peer: SocketAddr, shared: &Shared, joins:
         return;
     }
     let lines = shared.clients.join(peer, joins);
-    let mut client =
-        Client { socket, peer, shared, joins, off: None, waits_since: None, heard: Instant::now() };
+    let now = Instant::now();
+    let mut client = Client {
+        socket,
+        peer,
+        shared,
+        joins,
+        standing: Standing::default(),
+        budget: Budget::new(most.max(BYTES_A_SECOND), now),
+        waits_since: None,
+        heard: now,
+    };
     let end = client.talk(&lines);
     shared.clients.leave(peer, end == End::Slow);
 }
@@ -92,8 +100,8 @@ struct Client<'a> {
     shared: &'a Shared,
     /// Whether it is a window that shows the floor as well.
     joins: bool,
-    /// While it keeps the controls off.
-    off: Option<ControlsOff>,
+    standing: Standing,
+    budget: Budget,
     /// Since when something written waits for the client to read.
     waits_since: Option<Instant>,
     /// When something came from it.
@@ -184,15 +192,22 @@ impl Client<'_> {
 
     /// Does what it asks.
     fn hear(&mut self) -> Result<(), End> {
+        if let Some(refusal) = self.standing.refusal() {
+            self.send(Message::text(refusal))?;
+        }
         for _ in 0..MOST_REQUESTS {
+            if !self.budget.allows(Instant::now()) {
+                return Ok(());
+            }
             let message = match self.socket.read() {
                 Ok(message) => message,
                 Err(error) => return self.judge(Err(error)).map(|_| ()),
             };
             self.heard = Instant::now();
+            self.budget.spend(message.len());
             match message {
                 Message::Text(text) => {
-                    if let Err(refusal) = process(&text, self.peer, self.shared, &mut self.off) {
+                    if let Err(refusal) = process(&text, self.peer, self.shared, &mut self.standing) {
                         self.send(Message::text(refusal))?;
                     }
                 }

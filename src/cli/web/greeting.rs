@@ -22,7 +22,7 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
     {
         floor.tare = tare;
     }
-    Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.takes_layouts)
+    Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.checks.is_some())
 }
 
 /// The floor and its controls as a line.
@@ -53,6 +53,8 @@ pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
         "width_m": size.x, "depth_m": size.y,
         "tile_m": geometry.tile_m(),
         "link": seen.floor.link.name(),
+        "link_cause": seen.floor.link_cause.as_ref().map(|cause| cause.name()),
+        "why": seen.floor.link_cause.as_ref().map(ToString::to_string),
         "page": seen.page(),
         "controls": controls,
     })

@@ -1,11 +1,12 @@
-//! A layout that somebody elsewhere puts on the floor: checked as a file is, or refused with what is wrong with it.
+//! The request of a client to put another layout on the floor: one a second, of which one is checked at a time.
+
+use std::sync::mpsc::{Receiver, TryRecvError};
+use std::time::{Duration, Instant};
 
 use serde_json::Value;
-use underfoot::layout::Layout;
-use underfoot::schema::{self, Kinds};
-use underfoot::widget::Guard;
 
 use super::Shared;
+use super::checks::Checked;
 
 /// The request: its argument is the layout as text, made of shipped kinds.
 pub(super) const REQUEST: &str = "layout";
@@ -13,34 +14,52 @@ pub(super) const REQUEST: &str = "layout";
 /// Most bytes of a request with a layout: far more than the largest shipped one takes.
 pub(super) const MOST_BYTES: usize = 1 << 20;
 
-/// Puts it on the floor once no foot is engaged, or says why not.
-pub(super) fn put(arguments: &[Value], shared: &Shared) -> Result<(), String> {
-    if !shared.takes_layouts {
-        return Err("the server keeps its layout: it takes others if it is started with --web-layouts".into());
-    }
-    let [Value::String(text)] = arguments else { return Err("expected a layout as text".into()) };
-    let geometry = &shared.floor.geometry;
-    let read = schema::parse_layout(text, "the layout", &Kinds::builtin(), geometry)
-        .map_err(|diagnostics| diagnostics.to_string())?;
-    // What acts while it is held may not be brought, moved or taken away from elsewhere.
-    for (layout, whose) in [(&*shared.session.snapshot().layout, "on the floor"), (&read.layout, "sent")] {
-        if let Some(id) = held_to_run(layout) {
-            return Err(format!(
-                "the layout {whose} has the control {id:?} with the guard HoldToRun: such layouts are changed \
-                 where the server is"
-            ));
-        }
-    }
-    tracing::info!("a layout from elsewhere is on the floor");
-    shared.session.set_layout(read.layout);
-    Ok(())
+/// How often one client's layouts are checked.
+const EVERY: Duration = Duration::from_secs(1);
+
+const TOO_OFTEN: &str = "one layout a second is checked: send it again";
+
+/// The layouts of one client.
+#[derive(Default)]
+pub(super) struct Layouts {
+    asked: Option<Instant>,
+    checking: Option<Receiver<Checked>>,
 }
 
-/// A control that acts only while it is held.
-fn held_to_run(layout: &Layout) -> Option<&str> {
-    let held = layout
-        .widgets
-        .iter()
-        .find(|widget| matches!(widget.behaviour.thresholds().guard, Guard::HoldToRun(_)));
-    held.map(|widget| widget.id.as_str())
+impl Layouts {
+    /// Why none is taken now, if that is so; to be asked before anything is read.
+    pub(super) fn why_not(&self, now: Instant) -> Option<&'static str> {
+        let is_soon = self.asked.is_some_and(|asked| now.duration_since(asked) < EVERY);
+        (self.checking.is_some() || is_soon).then_some(TOO_OFTEN)
+    }
+
+    /// Lets the layout in `arguments` be checked and put on the floor; the result comes later, from
+    /// [`Layouts::checked`].
+    pub(super) fn put(&mut self, arguments: Vec<Value>, shared: &Shared, now: Instant) -> Checked {
+        let Some(checks) = &shared.checks else {
+            return Err(
+                "the server keeps its layout: it takes others if it is started with --web-layouts".into()
+            );
+        };
+        if let Some(why) = self.why_not(now) {
+            return Err(why.into());
+        }
+        let Ok([Value::String(text)]) = <[Value; 1]>::try_from(arguments) else {
+            return Err("expected a layout as text".into());
+        };
+        self.asked = Some(now);
+        self.checking = Some(checks.ask(text)?);
+        Ok(())
+    }
+
+    /// The result of the check that was under way, once it is there.
+    pub(super) fn checked(&mut self) -> Option<Checked> {
+        let checked = match self.checking.as_ref()?.try_recv() {
+            Err(TryRecvError::Empty) => return None,
+            Err(TryRecvError::Disconnected) => Err("the layout could not be checked".into()),
+            Ok(checked) => checked,
+        };
+        self.checking = None;
+        Some(checked)
+    }
 }

@@ -2,11 +2,14 @@
 //! that show the same floor join here, at `/mirror`.
 
 mod broadcast;
+mod budget;
+mod checks;
 mod client;
 mod greeting;
 mod layout;
 mod origin;
 mod request;
+mod rooms;
 
 use std::io::{ErrorKind, Read, Write};
 use std::net::{SocketAddr, TcpListener, TcpStream};
@@ -25,7 +28,9 @@ use underfoot::source::SensorSource;
 
 use super::failure::Failure;
 use broadcast::{Broadcast, Clients};
+use checks::Checks;
 use origin::Origin;
+use rooms::{Refusals, Rooms};
 
 /// Where web pages find the floor.
 #[derive(clap::Args, Clone, Debug, Default)]
@@ -44,6 +49,9 @@ pub(crate) struct WebArgs {
 
 /// Connections at once; each is a thread.
 const MOST: usize = 16;
+
+/// Most bytes of a request, unless it has a layout.
+const MOST_BYTES: usize = 4096;
 
 /// How long a client may take for the head of its request.
 const PATIENCE: Duration = Duration::from_secs(2);
@@ -70,7 +78,8 @@ struct Shared {
     session: Session,
     floor: Floor,
     method: Method,
-    takes_layouts: bool,
+    /// Where layouts from elsewhere are checked, if they are taken.
+    checks: Option<Checks>,
     origins: Vec<Origin>,
     /// Whose requests are taken.
     apps: Vec<Network>,
@@ -122,11 +131,12 @@ impl WebListener {
         let Self { listener, origins, takes_layouts, clients, feed } = self;
         let failed = |error| Failure::Other(format!("web pages can't be served: {error}"));
         errln!("The floor as a web page: http://{}/", listener.local_addr().map_err(failed)?);
+        let checks = takes_layouts.then(|| Checks::start(session.clone(), floor.geometry)).transpose();
         let shared = Arc::new(Shared {
             session,
             floor,
             method,
-            takes_layouts,
+            checks: checks.map_err(failed)?,
             origins,
             apps,
             clients,
@@ -154,18 +164,18 @@ impl Drop for WebServer {
 
 /// Lets clients in until the server ends, and waits for those that are in.
 fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
-    let mut rooms: Vec<JoinHandle<()>> = Vec::new();
+    let (mut rooms, refusals) = (Rooms::default(), Refusals::start());
     while !shared.over.load(Ordering::Relaxed) {
         match listener.accept() {
             Ok((stream, peer)) => {
-                rooms.retain(|room| !room.is_finished());
-                if rooms.len() >= MOST {
-                    turn_away(stream, "503 Service Unavailable", "too many clients");
+                let now = Instant::now();
+                if let Some(why) = rooms.why_not(peer.ip(), now) {
+                    refusals.refuse(stream, why);
                     continue;
                 }
                 let own = Arc::clone(shared);
                 match Builder::new().name("web client".into()).spawn(move || receive(stream, peer, &own)) {
-                    Ok(room) => rooms.push(room),
+                    Ok(room) => rooms.take(peer.ip(), room, now),
                     Err(error) => warn!("a web client can't be served: {error}"),
                 }
             }
@@ -177,18 +187,13 @@ fn accept(listener: &TcpListener, shared: &Arc<Shared>) {
             }
         }
     }
-    rooms.into_iter().for_each(|room| drop(room.join()));
+    rooms.wait();
 }
 
 /// Answers one connection: a page, or events for as long as it lasts.
 fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
-    let set = stream
-        .set_nonblocking(false)
-        .and_then(|()| stream.set_read_timeout(Some(PATIENCE)))
-        .and_then(|()| stream.set_write_timeout(Some(PATIENCE)))
-        .and_then(|()| stream.set_nodelay(true));
     // A client that has left meanwhile is not an error.
-    let Some(head) = set.ok().and_then(|()| head(&stream)) else { return };
+    let Some(head) = wait_for(&stream, PATIENCE).ok().and_then(|()| head(&stream)) else { return };
     if head.to_ascii_lowercase().contains("\r\nupgrade: websocket\r\n") {
         client::serve(stream, peer, shared, head.starts_with("GET /mirror "));
     } else if head.starts_with("GET / ") {
@@ -196,6 +201,14 @@ fn receive(stream: TcpStream, peer: SocketAddr, shared: &Shared) {
     } else {
         turn_away(stream, "404 Not Found", "there is one page here: /");
     }
+}
+
+/// Lets `stream` wait for its client, and no longer than that.
+fn wait_for(stream: &TcpStream, patience: Duration) -> std::io::Result<()> {
+    stream.set_nonblocking(false)?;
+    stream.set_read_timeout(Some(patience))?;
+    stream.set_write_timeout(Some(patience))?;
+    stream.set_nodelay(true)
 }
 
 /// The head of the request, which stays to be read.

@@ -2,7 +2,7 @@
 
 use std::net::SocketAddr;
 use std::sync::mpsc::sync_channel;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde::Deserialize;
 use serde_json::{Value, json};
@@ -10,7 +10,8 @@ use underfoot::runtime::{ControlsOff, Session};
 use underfoot::serve::Command;
 use underfoot::wire::{ControlMessage, read_json};
 
-use super::{Shared, layout};
+use super::layout::{self, Layouts};
+use super::{MOST_BYTES, Shared};
 
 /// How long an answer of the floor is waited for.
 const PATIENCE: Duration = Duration::from_millis(200);
@@ -27,26 +28,65 @@ struct Asked {
 /// Keeps controls off for as long as whoever asks for it is there, such as a window that checks the floor.
 const CONTROLS_OFF: &str = "controls_off";
 
+/// What a client has asked that goes on.
+#[derive(Default)]
+pub(super) struct Standing {
+    /// While it keeps the controls off, and when that last began.
+    off: Option<ControlsOff>,
+    off_since: Option<Instant>,
+    layouts: Layouts,
+}
+
+impl Standing {
+    /// The line that says why a layout was refused, once that is known.
+    pub(super) fn refusal(&mut self) -> Option<String> {
+        self.layouts.checked()?.err().map(|why| refused(layout::REQUEST, &why))
+    }
+}
+
+/// The line that says why a request was refused.
+fn refused(request: &str, why: &str) -> String {
+    json!({"event": "error", "request": request, "why": why}).to_string()
+}
+
+/// How often one client may switch all controls off.
+const CONTROLS_OFF_EVERY: Duration = Duration::from_secs(1);
+
 /// Does what `text` asks; the line that says why not.
 pub(super) fn process(
     text: &str,
     peer: SocketAddr,
     shared: &Shared,
-    off: &mut Option<ControlsOff>,
+    standing: &mut Standing,
 ) -> Result<(), String> {
-    let refused =
-        |request: &str, why: &str| json!({"event": "error", "request": request, "why": why}).to_string();
+    // Only a layout is so large: what is refused anyway is not read first.
+    if text.len() > MOST_BYTES
+        && let Some(why) = standing.layouts.why_not(Instant::now())
+    {
+        return Err(refused(layout::REQUEST, why));
+    }
     let asked: Asked = serde_json::from_str(text).map_err(|error| refused("", &error.to_string()))?;
     let why = |why: String| refused(&asked.request, &why);
     if !shared.apps.iter().any(|network| network.contains(peer.ip())) {
         return Err(why("requests from this address are not taken".into()));
     }
     if asked.request == layout::REQUEST {
-        return layout::put(&asked.args, shared).map_err(why);
+        return standing
+            .layouts
+            .put(asked.args, shared, Instant::now())
+            .map_err(|why| refused(layout::REQUEST, &why));
     }
     if asked.request == CONTROLS_OFF {
         let [Value::Bool(is_off)] = asked.args[..] else { return Err(why("expected true or false".into())) };
-        *off = is_off.then(|| shared.session.controls_off());
+        if !is_off || standing.off.is_some() {
+            standing.off.take_if(|_| !is_off);
+            return Ok(());
+        }
+        if standing.off_since.is_some_and(|since| since.elapsed() < CONTROLS_OFF_EVERY) {
+            return Err(why("controls are switched off once a second at most".into()));
+        }
+        standing.off_since = Some(Instant::now());
+        standing.off = Some(shared.session.controls_off());
         return Ok(());
     }
     let message = read_json(&asked.request, &asked.args).map_err(why)?;
@@ -54,13 +94,16 @@ pub(super) fn process(
 }
 
 fn ask(session: &Session, message: ControlMessage) -> Result<(), String> {
-    const OVER: &str = "the floor has ended";
+    let refused = || {
+        let why = if session.has_ended() { "the floor has ended" } else { "the floor is busy: ask again" };
+        Err(why.to_owned())
+    };
     if matches!(message, ControlMessage::Mute { .. } | ControlMessage::MuteTile { .. }) {
-        return if session.send(Command::Control(message)) { Ok(()) } else { Err(OVER.into()) };
+        return if session.send(Command::Control(message)) { Ok(()) } else { refused() };
     }
     let (answer, answered) = sync_channel(1);
     if !session.send(Command::Ask(message, answer)) {
-        return Err(OVER.into());
+        return refused();
     }
     match answered.recv_timeout(PATIENCE) {
         Ok(done) => done.map_err(|error| error.to_string()),

@@ -68,8 +68,12 @@ impl App {
     /// What came over the wire and what was refused, by reason.
     pub(super) fn link_part(&mut self, ui: &mut Ui) {
         let theme = &self.theme;
-        let counters = self.snapshots.output_buffer().counters;
+        let snapshot = self.snapshots.output_buffer();
+        let counters = snapshot.counters;
         ui.add_space(2.0);
+        if let Some(cause) = &snapshot.link_cause {
+            ui.label(egui::RichText::new(cause.to_string()).color(color(theme.fault)));
+        }
         let headline = headline(&counters);
         let bad = counters.refused() + counters.lost + counters.overflowed + counters.bad_readings > 0;
         let colour = color(if bad { theme.warning } else { theme.ink });
@@ -101,7 +105,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 21] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
@@ -115,6 +119,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
         ("clock slips", counters.slips, false),
         ("refused: malformed", counters.malformed, true),
         ("refused: unknown address", counters.unknown_address, true),
+        ("skipped: for other receivers", counters.skipped, false),
         ("refused: wrong shape", counters.wrong_shape, true),
         ("refused: foreign sender", counters.foreign, true),
         ("refused: too many of one sender", counters.limited, true),

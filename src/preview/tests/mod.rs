@@ -12,7 +12,7 @@ mod status;
 mod time_line;
 mod walks;
 
-use std::sync::mpsc::{Receiver, Sender, SyncSender};
+use std::sync::mpsc::{Receiver, SyncSender};
 use std::sync::{Arc, Mutex};
 
 use eframe::egui::{self, Event, Key, Modifiers, MouseWheelUnit, PointerButton, Pos2, vec2};
@@ -57,8 +57,8 @@ struct Room {
     window: Harness<'static, App>,
     snapshots: triple_buffer::Input<Snapshot>,
     events: SyncSender<EventNews>,
-    layouts: Sender<LayoutNews>,
-    notices: Sender<String>,
+    layouts: SyncSender<LayoutNews>,
+    notices: SyncSender<String>,
     commands: Receiver<PreviewCommand>,
     feet: Arc<Mutex<Vec<PreviewFoot>>>,
     /// Where the projection's corners are remembered.

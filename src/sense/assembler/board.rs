@@ -224,7 +224,7 @@ impl BoardTrack {
     pub(super) fn quality(&self) -> Quality {
         if !self.stream.presence.is_live() || self.is_taring() {
             Quality::Stale
-        } else if self.stream.loss.is_degraded() {
+        } else if self.stream.loss.is_degraded() || self.stream.is_odd() {
             Quality::Degraded
         } else {
             Quality::Live

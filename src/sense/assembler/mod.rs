@@ -3,6 +3,7 @@
 mod board;
 mod buffers;
 mod clock;
+mod pace;
 mod presence;
 mod sample;
 mod sequence;
@@ -43,6 +44,10 @@ const PATIENCE_NS: i64 = 3 * SLOT_NS;
 /// How often the boards' slots and the clock are compared with the receive clock.
 const ALIGN_NS: i64 = 64 * SLOT_NS;
 
+/// Slots of all boards that lie this much ahead of their packets are moved back: steering would take a minute, and a
+/// board that counts a thousandth too fast would lead the clock away.
+const FAST_NS: i64 = 20 * SLOT_NS;
+
 /// Puts the packets of all boards together into one calibrated, tared [`ForceFrame`] per millisecond.
 ///
 /// ```text
@@ -62,9 +67,13 @@ const ALIGN_NS: i64 = 64 * SLOT_NS;
 /// out or repeats one sample. Delay is judged by the quickest packet of some
 /// 64 ms, so that jitter moves nothing.
 ///
+/// **Rates.** The pace of a board that sends more or fewer than 1000 packets a second is measured within a
+/// second; its samples then go to the slots in which they arrive, the first where several do. Beyond
+/// [`crate::wire::BOARD_RATES_HZ`] its sensors are [`Quality::Degraded`].
+///
 /// **Time.** A frame's `at` is its slot's time on a sample clock that follows
 /// the receive clock by at most 500 ppm, or is set forward when it is more than
-/// 100 ms behind. It grows from frame to frame, by 1 ms unless slots were lost
+/// 100 ms behind. It is never more than 100 ms ahead, whatever boards send. It grows from frame to frame, by 1 ms unless slots were lost
 /// altogether. Where packets are stamped with exact milliseconds, as by a
 /// simulated floor, `at` is exact to the microsecond.
 ///
@@ -570,21 +579,29 @@ impl Assembler {
         }
         self.aligned_ns = self.now_ns;
         self.delays.clear();
-        for (number, board) in self.boards.iter_mut().enumerate() {
-            self.delays.extend(board.stream.least_delay(self.now_ns).map(|delay| (delay, number)));
-        }
-        if self.delays.is_empty() {
-            return;
-        }
-        let middle = (self.delays.len() - 1) / 2;
-        let common = self.delays.select_nth_unstable(middle).1.0;
         let mut slipped = 0;
-        for &(delay, number) in &self.delays {
-            slipped += self.boards[number].stream.slip(delay - common).unsigned_abs();
+        for (number, board) in self.boards.iter_mut().enumerate() {
+            let stream = &mut board.stream;
+            slipped += u64::from(stream.adopt_pace(self.now_ns, clock));
+            match stream.least_delay(self.now_ns) {
+                Some(delay) if stream.keeps_time() => self.delays.push((delay, number)),
+                // At another rate it is no clock for the others, and follows the receive clock by itself.
+                Some(delay) => slipped += stream.slip(delay).unsigned_abs(),
+                None => {}
+            }
         }
-        let jump = clock.correct(self.done, common);
-        if jump != 0 {
-            self.boards.iter_mut().for_each(|board| board.stream.slots_moved(jump));
+        if !self.delays.is_empty() {
+            let middle = (self.delays.len() - 1) / 2;
+            let common = self.delays.select_nth_unstable(middle).1.0;
+            // Nothing arrives before it was sampled: slots that lie further ahead are moved back, and not the clock.
+            let common = if common < -FAST_NS { 0 } else { common };
+            for &(delay, number) in &self.delays {
+                slipped += self.boards[number].stream.slip(delay - common).unsigned_abs();
+            }
+            let jump = clock.correct(self.done, common);
+            if jump != 0 {
+                self.boards.iter_mut().for_each(|board| board.stream.slots_moved(jump));
+            }
         }
         if slipped != 0 {
             self.counters.slips += slipped;

@@ -1,6 +1,7 @@
 //! One board's packets, from sequence numbers to slots of the sample clock.
 
 use super::clock::{Arrivals, SLOT_NS, SampleClock};
+use super::pace::Pace;
 use super::presence::{LossMeter, Presence, SILENT_NS};
 use super::sequence::{Sequence, Verdict};
 use crate::wire::LinkCounters;
@@ -16,6 +17,10 @@ const EARLY_NS: i64 = 3 * SLOT_NS / 4;
 /// that a board on the border does not slip to and fro.
 const SLIP_NS: i64 = 3 * SLOT_NS / 4;
 
+/// A slot this far ahead of the receive clock is not used: the board sends more than one packet a millisecond, and its
+/// pace is not known yet.
+const AHEAD_NS: i64 = 100 * SLOT_NS;
+
 /// The packets of one board, and the slots they belong to.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Stream {
@@ -25,6 +30,7 @@ pub(super) struct Stream {
     pub(super) awaited: bool,
     sequence: Sequence,
     arrivals: Arrivals,
+    pace: Pace,
     /// Slot of stream position 0.
     offset: i64,
     /// Slots by which `offset` has been moved since the stream began.
@@ -64,7 +70,32 @@ impl Stream {
 
     /// The furthest slot its packets have reached.
     pub(super) fn head_slot(&self) -> Option<i64> {
-        self.sequence.position().map(|position| position + self.offset)
+        self.sequence.position().map(|position| self.slot(position))
+    }
+
+    fn slot(&self, position: i64) -> i64 {
+        self.pace.slots(position) + self.offset
+    }
+
+    /// Whether it sends one packet a millisecond, so that the sample clock may be steered by it.
+    pub(super) fn keeps_time(&self) -> bool {
+        self.pace.is_one()
+    }
+
+    /// Whether its rate is outside of what is understood.
+    pub(super) fn is_odd(&self) -> bool {
+        self.pace.is_odd()
+    }
+
+    /// Goes by the pace that was measured, if it is another one; whether it is.
+    pub(super) fn adopt_pace(&mut self, now_ns: i64, clock: &SampleClock) -> bool {
+        let Some(position) = self.sequence.position() else { return false };
+        let is_other = self.pace.adopt();
+        if is_other {
+            self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
+            self.arrivals.forget();
+        }
+        is_other
     }
 
     /// Slots by which the board has been moved since its stream began.
@@ -83,20 +114,21 @@ impl Stream {
         done: i64,
         counters: &mut LinkCounters,
     ) -> Option<Place> {
-        let first = self.sequence.position().is_none();
-        let offset = self.offset;
+        let head = self.head_slot();
+        let (offset, pace) = (self.offset, &self.pace);
         let earliest = self.arrivals.least_ns();
         let early = |position| {
-            let delay = now_ns - clock.at_ns(position + offset);
+            let delay = now_ns - clock.at_ns(pace.slots(position) + offset);
             earliest.is_some_and(|earliest| delay < earliest - EARLY_NS)
         };
 
         let mut restarted = false;
         let (position, skipped) = match self.sequence.judge(sequence, early) {
             Verdict::Next { position, skipped } => {
-                if first {
-                    self.offset = clock.slot_near(now_ns) - position;
+                if head.is_none() {
+                    self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
                 }
+                self.pace.note(now_ns, position);
                 counters.lost += u64::from(skipped);
                 (position, Some(skipped))
             }
@@ -108,7 +140,7 @@ impl Stream {
                 counters.restarts += 1;
                 restarted = true;
                 self.begin_anew(now_ns);
-                self.offset = clock.slot_near(now_ns) - position;
+                self.offset = clock.slot_near(now_ns) - self.pace.slots(position);
                 (position, Some(0))
             }
             Verdict::Duplicate => {
@@ -121,8 +153,13 @@ impl Stream {
             }
         };
 
-        let slot = position + self.offset;
+        let slot = self.slot(position);
         let usable = self.is_usable(slot, now_ns, clock, done);
+        if !self.keeps_time() && !restarted && skipped.is_some() && Some(slot) <= head {
+            // Of several samples within a millisecond, the first is used.
+            counters.slips += 1;
+            return None;
+        }
         match skipped {
             _ if !self.presence.is_live() => {}
             Some(skipped) => self.loss.pass(skipped, usable),
@@ -135,6 +172,7 @@ impl Stream {
     fn begin_anew(&mut self, now_ns: i64) {
         self.slips = 0;
         self.arrivals.forget();
+        self.pace.forget();
         self.presence.interrupt(now_ns);
     }
 
@@ -144,7 +182,7 @@ impl Stream {
         self.arrivals.note(now_ns, delay);
         let usual = self.arrivals.least_ns().unwrap_or(0).max(0);
         let returning = self.presence.has_reported() && !self.presence.is_live();
-        slot > done && !(returning && delay - usual > TOO_OLD_NS)
+        slot > done && delay > -AHEAD_NS && !(returning && delay - usual > TOO_OLD_NS)
     }
 
     /// Notes a packet that was used.

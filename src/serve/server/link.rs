@@ -7,7 +7,7 @@ use tracing::{info, warn};
 use super::limited::Limited;
 use crate::sense::{Assembler, TareOutcome};
 use crate::units::Instant;
-use crate::wire::LinkState;
+use crate::wire::{LinkCause, LinkState};
 
 /// How long only some boards must have reported for this to be news; controls on the others are long released.
 const SETTLING: Duration = Duration::from_millis(100);
@@ -74,6 +74,16 @@ impl LinkWatch {
         self.state = state;
         self.note_uncalibrated(assembler);
         Some(state)
+    }
+
+    /// Logs the cause for which no frame can be used, or that it is gone.
+    pub(super) fn note_cause(&mut self, cause: Option<&LinkCause>, now: Instant) {
+        match cause {
+            Some(cause) => self.notices.warn(now, || cause.to_string()),
+            None => {
+                self.notices.info(now, || "the fault of boards or link that was last named is gone".into())
+            }
+        }
     }
 
     /// Says which boards have changed places.

@@ -22,6 +22,7 @@ use self::link::LinkWatch;
 use self::outputs::Outputs;
 use self::requests::Answers;
 use self::sensors::SensorWatch;
+use super::cause::{CauseWatch, Facts};
 use super::trial::Trial;
 use crate::engine::{Engine, Snapshot};
 use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
@@ -40,6 +41,10 @@ const PATIENCE: Duration = Duration::from_millis(5);
 
 /// Time from one frame to the next: what a frame causes is played within it.
 const FRAME: Duration = Duration::from_millis(1);
+
+/// Most requests that are met before the next packet is taken, and most commands in a millisecond: some 5 us each, so
+/// that packets never wait for long.
+const MOST_AT_ONCE: usize = 16;
 
 /// How often the snapshot is renewed: more often than any screen.
 const SNAPSHOT_EVERY: Duration = Duration::from_millis(5);
@@ -88,12 +93,15 @@ pub struct Server {
     assembler: Assembler,
     engine: Engine,
     commands: Option<Receiver<Command>>,
+    /// When commands were last looked for.
+    commands_looked: Instant,
     haptics: Haptics,
     outputs: Outputs,
     answers: Answers,
     link: LinkWatch,
     /// When the boards were last looked at for it.
     link_checked: Instant,
+    causes: CauseWatch,
     sensors: SensorWatch,
     snapshots: Option<Input<Snapshot>>,
     /// When the last frame came in.
@@ -115,11 +123,13 @@ impl Server {
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
             engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
             commands: None,
+            commands_looked: Instant::START,
             haptics: Haptics::default(),
             outputs: Outputs::default(),
             answers: Answers::default(),
             link: LinkWatch::default(),
             link_checked: Instant::START,
+            causes: CauseWatch::new(floor.boards.iter().map(|board| board.address.clone())),
             sensors: SensorWatch::default(),
             snapshots: None,
             seen: Instant::START,
@@ -187,7 +197,8 @@ impl Server {
     /// What came in and what was refused, from the socket to the frames.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
-        let own = LinkCounters { denied: self.answers.denied, ..LinkCounters::default() };
+        let Answers { denied, cleaned, .. } = self.answers;
+        let own = LinkCounters { denied, cleaned, ..LinkCounters::default() };
         self.source.counters() + self.assembler.counters() + own
     }
 
@@ -209,6 +220,7 @@ impl Server {
         snapshot.held.clear();
         snapshot.held.extend(self.engine.held().cloned());
         snapshot.link = self.link.state();
+        snapshot.link_cause = self.causes.cause().cloned();
         (snapshot.boards_live, snapshot.boards) = self.assembler.boards_live();
         snapshot.counters = self.counters();
         self.assembler.health(&mut snapshot.health);
@@ -250,6 +262,7 @@ impl Server {
         match self.source.next(PATIENCE) {
             Ok(Some(packet)) => {
                 self.haptics.note_packet(self.source.now());
+                self.causes.note(&packet);
                 self.assembler.take(&packet);
             }
             Ok(None) => {
@@ -284,6 +297,7 @@ impl Server {
         let at = frame.at;
         self.seen = frame.received;
         let step = self.engine.step(frame);
+        self.causes.note_frame(frame, !step.contacts.is_empty(), self.source.now());
         self.haptics.send(&step, at, self.source.now());
         for press in step.ignored {
             debug!("{press}");
@@ -320,9 +334,23 @@ impl Server {
         if let Some(status) = self.haptics.device_news(now) {
             self.outputs.report(Report::Device(now, status));
         }
+        self.tell_everything();
         let (counters, link) = (self.counters(), self.link.state());
-        if let Some(health) = self.sensors.health_news(&self.assembler, &counters, link, now) {
+        self.note_cause(&counters, now);
+        if let Some(health) = self.sensors.health_news(&self.assembler, link, now) {
             self.outputs.report(Report::Health(now, health));
+        }
+    }
+
+    /// Reports the cause for which no frame can be used, where that has changed.
+    fn note_cause(&mut self, counters: &LinkCounters, now: Instant) {
+        let (link, refused) = (self.link.state(), self.source.last_refused());
+        let facts = Facts { assembler: &self.assembler, link, counters, refused };
+        if self.causes.update(&facts, now) {
+            let cause = self.causes.cause();
+            self.link.note_cause(cause, now);
+            self.outputs.report(Report::LinkCause(now, cause));
+            self.is_stale = true;
         }
     }
 
@@ -355,16 +383,26 @@ impl Server {
         self.is_stale = true;
     }
 
-    /// Does what is asked; what that changes is shown at the end of the turn.
+    /// Does what is asked, as much as a turn has time for; what that changes is shown at the end of the turn.
     fn process_commands(&mut self) {
-        loop {
-            while let Some(request) = self.source.take_request() {
+        for _ in 0..MOST_AT_ONCE {
+            if let Some(request) = self.source.take_request() {
                 self.process_request(request);
+            } else if let Some(layout) = self.source.take_layout() {
+                self.set_layout(layout);
+            } else {
+                break;
             }
-            let Some(layout) = self.source.take_layout() else { break };
-            self.set_layout(layout);
         }
-        while let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) {
+        let now = self.source.now();
+        if now.since(self.commands_looked) < FRAME && self.commands_looked != Instant::START {
+            return;
+        }
+        self.commands_looked = now;
+        for _ in 0..MOST_AT_ONCE {
+            let Some(command) = self.commands.as_ref().and_then(|commands| commands.try_recv().ok()) else {
+                break;
+            };
             match command {
                 Command::SetLayout(mut layout) => {
                     self.source.note_layout(&mut layout);

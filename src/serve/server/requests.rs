@@ -7,11 +7,18 @@ use super::Server;
 use super::haptics::MuteError;
 use super::limited::Limited;
 use crate::engine::PageShown;
+use crate::label::{self, MAX_LABEL};
 use crate::outgoing::{write_control, write_error, write_mute, write_page};
+use crate::rate_limit::RateLimit;
 use crate::serve::request;
 use crate::sink::Report;
 use crate::widget::{SetError, WidgetId};
 use crate::wire::{ControlMessage, Prefix, Request};
+
+/// Controls that are told of when somebody asks for everything: so many at once, and one in each such time; some 5 us
+/// each, so that whoever asks without an end takes a twentieth of the sensing thread's time.
+const MOST_TOLD: u32 = 20_000;
+const TOLD_EVERY: Duration = Duration::from_micros(100);
 
 /// How requests are answered.
 #[derive(Debug)]
@@ -22,19 +29,40 @@ pub(super) struct Answers {
     bytes: Vec<u8>,
     /// Requests that could not be met.
     pub(super) denied: u64,
+    /// How many controls are told of because somebody asks for everything.
+    everything: RateLimit,
+    /// Whether everybody is to be told of every control as soon as there is time.
+    pub(super) is_everything_due: bool,
+    /// Labels of which something was left out.
+    pub(super) cleaned: u64,
     notices: Limited,
 }
 
 impl Default for Answers {
     fn default() -> Self {
         let notices = Limited::new(5, Duration::from_secs(10));
-        Self { prefix: Prefix::default(), bytes: Vec::new(), denied: 0, notices }
+        let everything = RateLimit::new(MOST_TOLD, TOLD_EVERY);
+        Self {
+            prefix: Prefix::default(),
+            bytes: Vec::new(),
+            denied: 0,
+            cleaned: 0,
+            everything,
+            is_everything_due: false,
+            notices,
+        }
     }
 }
 
 impl Server {
     /// Does what the program's own app asks, and gives it the answer.
     pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), SetError>>) {
+        if message == ControlMessage::GetAll && !self.may_tell_everything() {
+            // Everybody is told, so that one report answers all who ask meanwhile.
+            self.answers.is_everything_due = true;
+            let _ = to.try_send(Ok(()));
+            return;
+        }
         let done = self.apply(&message);
         if done.is_ok() {
             self.tell(&message.into());
@@ -59,11 +87,34 @@ impl Server {
         }
     }
 
+    /// Tells everybody of every control, if that is due and there is time.
+    pub(super) fn tell_everything(&mut self) {
+        if self.answers.is_everything_due && self.may_tell_everything() {
+            self.answers.is_everything_due = false;
+            self.tell(&ControlMessage::GetAll.into());
+        }
+    }
+
+    /// Whether there is time to tell of every control.
+    fn may_tell_everything(&mut self) -> bool {
+        let (now, controls) = (self.source.now(), self.engine.layout().widgets.len());
+        self.answers.everything.take_many(now, u32::try_from(controls).unwrap_or(u32::MAX)).is_some()
+    }
+
     fn apply(&mut self, message: &ControlMessage) -> Result<(), SetError> {
-        if *message == ControlMessage::CancelAll {
-            self.cancel_all();
+        match message {
+            ControlMessage::CancelAll => self.cancel_all(),
+            ControlMessage::Label { id, text } => return self.apply_label(id, text),
+            _ => {}
         }
         request::apply(&mut self.engine, message)
+    }
+
+    /// Writes `text` on a control, whichever way it came, without what no label may hold.
+    fn apply_label(&mut self, id: &WidgetId, text: &str) -> Result<(), SetError> {
+        let label = label::cleaned(text, MAX_LABEL);
+        self.answers.cleaned += u64::from(label != text);
+        self.engine.set_label(id.as_str(), &label)
     }
 
     /// Does what an app asks; tells it what it wants to know or why it can't be done, and everybody what is new.
@@ -77,12 +128,15 @@ impl Server {
                 let muted = self.haptics.mute_tile(*tile, *on, self.engine.geometry());
                 self.tell_mute(muted).map_err(|error| error.to_string())
             }
+            ControlMessage::GetAll if !self.may_tell_everything() => {
+                Err("everything was asked for too often: ask again in a second".into())
+            }
             message => self.apply(message).map_err(|error| error.to_string()),
         };
         match done {
             Ok(()) => self.tell(request),
             Err(why) => {
-                let Answers { prefix, bytes, denied, notices } = &mut self.answers;
+                let Answers { prefix, bytes, denied, notices, .. } = &mut self.answers;
                 *denied += 1;
                 let address = prefix.address(&request.message.path());
                 notices.warn(self.source.now(), || format!("{} refused: {why}", address.escape_debug()));

@@ -8,7 +8,7 @@ use super::limited::Limited;
 use crate::floor::SensorId;
 use crate::sense::{Assembler, SensorHealth, Trouble};
 use crate::units::Instant;
-use crate::wire::{LinkCounters, LinkState};
+use crate::wire::LinkState;
 
 /// How often the sensors' health is checked, and how often at most it is told.
 const HEALTH_LOOK: Duration = Duration::from_millis(100);
@@ -85,12 +85,11 @@ impl SensorWatch {
     pub(super) fn health_news(
         &mut self,
         assembler: &Assembler,
-        counters: &LinkCounters,
         link: LinkState,
         now: Instant,
     ) -> Option<&SensorHealth> {
         self.note_jumps(assembler, now);
-        self.note_foreign(assembler, counters);
+        self.note_foreign(assembler);
         assembler.health(&mut self.health);
         let known = self.told.as_ref();
         let is_due =
@@ -122,7 +121,7 @@ impl SensorWatch {
     }
 
     /// Says once that the floor file seems to be another floor's.
-    fn note_foreign(&mut self, assembler: &Assembler, counters: &LinkCounters) {
+    fn note_foreign(&mut self, assembler: &Assembler) {
         if self.said_foreign {
             return;
         }
@@ -132,11 +131,6 @@ impl SensorWatch {
                 "most tiles read otherwise than the floor file says of the empty floor: is it the file of another \
                  floor, or was it tared long ago? No force can be trusted, and controls with the guard HoldToRun are off; `underfoot calibrate tare` \
                  measures it anew"
-            );
-        } else if counters.packets == 0 && counters.wrong_shape > 100 {
-            self.said_foreign = true;
-            warn!(
-                "the boards send another number of readings than the floor file says: is it the file of another floor?"
             );
         }
     }

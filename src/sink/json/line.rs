@@ -12,6 +12,7 @@ use crate::sink::backlog::Gap;
 use crate::sink::crack_rate::CrackNews;
 use crate::sink::report::OwnedReport;
 use crate::widget::{Detail, Scale, Value, WidgetEvent, WidgetId};
+use crate::wire::LinkCause;
 
 #[derive(Serialize)]
 pub(super) struct Line<'a> {
@@ -35,6 +36,12 @@ enum Body<'a> {
     },
     Link {
         state: &'static str,
+    },
+    #[serde(rename = "link_cause")]
+    LinkCause {
+        cause: Option<&'static str>,
+        board: Option<u16>,
+        why: String,
     },
     Mute {
         all: bool,
@@ -154,6 +161,11 @@ impl<'a> Body<'a> {
                 Self::Crack { seed, energy_j, x_m, y_m, skipped }
             }
             OwnedReport::Link(_, state) => Self::Link { state: state.name() },
+            OwnedReport::LinkCause(_, cause) => Self::LinkCause {
+                cause: cause.as_ref().map(LinkCause::name),
+                board: cause.as_ref().and_then(LinkCause::board),
+                why: cause.as_ref().map(ToString::to_string).unwrap_or_default(),
+            },
             OwnedReport::Health(_, health) => Self::health(health),
             OwnedReport::Device(_, status) => Self::device(status),
             OwnedReport::Held(report) => {

@@ -1,6 +1,6 @@
 //! Faults that somebody switches on and off while a simulated floor runs.
 
-use std::sync::mpsc::{Receiver, Sender, channel};
+use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::time::Duration;
 
 use super::super::{SensorSource, SimulatedSource, SourceError};
@@ -8,11 +8,14 @@ use super::{FaultInjector, Faults};
 use crate::floor::SensorId;
 use crate::sim::SensorFault;
 use crate::units::Instant;
-use crate::wire::{LinkCounters, SensorPacket};
+use crate::wire::{LinkCause, LinkCounters, SensorPacket};
+
+/// Changes that may wait for the simulated floor, which takes them each millisecond.
+const CHANGES_WAITING: usize = 256;
 
 /// Switches the faults of a [`RehearsalSource`] from elsewhere.
 #[derive(Clone, Debug)]
-pub struct FaultSwitch(Sender<Change>);
+pub struct FaultSwitch(SyncSender<Change>);
 
 #[derive(Debug)]
 enum Change {
@@ -22,17 +25,17 @@ enum Change {
 
 impl FaultSwitch {
     /// Lets these faults happen on the way of the packets from now on, in place of those of the last call; false if the
-    /// floor has ended.
+    /// floor has ended, or stands still.
     #[must_use]
     pub fn set_packets(&self, faults: Faults) -> bool {
-        self.0.send(Change::Packets(faults)).is_ok()
+        self.0.try_send(Change::Packets(faults)).is_ok()
     }
 
-    /// Breaks a sensor, or mends it with `None`; false if the floor has ended. A sensor that the floor lacks is left
+    /// Breaks a sensor, or mends it with `None`; false if the floor has ended, or stands still. A sensor that the floor lacks is left
     /// alone.
     #[must_use]
     pub fn set_sensor(&self, sensor: SensorId, fault: Option<SensorFault>) -> bool {
-        self.0.send(Change::Sensor(sensor, fault)).is_ok()
+        self.0.try_send(Change::Sensor(sensor, fault)).is_ok()
     }
 }
 
@@ -50,7 +53,7 @@ impl RehearsalSource {
     /// `seed`.
     #[must_use]
     pub fn new(inner: SimulatedSource, planned: Faults, seed: u64) -> (Self, FaultSwitch) {
-        let (sender, changes) = channel();
+        let (sender, changes) = sync_channel(CHANGES_WAITING);
         let injector = FaultInjector::new(inner, planned.clone(), seed);
         (Self { injector, planned, changes }, FaultSwitch(sender))
     }
@@ -75,6 +78,10 @@ impl SensorSource for RehearsalSource {
 
     fn counters(&self) -> LinkCounters {
         self.injector.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.injector.last_refused()
     }
 }
 

@@ -17,7 +17,7 @@ use rand_pcg::Pcg64Mcg;
 
 use super::{SensorSource, SourceError};
 use crate::units::Instant;
-use crate::wire::{LinkCounters, Readings, Request, SensorPacket};
+use crate::wire::{LinkCause, LinkCounters, Readings, Request, SensorPacket};
 
 #[cfg(feature = "sim")]
 pub use self::live::{FaultSwitch, RehearsalSource};
@@ -264,6 +264,10 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
 
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.inner.last_refused()
     }
 }
 

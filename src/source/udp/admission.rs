@@ -4,6 +4,8 @@ use std::fmt;
 use std::net::{IpAddr, SocketAddr};
 use std::time::Duration;
 
+use arrayvec::ArrayVec;
+
 use super::senders::Senders;
 use crate::floor::{Floor, Network};
 use crate::units::Instant;
@@ -168,42 +170,46 @@ impl Admission {
         }
     }
 
-    /// Whether `batch`, which came from `sender`, is taken; it is as a whole or not at all.
+    /// Removes from `batch`, which came from `sender`, what may not come from there; gives each reason once.
     pub(super) fn batch(
         &mut self,
         sender: SocketAddr,
         way: Way,
-        batch: &Batch,
+        batch: &mut Batch,
         now: Instant,
-    ) -> Result<(), Refusal> {
+    ) -> ArrayVec<Refusal, 3> {
+        let mut refusals = ArrayVec::new();
         let takes_packets = match way {
             Way::Plain => self.is_board(sender.ip()),
             Way::Sealed => true,
             Way::OwnPort => false,
         };
         if !batch.packets.is_empty() && !takes_packets {
-            return Err(Refusal::Packets);
+            batch.packets.clear();
+            refusals.push(Refusal::Packets);
         }
         if !batch.controls.is_empty() && !self.is_answered(sender, way) {
-            return Err(Refusal::Requests);
+            batch.controls.clear();
+            refusals.push(Refusal::Requests);
         }
-        for _ in &batch.controls {
-            self.request(sender, now)?;
+        let admitted = batch.controls.iter().take_while(|_| self.request(sender, now).is_ok()).count();
+        if admitted < batch.controls.len() {
+            batch.controls.truncate(admitted);
+            refusals.push(Refusal::TooMany);
         }
         let ip = sender.ip().to_canonical();
-        let Some(homes) = &mut self.homes else { return Ok(()) };
-        for packet in &batch.packets {
-            let home = homes.get(usize::from(packet.board)).copied().flatten();
-            if let Some(known) = home.filter(|known| *known != ip) {
-                return Err(Refusal::Elsewhere(packet.board, known));
+        let Some(homes) = &mut self.homes else { return refusals };
+        let mut elsewhere = None;
+        batch.packets.retain(|packet| {
+            let Some(home) = homes.get_mut(usize::from(packet.board)) else { return true };
+            let known = *home.get_or_insert(ip);
+            if known != ip {
+                elsewhere = Some(Refusal::Elsewhere(packet.board, known));
             }
-        }
-        for packet in &batch.packets {
-            if let Some(home) = homes.get_mut(usize::from(packet.board)) {
-                *home = Some(ip);
-            }
-        }
-        Ok(())
+            known == ip
+        });
+        refusals.extend(elsewhere);
+        refusals
     }
 
     /// Whether `sender` may ask one thing more; what it asked wrongly counts, too.

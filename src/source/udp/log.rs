@@ -20,6 +20,8 @@ const NAMED: usize = 16;
 pub(super) struct RefusalLog {
     malformed: RateLimit,
     unknown: RateLimit,
+    skipped: RateLimit,
+    readings: RateLimit,
     shape: RateLimit,
     unanswered: RateLimit,
     named: Vec<(IpAddr, RateLimit)>,
@@ -32,6 +34,8 @@ impl Default for RefusalLog {
         Self {
             malformed: limit,
             unknown: limit,
+            skipped: limit,
+            readings: limit,
             shape: limit,
             unanswered: limit,
             named: Vec::new(),
@@ -45,10 +49,22 @@ impl RefusalLog {
         let limit = match error {
             WireError::Malformed(_) => &mut self.malformed,
             WireError::UnknownAddress { .. } => &mut self.unknown,
+            WireError::WrongReadings { .. } => &mut self.readings,
             WireError::WrongShape { .. } | WireError::TooEarly { .. } => &mut self.shape,
         };
         if let Some(others) = limit.take(now) {
             tracing::warn!(%sender, others_like_it = others, "datagram refused: {error}");
+        }
+    }
+
+    /// Notes a message for another receiver in a bundle of which the rest is used.
+    pub(super) fn skipped(&mut self, now: Instant, sender: SocketAddr, address: &str) {
+        if let Some(others) = self.skipped.take(now) {
+            tracing::info!(
+                %sender,
+                others_like_it = others,
+                "messages for {address:?} in bundles are skipped; the rest of each bundle is used"
+            );
         }
     }
 

@@ -33,7 +33,9 @@ use super::{SensorSource, SourceError};
 use crate::floor::{Floor, Forwarding, Network};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
-use crate::wire::{Batch, Decoder, Limits, LinkCounters, Prefix, Request, SensorPacket, WireError};
+use crate::wire::{
+    Batch, Decoder, Limits, LinkCause, LinkCounters, Prefix, Request, SensorPacket, WireError, guess_format,
+};
 
 /// Most control messages kept until they are taken; more are dropped and counted as overflowed.
 const MAX_CONTROLS: usize = 1024;
@@ -44,6 +46,9 @@ const MAX_UNWAITED: usize = 64;
 /// How often requests on their own port are looked for, and most that are examined then.
 const REQUESTS_EVERY: Duration = Duration::from_millis(1);
 const MAX_REQUESTS: usize = 32;
+
+/// How long the last refusal of something from boards is kept although requests are refused.
+const KEPT_REFUSAL: Duration = Duration::from_secs(1);
 
 /// Sensor packets and control messages from a UDP socket.
 ///
@@ -80,6 +85,8 @@ pub struct UdpSource {
     counters: LinkCounters,
     kernel_drops: KernelDrops,
     log: RefusalLog,
+    /// The last refusal by its cause, and when it was noted.
+    last_refused: Option<(LinkCause, Instant)>,
 }
 
 impl UdpSource {
@@ -121,6 +128,7 @@ impl UdpSource {
             counters: LinkCounters::default(),
             kernel_drops: KernelDrops::default(),
             log: RefusalLog::default(),
+            last_refused: None,
         })
     }
 
@@ -268,7 +276,7 @@ impl UdpSource {
     fn sort(&mut self, sender: SocketAddr, length: usize, on_own_port: bool, now: Instant) {
         self.counters.datagrams += 1;
         if let Err(refusal) = self.admission.datagram(sender, on_own_port, now) {
-            return self.refuse(sender, refusal, now);
+            return self.turn_away(sender, refusal, now);
         }
         let datagram = self.buffer.get(..length).unwrap_or_default();
         // OSC begins with a slash or a hash.
@@ -278,7 +286,7 @@ impl UdpSource {
                 Ok(Sealed::Forwarded(range)) => self.sort_osc((sender, Way::Sealed), range, now),
                 // The owner of the seal counts both.
                 Ok(Sealed::Taken | Sealed::Refused) => {}
-                Err(refusal) => self.refuse(sender, refusal, now),
+                Err(refusal) => self.turn_away(sender, refusal, now),
             },
             None => {
                 let way = if on_own_port { Way::OwnPort } else { Way::Plain };
@@ -287,32 +295,31 @@ impl UdpSource {
         }
     }
 
-    /// Counts and logs a datagram that is not taken.
-    fn refuse(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
-        refusal.count(&mut self.counters);
-        self.log.not_admitted(now, sender, refusal);
-    }
-
     /// Sorts the OSC at these bytes of the buffer.
-    fn sort_osc(&mut self, (sender, way): (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
-        let datagram = self.buffer.get(bytes).unwrap_or_default();
-        let decoded = self.decoder.decode(datagram, self.received, &mut self.batch);
-        let wait = match decoded.and_then(|()| self.wait()) {
-            Ok(wait) => wait,
-            Err(error) => {
-                error.count(&mut self.counters);
-                self.log.refused(now, sender, &error);
-                return self.answer_refusal(sender, way, &error, now);
+    fn sort_osc(&mut self, from: (SocketAddr, Way), bytes: Range<usize>, now: Instant) {
+        let (sender, way) = from;
+        let datagram = self.buffer.get(bytes.clone()).unwrap_or_default();
+        if let Err(error) = self.decoder.decode(datagram, self.received, &mut self.batch) {
+            if let WireError::Malformed(_) = error {
+                let why = guess_format(datagram).map_or_else(|| error.to_string(), str::to_owned);
+                self.note_refused(LinkCause::NotOsc { why }, now);
             }
-        };
-        if let Err(refusal) = self.admission.batch(sender, way, &self.batch, now) {
-            return self.refuse(sender, refusal, now);
+            return self.refuse(from, &error, now);
         }
-        if let Some(forwarder) = self.forwarder.as_ref().filter(|_| !self.batch.packets.is_empty()) {
-            // A packet is forwarded once.
-            if way != Way::Sealed {
-                forwarder.forward(datagram, now.since(self.received), self.seal.as_deref_mut());
-            }
+        let wait = self.wait().unwrap_or_else(|error| {
+            // Only requests wait: the packets beside them are used.
+            self.batch.controls.clear();
+            self.batch.refused.push(error);
+            Duration::ZERO
+        });
+        self.refuse_parts(from, now);
+        let refusals = self.admission.batch(sender, way, &mut self.batch, now);
+        // A packet is forwarded once.
+        let is_forwarded = refusals.is_empty() && !self.batch.packets.is_empty() && way != Way::Sealed;
+        refusals.into_iter().for_each(|refusal| self.turn_away(sender, refusal, now));
+        if let Some(forwarder) = self.forwarder.as_ref().filter(|_| is_forwarded) {
+            let datagram = self.buffer.get(bytes).unwrap_or_default();
+            forwarder.forward(datagram, now.since(self.received), self.seal.as_deref_mut());
         }
         self.packets.extend(self.batch.packets.drain(..));
         let room = MAX_CONTROLS.saturating_sub(self.requests.len() + self.timed.len());
@@ -324,6 +331,62 @@ impl UdpSource {
             } else {
                 self.timed.push(now + wait, request);
             }
+        }
+    }
+
+    /// Counts and logs what may not come from `sender`.
+    fn turn_away(&mut self, sender: SocketAddr, refusal: Refusal, now: Instant) {
+        refusal.count(&mut self.counters);
+        self.log.not_admitted(now, sender, refusal);
+        let why = || format!("{}: {refusal}", sender.ip().to_canonical());
+        match refusal {
+            Refusal::Foreign | Refusal::Packets | Refusal::Elsewhere(..) => {
+                self.note_refused(LinkCause::SenderRefused { why: why() }, now);
+            }
+            Refusal::Requests | Refusal::TooMany => {
+                self.note_refused(LinkCause::Unknown { last_refused: why() }, now);
+            }
+        }
+    }
+
+    /// Counts and logs a refused datagram or message, and answers its sender if that asked something of this floor.
+    fn refuse(&mut self, (sender, way): (SocketAddr, Way), error: &WireError, now: Instant) {
+        error.count(&mut self.counters);
+        if let Some(cause) = self.decoder.cause_of(error) {
+            self.note_refused(cause, now);
+        }
+        self.log.refused(now, sender, error);
+        self.answer_refusal(sender, way, error, now);
+    }
+
+    /// Refuses the messages of the batch that are not used. Those for other receivers are skipped where the rest of
+    /// their bundle is used.
+    fn refuse_parts(&mut self, from: (SocketAddr, Way), now: Instant) {
+        let mut refused = std::mem::take(&mut self.batch.refused);
+        let is_used = self.batch.is_used();
+        for error in refused.drain(..) {
+            match &error {
+                WireError::UnknownAddress { address, .. }
+                    if is_used && self.decoder.is_answered(&error).is_none() =>
+                {
+                    self.counters.skipped += 1;
+                    self.log.skipped(now, from.0, address);
+                }
+                _ => self.refuse(from, &error, now),
+            }
+        }
+        // Kept for its room.
+        self.batch.refused = refused;
+    }
+
+    /// Keeps the cause of a refusal. Those of requests don't take the place of what was refused of boards lately.
+    fn note_refused(&mut self, cause: LinkCause, now: Instant) {
+        let is_of_boards = |cause: &LinkCause| !matches!(cause, LinkCause::Unknown { .. });
+        let keeps = self.last_refused.as_ref().is_some_and(|(last, at)| {
+            is_of_boards(last) && !is_of_boards(&cause) && now.since(*at) < KEPT_REFUSAL
+        });
+        if !keeps {
+            self.last_refused = Some((cause, now));
         }
     }
 
@@ -406,6 +469,10 @@ impl SensorSource for UdpSource {
             let now = Instant::START + self.started.elapsed();
             self.log.unanswered(now, to, &error);
         }
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.last_refused.as_ref().map(|(cause, _)| cause.clone())
     }
 
     fn counters(&self) -> LinkCounters {

@@ -8,7 +8,7 @@ use underfoot::floor::{Floor, Geometry};
 use underfoot::sense::Assembler;
 use underfoot::source::{SensorSource, SourceError, UdpSource};
 use underfoot::units::Instant;
-use underfoot::wire::{ControlMessage, Readings, SensorEncoder, SensorFormat, SensorPacket};
+use underfoot::wire::{ControlMessage, LinkCause, Readings, SensorEncoder, SensorFormat, SensorPacket};
 
 const ANY_PORT: SocketAddr = SocketAddr::new(IpAddr::V4(Ipv4Addr::LOCALHOST), 0);
 
@@ -141,18 +141,70 @@ fn senders_not_on_the_list_are_counted_and_not_heard() {
 }
 
 #[test]
-fn labels_lose_what_controls_terminals_and_turns_the_direction_of_writing() {
+fn a_bundle_is_used_but_for_what_others_are_meant_to_read() {
     let (mut source, sender) = link();
-    let text = "Al\u{202e}arm\u{1b}[31m \u{2067}o\u{200f}ff\n\u{7}".to_owned();
-    let label = message("/underfoot/widget/zoom/label", vec![OscType::String(text)]);
-    sender.send(&encoder::encode(&label).unwrap()).unwrap();
-    sender.send(&datagram(&packet(0, 1))).unwrap();
-    assert!(source.next(SOON).unwrap().is_some());
-    let asked = asked(&mut source);
-    assert!(
-        matches!(&asked[..], [ControlMessage::Label { text, .. }] if text == "Alarm[31m off"),
-        "{asked:?}"
-    );
+    let (_, readings) = rosc::decoder::decode_udp(&datagram(&packet(0, 5))).unwrap();
+    let timetag = OscTime { seconds: 0, fractional: 1 };
+    let battery = message("/battery", vec![OscType::Float(3.7)]);
+    let content = vec![battery.clone(), readings, message("/underfoot/widget/zoom/get", vec![])];
+    let bundle = OscPacket::Bundle(OscBundle { timetag, content });
+    for count in 1..=3 {
+        sender.send(&encoder::encode(&bundle).unwrap()).unwrap();
+        assert_eq!(source.next(SOON).unwrap().unwrap().sequence, 5);
+        assert_eq!(asked(&mut source).len(), 1);
+        let counters = source.counters();
+        assert_eq!((counters.skipped, counters.refused()), (count, 0));
+    }
+    // Alone it is refused.
+    sender.send(&encoder::encode(&battery).unwrap()).unwrap();
+    let only_battery = OscPacket::Bundle(OscBundle { timetag, content: vec![battery] });
+    sender.send(&encoder::encode(&only_battery).unwrap()).unwrap();
+    assert!(source.next(Duration::from_millis(50)).unwrap().is_none());
+    assert_eq!((source.counters().skipped, source.counters().unknown_address), (3, 2));
+}
+
+#[test]
+fn readings_are_taken_from_a_bundle_whose_requests_are_not() {
+    let (source, sender) = link();
+    let commands = UdpSocket::bind(ANY_PORT).unwrap().local_addr().unwrap();
+    let mut source = source.with_commands(commands, [ANY_PORT.ip().into()]).unwrap();
+    let (_, readings) = rosc::decoder::decode_udp(&datagram(&packet(0, 5))).unwrap();
+    let content = vec![message("/underfoot/widget/zoom/get", vec![]), readings];
+    // In 1900 and in 2036, by a board whose clock was never set.
+    for seconds in [1, u32::MAX] {
+        let timetag = OscTime { seconds, fractional: 0 };
+        let bundle = OscPacket::Bundle(OscBundle { timetag, content: content.clone() });
+        sender.send(&encoder::encode(&bundle).unwrap()).unwrap();
+        assert_eq!(source.next(SOON).unwrap().unwrap().sequence, 5);
+        assert_eq!(asked(&mut source), []);
+    }
+    assert_eq!((source.counters().foreign, source.counters().denied), (1, 1));
+}
+
+#[test]
+fn the_last_refusal_of_something_from_boards_is_kept_beside_those_of_requests() {
+    let (mut source, sender) = link();
+    let doubles = vec![OscType::Int(1), OscType::Double(2.0), OscType::Double(3.0)];
+    sender.send(&encoder::encode(&message("/underfoot/board/1", doubles)).unwrap()).unwrap();
+    sender.send(&encoder::encode(&message("/underfoot/widget/zoom/fly", vec![])).unwrap()).unwrap();
+    while source.counters().refused() < 2 {
+        source.next(Duration::from_millis(50)).unwrap();
+    }
+    let expected = LinkCause::WrongReadings { board: 1, channels: 24, found: "idd".into() };
+    assert_eq!(source.last_refused(), Some(expected));
+    for (sent, expected) in [
+        (&b"0.1,0.2,0.3,0.4\n"[..], "they look like text"),
+        (&b"\xC0/underfoot/board/0\0\0,i\0\0\0\0\0\x01\xC0"[..], "SLIP"),
+        (&b"\0\0\0\x08/a\0\0,\0\0\0"[..], "they begin with their length"),
+    ] {
+        let before = source.counters().malformed;
+        sender.send(sent).unwrap();
+        while source.counters().malformed == before {
+            source.next(Duration::from_millis(50)).unwrap();
+        }
+        let said = source.last_refused().unwrap().to_string();
+        assert!(said.contains(expected), "{said}");
+    }
 }
 
 // P6

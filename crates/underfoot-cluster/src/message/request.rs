@@ -3,8 +3,9 @@
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Argument;
 use underfoot::engine::{ControlState, ValueRange};
+use underfoot::label::MAX_LABEL;
 use underfoot::widget::{Indicator, Scale, WidgetId};
-use underfoot::wire::{ControlMessage, MAX_LABEL, read_json, write_json};
+use underfoot::wire::{ControlMessage, read_json, write_json};
 
 use super::NodeValue;
 use super::text::shown;

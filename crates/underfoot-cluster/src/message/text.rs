@@ -1,6 +1,6 @@
 //! Names and texts of other computers, cleaned before they reach a terminal or an app.
 
-use underfoot::wire::is_shown;
+use underfoot::label::cleaned;
 
 use super::{NodeAnswer, NodeMessage};
 
@@ -17,17 +17,16 @@ pub fn is_id(text: &str) -> bool {
     (1..=64).contains(&text.len()) && text.bytes().all(is_part)
 }
 
-/// `text` in one line of at most `most` characters, without characters that control a terminal or the direction of
-/// writing; line ends become spaces.
+/// `text` in one line of at most `most` characters that labels may hold; line ends become spaces.
 #[must_use]
 pub fn shown(text: &str, most: usize) -> String {
-    let line = text.chars().map(|c| if c == '\n' { ' ' } else { c });
-    line.filter(|&c| is_shown(c)).take(most).collect()
+    cleaned(&text.replace('\n', " "), most).into_owned()
 }
 
 /// Like [`shown`], with its lines.
 fn shown_lines(text: &str, most: usize) -> String {
-    text.chars().filter(|&c| c == '\n' || is_shown(c)).take(most).collect()
+    let lines: Vec<_> = text.split('\n').map(|line| cleaned(line, most)).collect();
+    lines.join("\n").chars().take(most).collect()
 }
 
 impl NodeMessage {

@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use underfoot::source::{SensorSource, SourceError};
 use underfoot::units::{HostClock, Instant};
-use underfoot::wire::{LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 /// Packets on a clock that goes `times` slower than the machine's.
 pub(super) struct SlowedSource {
@@ -51,5 +51,9 @@ impl SensorSource for SlowedSource {
 
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.inner.last_refused()
     }
 }

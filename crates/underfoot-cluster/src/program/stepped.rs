@@ -10,7 +10,7 @@ use signal_hook::consts::SIGUSR1;
 use signal_hook::flag;
 use underfoot::source::{SensorSource, SourceError, UdpSource};
 use underfoot::units::{HostClock, Instant};
-use underfoot::wire::{LinkCounters, Request, SensorPacket};
+use underfoot::wire::{LinkCause, LinkCounters, Request, SensorPacket};
 
 use super::Failure;
 
@@ -86,5 +86,9 @@ impl SensorSource for SteppedSource {
 
     fn counters(&self) -> LinkCounters {
         self.inner.counters()
+    }
+
+    fn last_refused(&self) -> Option<LinkCause> {
+        self.inner.last_refused()
     }
 }

@@ -4,7 +4,7 @@ mod files;
 mod keyboard;
 
 use std::sync::Arc;
-use std::sync::mpsc::{Receiver, Sender};
+use std::sync::mpsc::{Receiver, SyncSender};
 
 use eframe::egui::accesskit::Role;
 use eframe::egui::{Event, Key, Modifiers, PointerButton, Pos2, vec2};
@@ -23,7 +23,7 @@ use crate::schema::{builtin_layout, parse_layout};
 struct Desk {
     window: Harness<'static, App>,
     commands: Receiver<PreviewCommand>,
-    news: Sender<LayoutNews>,
+    news: SyncSender<LayoutNews>,
     state: TempDir,
 }
 

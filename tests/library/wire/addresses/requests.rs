@@ -182,3 +182,19 @@ fn apps_over_the_channel_are_refused_like_others_and_labels_outlive_a_new_layout
     server.snapshot(&mut snapshot);
     assert_eq!(snapshot.labels, [(0, "Start".into())]);
 }
+
+#[test]
+fn a_label_loses_what_no_label_may_hold_whoever_sends_it() {
+    let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
+    let tricks = [
+        ("Al\u{202e}arm\u{1b}[31m \u{2067}o\u{200f}ff\n\u{7}", "Alarm[31m off"),
+        ("st\u{200b}op\u{2028}", "stop"),
+        ("st\u{200d}op", "stop"),
+    ];
+    let fine = ["הגדל", "نمی\u{200c}خواهم", "👩\u{200d}⚕\u{fe0f}"].map(|label| (label, label));
+    for (sent, shown) in tricks.into_iter().chain(fine) {
+        desk.send("/underfoot/widget/button/label", vec![OscType::String(sent.into())]);
+        assert_eq!(desk.server.engine().control_state("button").unwrap().label, shown);
+    }
+    assert_eq!(desk.server.counters().cleaned, tricks.len() as u64);
+}

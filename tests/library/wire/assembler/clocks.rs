@@ -103,3 +103,49 @@ fn a_floor_whose_crystals_all_run_slow_is_followed_without_slips() {
     assert!(off < 500, "{off} us behind");
     assert!(frames.is_sorted_by(|a, b| (999..=1001).contains(&(b.at_us - a.at_us))));
 }
+
+/// Packets of all boards, `hz` a second for eight seconds.
+fn at_rate(hz: u64) -> impl Iterator<Item = SensorPacket> {
+    (0..8 * hz).flat_map(move |n| (0..BOARDS).map(move |board| at_us(board, n as u32, n * 1_000_000 / hz)))
+}
+
+#[test]
+fn time_is_that_of_the_clock_whatever_boards_send() {
+    for hz in [20, 50, 100, 140, 160, 200, 500, 800, 1000, 1010, 1400, 1600, 2000, 4000] {
+        let mut assembler = assembler();
+        let mut frames = 0;
+        for packet in at_rate(hz) {
+            assembler.take(&packet);
+            while let Some(frame) = assembler.ready() {
+                frames += 1;
+                let ahead = frame.at.micros().cast_signed() - packet.received.micros().cast_signed();
+                // While a pace is measured, in the first second, time may be 100 ms off.
+                let most = if packet.received < Instant::from_millis(1000) { 150_000 } else { 25_000 };
+                assert!(ahead < most && ahead > -most - 1_000_000 / hz as i64, "{hz} Hz: {ahead} us");
+            }
+        }
+        let expected = 7 * hz.min(1000);
+        assert!((expected..=8 * 1000).contains(&frames), "{hz} Hz: {frames} frames");
+        let last = assembler.board(0).unwrap();
+        let expected = if (150..=1500).contains(&hz) { Quality::Live } else { Quality::Degraded };
+        assert_eq!((last.quality, last.loss < 0.01), (expected, true), "{hz} Hz: {last:?}");
+    }
+}
+
+#[test]
+fn a_slow_board_holds_up_none_of_the_others() {
+    let mut assembler = assembler();
+    // Board 1 sends every third millisecond.
+    let packets = steady(0, 4000).filter_map(|p| match p.board {
+        1 if p.sequence % 3 == 0 => Some(SensorPacket { sequence: p.sequence / 3, ..p }),
+        1 => None,
+        _ => Some(p),
+    });
+    let frames = feed(&mut assembler, packets);
+    assert!(frames.len() > 3990, "{}", frames.len());
+    let late: Vec<_> = frames.iter().filter(|frame| frame.at_us > 1_000_000).collect();
+    assert!(late.iter().all(|frame| frame.quality == LIVE && frame.samples[0] == frame.samples[2]));
+    // Its sample is of that millisecond or of the two before.
+    let behind = |frame: &&Shown| frame.samples[0] - 3.0 * frame.samples[1];
+    assert!(late.iter().all(|frame| (-1.0..=4.0).contains(&behind(frame))));
+}

@@ -1,0 +1,241 @@
+//! Why a floor whose boards send gives no usable frame, or never shows a load.
+
+mod cadence;
+mod range;
+#[cfg(test)]
+mod tests;
+
+use std::time::Duration;
+
+use self::cadence::{Cadence, Count};
+use self::range::Range;
+use crate::sense::{Assembler, ForceFrame, Quality, TareOutcome};
+use crate::units::Instant;
+use crate::wire::{BOARD_RATES_HZ, LinkCause, LinkCounters, LinkState, SensorPacket};
+
+/// How long a cause must hold before it is told: boards that start, or are plugged in, need less.
+const HOLDS: Duration = Duration::from_secs(2);
+
+/// How long it must be gone before that is told.
+const GONE: Duration = Duration::from_secs(1);
+
+/// How often frames are looked at.
+const LOOK_EVERY: Duration = Duration::from_millis(100);
+
+/// How old the last datagram may be for something to be sent.
+const SENT_LATELY: Duration = Duration::from_secs(1);
+
+/// Facts about the floor besides its packets.
+pub(super) struct Facts<'a> {
+    pub(super) assembler: &'a Assembler,
+    pub(super) link: LinkState,
+    /// From the socket to the frames.
+    pub(super) counters: &'a LinkCounters,
+    /// The last datagram or message that was refused, by its cause.
+    pub(super) refused: Option<LinkCause>,
+}
+
+/// Watches for causes.
+#[derive(Debug)]
+pub(super) struct CauseWatch {
+    /// The boards' addresses.
+    addresses: Vec<String>,
+    cadences: Vec<Cadence>,
+    ranges: Vec<Range>,
+    /// Whether a load was ever seen.
+    has_load: bool,
+    /// When a frame with a usable sensor was last seen, and when frames were last looked at.
+    usable: Instant,
+    looked: Instant,
+    /// When the counters of each kind last grew.
+    datagrams: Growth,
+    refused: Growth,
+    limited: Growth,
+    candidate: Option<(LinkCause, Instant)>,
+    /// The cause that is told, and when it was last found.
+    told: Option<(LinkCause, Instant)>,
+}
+
+/// A counter, and when it last grew.
+#[derive(Clone, Copy, Debug, Default)]
+struct Growth {
+    count: u64,
+    at: Option<Instant>,
+}
+
+impl Growth {
+    fn update(&mut self, count: u64, now: Instant) {
+        if count > self.count {
+            (self.count, self.at) = (count, Some(now));
+        }
+    }
+
+    fn has_grown(&self, within: Duration, now: Instant) -> bool {
+        self.at.is_some_and(|at| now.since(at) < within)
+    }
+}
+
+impl CauseWatch {
+    /// A watch for boards of these addresses.
+    pub(super) fn new(addresses: impl Iterator<Item = String>) -> Self {
+        let addresses: Vec<String> = addresses.collect();
+        Self {
+            cadences: vec![Cadence::default(); addresses.len()],
+            ranges: vec![Range::default(); addresses.len()],
+            addresses,
+            has_load: false,
+            usable: Instant::START,
+            looked: Instant::START,
+            datagrams: Growth::default(),
+            refused: Growth::default(),
+            limited: Growth::default(),
+            candidate: None,
+            told: None,
+        }
+    }
+
+    /// Takes a packet.
+    pub(super) fn note(&mut self, packet: &SensorPacket) {
+        let board = usize::from(packet.board);
+        if let Some(cadence) = self.cadences.get_mut(board) {
+            cadence.note(packet.sequence, packet.received);
+        }
+        if let Some(range) = self.ranges.get_mut(board) {
+            range.note(&packet.readings, packet.received);
+        }
+    }
+
+    /// Takes a frame, and whether something rests on the floor by it; on the source's clock it is `now`.
+    pub(super) fn note_frame(&mut self, frame: &ForceFrame, is_loaded: bool, now: Instant) {
+        self.has_load |= is_loaded;
+        if now.since(self.looked) >= LOOK_EVERY || self.looked == Instant::START {
+            self.looked = now;
+            if frame.quality.as_flattened().iter().any(|quality| *quality < Quality::Stale) {
+                self.usable = now;
+            }
+        }
+    }
+
+    /// The cause that is told at present.
+    pub(super) fn cause(&self) -> Option<&LinkCause> {
+        self.told.as_ref().map(|(cause, _)| cause)
+    }
+
+    /// Looks for a cause; whether another one, or none, is to be told from now on.
+    pub(super) fn update(&mut self, facts: &Facts<'_>, now: Instant) -> bool {
+        self.datagrams.update(facts.counters.datagrams + facts.counters.packets, now);
+        self.refused.update(facts.counters.refused(), now);
+        self.limited.update(facts.counters.limited, now);
+        let found = self.find(facts, now);
+        let Some(found) = found else {
+            self.candidate = None;
+            let is_gone = self.told.as_ref().is_some_and(|(_, at)| now.since(*at) >= GONE);
+            return is_gone && self.told.take().is_some();
+        };
+        if let Some((told, at)) = &mut self.told
+            && told.is_like(&found)
+        {
+            *at = now;
+            self.candidate = None;
+            return false;
+        }
+        let since = self.candidate.as_ref().filter(|(cause, _)| cause.is_like(&found));
+        let since = since.map_or(now, |(_, since)| *since);
+        // Readings that move have been watched for long enough.
+        if now.since(since) < HOLDS && !found.is_of_loads() {
+            self.candidate = Some((found, since));
+            return false;
+        }
+        self.candidate = None;
+        self.told = Some((found, now));
+        true
+    }
+
+    fn find(&self, facts: &Facts<'_>, now: Instant) -> Option<LinkCause> {
+        let loads = || {
+            let unseen = |(board, range): (u16, &Range)| range.unseen(board);
+            (0..).zip(&self.ranges).find_map(unseen).filter(|_| !self.has_load)
+        };
+        let swapped = || {
+            let (_, mut places) = facts.assembler.swapped();
+            places.next().map(|(board, reads)| LinkCause::BoardsSwapped { board, reads })
+        };
+        self.fault_of_a_board(now).or_else(swapped).or_else(|| self.missing(facts, now)).or_else(loads)
+    }
+
+    /// The first board that counts wrongly, sends too seldom or too often, or sends what is no reading.
+    fn fault_of_a_board(&self, now: Instant) -> Option<LinkCause> {
+        let is_limited = self.limited.has_grown(HOLDS, now);
+        let counted = (0..).zip(&self.cadences).find_map(|(board, cadence)| {
+            let (count, hz) = cadence.judged(now)?;
+            match count {
+                // Some packets were refused because there are too many.
+                Count::Steps(step) if is_limited => Some(LinkCause::RateHigh { board, hz: hz * step as f32 }),
+                Count::Steady => rate(board, hz),
+                count => count.fault(board),
+            }
+        });
+        counted.or_else(|| (0..).zip(&self.ranges).find_map(|(board, range)| range.fault(board)))
+    }
+
+    /// Why no usable frame comes, or not from all boards.
+    fn missing(&self, facts: &Facts<'_>, now: Instant) -> Option<LinkCause> {
+        let Facts { assembler, link, refused, .. } = facts;
+        let is_usable = now.since(self.usable) < HOLDS && self.usable != Instant::START;
+        let is_sent = self.datagrams.has_grown(SENT_LATELY, now);
+        let is_taring = assembler.tare_outcome() == TareOutcome::Measuring && *link == LinkState::Live;
+        if !is_sent || is_taring || self.addresses.is_empty() || (is_usable && *link == LinkState::Live) {
+            return None;
+        }
+        if self.refused.has_grown(SENT_LATELY, now)
+            && let Some(refused) =
+                refused.as_ref().filter(|refused| !matches!(refused, LinkCause::Unknown { .. }))
+        {
+            return Some(refused.clone());
+        }
+        let statuses = || (0..).map_while(|board| Some((board, assembler.board(board)?)));
+        if let Some((board, _)) = statuses().find(|(_, status)| status.frozen) {
+            return Some(LinkCause::ReadingsStand { board });
+        }
+        let (live, boards) = assembler.boards_live();
+        if (1..boards).contains(&live) {
+            let (board, _) = statuses().find(|(_, status)| status.age.is_none_or(|age| age > LOOK_EVERY))?;
+            let address = self.addresses.get(usize::from(board)).cloned().unwrap_or_default();
+            return Some(LinkCause::BoardsMissing { board, address, missing: boards - live, boards });
+        }
+        if is_usable {
+            return None;
+        }
+        let last_refused = match refused {
+            Some(LinkCause::Unknown { last_refused }) => last_refused.clone(),
+            Some(other) => other.to_string(),
+            None => String::new(),
+        };
+        Some(LinkCause::Unknown { last_refused })
+    }
+}
+
+impl LinkCause {
+    /// Whether it is about loads that were never seen.
+    const fn is_of_loads(&self) -> bool {
+        matches!(
+            self,
+            Self::CountsNarrow { .. }
+                | Self::NewtonsSmall { .. }
+                | Self::ReadingsFall { .. }
+                | Self::NoLoad { .. }
+        )
+    }
+}
+
+/// The fault of a board that sends `hz` packets a second, if that is one.
+fn rate(board: u16, hz: f32) -> Option<LinkCause> {
+    let [lowest, highest] = BOARD_RATES_HZ;
+    if hz < lowest {
+        Some(LinkCause::RateLow { board, hz })
+    } else if hz > highest {
+        Some(LinkCause::RateHigh { board, hz })
+    } else {
+        None
+    }
+}

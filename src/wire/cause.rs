@@ -1,0 +1,490 @@
+//! Why a link gives no usable frame although something is sent.
+
+use std::fmt;
+
+/// The lowest and the highest rate of boards that is understood, in packets a second (our choice: a press needs a
+/// few samples within its 20 ms of dwell at least, and one sample a millisecond is used at most).
+pub const BOARD_RATES_HZ: [f32; 2] = [150.0, 1500.0];
+
+/// Why a link gives no usable frame although something is sent, or why what boards send can't be what the floor file
+/// says.
+///
+/// Where several boards have the same fault, the first is named. Names and fields stay; later versions may add
+/// variants.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub enum LinkCause {
+    /// A board sends fewer packets a second than [`BOARD_RATES_HZ`].
+    RateLow {
+        /// The board's number.
+        board: u16,
+        /// Packets a second, measured.
+        hz: f32,
+    },
+    /// A board sends more packets a second than [`BOARD_RATES_HZ`]; those that are too many are left out.
+    RateHigh {
+        /// The board's number.
+        board: u16,
+        /// Packets a second, measured.
+        hz: f32,
+    },
+    /// A board's sequence number stays the same.
+    SequenceStands {
+        /// The board's number.
+        board: u16,
+        /// The sequence number.
+        number: u32,
+    },
+    /// A board's sequence number grows by more than one from packet to packet.
+    SequenceStep {
+        /// The board's number.
+        board: u16,
+        /// By how much it grows; 2 at least.
+        step: u32,
+    },
+    /// A board's sequence number counts down.
+    SequenceFalls {
+        /// The board's number.
+        board: u16,
+    },
+    /// A board's sequence number begins anew again and again.
+    SequenceRestarts {
+        /// The board's number.
+        board: u16,
+        /// The greatest number before it begins anew.
+        after: u32,
+    },
+    /// Two counts are mixed under one board's address: two boards or two programs send under it.
+    SequenceMixed {
+        /// The board's number.
+        board: u16,
+    },
+    /// A board's sequence numbers follow no order.
+    SequenceJumps {
+        /// The board's number.
+        board: u16,
+    },
+    /// Messages with readings come for an address that no board of the floor file has.
+    OtherAddress {
+        /// The address that is sent.
+        found: String,
+        /// The nearest address of the floor file.
+        expected: String,
+    },
+    /// A board's messages hold other types or another number of readings than the floor file says.
+    WrongReadings {
+        /// The board's number.
+        board: u16,
+        /// How many channels it has by the floor file.
+        channels: usize,
+        /// The OSC type tags that come, such as `idddd`.
+        found: String,
+    },
+    /// Datagrams are not well-formed OSC.
+    NotOsc {
+        /// Their fault, and their likely format.
+        why: String,
+    },
+    /// Datagrams come from an address from which none are taken.
+    SenderRefused {
+        /// The sender, and the rule that refuses it.
+        why: String,
+    },
+    /// Counts are outside of 0 to 65535.
+    CountsBeyond {
+        /// The board's number.
+        board: u16,
+    },
+    /// Newtons are NaN, infinite, or more than 50 kN.
+    NotNumbers {
+        /// The board's number.
+        board: u16,
+    },
+    /// A board's readings repeat bit for bit under a load.
+    ReadingsStand {
+        /// The board's number.
+        board: u16,
+    },
+    /// Readings move, no load was ever seen, and counts use a small part of 0 to 65535.
+    CountsNarrow {
+        /// The board's number.
+        board: u16,
+        /// The least count so far.
+        least: u16,
+        /// The greatest count so far.
+        greatest: u16,
+    },
+    /// Readings move, no load was ever seen, and newtons stay small.
+    NewtonsSmall {
+        /// The board's number.
+        board: u16,
+        /// The greatest so far.
+        greatest: f32,
+    },
+    /// Newtons are more than any floor carries.
+    NewtonsLarge {
+        /// The board's number.
+        board: u16,
+        /// The greatest so far.
+        greatest: f32,
+    },
+    /// Readings fall where they should rise, so that no load was ever seen.
+    ReadingsFall {
+        /// The board's number.
+        board: u16,
+    },
+    /// Readings move, and no load was ever seen for another reason: most likely the calibration is of other sensors.
+    NoLoad {
+        /// The board's number.
+        board: u16,
+    },
+    /// Two boards, or more in a ring, have changed places.
+    BoardsSwapped {
+        /// The number of one of them.
+        board: u16,
+        /// The number of the board whose tiles it reads.
+        reads: u16,
+    },
+    /// Only some of the floor's boards send.
+    BoardsMissing {
+        /// The first that is missing.
+        board: u16,
+        /// Its address by the floor file.
+        address: String,
+        /// How many are missing.
+        missing: u32,
+        /// How many boards the floor has.
+        boards: u32,
+    },
+    /// None of the above.
+    Unknown {
+        /// The reason for which the last message was refused; empty if none was.
+        last_refused: String,
+    },
+}
+
+impl LinkCause {
+    /// The word for it in OSC, JSON and other languages, such as `rate_low`. It never changes.
+    #[must_use]
+    pub const fn name(&self) -> &'static str {
+        match self {
+            Self::RateLow { .. } => "rate_low",
+            Self::RateHigh { .. } => "rate_high",
+            Self::SequenceStands { .. } => "sequence_stands",
+            Self::SequenceStep { .. } => "sequence_step",
+            Self::SequenceFalls { .. } => "sequence_falls",
+            Self::SequenceRestarts { .. } => "sequence_restarts",
+            Self::SequenceMixed { .. } => "sequence_mixed",
+            Self::SequenceJumps { .. } => "sequence_jumps",
+            Self::OtherAddress { .. } => "other_address",
+            Self::WrongReadings { .. } => "wrong_readings",
+            Self::NotOsc { .. } => "not_osc",
+            Self::SenderRefused { .. } => "sender_refused",
+            Self::CountsBeyond { .. } => "counts_beyond",
+            Self::NotNumbers { .. } => "not_numbers",
+            Self::ReadingsStand { .. } => "readings_stand",
+            Self::CountsNarrow { .. } => "counts_narrow",
+            Self::NewtonsSmall { .. } => "newtons_small",
+            Self::NewtonsLarge { .. } => "newtons_large",
+            Self::ReadingsFall { .. } => "readings_fall",
+            Self::NoLoad { .. } => "no_load",
+            Self::BoardsSwapped { .. } => "boards_swapped",
+            Self::BoardsMissing { .. } => "boards_missing",
+            Self::Unknown { .. } => "unknown",
+        }
+    }
+
+    /// The number of the board it concerns; `None` where it concerns no board of the floor file.
+    #[must_use]
+    pub const fn board(&self) -> Option<u16> {
+        match self {
+            Self::RateLow { board, .. }
+            | Self::RateHigh { board, .. }
+            | Self::SequenceStands { board, .. }
+            | Self::SequenceStep { board, .. }
+            | Self::SequenceFalls { board }
+            | Self::SequenceRestarts { board, .. }
+            | Self::SequenceMixed { board }
+            | Self::SequenceJumps { board }
+            | Self::WrongReadings { board, .. }
+            | Self::CountsBeyond { board }
+            | Self::NotNumbers { board }
+            | Self::ReadingsStand { board }
+            | Self::CountsNarrow { board, .. }
+            | Self::NewtonsSmall { board, .. }
+            | Self::NewtonsLarge { board, .. }
+            | Self::ReadingsFall { board }
+            | Self::NoLoad { board }
+            | Self::BoardsSwapped { board, .. }
+            | Self::BoardsMissing { board, .. } => Some(*board),
+            Self::OtherAddress { .. }
+            | Self::NotOsc { .. }
+            | Self::SenderRefused { .. }
+            | Self::Unknown { .. } => None,
+        }
+    }
+
+    /// Whether both are the same cause at the same board: measured figures may differ.
+    #[must_use]
+    pub fn is_like(&self, other: &Self) -> bool {
+        self.name() == other.name() && self.board() == other.board()
+    }
+}
+
+/// One sentence: the fault, and what would be right.
+impl fmt::Display for LinkCause {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let [lowest, highest] = BOARD_RATES_HZ;
+        match self {
+            Self::RateLow { board, hz } => write!(
+                f,
+                "board {board} sends {} packets a second: {lowest} at least are needed, and 1000 are best",
+                rounded(*hz)
+            ),
+            Self::RateHigh { board, hz } => write!(
+                f,
+                "board {board} sends {} packets a second: {highest} are understood at most; of more, one a millisecond is used",
+                rounded(*hz)
+            ),
+            Self::SequenceStands { board, number } => write!(
+                f,
+                "the sequence number of board {board} is always {number}: it must grow by one with each packet"
+            ),
+            Self::SequenceStep { board, step } => write!(
+                f,
+                "the sequence number of board {board} counts by {step}: it must grow by one with each packet, so that \
+                 lost packets are noticed"
+            ),
+            Self::SequenceFalls { board } => write!(
+                f,
+                "the sequence number of board {board} counts down: it must grow by one with each packet"
+            ),
+            Self::SequenceRestarts { board, after } => write!(
+                f,
+                "the sequence number of board {board} begins anew after {after}: it must grow up to 4294967295{}",
+                width_of(*after)
+            ),
+            Self::SequenceMixed { board } => write!(
+                f,
+                "two counts are mixed under the address of board {board}: do two boards or two programs send under it?"
+            ),
+            Self::SequenceJumps { board } => write!(
+                f,
+                "the sequence numbers of board {board} follow no order: each must be one more than the one before, as a \
+                 big-endian int32"
+            ),
+            Self::OtherAddress { found, expected } => write!(
+                f,
+                "readings come for {found:?}, and the floor file has no board of that address: the nearest is {expected:?}"
+            ),
+            Self::WrongReadings { board, channels, found } => wrong_readings(f, *board, *channels, found),
+            Self::NotOsc { why } => write!(f, "datagrams arrive that are not OSC: {why}"),
+            Self::SenderRefused { why } => write!(f, "datagrams arrive that are refused: {why}"),
+            Self::CountsBeyond { board } => write!(
+                f,
+                "the counts of board {board} are outside of 0 to 65535: a converter of more than 16 bits, or one with a \
+                 sign, has to be scaled by the board"
+            ),
+            Self::NotNumbers { board } => {
+                write!(f, "the newtons of board {board} are not numbers, or more than 50 kN")
+            }
+            Self::ReadingsStand { board } => write!(
+                f,
+                "all readings of board {board} stand still under a load, which no converter does that works"
+            ),
+            Self::CountsNarrow { board, least, greatest } => counts_narrow(f, *board, *least, *greatest),
+            Self::NewtonsSmall { board, greatest } => write!(
+                f,
+                "no load was seen although the readings of board {board} move: its newtons never exceed {greatest:.2}; are \
+                 they volts, or shares of the range?"
+            ),
+            Self::NewtonsLarge { board, greatest } => write!(
+                f,
+                "the newtons of board {board} reach {greatest:.0} on one sensor, which no floor carries: are they counts?"
+            ),
+            Self::ReadingsFall { board } => write!(
+                f,
+                "no load was seen although the readings of board {board} move: they fall where they should rise; are its \
+                 sensors wired the other way round?"
+            ),
+            Self::NoLoad { board } => write!(
+                f,
+                "no load was seen although the readings of board {board} move: is the calibration in the floor file that \
+                 of these sensors?"
+            ),
+            Self::BoardsSwapped { board, reads } => write!(
+                f,
+                "board {board} reads what the floor file says of the tiles of board {reads}: boards have changed places"
+            ),
+            Self::BoardsMissing { board, address, missing, boards } => write!(
+                f,
+                "nothing usable comes from {missing} of {boards} boards; the first is board {board}, {address:?}"
+            ),
+            Self::Unknown { last_refused } if last_refused.is_empty() => {
+                write!(f, "packets arrive, and none of them makes a usable frame")
+            }
+            Self::Unknown { last_refused } => {
+                write!(
+                    f,
+                    "packets arrive, and none of them makes a usable frame; last refused: {last_refused}"
+                )
+            }
+        }
+    }
+}
+
+/// A rate for people: whole packets a second, or a tenth where there are few.
+fn rounded(hz: f32) -> String {
+    if hz < 10.0 { format!("{hz:.1}") } else { format!("{hz:.0}") }
+}
+
+/// A note on a counter of 8, 16 or 24 bits.
+fn width_of(greatest: u32) -> &'static str {
+    match greatest {
+        0xFF => "; this one has 8 bits",
+        0xFFFF => "; this one has 16 bits",
+        0xFF_FFFF => "; this one has 24 bits",
+        _ => "",
+    }
+}
+
+fn wrong_readings(f: &mut fmt::Formatter<'_>, board: u16, channels: usize, found: &str) -> fmt::Result {
+    write!(
+        f,
+        "board {board} sends {found:?}: expected an int32 sequence number (i) and {channels} counts (i), newtons (f), or \
+         one blob (b) of {} bytes",
+        2 * channels
+    )?;
+    let tags = found.split(' ').next().unwrap_or_default();
+    let (first, readings) = tags.split_at(tags.len().min(1));
+    let hint = if first != "i" {
+        "; the first argument must be the sequence number"
+    } else if readings.contains('d') {
+        "; doubles (d) must be sent as floats (f)"
+    } else if readings.contains('h') {
+        "; 64-bit integers (h) must be sent as int32 (i)"
+    } else if readings.contains('s') {
+        "; numbers must not be sent as text (s)"
+    } else if readings.len() + 1 == channels && readings.bytes().all(|tag| tag == b'i') {
+        "; is the sequence number missing?"
+    } else {
+        ""
+    };
+    f.write_str(hint)
+}
+
+fn counts_narrow(f: &mut fmt::Formatter<'_>, board: u16, least: u16, greatest: u16) -> fmt::Result {
+    write!(f, "no load was seen although the readings of board {board} move: ")?;
+    let bits = match greatest {
+        0..=0xFF => Some(8),
+        0x100..=0x3FF => Some(10),
+        0x400..=0xFFF => Some(12),
+        0x1000..=0x3FFF => Some(14),
+        _ => None,
+    };
+    match bits {
+        Some(bits) => write!(
+            f,
+            "its counts never exceed {} of 65535, as those of a {bits}-bit converter; the board has to shift them left by \
+             {} bits",
+            (1_u32 << bits) - 1,
+            16 - bits
+        ),
+        None => write!(
+            f,
+            "its counts stay between {least} and {greatest} of 0 to 65535; they must use the whole range"
+        ),
+    }
+}
+
+/// The likely format of a datagram that is not OSC, as a message to people; `None` without a guess.
+pub(crate) fn guess_format(datagram: &[u8]) -> Option<&'static str> {
+    let length = datagram.split_first_chunk().map(|(length, _)| u32::from_be_bytes(*length));
+    let is_text = |byte: &u8| byte.is_ascii_graphic() || byte.is_ascii_whitespace();
+    match datagram {
+        [] => Some("they are empty"),
+        [0xC0, ..] | [.., 0xC0] => Some("they look like SLIP frames, which UDP does not need"),
+        _ if length.is_some_and(|length| length as usize == datagram.len() - 4) => {
+            Some("they begin with their length, as OSC over TCP does and OSC over UDP does not")
+        }
+        [b'/' | b'#', ..] => None,
+        _ if datagram.iter().all(is_text) => Some("they look like text"),
+        _ => None,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::collections::BTreeSet;
+
+    use super::*;
+
+    /// One of each.
+    fn every() -> Vec<LinkCause> {
+        let board = 3;
+        vec![
+            LinkCause::RateLow { board, hz: 99.7 },
+            LinkCause::RateHigh { board, hz: 2000.2 },
+            LinkCause::SequenceStands { board, number: 0 },
+            LinkCause::SequenceStep { board, step: 10 },
+            LinkCause::SequenceFalls { board },
+            LinkCause::SequenceRestarts { board, after: 255 },
+            LinkCause::SequenceMixed { board },
+            LinkCause::SequenceJumps { board },
+            LinkCause::OtherAddress { found: "/board/0".into(), expected: "/underfoot/board/0".into() },
+            LinkCause::WrongReadings { board, channels: 4, found: "idddd".into() },
+            LinkCause::NotOsc { why: "they look like text".into() },
+            LinkCause::SenderRefused { why: "10.0.0.1".into() },
+            LinkCause::CountsBeyond { board },
+            LinkCause::NotNumbers { board },
+            LinkCause::ReadingsStand { board },
+            LinkCause::CountsNarrow { board, least: 90, greatest: 700 },
+            LinkCause::NewtonsSmall { board, greatest: 0.9 },
+            LinkCause::NewtonsLarge { board, greatest: 40_000.0 },
+            LinkCause::ReadingsFall { board },
+            LinkCause::NoLoad { board },
+            LinkCause::BoardsSwapped { board, reads: 4 },
+            LinkCause::BoardsMissing { board, address: "/underfoot/board/3".into(), missing: 2, boards: 6 },
+            LinkCause::Unknown { last_refused: String::new() },
+        ]
+    }
+
+    #[test]
+    fn the_page_for_people_explains_each_name() {
+        let page = include_str!("../../docs/troubleshooting.md");
+        let (_, part) = page.split_once("### Boards that send").unwrap();
+        let (part, _) = part.split_once("\n## ").unwrap();
+        let rows = part.lines().filter_map(|line| line.strip_prefix("| `")?.split_once(" |"));
+        let explained: BTreeSet<&str> =
+            rows.flat_map(|(names, _)| names.split(", ")).map(|name| name.trim_matches('`')).collect();
+        let every = every();
+        let names: BTreeSet<&str> = every.iter().map(LinkCause::name).collect();
+        assert_eq!(names, explained);
+        assert_eq!(names.len(), every.len());
+    }
+
+    #[test]
+    fn each_sentence_names_its_board() {
+        for cause in every() {
+            let said = cause.to_string();
+            assert!(said.len() > 30, "{said}");
+            assert_eq!(cause.board().is_some(), said.contains("board 3"), "{said}");
+        }
+    }
+
+    #[test]
+    fn wrong_readings_are_told_with_what_would_be_right() {
+        for (found, hint) in [
+            ("idddd", "doubles (d) must be sent as floats"),
+            ("ihhhh", "64-bit integers (h) must be sent as int32"),
+            ("issss", "numbers must not be sent as text"),
+            ("fffff", "the first argument must be the sequence number"),
+            ("iiii", "is the sequence number missing?"),
+            ("ib (a blob of 32 bytes)", "one blob (b) of 8 bytes"),
+            ("no type tags", "the first argument must be the sequence number"),
+        ] {
+            let said = LinkCause::WrongReadings { board: 0, channels: 4, found: found.into() }.to_string();
+            assert!(said.contains(found) && said.contains(hint), "{said}");
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Boards as strangers build them: what the program says of them in the log, as JSON and over OSC.
+
+use std::io::{BufRead, BufReader};
+use std::net::UdpSocket;
+use std::process::Stdio;
+use std::thread;
+use std::time::{Duration, Instant};
+
+use rosc::{OscBundle, OscMessage, OscPacket, OscTime, OscType, encoder};
+use serde_json::Value;
+
+use crate::end_to_end::{Served, underfoot};
+
+/// How long something that is bound to happen may take on a busy machine.
+const AT_LAST: Duration = Duration::from_secs(40);
+
+/// One tile, one board, one button on all of it.
+const FLOOR: &str = "Floor(columns: 1, rows: 1)\n";
+const PAGE: &str = r#"Layout(version: 1, regions: [(id: "r", at: (0, 0), size: (1, 1))],
+    widgets: [(id: "b", kind: "button", at: (0.1, 0.1), size: (0.8, 0.8))])"#;
+
+fn message(address: &str, args: Vec<OscType>) -> OscPacket {
+    OscPacket::Message(OscMessage { addr: address.into(), args })
+}
+
+/// Four counts on a converter of so many counts a unit: an empty tile of 120 units, and 560 more under a foot that comes
+/// after four seconds and leaves after seven. Noise is a third of a unit.
+fn counts(ms: u64, unit: f32) -> [i32; 4] {
+    let seconds = ms as f32 / 1000.0;
+    let load = ((seconds - 4.0) / 0.12).min((7.0 - seconds) / 0.12).clamp(0.0, 1.0);
+    [3, 5, 7, 11].map(|salt: u64| {
+        let noise = (ms.wrapping_mul(2_654_435_761 * salt) >> 16 & 0xFFFF) as f32 / 65_536.0 - 0.5;
+        (unit * (120.0 + 560.0 * load + noise)) as i32
+    })
+}
+
+/// A board's message: its sequence number and these arguments.
+fn readings(sequence: u64, values: impl IntoIterator<Item = OscType>) -> OscPacket {
+    let sequence = OscType::Int(sequence as i32);
+    message("/underfoot/board/0", std::iter::once(sequence).chain(values).collect())
+}
+
+/// The program on that floor, and what it says.
+struct Run {
+    _server: Served,
+    out: std::sync::mpsc::Receiver<Value>,
+    log: std::sync::mpsc::Receiver<String>,
+    osc: UdpSocket,
+    board: UdpSocket,
+    begun: Instant,
+    _folder: tempfile::TempDir,
+}
+
+impl Run {
+    fn start() -> Self {
+        let folder = tempfile::tempdir().unwrap();
+        std::fs::write(folder.path().join("floor.ron"), FLOOR).unwrap();
+        std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
+        let osc = UdpSocket::bind("127.0.0.1:0").unwrap();
+        osc.set_nonblocking(true).unwrap();
+        let address = format!("127.0.0.1:{}", crate::ports::free_port());
+        let mut server = underfoot()
+            .current_dir(folder.path())
+            .args(["run", "page.ron", "--floor", "floor.ron", "--json", "--listen", &address])
+            .args(["--osc", &osc.local_addr().unwrap().to_string(), "--wav", "out.wav"])
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .map(Served)
+            .unwrap();
+        let log = lines(server.0.stderr.take().unwrap(), Some);
+        let out = lines(server.0.stdout.take().unwrap(), |line| serde_json::from_str(&line).ok());
+        let board = UdpSocket::bind("127.0.0.1:0").unwrap();
+        board.connect(&address).unwrap();
+        while !log.recv_timeout(AT_LAST).unwrap().starts_with("Listening on") {}
+        Self { _server: server, out, log, osc, board, begun: Instant::now(), _folder: folder }
+    }
+
+    /// Sends what `make` gives for each packet, `hz` a second, until a line of JSON fits.
+    fn until(&self, hz: u64, make: impl Fn(u64) -> Vec<u8>, fits: impl Fn(&Value) -> bool) -> Value {
+        let begun = Instant::now();
+        for n in 0.. {
+            // Whoever listened may have ended.
+            let _ = self.board.send(&make(n));
+            while let Ok(line) = self.out.try_recv() {
+                if fits(&line) {
+                    return line;
+                }
+            }
+            assert!(
+                begun.elapsed() < AT_LAST,
+                "never told; said: {:?}",
+                self.log.try_iter().collect::<Vec<_>>()
+            );
+            thread::sleep(Duration::from_micros(1_000_000 * (n + 1) / hz).saturating_sub(begun.elapsed()));
+        }
+        unreachable!("the loop ends with what it waits for")
+    }
+
+    /// The cause that is told of boards that send so: its line of JSON, having checked that the log and OSC say the same.
+    fn cause(&self, hz: u64, make: impl Fn(u64) -> Vec<u8>) -> Value {
+        let line = self.until(hz, make, |line| line["event"] == "link_cause");
+        let (name, why) = (line["cause"].as_str().unwrap(), line["why"].as_str().unwrap());
+        let mut said: Vec<String> = self.log.try_iter().collect();
+        let end = Instant::now() + Duration::from_secs(5);
+        let is_logged = |said: &[String]| said.iter().any(|line| line.contains(why));
+        while !is_logged(&said) {
+            assert!(Instant::now() < end, "not in the log: {why}: {said:?}");
+            said.extend(self.log.recv_timeout(Duration::from_millis(100)));
+        }
+        let over_osc = format!("link: {name}: {why}");
+        while !self.has_heard(&over_osc) {
+            assert!(Instant::now() < end, "not over OSC: {over_osc}");
+            thread::sleep(Duration::from_millis(5));
+        }
+        line
+    }
+
+    /// Whether `/underfoot/health` has this text among its arguments; reads what has come.
+    fn has_heard(&self, text: &str) -> bool {
+        let mut buffer = [0; 4096];
+        while let Ok(length) = self.osc.recv(&mut buffer) {
+            let Ok((_, OscPacket::Message(message))) = rosc::decoder::decode_udp(&buffer[..length]) else {
+                continue;
+            };
+            if message.addr == "/underfoot/health" && message.args.contains(&OscType::String(text.into())) {
+                return true;
+            }
+        }
+        false
+    }
+}
+
+/// What `make` makes of each line of a pipe, read on a thread of its own.
+fn lines<T: Send + 'static>(
+    pipe: impl std::io::Read + Send + 'static,
+    make: impl Fn(String) -> Option<T> + Send + 'static,
+) -> std::sync::mpsc::Receiver<T> {
+    let (tell, told) = std::sync::mpsc::channel();
+    thread::spawn(move || {
+        let lines = BufReader::new(pipe).lines().map_while(Result::ok);
+        // The test may have ended.
+        lines.filter_map(make).all(|line| tell.send(line).is_ok())
+    });
+    told
+}
+
+fn encoded(packet: &OscPacket) -> Vec<u8> {
+    encoder::encode(packet).unwrap()
+}
+
+fn ints(values: [i32; 4]) -> [OscType; 4] {
+    values.map(OscType::Int)
+}
+
+#[test]
+fn a_board_at_100_hz_is_named_with_its_rate_and_the_floor_keeps_the_time_of_the_clock() {
+    let run = Run::start();
+    let make = |n: u64| encoded(&readings(n, ints(counts(10 * n, 64.0))));
+    let told = run.cause(100, make);
+    assert_eq!((told["cause"].as_str(), told["board"].as_u64()), (Some("rate_low"), Some(0)));
+    let why = told["why"].as_str().unwrap();
+    assert!(why.contains(" 100 packets a second") || why.contains(" 99 ") || why.contains(" 101 "), "{why}");
+    let (floor_s, clock_s) = (told["t_s"].as_f64().unwrap(), run.begun.elapsed().as_secs_f64());
+    assert!((floor_s - clock_s).abs() < 1.0, "{floor_s} s on the floor, {clock_s} s on the clock");
+}
+
+#[test]
+fn a_press_takes_as_long_at_2000_hz_as_on_the_clock() {
+    let run = Run::start();
+    let make = |n: u64| encoded(&readings(n, ints(counts(n / 2, 64.0))));
+    let ends = std::cell::RefCell::new(Vec::new());
+    run.until(2000, make, |line| {
+        if ["link_cause", "pressed", "released"].iter().any(|event| line["event"] == *event) {
+            ends.borrow_mut().push(line.clone());
+        }
+        line["event"] == "released"
+    });
+    let ends = ends.into_inner();
+    let [cause, pressed, released] = &ends[..] else { panic!("{ends:?}") };
+    assert_eq!(cause["cause"], "rate_high");
+    let held = released["t_s"].as_f64().unwrap() - pressed["t_s"].as_f64().unwrap();
+    assert!((held - 3.0).abs() < 0.3, "a foot stood there for 3 s, and held it for {held} s");
+}
+
+#[test]
+fn a_ten_bit_converter_is_named_by_its_greatest_count() {
+    let run = Run::start();
+    let told = run.cause(1000, |n| encoded(&readings(n, ints(counts(n, 1.0)))));
+    assert_eq!(told["cause"], "counts_narrow");
+    assert!(told["why"].as_str().unwrap().contains("counts never exceed 1023"), "{told}");
+}
+
+#[test]
+fn doubles_are_named_with_what_would_be_right() {
+    let run = Run::start();
+    let doubles = |n: u64| counts(n, 64.0).map(|count| OscType::Double(count.into()));
+    let told = run.cause(1000, |n| encoded(&readings(n, doubles(n))));
+    assert_eq!(told["cause"], "wrong_readings");
+    let why = told["why"].as_str().unwrap();
+    assert!(why.contains("idddd") && why.contains("must be sent as floats"), "{why}");
+}
+
+#[test]
+fn another_address_is_named_beside_that_of_the_floor_file() {
+    let run = Run::start();
+    let make = |n: u64| {
+        let mut args = vec![OscType::Int(n as i32)];
+        args.extend(ints(counts(n, 64.0)));
+        encoded(&message("/board/0", args))
+    };
+    let told = run.cause(1000, make);
+    assert_eq!(told["cause"], "other_address");
+    let why = told["why"].as_str().unwrap();
+    assert!(why.contains("\"/board/0\"") && why.contains("\"/underfoot/board/0\""), "{why}");
+}
+
+#[test]
+fn a_sequence_that_never_counts_is_named() {
+    let run = Run::start();
+    let told = run.cause(1000, |n| encoded(&readings(0, ints(counts(n, 64.0)))));
+    assert_eq!(told["cause"], "sequence_stands");
+}
+
+#[test]
+fn a_board_with_its_battery_in_its_bundle_presses() {
+    let run = Run::start();
+    let make = |n: u64| {
+        let content =
+            vec![readings(n, ints(counts(n, 64.0))), message("/battery", vec![OscType::Float(3.7)])];
+        encoded(&OscPacket::Bundle(OscBundle { timetag: OscTime { seconds: 0, fractional: 1 }, content }))
+    };
+    let pressed = run.until(1000, make, |line| line["event"] == "pressed");
+    assert_eq!(pressed["id"], "b");
+}
