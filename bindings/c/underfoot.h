@@ -42,10 +42,27 @@ enum {
     UF_PANIC = -13          /* a fault of the library, which has been contained */
 };
 
+/* Why no foot can press a control: uf_off answers it, uf_off_name has the word for it. */
+enum {
+    UF_ON = 0,                     /* a foot can press it */
+    UF_OFF_DISABLED = 1,           /* an app has switched it off */
+    UF_OFF_WAITING = 2,            /* the floor has not been sensed yet: no packets, or the tare is being measured */
+    UF_OFF_BOARDS_SWAPPED = 3,     /* boards have changed places */
+    UF_OFF_NOT_CALIBRATED = 4,     /* the floor file has no calibration of some sensors */
+    UF_OFF_OTHER_FLOOR = 5,        /* the floor file is another floor's */
+    UF_OFF_LINK_LOST = 6,          /* nothing usable comes from the boards under it */
+    UF_OFF_SENSOR_TROUBLE = 7,     /* sensors under it are wrong or at the end of their range */
+    UF_OFF_REPEATED_READINGS = 8,  /* sensors under it repeat their readings bit for bit */
+    UF_OFF_COARSE_READINGS = 9,    /* readings under it are too coarse to notice a frozen sensor */
+    UF_OFF_OTHER_HELD = 10,        /* another control that acts while it is held is held */
+    UF_OFF_OTHER = 100             /* something that this header has no number for; the text says what */
+};
+
 /* What an event is about. */
 enum {
     UF_CONTROL = 1, /* a foot did something to the control `id`: `name` is "pressed", "released", "changed" ... */
-    UF_STATE = 2,   /* an app changed the control `id`, or asked for it */
+    UF_STATE = 2,   /* the control `id` is in another state: an app changed it or asked for it, or it is one that acts
+                       while it is held and went off or on (uf_off) */
     UF_PAGE = 3,    /* the page `id` is shown */
     UF_LINK = 4,    /* `text` is "waiting", "live", "partial" or "lost"; "lost" has cancelled what was held */
     UF_HEALTH = 5,  /* the sensors are in another state */
@@ -116,11 +133,39 @@ typedef struct uf_contact {
 uf_session *uf_session_listen(const char *address, const char *layout, const uf_options *options, char *error,
                               size_t error_size);
 
+/* Starts a floor that was recorded, with its layout: the same events again, `speed` times as fast as they came, or with
+ * 0 as fast as can be. It ends with the recording. Of the options only `every_change` counts. NULL as above. */
+uf_session *uf_session_replay(const char *recording, double speed, const uf_options *options, char *error,
+                              size_t error_size);
+
+/* Where boards send to, such as "127.0.0.1:9000", with the port that the system chose for port 0: written cut to
+ * `address_size` bytes with the closing 0. Answers the length of the whole text: 0 for a recording, negative on
+ * failure. */
+int uf_address(const uf_session *session, char *address, size_t address_size);
+
+/* The controls of the layout: how many there are, and the id of each, from 0 (UF_OK or UF_UNKNOWN). An id of
+ * UF_ID_SIZE bytes is never cut. */
+int uf_control_count(const uf_session *session);
+int uf_control_id(const uf_session *session, int index, char *id, size_t id_size);
+
+/* UF_OK if the layout has a control of this name, otherwise UF_UNKNOWN. To be asked once for each id that uf_held is
+ * asked about: a misspelt one is never held. */
+int uf_has(const uf_session *session, const char *id);
+
+/* Why no foot can press a control: UF_ON if one can, UF_OFF_..., or a negative failure. `text` gets the reason in a
+ * sentence, with the name of the floor file where that matters, cut to `text_size` bytes with the closing 0; it may be
+ * NULL. */
+int uf_off(const uf_session *session, const char *id, char *text, size_t text_size);
+
+/* The word for a reason, as in JSON lines, such as "not_calibrated"; "" for UF_ON. Lasts for ever. */
+const char *uf_off_name(int reason);
+
 /* Takes the next event: UF_OK, UF_TIMEOUT or UF_OVER. Waits for `timeout_ms` at most; 0 does not wait, a negative number
  * waits for ever. The last event is always UF_END. */
 int uf_next(uf_session *session, uf_event *event, int timeout_ms);
 
-/* 1 if a foot holds the control now and the floor has said so within the last 100 ms; otherwise 0, also for NULL. */
+/* 1 if a foot holds the control now and the floor has said so within the last 100 ms; otherwise 0, also for NULL and for
+ * a control that the layout does not have (see uf_has). */
 int uf_held(const uf_session *session, const char *id);
 
 /* A descriptor for poll and select, readable when there may be events: then call uf_next with a timeout of 0 until it
@@ -142,8 +187,9 @@ int uf_link_cause(const uf_session *session, char *text, size_t size);
 /* Events that were dropped because nobody took them. */
 uint64_t uf_dropped(const uf_session *session);
 
-/* These answer UF_OK, or why the control stays as it was. A number stands for on (not 0) where the control is a switch,
- * and for an option, from 0, where it is a selector. */
+/* These answer UF_OK, or why the control stays as it was. A number beyond the control's range becomes the nearest end of
+ * the range, one between two steps the nearer step; NaN and infinities are refused. A number stands for on (not 0) where the control is a switch,
+ * and for an option, from 0, where it is a selector: one that it does not have is refused. */
 int uf_set_number(uf_session *session, const char *id, float value);
 int uf_set_pair(uf_session *session, const char *id, float east, float north);
 int uf_set_range(uf_session *session, const char *id, float least, float greatest);
@@ -161,6 +207,10 @@ void uf_close(uf_session *session);
 
 /* `status` in words; lasts for ever. */
 const char *uf_status_text(int status);
+
+/* Why the last call on this thread that failed did so, with the name that it was about and the nearest one that there
+ * is, such as `there is no control "zom"; did you mean "zoom"?`; "" if none has failed. Lasts until the next failure. */
+const char *uf_last_error(void);
 
 #ifdef __cplusplus
 }

@@ -13,7 +13,7 @@ use super::failure::Failure;
 /// Which part of a large floor it is about.
 #[derive(Args, Clone, Debug, Default)]
 pub(crate) struct AreaArgs {
-    /// Serve only this area of the floor file: its boards and those within 0.9 m of it, its controls, its actuators.
+    /// Serve only this area of the floor file: its boards and those within 1.2 m of it, its controls, its actuators.
     /// Its packets arrive where the floor file says, unless --listen does, and go on to the areas that need them too.
     #[arg(long, value_name = "NAME", requires = "floor", conflicts_with = "record")]
     area: Option<String>,

@@ -8,15 +8,17 @@ use underfoot::schema::{self, Diagnostics};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
-use super::layout_args::LayoutArgs;
+use super::layout_args::{LayoutArgs, MisplacedLayout};
 use super::output::{colours, print_json};
 
 /// What `underfoot check` is asked to do.
 #[derive(clap::Args, Debug)]
 pub(crate) struct Args {
-    /// Layout files.
+    /// Layout files, or names of built-in layouts (map, surgical, first_steps, all_controls, pond, winter_walk).
     #[arg(required_unless_present_any = ["explain", "rules"], value_name = "LAYOUT")]
     layouts: Vec<PathBuf>,
+    #[command(flatten)]
+    misplaced: MisplacedLayout,
     #[command(flatten)]
     floor: FloorArgs,
     /// Folder of control kinds to add; without it, a `widgets` folder beside each layout or beside its folder.
@@ -81,9 +83,9 @@ fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
         layout: Some(path.to_path_buf()),
         widgets: args.widgets.clone(),
         effects: args.effects.clone(),
+        ..LayoutArgs::default()
     };
-    let read = files.kinds().and_then(|kinds| schema::load_layout(path, &kinds, &floor.geometry));
-    match read {
+    match files.read(&floor.geometry) {
         Ok(loaded) => {
             if args.resolved {
                 outln!("{}", schema::write_layout(&loaded.layout));

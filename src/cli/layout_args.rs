@@ -21,6 +21,8 @@ pub(crate) struct LayoutArgs {
     /// Layout file, or the name of a built-in one (map, surgical, first_steps, all_controls, pond, winter_walk).
     #[arg(value_name = "LAYOUT")]
     pub(crate) layout: Option<PathBuf>,
+    #[command(flatten)]
+    pub(crate) misplaced: MisplacedLayout,
     /// Folder of control kinds to add; without it, a `widgets` folder beside the layout or beside its folder.
     #[arg(long, value_name = "DIR")]
     pub(crate) widgets: Option<PathBuf>,
@@ -29,20 +31,33 @@ pub(crate) struct LayoutArgs {
     pub(crate) effects: Option<PathBuf>,
 }
 
+/// The option that other programs have for their files: understood only to say where the layout stands here.
+#[derive(Args, Clone, Debug, Default)]
+pub(crate) struct MisplacedLayout {
+    #[arg(long = "layout", hide = true, value_name = "LAYOUT", value_parser = misplaced)]
+    _option: Option<String>,
+}
+
+fn misplaced(layout: &str) -> Result<String, String> {
+    let layout = if layout.is_empty() { "LAYOUT" } else { layout };
+    Err(format!("the layout stands without an option: leave out `--layout` and write {layout} alone"))
+}
+
 /// The layout that stands for none: the main job's.
 pub(crate) const DEFAULT_LAYOUT: &str = "map";
 
 impl LayoutArgs {
-    fn read(&self, geometry: &Geometry) -> Result<Loaded, Failure> {
+    /// The layout named or described, checked for this floor, with its warnings.
+    pub(crate) fn read(&self, geometry: &Geometry) -> Result<Loaded, Diagnostics> {
         let kinds = self.kinds()?;
-        Ok(match self.path() {
-            Some(path) => schema::load_layout(path, &kinds, geometry)?,
+        match self.path() {
+            Some(path) => schema::load_layout(path, &kinds, geometry),
             None => {
                 let name = self.layout.as_deref().and_then(Path::to_str).unwrap_or(DEFAULT_LAYOUT);
                 let text = schema::builtin_layout(name).unwrap_or_default();
-                schema::parse_layout(text, &format!("{name} (built in)"), &kinds, geometry)?
+                schema::parse_layout(text, &format!("{name} (built in)"), &kinds, geometry)
             }
-        })
+        }
     }
 
     /// The layout named or described, checked for this floor; its warnings go to standard error.

@@ -6,7 +6,7 @@ use std::sync::atomic::Ordering;
 use std::time::Duration;
 
 use serde_json::json;
-use underfoot::floor::Corner;
+use underfoot::floor::{Corner, read_address};
 use underfoot::layout::{Layout, Widget};
 use underfoot::sense::{Assembler, Quality, Tare, TareOutcome};
 use underfoot::serve::{ForceRange, ForceWatch, TileRange};
@@ -31,7 +31,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     floor: FloorArgs,
     /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
     listen: SocketAddr,
     #[command(flatten)]
     boards: BoardArgs,

@@ -21,6 +21,7 @@ mod failure;
 mod fault_args;
 #[cfg(feature = "lab")]
 mod feel;
+mod fitted_floor;
 mod floor_args;
 mod latency;
 mod layout_args;

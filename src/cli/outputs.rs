@@ -3,7 +3,7 @@
 use std::io;
 use std::net::{IpAddr, Ipv4Addr, SocketAddr, ToSocketAddrs};
 
-use underfoot::floor::Geometry;
+use underfoot::floor::{Geometry, canonical};
 use underfoot::outgoing::TuioProfiles;
 use underfoot::sink::{Fanout, JsonSink, OscSink, TuioSink, TuioVersion};
 use underfoot::wire::Prefix;
@@ -156,7 +156,7 @@ fn tuio_target(text: &str) -> Result<SocketAddr, String> {
 /// The address of `HOST:PORT` or `HOST`; one of IPv4 rather than one of IPv6.
 fn target(text: &str, port: u16) -> Result<SocketAddr, String> {
     if let Ok(ip) = text.parse::<IpAddr>() {
-        return Ok(SocketAddr::new(ip, port));
+        return Ok(canonical(SocketAddr::new(ip, port)));
     }
     let with_port = if text.contains(':') { text.to_owned() } else { format!("{text}:{port}") };
     let found: Vec<SocketAddr> = with_port
@@ -164,5 +164,5 @@ fn target(text: &str, port: u16) -> Result<SocketAddr, String> {
         .map_err(|error| format!("write it like 127.0.0.1:{port} or localhost:{port}: {error}"))?
         .collect();
     let first = found.iter().find(|address| address.is_ipv4()).or(found.first());
-    first.copied().ok_or_else(|| format!("{text} has no address"))
+    first.copied().map(canonical).ok_or_else(|| format!("{text} has no address"))
 }

@@ -39,14 +39,19 @@ impl SimArgs {
     /// mapped.
     pub(crate) fn calibrated(&self, floor: &Floor) -> Result<(SimFloor, Floor), Failure> {
         let sim = SimFloor::new(floor, self.config(), self.seed);
-        let floor = sim::calibrated(floor, &sim, self.seed)
+        let floor = self.measured(floor, &sim)?;
+        Ok((sim, floor))
+    }
+
+    /// `floor` as a lab measures its simulation `sim`.
+    pub(crate) fn measured(&self, floor: &Floor, sim: &SimFloor) -> Result<Floor, Failure> {
+        let floor = sim::calibrated(floor, sim, self.seed)
             .map_err(|error| Failure::Other(format!("the simulated floor can't be calibrated: {error}")))?;
         if !self.mapped {
-            return Ok((sim, floor));
+            return Ok(floor);
         }
-        let floor = sim::mapped(&floor, &sim, self.seed)
-            .map_err(|error| Failure::Other(format!("the simulated floor can't be mapped: {error}")))?;
-        Ok((sim, floor))
+        sim::mapped(&floor, sim, self.seed)
+            .map_err(|error| Failure::Other(format!("the simulated floor can't be mapped: {error}")))
     }
 }
 

@@ -10,6 +10,7 @@ use std::time::Duration;
 
 use tracing::info;
 use underfoot::feel::FeelCounters;
+use underfoot::floor::read_address;
 use underfoot::ground::{GroundCounters, GroundState, Material};
 use underfoot::layout::Layout;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
@@ -50,7 +51,7 @@ pub(crate) struct Args {
     area: AreaArgs,
     /// Where the boards' packets arrive: an address of this machine and a port. Another machine's boards need the
     /// address of the network card that they are on. 127.0.0.1:9000 unless the floor file says where for --area.
-    #[arg(long, value_name = "ADDR")]
+    #[arg(long, value_name = "ADDR", value_parser = read_address)]
     listen: Option<SocketAddr>,
     /// Wait for that address if this machine has not got it yet, as when it starts before its network does.
     #[arg(long)]

@@ -7,7 +7,7 @@ use std::thread;
 use std::time::Duration;
 
 use tracing::warn;
-use underfoot::floor::{Floor, Network};
+use underfoot::floor::{Floor, Network, read_address};
 use underfoot::source::{SourceError, UdpSource};
 
 use super::failure::Failure;
@@ -28,7 +28,7 @@ pub(crate) struct BoardArgs {
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct CommandArgs {
     /// Take apps' requests on this port of their own; without it, on the sensors' port from this machine only.
-    #[arg(long, value_name = "ADDR")]
+    #[arg(long, value_name = "ADDR", value_parser = read_address)]
     commands: Option<SocketAddr>,
     /// Take requests from this address or range; several may be given. Without it, from this machine only.
     #[arg(long, value_name = "CIDR", requires = "commands")]
@@ -38,7 +38,7 @@ pub(crate) struct CommandArgs {
 impl BoardArgs {
     /// Listens for the boards of `floor`.
     pub(crate) fn bind(&self, listen: SocketAddr, floor: &Floor) -> Result<UdpSource, Failure> {
-        let mut source = UdpSource::bind(listen, floor)?;
+        let mut source = UdpSource::bind(listen, floor).map_err(|error| chosen_by("--listen", error))?;
         if !self.allow.is_empty() {
             source = source.allowing(self.allow.iter().copied());
         } else if floor.allow.is_empty() && !listen.ip().is_loopback() {
@@ -74,6 +74,16 @@ impl BoardArgs {
     }
 }
 
+/// `error` of a socket, with the option that chooses its address.
+fn chosen_by(option: &str, error: SourceError) -> SourceError {
+    match error {
+        SourceError::Socket { message, source } => {
+            SourceError::Socket { message: format!("{message}; `{option}` chooses the address"), source }
+        }
+        SourceError::Ended => SourceError::Ended,
+    }
+}
+
 /// How often an address that is not there yet is tried.
 const AGAIN: Duration = Duration::from_millis(250);
 
@@ -81,7 +91,8 @@ impl CommandArgs {
     /// Opens the port of apps, if there is to be one.
     pub(crate) fn open(&self, source: UdpSource) -> Result<UdpSource, Failure> {
         let Some(address) = self.commands else { return Ok(source) };
-        Ok(source.with_commands(address, self.apps().iter().copied())?)
+        let opened = source.with_commands(address, self.apps().iter().copied());
+        Ok(opened.map_err(|error| chosen_by("--commands", error))?)
     }
 
     /// From where requests are taken.

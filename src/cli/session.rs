@@ -16,7 +16,7 @@ use underfoot::scene::{self, Scene, Shoe, Show, Theme, View};
 use underfoot::schema;
 use underfoot::sense::Method;
 use underfoot::serve::{Ended, Server};
-use underfoot::sim::{Script, SimFloor};
+use underfoot::sim::Script;
 use underfoot::sink::{Fanout, JsonSink, OscSink, WavOptions, WavSink, WhenFull};
 use underfoot::source::{Pace, SimulatedSource};
 use underfoot::units::Instant;
@@ -53,8 +53,7 @@ pub(crate) struct Args {
     /// Scenario file; without it, the built-in session.
     #[arg(long, value_name = "FILE")]
     scenario: Option<PathBuf>,
-    /// Calibrate the simulated floor first, as a lab would, and leave its floor file beside the picture.
-    /// Without it the sensors are taken for nominal parts, as `underfoot run` takes them without a floor file.
+    /// Also leave the floor file of the simulated floor, calibrated as in a lab, beside the picture.
     #[arg(long)]
     calibrate: bool,
     /// Folder for the picture, the sound file and the event log.
@@ -103,15 +102,12 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let (script, rehearsed) = play::script(args.scenario.as_deref(), &layout, &geometry)?;
     std::fs::create_dir_all(&args.out).map_err(|error| Failure::File(args.out.clone(), error))?;
     let file = |name: &str| args.out.join(name);
-    let (sim, floor) = if args.calibrate {
-        let (sim, floor) = args.sim.calibrated(&floor)?;
+    let (sim, floor) = args.sim.calibrated(&floor)?;
+    if args.calibrate {
         let described = file("floor.ron");
         std::fs::write(&described, schema::write_floor(&floor))
             .map_err(|error| Failure::File(described, error))?;
-        (sim, floor)
-    } else {
-        (SimFloor::new(&floor, args.sim.config(), args.sim.seed), floor)
-    };
+    }
     let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
 
     let source = SimulatedSource::new(sim, Box::new(script.clone()), Pace::FreeRunning);

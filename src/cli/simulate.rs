@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use std::sync::atomic::Ordering;
 use std::time::{Duration, Instant};
 
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
 use underfoot::schema;
 use underfoot::sim::{self, Sensing, SimConfig, SimFloor};
@@ -17,6 +17,7 @@ use underfoot::wire::{SensorEncoder, SensorFormat};
 
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
+use super::fitted_floor;
 use super::floor_args::{FloorArgs, save_floor};
 use super::layout_args::LayoutArgs;
 use super::number::lifetime;
@@ -40,12 +41,13 @@ pub(crate) struct Args {
     sim: SimArgs,
     /// Where all boards send their packets; several, with commas between them, where several computers serve areas.
     /// Without it, each board sends to its area's computer if the floor file says where, and to 127.0.0.1:9000 if not.
-    #[arg(long, value_name = "ADDR", value_delimiter = ',')]
+    #[arg(long, value_name = "ADDR", value_delimiter = ',', value_parser = read_address)]
     send: Vec<SocketAddr>,
     /// What the boards send; newtons with --ideal, counts otherwise.
     #[arg(long, value_enum)]
     format: Option<Format>,
-    /// Also write the floor file that a lab would: this floor, calibrated sensor by sensor and tared.
+    /// Where to write the floor file that fits this floor, as a lab would: calibrated sensor by sensor and tared.
+    /// Without it, it is written into the folder for the state of programs.
     #[arg(long, value_name = "FILE")]
     write_floor: Option<PathBuf>,
     /// Also write what a load cell shows of every sensor, for `underfoot calibrate curves`.
@@ -79,10 +81,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let floor = args.floor.load()?;
     let layout = args.layout.load(&floor.geometry)?;
     let (sim, encoder) = args.simulated(&floor)?;
-    if let Some(path) = &args.write_floor {
-        let (_, calibrated) = args.sim.calibrated(&floor)?;
-        save_floor(&calibrated, path)?;
-    }
+    args.write_fitted(&floor, &sim)?;
     if let Some(path) = &args.write_loads {
         write(path, &sim::load_table(&sim, args.sim.seed))?;
     }
@@ -119,6 +118,34 @@ impl Args {
             (None | Some(Format::Counts), _) => SensorFormat::Counts,
         };
         Ok((SimFloor::new(floor, config, self.sim.seed), SensorEncoder::new(floor, format)))
+    }
+
+    /// Writes the floor file that fits this simulated floor, and says how to serve it.
+    fn write_fitted(&self, floor: &Floor, sim: &SimFloor) -> Result<(), Failure> {
+        let fitted = self.sim.measured(floor, sim)?;
+        let path = match (&self.write_floor, &self.floor.floor) {
+            (Some(path), _) => {
+                save_floor(&fitted, path)?;
+                Some(path.clone())
+            }
+            // A file that was written so before fits already.
+            (None, Some(path)) if fitted == *floor => Some(path.clone()),
+            (None, _) => fitted_floor::keep(&fitted, self.sim.seed),
+        };
+        if let Some(path) = path {
+            let areas: Vec<&str> = floor.areas.iter().map(|area| area.id.as_str()).collect();
+            let layout = self.layout.layout.as_deref();
+            for command in fitted_floor::commands(&path, layout, self.listen(floor), &areas) {
+                errln!("Serve this floor with: {command}");
+            }
+        }
+        Ok(())
+    }
+
+    /// Where the program that serves this floor listens, if all boards send to one address that is not the usual one.
+    fn listen(&self, floor: &Floor) -> Option<SocketAddr> {
+        let targets: BTreeSet<SocketAddr> = self.targets(floor).into_iter().flatten().collect();
+        targets.first().copied().filter(|first| targets.len() == 1 && *first != SEND)
     }
 
     /// Where each board sends.

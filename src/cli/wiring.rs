@@ -5,7 +5,7 @@ use std::path::PathBuf;
 use std::sync::atomic::Ordering;
 use std::time::Duration;
 
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, read_address};
 use underfoot::serve::{WiringStep, WiringTask, WiringWalk};
 use underfoot::source::SensorSource;
 
@@ -25,7 +25,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     floor: FloorArgs,
     /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
     listen: SocketAddr,
     #[command(flatten)]
     boards: BoardArgs,

@@ -1,8 +1,9 @@
 //! How a control is, for those who ask.
 
 use super::{Engine, Snapshot};
+use crate::floor::FloorFile;
 use crate::layout::Layout;
-use crate::widget::{Behaviour, Indicator, Scale, Value, WidgetId};
+use crate::widget::{Behaviour, Indicator, OffReason, Scale, Value, WidgetId};
 
 /// How a control is, and what it can be.
 #[derive(Clone, Debug, PartialEq)]
@@ -13,8 +14,11 @@ pub struct ControlState {
     pub value: Option<Value>,
     /// What it can hold; `None` for what holds nothing, or on and off.
     pub range: Option<ValueRange>,
-    /// Whether it reacts to feet.
+    /// Whether it reacts to feet: false while an app or what is wrong with the floor file keeps it off
+    /// ([`OffReason::is_lasting`]). `off` also has what passes by itself.
     pub enabled: bool,
+    /// Why no foot can press it; `None` if one can.
+    pub off: Option<Off>,
     /// Whether it keeps its value.
     pub locked: bool,
     /// Whether a foot has it pressed.
@@ -27,6 +31,23 @@ pub struct ControlState {
     pub label: String,
     /// The page it is on; `None` if it is on all of them.
     pub page: Option<WidgetId>,
+}
+
+/// Why a control is off.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Off {
+    /// The reason.
+    pub reason: OffReason,
+    /// The reason in a sentence, with the name of the floor file where that matters.
+    pub text: String,
+}
+
+impl Off {
+    /// The reason on a floor that was read from `file`.
+    #[must_use]
+    pub fn new(reason: OffReason, file: &FloorFile) -> Self {
+        Self { reason, text: reason.explain(file) }
+    }
 }
 
 /// What a control can hold.
@@ -71,7 +92,8 @@ impl ControlState {
             range: range
                 .map(|(_, scale)| ValueRange::Number(*scale))
                 .or_else(|| ValueRange::of(&widget.behaviour)),
-            enabled: !state.disabled && !state.uncalibrated,
+            enabled: is_enabled(state.off),
+            off: state.off.map(|reason| Off::new(reason, &snapshot.floor_file)),
             locked: state.locked,
             pressed: state.pressed,
             armed: state.armed,
@@ -88,12 +110,14 @@ impl Engine {
     pub fn control_state(&self, id: &str) -> Option<ControlState> {
         let control = self.control(id)?;
         let layout = self.layout();
-        let widget = layout.widgets.get(layout.widget_index(id)?)?;
+        let index = layout.widget_index(id)?;
+        let (widget, off) = (layout.widgets.get(index)?, self.off(index));
         Some(ControlState {
             id: widget.id.clone(),
             value: control.value(),
             range: ValueRange::of(&widget.behaviour),
-            enabled: !control.is_disabled() && !control.is_inhibited(),
+            enabled: is_enabled(off),
+            off: off.map(|reason| Off::new(reason, self.floor_file())),
             locked: control.is_locked(),
             pressed: control.is_engaged(),
             armed: control.is_armed(),
@@ -102,4 +126,8 @@ impl Engine {
             page: widget.page_of(layout),
         })
     }
+}
+
+fn is_enabled(off: Option<OffReason>) -> bool {
+    !off.is_some_and(OffReason::is_lasting)
 }

@@ -1,12 +1,14 @@
 //! The engine: sensing, interaction, grounds and responses, one frame at a time.
 
 use crate::feel::{Cue, SustainedCues};
-use crate::floor::{Geometry, PositionMap};
+use crate::floor::{FloorFile, Geometry, PositionMap};
 use crate::ground::{GroundEvent, Grounds};
 use crate::layout::Layout;
 use crate::sense::{Contact, ForceFrame, Method, Sensing};
 use crate::units::Instant;
-use crate::widget::{Behaviour, Control, EventKind, Indicator, SetError, Value, WidgetEvent, WidgetId};
+use crate::widget::{
+    Behaviour, Control, EventKind, Indicator, OffReason, SetError, Value, WidgetEvent, WidgetId,
+};
 
 use super::ignored::{IgnoredPress, SHOWN};
 use super::interact::Interaction;
@@ -37,7 +39,11 @@ pub struct Engine {
     interaction: Interaction,
     grounds: Grounds,
     responses: Responses,
+    /// The file that the floor was read from.
+    floor_file: FloorFile,
     last_frame: ForceFrame,
+    /// Whether a frame has been taken in.
+    has_begun: bool,
     /// What calls between two steps led to; reported by the next step.
     pending: Vec<WidgetEvent>,
     events: Vec<WidgetEvent>,
@@ -82,7 +88,9 @@ impl Engine {
             interaction,
             grounds,
             sensing: Sensing::new(geometry, method),
+            floor_file: FloorFile::NONE,
             last_frame: ForceFrame::empty(&geometry),
+            has_begun: false,
             geometry,
             layout,
             waiting_layout: None,
@@ -104,6 +112,13 @@ impl Engine {
     #[must_use]
     pub fn with_maps(mut self, maps: &[Option<PositionMap>]) -> Self {
         self.sensing = self.sensing.with_maps(maps);
+        self
+    }
+
+    /// The same, with the file that the floor was read from, for messages about what it lacks.
+    #[must_use]
+    pub fn with_floor_file(mut self, file: FloorFile) -> Self {
+        self.floor_file = file;
         self
     }
 
@@ -136,6 +151,7 @@ impl Engine {
         self.responses.give_way(broken, now, &mut self.cues);
         self.responses.remember(contacts, |id| interaction.holds(id));
         keep(&mut self.last_frame, frame);
+        self.has_begun = true;
         self.follow_clicks();
         self.take_waiting_layout();
         self.take_waiting_page();
@@ -209,6 +225,21 @@ impl Engine {
         self.waiting_page = Some(self.layout.page_index(id).ok_or(SetError::Unknown)?);
         self.take_waiting_page();
         Ok(())
+    }
+
+    /// Which layout the controls belong to, as [`Snapshot::layout_revision`] has it.
+    pub(crate) const fn layout_revision(&self) -> u64 {
+        self.layout_revision
+    }
+
+    /// The file that the floor was read from.
+    pub(crate) const fn floor_file(&self) -> &FloorFile {
+        &self.floor_file
+    }
+
+    /// Why no foot can press the control at `index` of the layout; `None` if one can, and for an index too large.
+    pub(crate) fn off(&self, index: usize) -> Option<OffReason> {
+        self.interaction.off(index, &self.layout, self.has_begun.then_some(&self.last_frame))
     }
 
     /// The time of the last frame, on the floor's sample clock.
@@ -329,14 +360,16 @@ impl Engine {
         snapshot.cursors.extend(self.interaction.cursors());
         snapshot.widgets.clear();
         let page = self.interaction.page();
-        let controls = self.interaction.controls().iter().zip(&self.layout.widgets);
-        snapshot.widgets.extend(controls.map(|(control, widget)| WidgetState {
+        snapshot.floor_file.clone_from(&self.floor_file);
+        let off = (0..).map(|index| self.off(index));
+        let controls = self.interaction.controls().iter().zip(&self.layout.widgets).zip(off);
+        snapshot.widgets.extend(controls.map(|((control, widget), off)| WidgetState {
             pressed: control.is_engaged(),
             value: control.value(),
             press_share: control.press_share(),
             needs_lift: control.needs_lift(),
             disabled: control.is_disabled(),
-            uncalibrated: control.is_inhibited(),
+            off,
             hidden: !widget.is_on(page),
             locked: control.is_locked(),
             armed: control.is_armed(),
@@ -439,8 +472,8 @@ impl Engine {
 
 /// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
-    let ForceFrame { at, received, forces, quality, may_start, calibrated } = frame;
-    (kept.at, kept.received, kept.calibrated) = (*at, *received, *calibrated);
+    let ForceFrame { at, received, forces, quality, may_start, calibration_fault } = frame;
+    (kept.at, kept.received, kept.calibration_fault) = (*at, *received, *calibration_fault);
     kept.forces.clone_from(forces);
     kept.quality.clone_from(quality);
     kept.may_start.clone_from(may_start);

@@ -14,7 +14,7 @@ use std::fmt;
 
 use crate::sense::ContactId;
 use crate::units::{Instant, Newtons};
-use crate::widget::WidgetId;
+use crate::widget::{OffReason, WidgetId};
 
 /// Least force of a press that is worth a word: the least that a control may be set to.
 const GRAZE: Newtons = Newtons(10.0);
@@ -48,12 +48,8 @@ pub enum Ignored {
     /// The guard wants a foot that has settled and does not take the weight over; or the control acts at once, and no
     /// foot stands beside this one, whose force has not settled, or it bears a body.
     Guard,
-    /// Another control that acts while it is held is held already.
-    OtherRuns,
-    /// An app has switched the control off.
-    Disabled,
-    /// The control acts while it is held, and the floor is not calibrated.
-    Uncalibrated,
+    /// The control is off.
+    Off(OffReason),
     /// The force never came up to the control's threshold.
     TooLight,
     /// The force was enough, but not for long enough.
@@ -63,6 +59,7 @@ pub enum Ignored {
 impl fmt::Display for Ignored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
+            Self::Off(reason) => return reason.fmt(f),
             Self::Step => "the foot walks, stands or rests there",
             Self::Object => "it has kept still for a minute and counts as an object",
             Self::Stance => "the foot stands in a stance zone",
@@ -72,9 +69,6 @@ impl fmt::Display for Ignored {
             Self::NotSeenUnloaded => "it has to be seen unloaded first",
             Self::Unbelieved => "the forces can't be believed",
             Self::Guard => "it wants a foot that has settled",
-            Self::OtherRuns => "another control that acts while it is held is held already",
-            Self::Disabled => "an app has switched it off",
-            Self::Uncalibrated => "the floor is not calibrated",
             Self::TooLight => "too light",
             Self::TooShort => "too short",
         })

@@ -24,7 +24,7 @@ mod step;
 mod still;
 mod weight;
 
-pub use control_state::{ControlState, ValueRange};
+pub use control_state::{ControlState, Off, ValueRange};
 pub use floor_engine::{Engine, Step};
 pub use ignored::{AnsweredPress, Ignored, IgnoredPress};
 pub use page::PageShown;

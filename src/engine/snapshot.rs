@@ -6,10 +6,11 @@ use glam::Vec2;
 
 use super::ignored::{AnsweredPress, IgnoredPress};
 use crate::feel::{DeviceStatus, FeelCounters, Muted};
+use crate::floor::FloorFile;
 use crate::ground::GroundState;
 use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Indicator, Scale, Value, WidgetId};
+use crate::widget::{Indicator, OffReason, Scale, Value, WidgetId};
 use crate::wire::{LinkCause, LinkCounters, LinkState};
 
 /// The state of the floor at one instant, for windows and pictures.
@@ -45,6 +46,8 @@ pub struct Snapshot {
     pub grounds: Vec<GroundState>,
     /// The controls that a foot holds pressed, in no order.
     pub held: Vec<WidgetId>,
+    /// The file that the floor was read from, which [`OffReason::explain`] names.
+    pub floor_file: FloorFile,
     /// Whether sensor packets arrive.
     pub link: LinkState,
     /// The cause for which something is sent and no frame can be used, or no load was ever seen; `None` where all is
@@ -97,8 +100,8 @@ pub struct WidgetState {
     pub needs_lift: bool,
     /// Whether an app has switched it off.
     pub disabled: bool,
-    /// Whether it is off because it acts for as long as it is held, and this floor is not calibrated.
-    pub uncalibrated: bool,
+    /// Why no foot can press it; `None` if one can.
+    pub off: Option<OffReason>,
     /// Whether an app has locked it.
     pub locked: bool,
     /// Whether a first press has armed it.

@@ -108,6 +108,7 @@ impl Floor {
             areas: Vec::new(),
             gateway: None,
             key: None,
+            file: self.file.clone(),
         })
     }
 }

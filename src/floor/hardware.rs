@@ -3,8 +3,8 @@
 use std::net::SocketAddr;
 
 use super::{
-    Area, Calibration, CalibrationRecord, Corner, Day, Drive, Geometry, Loudspeaker, MapRecord, Network,
-    PositionMap, Response, SensorId, TileId,
+    Area, Calibration, CalibrationRecord, Corner, Day, Drive, FloorFile, Geometry, Loudspeaker, MapRecord,
+    Network, PositionMap, Response, SensorId, TileId,
 };
 use crate::units::Newtons;
 
@@ -47,6 +47,8 @@ pub struct Floor {
     /// Path of the file with the key that the areas' computers share, as in the floor file: relative to its folder, or
     /// absolute. `None` without one.
     pub key: Option<String>,
+    /// The file that it was read from.
+    pub file: FloorFile,
 }
 
 impl Floor {
@@ -72,6 +74,7 @@ impl Floor {
             areas: Vec::new(),
             gateway: None,
             key: None,
+            file: FloorFile::NONE,
             geometry,
         }
     }

@@ -11,6 +11,7 @@ mod calibration;
 mod contact_id;
 mod drive;
 mod exp;
+mod floor_file;
 mod geometry;
 mod halo;
 mod hardware;
@@ -26,6 +27,7 @@ pub use block::TileBlock;
 pub use calibration::{Calibration, LawKind};
 pub use contact_id::ContactId;
 pub use drive::{Drive, Loudspeaker, Response};
+pub use floor_file::FloorFile;
 pub use geometry::{Corner, Geometry, GeometryError, SensorId, TileId};
 pub use halo::Forwarding;
 pub use hardware::{Actuator, Board, Floor};
@@ -35,3 +37,7 @@ pub use position_map::PositionMap;
 pub use record::{CalibrationRecord, Day, MapRecord, NotADay};
 pub use rect::Rect;
 pub(crate) use {address::ADDRESS, exp::exp, network::NETWORK, record::DAY};
+
+internal! {
+    use address::{NotAnAddress, canonical, read_address};
+}

@@ -28,8 +28,17 @@ pub(crate) const NETWORK: Spelled<Network> = Spelled {
 
 /// Why a text is not a network.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[error("write an address or a range of them, like 192.168.1.20 or 192.168.1.0/24")]
-pub struct NotANetwork;
+#[non_exhaustive]
+pub enum NotANetwork {
+    /// It is not an address, or its range has more bits than the address.
+    #[error("write an address or a range of them, like 192.168.1.20 or 192.168.1.0/24")]
+    Malformed,
+    /// It is an IPv4 address within IPv6 with a range that reaches beyond IPv4.
+    #[error(
+        "write IPv4 addresses as IPv4, like 192.168.1.0/24: `::ffff:...` with less than 96 bits is neither"
+    )]
+    BeyondIpv4,
+}
 
 impl Network {
     /// The addresses of this machine itself: 127.0.0.0/8 and ::1.
@@ -63,21 +72,30 @@ impl From<IpAddr> for Network {
     }
 }
 
+/// Bits of an IPv6 address before the IPv4 address within it (RFC 4291, 2.5.5.2).
+const BITS_BEFORE_IPV4: u8 = 96;
+
 impl FromStr for Network {
     type Err = NotANetwork;
 
     /// Reads `192.168.1.20`, `192.168.1.0/24`, `::1` or `fd00::/8`; bits of the address behind the range don't count.
+    /// IPv4 addresses within IPv6 are IPv4: `::ffff:192.168.1.0/120` is `192.168.1.0/24`.
     fn from_str(text: &str) -> Result<Self, NotANetwork> {
         let (ip, bits) = match text.split_once('/') {
-            Some((ip, bits)) => (ip, Some(bits.parse::<u8>().map_err(|_| NotANetwork)?)),
+            Some((ip, bits)) => (ip, Some(bits.parse::<u8>().map_err(|_| NotANetwork::Malformed)?)),
             None => (text, None),
         };
-        let ip: IpAddr = ip.parse().map_err(|_| NotANetwork)?;
-        let most = if ip.is_ipv4() { 32 } else { 128 };
-        match bits {
-            None => Ok(ip.into()),
-            Some(bits) if bits <= most => Ok(Self { ip, bits }),
-            Some(_) => Err(NotANetwork),
+        let written: IpAddr = ip.parse().map_err(|_| NotANetwork::Malformed)?;
+        let Some(bits) = bits else { return Ok(written.into()) };
+        let ip = written.to_canonical();
+        let most = if written.is_ipv4() { 32 } else { 128 };
+        match (bits, ip == written) {
+            (bits, _) if bits > most => Err(NotANetwork::Malformed),
+            (bits, true) => Ok(Self { ip, bits }),
+            (bits, false) => {
+                let bits = bits.checked_sub(BITS_BEFORE_IPV4).ok_or(NotANetwork::BeyondIpv4)?;
+                Ok(Self { ip, bits })
+            }
         }
     }
 }
@@ -114,7 +132,29 @@ mod tests {
         }
         for bad in ["", "10.0.0.0/33", "::/129", "10.0.0/8", "10.0.0.0/", "10.0.0.0/-1", "lab", "1.2.3.4/8/8"]
         {
-            assert_eq!(bad.parse::<Network>(), Err(NotANetwork), "{bad}");
+            assert_eq!(bad.parse::<Network>(), Err(NotANetwork::Malformed), "{bad}");
         }
+    }
+
+    #[test]
+    fn ipv4_addresses_within_ipv6_are_ipv4() {
+        for (within, plain) in [
+            ("::ffff:127.0.0.1", "127.0.0.1"),
+            ("::ffff:127.0.0.1/128", "127.0.0.1"),
+            ("::ffff:192.168.1.0/120", "192.168.1.0/24"),
+            ("::ffff:c0a8:100/120", "192.168.1.0/24"),
+            ("::ffff:0:0/96", "0.0.0.0/0"),
+        ] {
+            assert_eq!(within.parse::<Network>(), plain.parse::<Network>(), "{within}");
+        }
+        assert!(
+            contains("::ffff:10.0.0.0/104", "10.200.0.1") && !contains("::ffff:10.0.0.0/104", "11.0.0.1")
+        );
+        for beyond in ["::ffff:10.0.0.0/8", "::ffff:10.0.0.0/95", "::ffff:0:0/0"] {
+            assert_eq!(beyond.parse::<Network>(), Err(NotANetwork::BeyondIpv4), "{beyond}");
+        }
+        assert_eq!("::ffff:10.0.0.1/129".parse::<Network>(), Err(NotANetwork::Malformed));
+        // Next to it, and of another kind.
+        assert!(contains("::fffe:0:0/96", "::fffe:0:1"));
     }
 }

@@ -140,12 +140,12 @@ fn differences(id: &WidgetId, own: &ServerLine, said: &ServerLine) -> Vec<Contro
             ask(request, &arguments);
         }
     }
-    for (own, said, set, reset) in
-        [(&own.enabled, &said.enabled, "enable", "disable"), (&own.locked, &said.locked, "lock", "unlock")]
-    {
-        if let Some(on) = said.flag().filter(|_| own != said) {
-            ask(if on { set } else { reset }, &[]);
-        }
+    if let Some(on) = said.locked.flag().filter(|_| own.locked != said.locked) {
+        ask(if on { "lock" } else { "unlock" }, &[]);
+    }
+    // Whatever else keeps a control off follows from the same packets here.
+    if let Some(off) = said.is_disabled().filter(|off| own.is_disabled() != Some(*off)) {
+        ask(if off { "disable" } else { "enable" }, &[]);
     }
     asked
 }

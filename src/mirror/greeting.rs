@@ -12,7 +12,7 @@ use crate::layout::Layout;
 use crate::recording::read_layout;
 use crate::schema::{self, Diagnostics};
 use crate::sense::Method;
-use crate::sink::control_line;
+use crate::sink::control_json;
 use crate::units::Instant;
 
 /// Why a window can't join.
@@ -111,9 +111,7 @@ impl Greeting {
             takes_layouts,
             floor: schema::write_floor(floor),
             layout: schema::write_layout(layout),
-            controls: states
-                .filter_map(|state| serde_json::from_str(&control_line(Instant::START, &state)).ok())
-                .collect(),
+            controls: states.map(|state| control_json(&state)).collect(),
         };
         // Text and numbers always have a form in JSON.
         serde_json::to_string(&words).unwrap_or_default()
@@ -155,5 +153,5 @@ impl Greeting {
 
 /// How a control is, as a server's lines say it.
 pub(super) fn spoken(state: &ControlState) -> Option<ServerLine> {
-    ServerLine::read(&control_line(Instant::START, state)).ok()
+    ServerLine::deserialize(control_json(state)).ok()
 }

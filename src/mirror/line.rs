@@ -8,6 +8,7 @@ use serde::de::{Deserializer, IgnoredAny, SeqAccess, Visitor};
 use serde_json::{Value, json};
 
 use crate::label::{self, MAX_LABEL};
+use crate::widget::OffReason;
 
 /// Most characters of a reason, such as the problems of a layout.
 const MOST_OF_A_REASON: usize = 4096;
@@ -27,6 +28,8 @@ pub struct ServerLine {
     pub(super) label: Said,
     pub(super) indicator: Said,
     pub(super) enabled: Said,
+    /// The reason that it is off.
+    off: Said,
     pub(super) locked: Said,
 }
 
@@ -49,6 +52,11 @@ impl ServerLine {
     #[must_use]
     pub fn request(&self) -> &str {
         &self.request.0
+    }
+
+    /// Whether an app has switched the control off; `None` in lines that don't say so.
+    pub(super) fn is_disabled(&self) -> Option<bool> {
+        self.enabled.flag().map(|_| matches!(&self.off, Said::Text(off) if off == OffReason::Disabled.name()))
     }
 
     /// Why it was, on one line or several; empty in other lines.

@@ -14,7 +14,7 @@ use crate::layout::Layout;
 use crate::outgoing::{AreaNews, AreaState};
 use crate::sense::{Contact, ContactId, Method, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Detail, Direction, EventKind, Value, WidgetEvent, WidgetId};
+use crate::widget::{Detail, Direction, EventKind, OffReason, Value, WidgetEvent, WidgetId};
 use crate::wire::LinkState;
 
 /// A line that tells nothing of a floor.
@@ -71,6 +71,8 @@ struct Line<'a> {
     #[serde(default)]
     dropped: u64,
     enabled: Option<bool>,
+    #[serde(borrow)]
+    off: Option<Cow<'a, str>>,
     locked: Option<bool>,
     armed: Option<bool>,
     pressed: Option<bool>,
@@ -98,7 +100,8 @@ impl TextMirror {
             uncertainty: Duration::ZERO,
         };
         let areas = floor.areas.iter().map(|area| (area.clone(), waiting(area))).collect();
-        let (geometry, snapshot, pressed_by) = (floor.geometry, Snapshot::default(), Vec::new());
+        let snapshot = Snapshot { floor_file: floor.file.clone(), ..Snapshot::default() };
+        let (geometry, pressed_by) = (floor.geometry, Vec::new());
         let mut mirror = Self { geometry, layout: layout.clone(), areas, pressed_by, snapshot };
         mirror.begin(layout);
         mirror.show_areas();
@@ -116,10 +119,12 @@ impl TextMirror {
     }
 
     fn begin(&mut self, layout: Layout) {
-        Engine::new(self.geometry, layout.clone(), Method::default()).snapshot(&mut self.snapshot);
+        Engine::new(self.geometry, layout.clone(), Method::default())
+            .with_floor_file(self.snapshot.floor_file.clone())
+            .snapshot(&mut self.snapshot);
         // Whether a floor is calibrated and who stands on a control, its own computers know.
         for widget in &mut self.snapshot.widgets {
-            (widget.uncalibrated, widget.needs_lift) = (false, false);
+            (widget.off, widget.needs_lift) = (None, false);
         }
         self.pressed_by = vec![None; layout.widgets.len()];
         self.layout = layout;
@@ -288,7 +293,12 @@ impl TextMirror {
         let Some(index) = line.id.as_deref().and_then(|id| self.layout.widget_index(id)) else { return };
         let Some(state) = self.snapshot.widgets.get_mut(index) else { return };
         state.value = state.value.map(|known| like(known, &line.value).unwrap_or(known));
-        state.disabled = line.enabled.map_or(state.disabled, |enabled| !enabled);
+        if let Some(enabled) = line.enabled {
+            // A reason that this version has no name for keeps the control off all the same.
+            let named = line.off.as_deref().and_then(OffReason::from_name);
+            state.off = named.or((!enabled).then_some(OffReason::Disabled));
+            state.disabled = state.off == Some(OffReason::Disabled);
+        }
         state.locked = line.locked.unwrap_or(state.locked);
         state.armed = line.armed.unwrap_or(state.armed);
         state.pressed = line.pressed.unwrap_or(state.pressed);

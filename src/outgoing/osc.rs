@@ -157,11 +157,13 @@ pub fn write_error(prefix: &Prefix, address: &str, why: &str, bytes: &mut Vec<u8
 /// Writes how a control is as an OSC bundle.
 ///
 /// `/underfoot/widget/<id>/value` with what it holds, if anything, as `changed` has it; `/state` with enabled, locked,
-/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/range` with least, greatest and step of a number,
+/// pressed, armed (ints, 0 or 1), indicator and label (strings); `/off` with why no foot can press it, a word
+/// ([`crate::widget::OffReason::name`]) and a sentence, both empty if one can; `/range` with least, greatest and step of a number,
 /// least and greatest of both numbers of a pair (floats), or the names of the choices (strings); `/page` with its page,
 /// empty if it is on all.
 pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>) {
-    let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } = state;
+    let ControlState { id, value, range, enabled, off, locked, pressed, armed, indicator, label, page } =
+        state;
     let mut content = Vec::new();
     if let Some(value) = value {
         let mut args = Vec::new();
@@ -172,6 +174,9 @@ pub fn write_control(prefix: &Prefix, state: &ControlState, bytes: &mut Vec<u8>)
         [enabled, locked, pressed, armed].into_iter().map(|&flag| OscType::Int(flag.into())).collect();
     args.extend([indicator.name(), label].map(|text| OscType::String(text.into())));
     content.push(message(of_widget(prefix, id, "state"), args));
+    let [reason, text] = off.as_ref().map_or([""; 2], |off| [off.reason.name(), &off.text]);
+    let args = [reason, text].map(|text| OscType::String(text.into())).into();
+    content.push(message(of_widget(prefix, id, "off"), args));
     if let Some(range) = range {
         let args = match range {
             ValueRange::Number(scale) => [scale.min, scale.max, scale.step].map(OscType::Float).into(),

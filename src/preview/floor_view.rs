@@ -10,6 +10,7 @@ use glam::Vec2;
 
 use super::app::App;
 use super::feet::{Hand, MouseFeet, Move};
+use super::off_hint::why_off;
 use super::touches::Touch;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
@@ -251,6 +252,7 @@ impl App {
             }
             let id = ui.scope_id().with(("floor control", index));
             let node = ui.interact(map.rect(widget.area), id, Sense::focusable_noninteractive());
+            let off = why_off(snapshot, index);
             if node.has_focus() {
                 focused = Some(index);
                 // Arrows slide the foot instead of leaving the control.
@@ -262,7 +264,7 @@ impl App {
             }
             node.widget_info(|| {
                 let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
-                let enabled = !state.disabled;
+                let enabled = !state.disabled && off.is_none();
                 match (&widget.behaviour, state.value) {
                     (Behaviour::Switch(_) | Behaviour::Hold(_), Some(Value::Switch(on))) => {
                         WidgetInfo::selected(Role::Switch, enabled, on, name)
@@ -271,6 +273,9 @@ impl App {
                     _ => WidgetInfo::selected(Role::Button, enabled, state.pressed, name),
                 }
             });
+            if let Some(why) = off {
+                node.on_hover_text_at_pointer(why);
+            }
         }
         self.keyboard.focus(focused);
     }

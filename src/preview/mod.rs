@@ -18,6 +18,7 @@ mod floor_view;
 mod keyboard;
 mod lookout;
 mod messages;
+mod off_hint;
 mod panel;
 mod playback;
 mod plots;

@@ -13,7 +13,7 @@ use super::recorder::read_layout;
 use super::records::{RawRecord, RecordingBytes, Records, State};
 use super::replay::{ReplaySource, Speed};
 use super::{FLOOR, LAYOUT, METADATA, RecordingError, VERSION};
-use crate::floor::Floor;
+use crate::floor::{Floor, FloorFile};
 use crate::format::file::open_ordinary;
 use crate::layout::Layout;
 use crate::schema;
@@ -64,6 +64,7 @@ impl Recording {
     pub fn read(bytes: Box<dyn RecordingBytes>, name: &Path) -> Result<Self, RecordingError> {
         let (opening, parts) = Opening::read(bytes, name)?;
         let floor = schema::parse_floor(&opening.floor.unwrap_or_default(), FLOOR)?;
+        let floor = Floor { file: FloorFile::new("the recording's floor"), ..floor };
         let layout = read_layout(&opening.layout.unwrap_or_default(), &floor.geometry)?;
         let method = opening.method.unwrap_or_default();
         Ok(Self { floor, layout, method, parts })

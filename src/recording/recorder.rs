@@ -68,7 +68,7 @@ impl Recorder {
         let Some(path) = path else { return Ok(Recorded { recorder: None, source, floor, layout }) };
         let failed = |source| RecordingError::File { path: path.into(), source };
         let floor_text = schema::write_floor(&floor);
-        let floor = schema::parse_floor(&floor_text, super::FLOOR)?;
+        let floor = Floor { file: floor.file.clone(), ..schema::parse_floor(&floor_text, super::FLOOR)? };
         let (layout_text, layout) = as_kept(&layout, &floor.geometry)?;
         let file = File::create(path).map_err(failed)?;
         let file = RecordingFile::begin(file, path, &floor_text, &layout_text, method)

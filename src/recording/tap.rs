@@ -139,6 +139,10 @@ impl SensorSource for TappedSource {
         }
     }
 
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.inner.local_addr()
+    }
+
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         self.inner.answer(to, datagram);
     }

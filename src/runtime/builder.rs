@@ -284,6 +284,7 @@ impl SessionBuilder {
         let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
         let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
+        let (local_addr, geometry) = (source.local_addr(), floor.geometry);
         #[cfg(feature = "record")]
         let Recorded { recorder, source, floor, layout } = {
             let path = self.record.as_deref();
@@ -336,7 +337,16 @@ impl SessionBuilder {
             .spawn(move || thread::run(plan, &told, &ready))
             .map_err(StartError::Thread)?;
         let thread = Mutex::new(Some(sensing));
-        let session = Session::new(Inner { queue, held, shown, commands, stop: self.stop, thread });
+        let session = Session::new(Inner {
+            queue,
+            held,
+            shown,
+            commands,
+            local_addr,
+            geometry,
+            stop: self.stop,
+            thread,
+        });
         match is_ready.recv() {
             // A thread that panicked before it was ready says so in its last event.
             Ok(Ok(())) | Err(_) => Ok(session),

@@ -2,11 +2,10 @@
 
 use std::ops::RangeInclusive;
 
-use thiserror::Error;
-
 use super::session::Session;
 use crate::engine::ControlState;
-use crate::widget::{Indicator, SetError, Value, WidgetId};
+use crate::serve::Refusal;
+use crate::widget::{Indicator, Value, WidgetId};
 use crate::wire::ControlMessage;
 
 /// One control of a session, by its id. Whatever changes it is told to all other outputs.
@@ -19,40 +18,34 @@ pub struct Control<'a> {
     id: WidgetId,
 }
 
-/// Why a floor does not do what an app asks; nothing has changed then.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Error)]
-#[non_exhaustive]
-pub enum Refusal {
-    /// The control does not take it: unknown, of another type, locked, in use, or guarded
-    /// ([`SetError::Momentary`]: only a foot can hold it).
-    #[error(transparent)]
-    Control(#[from] SetError),
-    /// The session is over.
-    #[error("the session is over")]
-    Ended,
-    /// The sensing thread did not answer within 200 ms; it may still do what was asked.
-    #[error("the floor does not answer")]
-    NoAnswer,
-}
-
 impl<'a> Control<'a> {
-    pub(super) fn new(session: &'a Session, id: &str) -> Self {
-        Self { session, id: WidgetId::new(id) }
+    pub(super) fn new(session: &'a Session, id: WidgetId) -> Self {
+        Self { session, id }
     }
 
-    /// How it is.
+    /// Its name.
+    #[must_use]
+    pub fn id(&self) -> &str {
+        self.id.as_str()
+    }
+
+    /// How it is, with the reason if no foot can press it ([`ControlState::off`]).
     ///
     /// # Errors
-    /// [`SetError::Unknown`] if a layout without it has come.
+    /// [`Refusal::UnknownControl`] if a layout without it has come.
     pub fn state(&self) -> Result<ControlState, Refusal> {
-        Ok(self.session.snapshot().control(self.id.as_str()).ok_or(SetError::Unknown)?)
+        let snapshot = self.session.snapshot();
+        let state = snapshot.control(self.id.as_str());
+        state.ok_or_else(|| Refusal::unknown_control(self.id.as_str(), &snapshot.layout))
     }
 
-    /// Gives it a value, brought to its range and steps. A number stands for on (not 0) where it is a switch, and for a
-    /// choice, from 0, where it is a selector.
+    /// Gives it a value. A number beyond its range becomes the nearest end of the range, one between two steps the
+    /// nearer step; [`Control::state`] has the value that it took. A number stands for on (not 0) where it is a switch,
+    /// and for a choice, from 0, where it is a selector.
     ///
     /// # Errors
-    /// [`Refusal`] says why it stays as it was.
+    /// [`Refusal::Control`] says why it stays as it was: NaN and infinities, a choice that a selector does not have, a
+    /// value of another type, a control that is locked, in use, or only for feet.
     pub fn set(&self, value: impl Into<Value>) -> Result<(), Refusal> {
         let value = value.into();
         self.ask(|id| ControlMessage::Set { id, value })
@@ -61,7 +54,7 @@ impl<'a> Control<'a> {
     /// Gives a slider, dial or stepper another range, also in layouts that come later; its value is brought into it.
     ///
     /// # Errors
-    /// [`SetError::WrongType`] for other controls, [`SetError::NoRange`] for a range that is empty, not finite,
+    /// [`crate::widget::SetError::WrongType`] for other controls, [`crate::widget::SetError::NoRange`] for a range that is empty, not finite,
     /// beyond a million or narrower than the control's step; otherwise as for [`Control::set`].
     pub fn set_range<T: Into<f64>>(&self, range: RangeInclusive<T>) -> Result<(), Refusal> {
         let (least, greatest) = range.into_inner();

@@ -34,7 +34,8 @@ pub struct Event {
 pub enum Kind {
     /// A foot did something to the control [`Event::id`].
     Control(EventKind),
-    /// An app has changed or asked for the control [`Event::id`]; also told to the app that did it.
+    /// The control [`Event::id`] is in another state: an app has changed or asked for it (also this app), or it has the
+    /// guard `HoldToRun` and has gone off or on ([`crate::engine::ControlState::off`]).
     State,
     /// The page [`Event::id`] is shown.
     Page,

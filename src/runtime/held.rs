@@ -55,7 +55,7 @@ impl Held {
 
     /// Whether a foot holds the control now, and the floor has said so within the last 100 ms.
     ///
-    /// False for an unknown control, and as soon as the foot lifts, the press is cancelled, the floor's packets stop
+    /// False once a layout without the control is on the floor, and as soon as the foot lifts, the press is cancelled, the floor's packets stop
     /// for 100 ms, the sensing thread stands still for 100 ms or ends in whatever way, the wake callback panics, or the
     /// last [`super::Session`] is dropped. To be asked at least every 20 ms while something acts: silence says nothing.
     #[must_use]

@@ -82,6 +82,12 @@ impl Queue {
         state.waiting.events.pop_front()
     }
 
+    /// Whether all events were taken, the last one included.
+    pub(super) fn is_drained(&self) -> bool {
+        let state = self.lock();
+        state.ended && state.waiting.events.is_empty()
+    }
+
     /// Events that were dropped since nobody took them.
     pub(super) fn dropped(&self) -> u64 {
         self.lock().waiting.dropped

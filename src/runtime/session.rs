@@ -1,6 +1,7 @@
 //! The handle.
 
 use std::fmt;
+use std::net::SocketAddr;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,16 +9,18 @@ use std::thread::JoinHandle;
 use std::time::Duration;
 
 use super::builder::SessionBuilder;
-use super::control::{Control, Refusal};
+use super::control::Control;
 use super::event::Event;
+use super::events::Events;
 use super::held::{Held, HeldWatch};
 use super::queue::Queue;
 use super::snapshot::{Shown, Snapshot};
+use crate::floor::Geometry;
 use crate::layout::Layout;
-use crate::serve::Command;
+use crate::serve::{Command, Refusal};
 use crate::source::SensorSource;
 use crate::units::HostClock;
-use crate::widget::{SetError, WidgetId};
+use crate::widget::WidgetId;
 use crate::wire::ControlMessage;
 
 /// How long an answer of the sensing thread is waited for.
@@ -34,6 +37,9 @@ pub(super) struct Inner {
     pub(super) held: Arc<HeldWatch>,
     pub(super) shown: Arc<Shown>,
     pub(super) commands: SyncSender<Command>,
+    /// Where the source listens.
+    pub(super) local_addr: Option<SocketAddr>,
+    pub(super) geometry: Geometry,
     pub(super) stop: Arc<AtomicBool>,
     pub(super) thread: Mutex<Option<JoinHandle<()>>>,
 }
@@ -70,9 +76,9 @@ impl Session {
         SessionBuilder::fed_by(source, clock)
     }
 
-    /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then. It
-    /// ends with the recording, also where that breaks off. Why it ended is told by the
-    /// [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it
+    /// A session on a floor that was recorded, with the floor, the layout and the way feet were told apart of then:
+    /// `Session::replay("visit.mcap", Speed::Times(1.0))?.start()?`. It ends with the recording, also where that breaks
+    /// off. Why it ended is told by the [progress](crate::recording::ReplaySource::progress) of the recording's source, for apps that open it
     /// themselves.
     ///
     /// # Errors
@@ -118,6 +124,30 @@ impl Session {
         self.0.queue.next_timeout(patience)
     }
 
+    /// All events to come, waiting for each; ends after [`super::Kind::Ended`]. A loop `for event in &floor` does the
+    /// same.
+    #[must_use]
+    pub fn events(&self) -> Events<'_> {
+        Events::new(self)
+    }
+
+    pub(super) fn is_drained(&self) -> bool {
+        self.0.queue.is_drained()
+    }
+
+    /// The address that boards send to, with the port that the system chose for port 0; `None` where nothing comes over
+    /// the network, as in a simulation or a recording.
+    #[must_use]
+    pub fn local_addr(&self) -> Option<SocketAddr> {
+        self.0.local_addr
+    }
+
+    /// Where the floor's tiles and sensors are.
+    #[must_use]
+    pub fn geometry(&self) -> &Geometry {
+        &self.0.geometry
+    }
+
     /// Events that were dropped because nobody took them; values that newer ones replaced are not counted.
     #[must_use]
     pub fn dropped(&self) -> u64 {
@@ -125,9 +155,11 @@ impl Session {
     }
 
     /// Whether the control named `id` is held, to be asked again and again; see [`Held::is_fresh`].
-    #[must_use]
-    pub fn held(&self, id: &str) -> Held {
-        Held::new(Arc::clone(&self.0.held), WidgetId::new(id))
+    ///
+    /// # Errors
+    /// [`Refusal::UnknownControl`] if the layout has no such control: a misspelt name would never be held.
+    pub fn held(&self, id: &str) -> Result<Held, Refusal> {
+        Ok(Held::new(Arc::clone(&self.0.held), self.known(id)?))
     }
 
     /// How the floor is: from the first moment on as the layout says, later as of the last 5 ms.
@@ -147,16 +179,28 @@ impl Session {
     /// The control named `id`.
     ///
     /// # Errors
-    /// [`SetError::Unknown`] if the layout has no such control.
+    /// [`Refusal::UnknownControl`] if the layout has no such control.
     pub fn control(&self, id: &str) -> Result<Control<'_>, Refusal> {
-        let known = self.snapshot().layout.widget_index(id).is_some();
-        if known { Ok(Control::new(self, id)) } else { Err(SetError::Unknown.into()) }
+        Ok(Control::new(self, self.known(id)?))
+    }
+
+    /// All controls, in the order of the layout.
+    #[must_use]
+    pub fn controls(&self) -> Vec<Control<'_>> {
+        let layout = self.0.shown.layout();
+        layout.widgets.iter().map(|widget| Control::new(self, widget.id.clone())).collect()
+    }
+
+    fn known(&self, id: &str) -> Result<WidgetId, Refusal> {
+        let layout = self.0.shown.layout();
+        let widget = layout.widget_index(id).and_then(|index| layout.widgets.get(index));
+        widget.map(|widget| widget.id.clone()).ok_or_else(|| Refusal::unknown_control(id, &layout))
     }
 
     /// Shows another page, as soon as no foot is engaged; an event tells when.
     ///
     /// # Errors
-    /// [`SetError::Unknown`] if the layout has no such page.
+    /// [`Refusal::UnknownPage`] names the pages if the layout has no such page.
     pub fn set_page(&self, id: &str) -> Result<(), Refusal> {
         self.ask(ControlMessage::ShowPage { page: WidgetId::new(id) })
     }
@@ -205,7 +249,7 @@ impl Session {
             return Err(if self.has_ended() { Refusal::Ended } else { Refusal::NoAnswer });
         }
         match answered.recv_timeout(PATIENCE) {
-            Ok(done) => Ok(done?),
+            Ok(done) => done,
             Err(RecvTimeoutError::Timeout) => Err(Refusal::NoAnswer),
             Err(RecvTimeoutError::Disconnected) => Err(Refusal::Ended),
         }

@@ -26,6 +26,11 @@ impl Snapshot {
         ControlState::of(&self.layout, self.layout.widget_index(id)?, &self.floor)
     }
 
+    /// How all controls are, in the order of the layout.
+    pub fn controls(&self) -> impl Iterator<Item = ControlState> + '_ {
+        (0..self.layout.widgets.len()).filter_map(|index| ControlState::of(&self.layout, index, &self.floor))
+    }
+
     /// What the control named `id` holds; `None` for a button or an unknown name.
     #[must_use]
     pub fn value(&self, id: &str) -> Option<Value> {
@@ -63,7 +68,7 @@ impl Shown {
     pub(super) fn give(&self, layout: Layout, give: impl FnOnce(Layout)) -> u64 {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         // Also where nobody reads.
-        state.catch_up();
+        state.layout();
         state.given += 1;
         let given = state.given;
         state.later.push_back((given, Arc::new(layout.clone())));
@@ -80,17 +85,23 @@ impl Shown {
 
     pub(super) fn read(&self) -> Snapshot {
         let mut state = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        state.catch_up();
-        Snapshot { layout: Arc::clone(&state.layout), floor: state.latest.read().clone() }
+        let layout = state.layout();
+        Snapshot { layout, floor: state.latest.read().clone() }
+    }
+
+    /// The layout that is on the floor.
+    pub(super) fn layout(&self) -> Arc<Layout> {
+        self.0.lock().unwrap_or_else(PoisonError::into_inner).layout()
     }
 }
 
 impl State {
-    /// Forgets the layouts before the one that the latest state belongs to.
-    fn catch_up(&mut self) {
+    /// The layout that the latest state belongs to. Forgets those before it.
+    fn layout(&mut self) -> Arc<Layout> {
         let revision = self.latest.read().layout_revision;
         while let Some((_, next)) = self.later.pop_front_if(|(given, _)| *given <= revision) {
             self.layout = next;
         }
+        Arc::clone(&self.layout)
     }
 }

@@ -10,7 +10,7 @@ use super::{Scene, Theme, icon, outline};
 use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
-use crate::widget::{Guard, Indicator};
+use crate::widget::{Guard, Indicator, OffReason};
 
 /// Largest letters of a label, in metres: read easily from standing height.
 const LABEL_M: f32 = 0.046;
@@ -51,12 +51,12 @@ impl<'a> Face<'a> {
         let (rest, lit_up, ink) =
             theme.faces.map_or((look.face, look.lit, look.ink), |all| (all.rest, all.lit, all.ink));
         let at_rest = rest.mix(lit_up, lit);
-        let out_of_use = state.disabled || state.uncalibrated || state.needs_lift;
+        let is_off = off(&state).is_some();
+        let out_of_use = is_off || state.needs_lift;
         let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
         let ink = readable(ink, colour);
         // Words of what does not work just now step back, but stay legible.
         let faded = ink.mix(colour, 0.4);
-        let is_off = state.disabled || state.uncalibrated;
         let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
         let shape = widget.look.shape;
@@ -74,7 +74,7 @@ impl<'a> Face<'a> {
 
     /// Whether it does not work just now.
     pub(super) fn is_out_of_use(&self) -> bool {
-        self.state.disabled || self.state.uncalibrated || self.state.needs_lift
+        off(&self.state).is_some() || self.state.needs_lift
     }
 
     /// What its face turns to.
@@ -97,7 +97,7 @@ impl<'a> Face<'a> {
             self.shadow(scene);
         }
         let edge = self.colour.mix(self.theme.ink, 0.28);
-        let stroke = match (self.state.needs_lift, self.state.disabled || self.state.uncalibrated) {
+        let stroke = match (self.state.needs_lift, off(&self.state).is_some()) {
             (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
             (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
             _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
@@ -236,9 +236,9 @@ impl<'a> Face<'a> {
     pub(super) fn badge(&self) -> Option<&'static str> {
         let room = self.widget.area.size();
         let text = match self.state {
-            WidgetState { uncalibrated: true, .. } => "calibrate",
+            state if off(&state).is_some_and(is_fault) => off(&state).and_then(off_badge)?,
             WidgetState { needs_lift: true, .. } => "lift foot",
-            WidgetState { disabled: true, .. } => "disabled",
+            state if off(&state).is_some() => off(&state).and_then(off_badge)?,
             WidgetState { locked: true, .. } => "locked",
             WidgetState { warned: true, .. } => "let go",
             WidgetState { armed: true, .. } => "again",
@@ -263,10 +263,8 @@ impl<'a> Face<'a> {
         self.lamp(scene);
         let Some(text) = self.badge() else { return };
         let ground = match self.state {
-            WidgetState { uncalibrated: true, .. } | WidgetState { needs_lift: true, .. } => {
-                self.theme.warning
-            }
-            WidgetState { disabled: true, .. } | WidgetState { locked: true, .. } => self.theme.quiet,
+            state if state.needs_lift || off(&state).is_some_and(is_fault) => self.theme.warning,
+            state if state.locked || off(&state).is_some() => self.theme.quiet,
             WidgetState { warned: true, .. } => self.theme.warning,
             _ => self.theme.accent,
         };
@@ -328,6 +326,32 @@ impl<'a> Face<'a> {
     pub(super) fn write_in(&self, scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour) {
         set(scene, text, room, anchor, ink, &fit(text, room.size(), LABEL_M, SMALL_M));
     }
+}
+
+/// Why a control is shown as off. Before the first frame all are shown as they will be.
+fn off(state: &WidgetState) -> Option<OffReason> {
+    let shown = state.off.filter(|reason| *reason != OffReason::Waiting);
+    shown.or(state.disabled.then_some(OffReason::Disabled))
+}
+
+/// Whether a reason is a fault of the floor, which somebody has to mend.
+fn is_fault(reason: OffReason) -> bool {
+    reason.is_lasting() && reason != OffReason::Disabled
+}
+
+/// The words for a reason that fit on a control.
+fn off_badge(reason: OffReason) -> Option<&'static str> {
+    Some(match reason {
+        OffReason::Disabled => "disabled",
+        OffReason::NotCalibrated | OffReason::OtherFloor => "calibrate",
+        OffReason::BoardsSwapped => "swapped",
+        OffReason::LinkLost => "silent",
+        OffReason::SensorTrouble => "sensors",
+        OffReason::RepeatedReadings => "frozen",
+        OffReason::CoarseReadings => "coarse",
+        OffReason::OtherHeld => "wait",
+        OffReason::Waiting => return None,
+    })
 }
 
 /// Height of the strip that a badge takes from the label, in metres.

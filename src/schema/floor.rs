@@ -15,7 +15,9 @@ use super::problem::Problem;
 use super::reader::Reader;
 use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
-use crate::floor::{ADDRESS, Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
+use crate::floor::{
+    ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
+};
 use crate::format::codec::{Distinct, Text};
 use crate::format::{Flat, Opt, Rec, Record, list, record};
 
@@ -41,7 +43,7 @@ pub fn parse_floor(text: &str, name: &str) -> Result<Floor, Diagnostics> {
         return Err(newer);
     }
     let floor = reader.root("floor").and_then(floor);
-    reader.conclude(floor).map(|(floor, _)| floor)
+    reader.conclude(floor).map(|(floor, _)| Floor { file: FloorFile::new(name), ..floor })
 }
 
 fn floor(node: Node<'_>) -> Option<Floor> {

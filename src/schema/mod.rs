@@ -38,6 +38,8 @@ mod reference;
 mod repeat;
 #[cfg(feature = "save")]
 mod save;
+#[cfg(feature = "save")]
+mod state;
 #[cfg(test)]
 mod tests;
 mod units;
@@ -67,6 +69,8 @@ pub use reference::{Chapter, reference, write_reference};
 pub(crate) use save::write_over;
 #[cfg(feature = "save")]
 pub use save::{SaveError, Saved, save_floor, save_text};
+#[cfg(feature = "save")]
+pub use state::usual_state;
 pub use version::FORMAT_VERSION;
 pub use write::write_layout;
 

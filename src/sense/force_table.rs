@@ -153,7 +153,8 @@ impl<R: BufRead> ForceTable<R> {
         let (t_s, tile, forces) = (t_s?, TileId::new(column?, line?), [sw?, se?, nw?, ne?]);
         let Some(index) = self.geometry.index(tile) else {
             let block = self.geometry.block();
-            table.report_line(row.line(), format!("tile {tile} is not on a floor of {block}; try --grid"));
+            let problem = format!("tile {tile} is not on a floor of {block}: give its size (`grid`)");
+            table.report_line(row.line(), problem);
             return None;
         };
         Some(Load { line: row.line(), t_s, tile, index, forces })
@@ -206,7 +207,7 @@ mod tests {
         assert!(problem("-1,0,0,1,2,3,4").starts_with("line 2, column t_s: expected a number"));
         assert!(problem("1e300,0,0,1,2,3,4").starts_with("line 2, column t_s: expected a number"));
         assert!(problem("0,0.5,0,1,2,3,4").starts_with("line 2, column col: expected a whole number"));
-        assert!(problem("0,6,0,1,2,3,4").contains("try --grid"));
+        assert!(problem("0,6,0,1,2,3,4").contains("`grid`"));
         assert!(problem("0,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: tile (0, 0) is named twice"));
         assert!(problem("1,0,0,1,2,3,4\n0,0,0,1,2,3,4").starts_with("line 3: its time lies before"));
         assert!(problem(&"9".repeat(100_000)).contains("line 2: longer than"));

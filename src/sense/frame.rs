@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::Quality;
+use super::{CalibrationFault, Quality};
 use crate::floor::{Corner, Geometry};
 use crate::units::{Instant, Newtons};
 
@@ -24,10 +24,9 @@ pub struct ForceFrame {
     /// the end of its range, where the force is "at least", or with one that reads a load to
     /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
     pub may_start: Vec<bool>,
-    /// Whether the newtons come of calibrations of this floor. They may be off by a third where a
-    /// sensor was never calibrated or the floor file is another floor's; what acts for as long
-    /// as it is held is off then.
-    pub calibrated: bool,
+    /// Why the newtons may be wrong all over the floor; `None` where they come from this floor's calibration.
+    /// With a fault, controls with the guard `HoldToRun` are off.
+    pub calibration_fault: Option<CalibrationFault>,
 }
 
 impl ForceFrame {
@@ -41,7 +40,7 @@ impl ForceFrame {
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
             may_start: vec![true; tiles],
-            calibrated: true,
+            calibration_fault: None,
         }
     }
 

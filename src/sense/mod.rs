@@ -17,6 +17,7 @@
 mod assembler;
 #[cfg(any(feature = "internals", test))]
 mod calibration;
+mod calibration_fault;
 mod cluster;
 mod contact;
 mod corners;
@@ -46,6 +47,7 @@ mod uncertainty;
 
 #[cfg(any(feature = "internals", test))]
 pub use calibration::{Fit, FitError, LoadPoint};
+pub use calibration_fault::CalibrationFault;
 pub use contact::{Contact, ContactId, Covariance, TileLoad};
 pub use cursor::Cursor;
 #[cfg(any(feature = "internals", test))]

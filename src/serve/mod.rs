@@ -12,6 +12,7 @@ mod measure;
 mod neighbours;
 #[cfg(any(feature = "internals", test))]
 mod reference;
+mod refusal;
 mod request;
 mod server;
 #[cfg(any(feature = "internals", test))]
@@ -27,6 +28,7 @@ pub use measure::{ForceRange, ForceWatch, TileRange};
 pub use neighbours::Neighbours;
 #[cfg(any(feature = "internals", test))]
 pub use reference::{Argument, Direction, Entry, Reference};
+pub use refusal::Refusal;
 pub use server::{Command, Ended, Server};
 #[cfg(any(feature = "internals", test))]
 pub use tare::{TareFailure, take_tare};

@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::floor::{Floor, Geometry};
 use crate::ground::Material;
 use crate::layout::{Layout, Widget};
-use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, Scale, Value};
+use crate::widget::{ActsOn, Behaviour, Control, Guard, Indicator, OffReason, Scale, Value};
 use crate::wire::{ArgumentKind, COMMANDS, Command, Prefix};
 
 /// Which way a message goes.
@@ -217,6 +217,11 @@ impl Maker<'_> {
             argument("label", "s", ""),
         ];
         let text = |name, range: &str| argument(name, "s", range);
+        let reasons = OffReason::ALL.map(OffReason::name).join(", ");
+        let off = vec![
+            text("reason", &format!("{reasons}; empty if a foot can press it")),
+            text("text", "the reason in a sentence, with the floor file it is about; may be empty"),
+        ];
         let range = match (&widget.behaviour, held.as_slice()) {
             (Behaviour::Selector(_), _) => vec![text("choices", "the name of each")],
             (_, [Argument { tag: "f", .. }]) => {
@@ -230,6 +235,11 @@ impl Maker<'_> {
         let told = [
             ("value", held, "What it holds; told to all listeners when an app asks or changes it."),
             ("state", state, "How it is; told to all likewise."),
+            (
+                "off",
+                off,
+                "Why no foot can press it; told to all likewise, and when a `HoldToRun` control goes off or on.",
+            ),
             ("range", range, "What it can hold."),
             ("page", vec![text("page", "empty if it is on all")], "Where it is."),
         ];

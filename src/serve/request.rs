@@ -1,5 +1,6 @@
 //! What a floor does with what apps ask.
 
+use super::Refusal;
 use crate::engine::Engine;
 use crate::widget::{SetError, Value, WidgetId};
 use crate::wire::{ControlMessage, is_pattern, matches};
@@ -7,8 +8,23 @@ use crate::wire::{ControlMessage, is_pattern, matches};
 /// Does what `message` asks of `engine`.
 ///
 /// # Errors
-/// [`SetError`] if it can't be done; nothing has changed then.
-pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
+/// [`Refusal`] if it can't be done; nothing has changed then.
+pub(super) fn apply(engine: &mut Engine, message: &ControlMessage) -> Result<(), Refusal> {
+    set(engine, message).map_err(|why| refusal(engine, message, why))
+}
+
+/// The refusal of `message` for this reason, with the names that it could have meant.
+pub(super) fn refusal(engine: &Engine, message: &ControlMessage, why: SetError) -> Refusal {
+    match (message.id(), message, why) {
+        (_, ControlMessage::ShowPage { page }, _) => Refusal::unknown_page(page.as_str(), engine.layout()),
+        (Some(id), _, SetError::Unknown) => Refusal::unknown_control(id.as_str(), engine.layout()),
+        (Some(id), _, why) => Refusal::Control { id: id.clone(), why },
+        // Nothing else is refused.
+        (None, _, _) => Refusal::unknown_control("", engine.layout()),
+    }
+}
+
+fn set(engine: &mut Engine, message: &ControlMessage) -> Result<(), SetError> {
     match message {
         ControlMessage::Set { id, value } => {
             let value = as_held(engine, id.as_str(), *value)?;

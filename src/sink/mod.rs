@@ -42,8 +42,6 @@ pub use device::{DeviceEntry, DeviceOptions, DeviceSink, Mix, OutputDevice, outp
 pub(crate) use disk::Disk;
 pub use fanout::Fanout;
 pub use json::JsonSink;
-#[cfg(feature = "record")]
-pub(crate) use json::control_line;
 #[cfg(feature = "preview")]
 pub(crate) use json::event_line;
 pub use manual::ManualSink;
@@ -62,6 +60,7 @@ pub use within::Within;
 pub(crate) use worker::Worker;
 
 internal! {
+    use json::{control_json};
     use crack_rate::{CrackNews};
     use latency::{Bucket, HandedOn, LatencyMeter, LatencyProbe, LatencyStages, LatencySummary};
     use priority::{Rank, claim_priority, step_back};

@@ -36,7 +36,8 @@ pub enum Report<'a> {
     Alive(Instant, u32),
     /// What is muted has changed, or somebody has asked.
     Muted(Instant, &'a Muted),
-    /// An app has changed a control or asked for it: how it is now.
+    /// How a control is now: an app has changed it or asked for it, or it has the guard `HoldToRun` and has gone off or
+    /// on.
     Control(Instant, &'a ControlState),
     /// How one area of a floor that several computers serve stands has changed.
     Area(&'a AreaNews),

@@ -57,6 +57,11 @@ pub trait SensorSource: Send {
     /// Hears of a layout that the floor is about to get; a recording puts in its place what it keeps of it.
     fn note_layout(&mut self, _layout: &mut Layout) {}
 
+    /// The address that packets come to; `None` where they do not come over a network.
+    fn local_addr(&self) -> Option<SocketAddr> {
+        None
+    }
+
     /// Sends `datagram` to somebody who asked; where there is no wire, nobody hears it.
     fn answer(&mut self, _to: SocketAddr, _datagram: &[u8]) {}
 

@@ -17,7 +17,7 @@ use super::selector::Selector;
 use super::slider::Slider;
 use super::stepper::Stepper;
 use super::switch::Switch;
-use super::{Behaviour, Emitted, EventKind, Indicator, Input, SetError, Value};
+use super::{Behaviour, Emitted, EventKind, Indicator, Input, OffReason, SetError, Value};
 use crate::units::Instant;
 
 /// One control at work: its press, its guard and the state of its behaviour.
@@ -31,7 +31,7 @@ pub struct Control {
     /// Time of the last step.
     now: Instant,
     disabled: bool,
-    inhibited: bool,
+    inhibited: Option<OffReason>,
     locked: bool,
     indicator: Indicator,
 }
@@ -48,7 +48,7 @@ impl Control {
             size,
             now: Instant::START,
             disabled: false,
-            inhibited: false,
+            inhibited: None,
             locked: false,
             indicator: Indicator::Off,
         }
@@ -60,7 +60,7 @@ impl Control {
     /// comes of a press is [`EventKind::Refused`].
     pub fn step(&mut self, now: Instant, input: Input) -> Emitted {
         let last = std::mem::replace(&mut self.now, now);
-        if self.disabled || self.inhibited {
+        if self.disabled || self.inhibited.is_some() {
             return Emitted::new();
         }
         let outcome = self.press.step(now, input);
@@ -105,17 +105,17 @@ impl Control {
         self.disabled
     }
 
-    /// Switches the control off, whatever apps want, while its floor can't be trusted with it, or lets it work again;
-    /// switching off cancels its press.
-    pub fn set_inhibited(&mut self, inhibited: bool) -> Emitted {
+    /// Switches the control off for a reason of its floor, whatever apps want, or with `None` lets it work again;
+    /// either cancels its press.
+    pub fn set_inhibited(&mut self, inhibited: Option<OffReason>) -> Emitted {
         let emitted = self.cancel();
         self.inhibited = inhibited;
         emitted
     }
 
-    /// Whether it is off because its floor can't be trusted with it.
+    /// Why its floor has switched it off; `None` if it has not.
     #[must_use]
-    pub fn is_inhibited(&self) -> bool {
+    pub fn inhibited(&self) -> Option<OffReason> {
         self.inhibited
     }
 
@@ -215,7 +215,7 @@ impl Control {
     #[must_use]
     pub fn is_at_rest(&self) -> bool {
         self.disabled
-            || self.inhibited
+            || self.inhibited.is_some()
             || (self.press.is_at_rest() && self.guard.is_at_rest() && self.machine.is_at_rest())
     }
 
@@ -228,7 +228,7 @@ impl Control {
     /// Force of the foot on it as a share of its press threshold; 0 with no foot on it.
     #[must_use]
     pub fn press_share(&self) -> f32 {
-        if self.disabled || self.inhibited { 0.0 } else { self.press.share() }
+        if self.disabled || self.inhibited.is_some() { 0.0 } else { self.press.share() }
     }
 }
 

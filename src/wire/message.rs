@@ -98,6 +98,29 @@ pub enum ControlMessage {
 
 impl ControlMessage {
     /// The control it is about, if it is about one.
+    #[must_use]
+    pub fn id(&self) -> Option<&WidgetId> {
+        match self {
+            Self::Set { id, .. }
+            | Self::Enable { id }
+            | Self::Disable { id }
+            | Self::Lock { id }
+            | Self::Unlock { id }
+            | Self::Label { id, .. }
+            | Self::Indicate { id, .. }
+            | Self::SetRange { id, .. }
+            | Self::Get { id } => Some(id),
+            Self::ShowPage { .. }
+            | Self::GetPage
+            | Self::GetAll
+            | Self::CancelAll
+            | Self::Mute { .. }
+            | Self::MuteTile { .. }
+            | Self::GetMute => None,
+        }
+    }
+
+    /// The same, to be changed.
     pub fn id_mut(&mut self) -> Option<&mut WidgetId> {
         match self {
             Self::Set { id, .. }

@@ -27,6 +27,7 @@ mod intent;
 mod laws;
 mod layers;
 mod layout;
+mod off;
 mod page_files;
 mod regions;
 mod runtime;

@@ -10,7 +10,7 @@ use underfoot::runtime::{EndReason, Event, Kind, Refusal, Session, SessionBuilde
 use underfoot::sim::{Scenario, SimConfig, SimFloor, calibrated};
 use underfoot::source::{Pace, SensorSource, SimulatedSource, SourceError};
 use underfoot::units::{HostClock, Instant};
-use underfoot::widget::{EventKind, SetError, Value};
+use underfoot::widget::{EventKind, OffReason, SetError, Value, WidgetId};
 use underfoot::wire::SensorPacket;
 
 use crate::support::layout;
@@ -56,6 +56,10 @@ fn visit() -> SessionBuilder {
 
 fn all(session: &Session) -> Vec<Event> {
     std::iter::from_fn(|| session.next_event_timeout(Duration::from_secs(60))).collect()
+}
+
+fn refused(id: &str, why: SetError) -> Result<(), Refusal> {
+    Err(Refusal::Control { id: WidgetId::new(id), why })
 }
 
 fn controls(events: &[Event]) -> Vec<String> {
@@ -106,22 +110,19 @@ fn what_an_app_asks_is_done_and_told_or_refused_with_its_reason() {
     // Before the first frame.
     let zoom = session.snapshot().control("zoom").unwrap();
     assert_eq!((zoom.value, zoom.label.as_str(), zoom.enabled), (Some(Value::Number(0.3)), "Zoom", true));
-    let refused = |id: &str| session.control(id).map(drop);
-    assert_eq!(refused("nowhere"), Err(SetError::Unknown.into()));
     let zoom = session.control("zoom").unwrap();
     zoom.set(0.75).unwrap();
     zoom.set_range(1..=120).unwrap();
     zoom.set(40).unwrap();
     zoom.set_label("Slice").unwrap();
-    assert_eq!(zoom.set(true), Err(SetError::WrongType.into()));
-    assert_eq!(zoom.set(f32::NAN), Err(SetError::NotFinite.into()));
-    assert_eq!(zoom.set_range(5..=5), Err(SetError::NoRange.into()));
-    assert_eq!(zoom.set_range(0.0..=f64::NAN), Err(SetError::NoRange.into()));
+    assert_eq!(zoom.set(true), refused("zoom", SetError::WrongType));
+    assert_eq!(zoom.set(f32::NAN), refused("zoom", SetError::NotFinite));
+    assert_eq!(zoom.set_range(5..=5), refused("zoom", SetError::NoRange));
+    assert_eq!(zoom.set_range(0.0..=f64::NAN), refused("zoom", SetError::NoRange));
     zoom.set_locked(true).unwrap();
-    assert_eq!(zoom.set(50), Err(SetError::Locked.into()));
-    assert_eq!(zoom.set_range(0..=9), Err(SetError::Locked.into()));
-    assert_eq!(session.control("home").unwrap().set_range(0..=9), Err(SetError::WrongType.into()));
-    assert_eq!(session.set_page("nowhere"), Err(SetError::Unknown.into()));
+    assert_eq!(zoom.set(50), refused("zoom", SetError::Locked));
+    assert_eq!(zoom.set_range(0..=9), refused("zoom", SetError::Locked));
+    assert_eq!(session.control("home").unwrap().set_range(0..=9), refused("home", SetError::WrongType));
     session.stop();
     let events = all(&session);
     let told = events.iter().filter(|event| (event.id(), event.kind) == ("zoom", Kind::State));
@@ -135,8 +136,8 @@ fn what_an_app_asks_is_done_and_told_or_refused_with_its_reason() {
 #[test]
 fn only_a_foot_can_hold_what_acts_while_it_is_held() {
     let session = silent("all_controls").start().unwrap();
-    assert_eq!(session.control("drive").unwrap().set(true), Err(SetError::Momentary.into()));
-    assert!(!session.held("drive").is_fresh());
+    assert_eq!(session.control("drive").unwrap().set(true), refused("drive", SetError::Momentary));
+    assert!(!session.held("drive").unwrap().is_fresh());
 }
 
 #[test]
@@ -177,4 +178,116 @@ fn what_is_missing_is_said_and_nothing_runs() {
     let taken = std::net::UdpSocket::bind("127.0.0.1:0").unwrap();
     let address = taken.local_addr().unwrap().to_string();
     assert!(matches!(start(Session::listen(address).layout(layout("map"))), StartError::Source(_)));
+}
+
+#[test]
+fn a_misspelt_name_is_refused_with_the_nearest_one_wherever_it_is_asked_for() {
+    let session = silent("map").start().unwrap();
+    let expected = r#"there is no control "zom"; did you mean "zoom"?"#;
+    assert_eq!(session.control("zom").map(drop).unwrap_err().to_string(), expected);
+    assert_eq!(session.held("zom").map(drop).unwrap_err().to_string(), expected);
+    let get = underfoot::wire::ControlMessage::Get { id: WidgetId::new("zom") };
+    assert_eq!(session.ask(get).unwrap_err().to_string(), expected);
+}
+
+#[test]
+fn an_unknown_page_is_refused_with_the_names_of_the_pages() {
+    let pages = crate::support::page(
+        r#"Layout(version: 1, pages: [(id: "first"), (id: "second")],
+            regions: [(id: "all", at: (0, 0), size: (6, 6))],
+            widgets: [(id: "home", kind: "button", at: (1, 1), size: (0.8, 0.8))])"#,
+    );
+    let session =
+        Session::source(Box::new(Silence(Arc::default())), no_clock()).layout(pages).start().unwrap();
+    let expected = r#"there is no page "third": the layout has "first" and "second""#;
+    assert_eq!(session.set_page("third").unwrap_err().to_string(), expected);
+    session.set_page("second").unwrap();
+}
+
+#[test]
+fn a_value_beyond_the_range_becomes_the_nearest_end_of_it() {
+    let session = silent("all_controls").start().unwrap();
+    for control in session.controls() {
+        let Some(ValueRange::Number(scale)) = control.state().unwrap().range else { continue };
+        for (given, taken) in [(1e6, scale.max), (-1e6, scale.min), (scale.max, scale.max)] {
+            match control.set(given) {
+                Ok(()) => {
+                    assert_eq!(control.state().unwrap().value, Some(Value::Number(taken)), "{}", control.id())
+                }
+                Err(refusal) => assert_eq!(Err(refusal), self::refused(control.id(), SetError::Momentary)),
+            }
+        }
+    }
+}
+
+#[test]
+fn controls_are_listed_in_the_order_of_the_layout_with_their_states() {
+    let session = silent("map").start().unwrap();
+    let page = layout("map");
+    let expected: Vec<&str> = page.widgets.iter().map(|widget| widget.id.as_str()).collect();
+    let controls = session.controls();
+    assert_eq!(controls.iter().map(underfoot::runtime::Control::id).collect::<Vec<_>>(), expected);
+    let states: Vec<String> = session.snapshot().controls().map(|state| state.id.to_string()).collect();
+    assert_eq!(states, expected);
+    assert!(controls.iter().all(|control| control.state().unwrap().id == control.id()));
+}
+
+#[test]
+fn a_loop_over_a_session_hears_every_event_and_ends_with_it() {
+    let session = visit().start().unwrap();
+    let events: Vec<Event> = (&session).into_iter().collect();
+    assert_eq!(controls(&events).len(), 8);
+    assert_eq!(events.last().map(|event| &event.kind), Some(&Kind::Ended(EndReason::SourceEnded)));
+    assert_eq!(session.events().next(), None, "after the end nothing is waited for");
+}
+
+#[test]
+fn a_session_knows_the_port_that_the_system_chose() {
+    let session = Session::listen("127.0.0.1:0").layout(layout("map")).start().unwrap();
+    let address = session.local_addr().unwrap();
+    assert!(address.ip().is_loopback() && address.port() > 0, "{address}");
+    assert_eq!(silent("map").start().unwrap().local_addr(), None);
+    let within = Session::listen("[::ffff:127.0.0.1]:0").layout(layout("map")).start().unwrap();
+    assert!(within.local_addr().unwrap().is_ipv4(), "an IPv4 address within IPv6 is the IPv4 address");
+}
+
+/// What a control that acts while it is held says of itself after a second of this floor.
+fn off_after_a_second(floor: Floor, sim: SimFloor) -> Option<underfoot::engine::Off> {
+    let stand = "Scenario(title: \"nobody\", steps: [Wait(ms: 1000)])";
+    let page = layout("all_controls");
+    let script = Scenario::parse("nobody", stand).unwrap().resolve(&page, &floor.geometry).unwrap();
+    let source = SimulatedSource::new(sim, Box::new(script), Pace::FreeRunning);
+    let session = Session::source(Box::new(source), no_clock()).floor(floor).layout(page).start().unwrap();
+    let told = session.events().filter(|event| (event.id(), event.kind) == ("drive", Kind::State)).count();
+    let off = session.control("drive").unwrap().state().unwrap().off;
+    assert_eq!(told > 0, off.is_some(), "an app hears of it without asking");
+    off
+}
+
+#[test]
+fn an_app_hears_why_a_control_is_off_on_a_floor_without_calibration() {
+    let wired = Floor::default();
+    let sim = SimFloor::new(&wired, SimConfig::default(), 1);
+    let off = off_after_a_second(wired.clone(), sim.clone()).unwrap();
+    assert_eq!(off.reason, OffReason::NotCalibrated);
+    assert!(off.text.contains("no floor file is given"), "{}", off.text);
+    let mut named = wired.clone();
+    named.file = underfoot::floor::FloorFile::new("hall.ron");
+    let off = off_after_a_second(named, sim.clone()).unwrap();
+    assert!(off.text.contains("hall.ron"), "{}", off.text);
+    assert_eq!(off_after_a_second(calibrated(&wired, &sim, 1).unwrap(), sim), None);
+}
+
+#[test]
+fn a_floor_simulated_in_the_same_process_is_calibrated() {
+    let page = layout("all_controls");
+    let text = "Scenario(title: \"nobody\", steps: [Wait(ms: 1500)])";
+    let feet = Scenario::parse("nobody", text).unwrap().resolve(&page, &Floor::default().geometry).unwrap();
+    let session = Session::simulated(Box::new(feet)).layout(page).start().unwrap();
+    let ended = session.events().last().unwrap();
+    assert_eq!(ended.kind, Kind::Ended(EndReason::SourceEnded));
+    assert_eq!(session.snapshot().floor.health.uncalibrated, 0);
+    let off = session.control("drive").unwrap().state().unwrap().off.map(|off| off.reason);
+    // The floor falls silent only with its end.
+    assert!(matches!(off, None | Some(OffReason::LinkLost)), "{off:?}");
 }

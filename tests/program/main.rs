@@ -28,6 +28,7 @@ mod rack;
 mod recordings;
 mod senders;
 mod service;
+mod simulated;
 mod soak;
 mod storage;
 mod strange_boards;

@@ -223,10 +223,20 @@ fn a_page_sees_the_layout_sets_a_control_and_is_told_why_it_may_not() {
     assert!(
         floor["width_m"].as_f64().unwrap() > 0.5 && floor["controls"][1]["width_m"].as_f64().unwrap() > 0.1
     );
+    // A page draws a control and limits its inputs by what the first line says.
+    assert_eq!(floor["controls"][1]["range"], json!([0.0, 1.0]));
+    assert_eq!(
+        (&floor["controls"][1]["options"], &floor["controls"][1]["enabled"]),
+        (&json!(null), &json!(true))
+    );
+    assert_eq!(floor["controls"][0]["off"], json!("waiting"), "no packet has come");
+    // What lies beyond the range becomes its nearest end.
+    page.ask("widget/zoom/set", &json!([7]));
+    page.wait_until("it is at the end", |page| page.has_heard("state", "value", &json!(1.0)));
     page.ask("widget/zoom/set", &json!([0.25]));
     page.wait_until("it is set", |page| page.has_heard("state", "value", &json!(0.25)));
     for (request, args, why) in [
-        ("widget/nothing/set", json!([1]), "there is no such control"),
+        ("widget/zom/set", json!([1]), r#"there is no control "zom"; did you mean "zoom"?"#),
         ("widget/drive/set", json!([true]), "only a foot can work this control, for as long as it holds it"),
         ("widget/zoom/fly", json!([]), "there is no such request"),
     ] {

@@ -2,6 +2,7 @@
 //!
 //! Each function checks its pointers and texts, and catches what panics.
 
+mod last_error;
 mod session;
 mod status;
 mod structs;
@@ -16,7 +17,7 @@ use underfoot::runtime::{Control, Refusal};
 use underfoot::widget::{Indicator, Value};
 
 pub use session::UfSession;
-use status::{BAD_ARGUMENT, OK, OVER, PANIC, TIMEOUT, of_refusal};
+use status::{OK, ON, OVER, PANIC, TIMEOUT, bad_argument, of_reason, of_refusal};
 pub use structs::{UfContact, UfEvent, UfOptions, UfValue};
 use structs::{put, sized};
 
@@ -25,7 +26,10 @@ const HOUR: Duration = Duration::from_secs(3600);
 
 /// Calls `f`; `fallen` if it panics.
 fn contained<T>(fallen: T, f: impl FnOnce() -> T) -> T {
-    catch_unwind(AssertUnwindSafe(f)).unwrap_or(fallen)
+    catch_unwind(AssertUnwindSafe(f)).unwrap_or_else(|_| {
+        last_error::keep("a fault of the library");
+        fallen
+    })
 }
 
 /// The text at `text`; `None` for null and for what is not UTF-8.
@@ -52,11 +56,11 @@ unsafe fn with_control(
     contained(PANIC, || {
         // SAFETY: as the caller promises.
         let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else {
-            return BAD_ARGUMENT;
+            return bad_argument();
         };
         match session.floor.control(id).and_then(what) {
             Ok(()) => OK,
-            Err(refusal) => of_refusal(refusal),
+            Err(refusal) => of_refusal(&refusal),
         }
     })
 }
@@ -74,17 +78,13 @@ pub unsafe extern "C" fn uf_session_listen(
     error: *mut c_char,
     error_size: usize,
 ) -> *mut UfSession {
+    // SAFETY: as the caller promises.
+    let (address, layout, options) = unsafe { (text(address), text(layout), options.as_ref()) };
     let started = contained(Err("a fault of the library".to_owned()), || {
-        // SAFETY: as the caller promises.
-        let (Some(address), Some(layout)) = (unsafe { text(address) }, unsafe { text(layout) }) else {
+        let (Some(address), Some(layout)) = (address, layout) else {
             return Err("address and layout must be texts in UTF-8".to_owned());
         };
-        // SAFETY: as the caller promises.
-        let options = unsafe { options.as_ref() };
-        if options.is_some_and(|options| !sized::<UfOptions>(options.size)) {
-            return Err("the options have a size that no version has".to_owned());
-        }
-        let every_change = options.is_some_and(|options| options.every_change != 0);
+        let every_change = every_change(options)?;
         // SAFETY: as the caller promises.
         let floor = options
             .filter(|options| !options.floor_path.is_null())
@@ -94,15 +94,71 @@ pub unsafe extern "C" fn uf_session_listen(
             floor => UfSession::listen(address, layout, floor.flatten(), every_change),
         }
     });
+    // SAFETY: as the caller promises.
+    unsafe { handed_out(started, error, error_size) }
+}
+
+/// Starts a floor of the past; see `underfoot.h`.
+///
+/// # Safety
+/// `recording` is null or ends with 0, `options` is null or of the size it says, `error` is null or has `error_size`
+/// bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_session_replay(
+    recording: *const c_char,
+    speed: f64,
+    options: *const UfOptions,
+    error: *mut c_char,
+    error_size: usize,
+) -> *mut UfSession {
+    // SAFETY: as the caller promises.
+    let (recording, options) = unsafe { (text(recording), options.as_ref()) };
+    let started = contained(Err("a fault of the library".to_owned()), || {
+        let recording = recording.ok_or("the path of the recording must be a text in UTF-8")?;
+        UfSession::replay(recording, speed, every_change(options)?)
+    });
+    // SAFETY: as the caller promises.
+    unsafe { handed_out(started, error, error_size) }
+}
+
+/// Whether the options ask for every value.
+fn every_change(options: Option<&UfOptions>) -> Result<bool, String> {
+    match options {
+        Some(options) if !sized::<UfOptions>(options.size) => {
+            Err("the options have a size that no version has".to_owned())
+        }
+        options => Ok(options.is_some_and(|options| options.every_change != 0)),
+    }
+}
+
+/// The handle of a session, or null and the reason in `error` and for `uf_last_error`.
+///
+/// # Safety
+/// `error` is null or has `error_size` bytes.
+unsafe fn handed_out(
+    started: Result<UfSession, String>,
+    error: *mut c_char,
+    error_size: usize,
+) -> *mut UfSession {
     match started {
         Ok(session) => Box::into_raw(Box::new(session)),
         Err(why) => {
-            if !error.is_null() && error_size > 0 {
-                // SAFETY: as the caller promises.
-                put(unsafe { std::slice::from_raw_parts_mut(error, error_size) }, &why);
-            }
+            last_error::keep(&why);
+            // SAFETY: as the caller promises.
+            unsafe { put_at(error, error_size, &why) };
             ptr::null_mut()
         }
+    }
+}
+
+/// Writes `text` to `place`, cut to `size` bytes with the closing 0; nowhere if that is null or empty.
+///
+/// # Safety
+/// `place` is null or has `size` bytes.
+unsafe fn put_at(place: *mut c_char, size: usize, text: &str) {
+    if !place.is_null() && size > 0 {
+        // SAFETY: as the caller promises.
+        put(unsafe { std::slice::from_raw_parts_mut(place, size) }, text);
     }
 }
 
@@ -115,11 +171,11 @@ pub unsafe extern "C" fn uf_next(session: *mut UfSession, event: *mut UfEvent, t
     contained(PANIC, || {
         // SAFETY: as the caller promises.
         let (Some(session), false) = (unsafe { session.as_ref() }, event.is_null()) else {
-            return BAD_ARGUMENT;
+            return bad_argument();
         };
         // SAFETY: not null; `size` comes first in all versions.
         if !sized::<UfEvent>(unsafe { ptr::read(event.cast::<u32>()) }) {
-            return BAD_ARGUMENT;
+            return bad_argument();
         }
         let patience = u64::try_from(timeout_ms).ok().map(Duration::from_millis);
         loop {
@@ -147,8 +203,123 @@ pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -
     contained(0, || {
         // SAFETY: as the caller promises.
         let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else { return 0 };
-        c_int::from(session.floor.held(id).is_fresh())
+        match session.floor.held(id) {
+            Ok(held) => c_int::from(held.is_fresh()),
+            // Not the number of a failure: a program that takes all but 0 for held would go on for ever.
+            Err(refusal) => {
+                of_refusal(&refusal);
+                0
+            }
+        }
     })
+}
+
+/// Whether there is a control of this name; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_has(session: *const UfSession, id: *const c_char) -> c_int {
+    // SAFETY: as the caller promises.
+    unsafe { with_control(session, id, |_| Ok(())) }
+}
+
+/// Why a control is off; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or a text, `text` is null or has `text_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_off(
+    session: *const UfSession,
+    id: *const c_char,
+    text: *mut c_char,
+    text_size: usize,
+) -> c_int {
+    let mut off = None;
+    // SAFETY: as the caller promises.
+    let status = unsafe {
+        with_control(session, id, |control| {
+            off = control.state()?.off;
+            Ok(())
+        })
+    };
+    // SAFETY: as the caller promises.
+    unsafe { put_at(text, text_size, off.as_ref().map_or("", |off| &off.text)) };
+    match off {
+        _ if status != OK => status,
+        Some(off) => of_reason(off.reason),
+        None => ON,
+    }
+}
+
+/// The word for a reason; see `underfoot.h`.
+#[unsafe(no_mangle)]
+pub extern "C" fn uf_off_name(reason: c_int) -> *const c_char {
+    status::reason_name(reason).as_ptr()
+}
+
+/// The number of controls; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_control_count(session: *const UfSession) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let Some(session) = (unsafe { session.as_ref() }) else { return bad_argument() };
+        c_int::try_from(session.floor.controls().len()).unwrap_or(c_int::MAX)
+    })
+}
+
+/// The name of a control; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `id` is null or has `id_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_control_id(
+    session: *const UfSession,
+    index: c_int,
+    id: *mut c_char,
+    id_size: usize,
+) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let Some(session) = (unsafe { session.as_ref() }) else { return bad_argument() };
+        let controls = session.floor.controls();
+        let Some(control) = usize::try_from(index).ok().and_then(|index| controls.get(index)) else {
+            last_error::keep(&format!("there is no control number {index}: there are {}", controls.len()));
+            return status::UNKNOWN;
+        };
+        // SAFETY: as the caller promises.
+        unsafe { put_at(id, id_size, control.id()) };
+        OK
+    })
+}
+
+/// Where boards send to; see `underfoot.h`.
+///
+/// # Safety
+/// `session` is null or lives, `address` is null or has `address_size` bytes.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn uf_address(
+    session: *const UfSession,
+    address: *mut c_char,
+    address_size: usize,
+) -> c_int {
+    contained(PANIC, || {
+        // SAFETY: as the caller promises.
+        let Some(session) = (unsafe { session.as_ref() }) else { return bad_argument() };
+        let text = session.floor.local_addr().map(|address| address.to_string()).unwrap_or_default();
+        // SAFETY: as the caller promises.
+        unsafe { put_at(address, address_size, &text) };
+        c_int::try_from(text.len()).unwrap_or(c_int::MAX)
+    })
+}
+
+/// Why the last call failed; see `underfoot.h`.
+#[unsafe(no_mangle)]
+pub extern "C" fn uf_last_error() -> *const c_char {
+    last_error::last()
 }
 
 /// A descriptor to poll; see `underfoot.h`.
@@ -158,7 +329,7 @@ pub unsafe extern "C" fn uf_held(session: *const UfSession, id: *const c_char) -
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn uf_fd(session: *const UfSession) -> c_int {
     // SAFETY: as the caller promises.
-    contained(PANIC, || unsafe { session.as_ref() }.map_or(BAD_ARGUMENT, UfSession::descriptor))
+    contained(PANIC, || unsafe { session.as_ref() }.map_or_else(bad_argument, UfSession::descriptor))
 }
 
 /// What a control holds; see `underfoot.h`.
@@ -170,13 +341,16 @@ pub unsafe extern "C" fn uf_get(session: *const UfSession, id: *const c_char, va
     contained(PANIC, || {
         // SAFETY: as the caller promises.
         let (Some(session), Some(id)) = (unsafe { session.as_ref() }, unsafe { text(id) }) else {
-            return BAD_ARGUMENT;
+            return bad_argument();
         };
         // SAFETY: not null; `size` comes first in all versions.
         if value.is_null() || !sized::<UfValue>(unsafe { ptr::read(value.cast::<u32>()) }) {
-            return BAD_ARGUMENT;
+            return bad_argument();
         }
-        let Some(state) = session.floor.snapshot().control(id) else { return status::UNKNOWN };
+        let state = match session.floor.control(id).and_then(|control| control.state()) {
+            Ok(state) => state,
+            Err(refusal) => return of_refusal(&refusal),
+        };
         // SAFETY: of this version's size at least, as was checked.
         unsafe { ptr::write(value, UfValue::of(state.value, ptr::read(value.cast::<u32>()))) };
         OK
@@ -197,9 +371,9 @@ pub unsafe extern "C" fn uf_contacts(
     contained(PANIC, || {
         let size = u32::try_from(element_size).unwrap_or(0);
         // SAFETY: as the caller promises.
-        let Some(session) = (unsafe { session.as_ref() }) else { return BAD_ARGUMENT };
+        let Some(session) = (unsafe { session.as_ref() }) else { return bad_argument() };
         if (contacts.is_null() && capacity > 0) || !sized::<UfContact>(size) {
-            return BAD_ARGUMENT;
+            return bad_argument();
         }
         let feet = session.floor.snapshot().floor.contacts;
         for (index, foot) in feet.iter().enumerate().take(capacity) {
@@ -223,7 +397,7 @@ pub unsafe extern "C" fn uf_link_cause(session: *const UfSession, text: *mut c_c
     contained(PANIC, || {
         // SAFETY: as the caller promises.
         let (Some(session), false) = (unsafe { session.as_ref() }, text.is_null() || size == 0) else {
-            return BAD_ARGUMENT;
+            return bad_argument();
         };
         let cause = session.floor.snapshot().floor.link_cause;
         let said = cause.map(|cause| format!("{}: {cause}", cause.name())).unwrap_or_default();
@@ -294,7 +468,7 @@ pub unsafe extern "C" fn uf_set_label(
     label: *const c_char,
 ) -> c_int {
     // SAFETY: as the caller promises.
-    let Some(label) = (unsafe { text(label) }) else { return BAD_ARGUMENT };
+    let Some(label) = (unsafe { text(label) }) else { return bad_argument() };
     // SAFETY: as the caller promises.
     unsafe { with_control(session, id, |control| control.set_label(label)) }
 }
@@ -310,9 +484,9 @@ pub unsafe extern "C" fn uf_set_indicator(
     lamp: *const c_char,
 ) -> c_int {
     // SAFETY: as the caller promises.
-    let Some(lamp) = (unsafe { text(lamp) }) else { return BAD_ARGUMENT };
+    let Some(lamp) = (unsafe { text(lamp) }) else { return bad_argument() };
     let Some(lamp) = Indicator::ALL.into_iter().find(|other| other.name() == lamp) else {
-        return BAD_ARGUMENT;
+        return bad_argument();
     };
     // SAFETY: as the caller promises.
     unsafe { with_control(session, id, |control| control.set_indicator(lamp)) }
@@ -347,8 +521,10 @@ pub unsafe extern "C" fn uf_set_page(session: *mut UfSession, page: *const c_cha
     contained(PANIC, || {
         // SAFETY: as the caller promises.
         match (unsafe { session.as_ref() }, unsafe { text(page) }) {
-            (Some(session), Some(page)) => session.floor.set_page(page).map_or_else(of_refusal, |()| OK),
-            _ => BAD_ARGUMENT,
+            (Some(session), Some(page)) => {
+                session.floor.set_page(page).map_or_else(|refusal| of_refusal(&refusal), |()| OK)
+            }
+            _ => bad_argument(),
         }
     })
 }

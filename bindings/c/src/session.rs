@@ -8,7 +8,8 @@ use std::os::{fd::AsRawFd, unix::net::UnixStream};
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::Duration;
 
-use underfoot::runtime::{Event, Kind, Session};
+use underfoot::recording::Speed;
+use underfoot::runtime::{Event, Kind, Session, SessionBuilder};
 
 use crate::structs::ID_SIZE;
 
@@ -34,7 +35,22 @@ impl UfSession {
         if let Some(path) = floor_file {
             builder = builder.floor_file(path).map_err(|problems| problems.to_string())?;
         }
-        builder = builder.layout_file(layout).map_err(|problems| problems.to_string())?;
+        let builder = builder.layout_file(layout).map_err(|problems| problems.to_string())?;
+        Self::start(builder, every_change)
+    }
+
+    /// Plays a recording, `speed` times as fast as it came; 0 plays it as fast as can be.
+    pub(crate) fn replay(recording: &str, speed: f64, every_change: bool) -> Result<Self, String> {
+        let speed = match speed {
+            0.0 => Speed::Max,
+            times if times > 0.0 && times.is_finite() => Speed::Times(times),
+            _ => return Err("the speed is a number above 0, or 0 for as fast as can be".to_owned()),
+        };
+        let builder = Session::replay(recording, speed).map_err(|error| error.to_string())?;
+        Self::start(builder, every_change)
+    }
+
+    fn start(mut builder: SessionBuilder, every_change: bool) -> Result<Self, String> {
         if every_change {
             builder = builder.every_change();
         }

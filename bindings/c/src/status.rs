@@ -3,7 +3,9 @@
 use std::ffi::{CStr, c_int};
 
 use underfoot::runtime::Refusal;
-use underfoot::widget::SetError;
+use underfoot::widget::{OffReason, SetError};
+
+use crate::last_error;
 
 pub(crate) const OK: c_int = 0;
 pub(crate) const TIMEOUT: c_int = 1;
@@ -12,10 +14,18 @@ pub(crate) const BAD_ARGUMENT: c_int = -1;
 pub(crate) const UNKNOWN: c_int = -2;
 pub(crate) const PANIC: c_int = -13;
 
-/// The number of a refusal.
-pub(crate) fn of_refusal(refusal: Refusal) -> c_int {
+/// `UF_BAD_ARGUMENT`, whose words are kept for `uf_last_error`.
+pub(crate) fn bad_argument() -> c_int {
+    last_error::keep(&text(BAD_ARGUMENT).to_string_lossy());
+    BAD_ARGUMENT
+}
+
+/// The number of a refusal, whose words are kept for `uf_last_error`.
+pub(crate) fn of_refusal(refusal: &Refusal) -> c_int {
+    last_error::keep(&refusal.to_string());
     match refusal {
-        Refusal::Control(error) => match error {
+        Refusal::UnknownControl { .. } | Refusal::UnknownPage { .. } => UNKNOWN,
+        Refusal::Control { why, .. } => match why {
             SetError::Unknown => UNKNOWN,
             SetError::WrongType => -3,
             SetError::NotFinite => -4,
@@ -28,6 +38,33 @@ pub(crate) fn of_refusal(refusal: Refusal) -> c_int {
         Refusal::Ended => -10,
         Refusal::NoAnswer => -11,
         _ => -12,
+    }
+}
+
+/// `UF_ON`.
+pub(crate) const ON: c_int = 0;
+
+/// The number of a reason, as in `underfoot.h`: its place in [`OffReason::ALL`], from 1; 100 for one that this library
+/// has no number for.
+pub(crate) fn of_reason(reason: OffReason) -> c_int {
+    let place = OffReason::ALL.iter().position(|other| *other == reason);
+    place.and_then(|place| c_int::try_from(place + 1).ok()).unwrap_or(100)
+}
+
+/// The word for a reason, as in JSON lines; empty for `UF_ON` and for what is no reason.
+pub(crate) fn reason_name(number: c_int) -> &'static CStr {
+    match number {
+        1 => c"disabled",
+        2 => c"waiting",
+        3 => c"boards_swapped",
+        4 => c"not_calibrated",
+        5 => c"other_floor",
+        6 => c"link_lost",
+        7 => c"sensor_trouble",
+        8 => c"repeated_readings",
+        9 => c"coarse_readings",
+        10 => c"other_held",
+        _ => c"",
     }
 }
 
@@ -51,5 +88,19 @@ pub(crate) fn text(status: c_int) -> &'static CStr {
         -12 => c"the floor refuses",
         PANIC => c"a fault of the library",
         _ => c"unknown status",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_reason_has_the_number_of_the_header() {
+        for reason in OffReason::ALL {
+            let name = reason_name(of_reason(reason)).to_str().unwrap_or_default();
+            assert_eq!(name, reason.name());
+        }
+        assert_eq!(reason_name(ON), c"");
     }
 }

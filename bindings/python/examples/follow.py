@@ -3,7 +3,10 @@ import sys, underfoot
 
 with underfoot.listen(*sys.argv[1:3]) as floor:
     for event in floor:
-        if event.kind == "control":
-            print(event.id, event.name, event.value)
-        if event.text == "lost":
-            break
+        match event:
+            case underfoot.ChangedEvent(id, value):
+                print(id, value)
+            case underfoot.ControlEvent(id, name):
+                print(id, name)
+            case underfoot.LinkEvent(state):
+                print("boards:", state)  # "lost" has cancelled what was held; "live" comes by itself

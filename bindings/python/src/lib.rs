@@ -11,12 +11,14 @@ use std::time::{Duration, Instant};
 use pyo3::create_exception;
 use pyo3::exceptions::{PyException, PyKeyError, PyOSError, PyTypeError, PyValueError};
 use pyo3::prelude::*;
-use pyo3::types::PyDict;
+use pyo3::types::{PyBytes, PyDict, PyTuple};
+use underfoot::engine::{ControlState, ValueRange};
 use underfoot::glam::Vec2;
-use underfoot::runtime::{Control, Kind, Refusal, Session, Snapshot};
+use underfoot::recording::Speed;
+use underfoot::runtime::{Control, Kind, Refusal, Session, SessionBuilder, Snapshot};
 use underfoot::widget::{Indicator, SetError, Value};
 
-use event::{Event, to_python};
+use event::{fields, to_python};
 
 create_exception!(
     underfoot,
@@ -51,6 +53,11 @@ impl PySession {
         Ok(self.open()?.snapshot())
     }
 
+    /// How one control is.
+    fn known(&self, id: &str) -> PyResult<ControlState> {
+        self.open()?.control(id).and_then(|control| control.state()).map_err(|refusal| refused(&refusal))
+    }
+
     /// Does `what` with one control, while other threads run.
     fn with_control(
         &self,
@@ -59,16 +66,75 @@ impl PySession {
         what: impl FnOnce(Control<'_>) -> Result<(), Refusal> + Send,
     ) -> PyResult<()> {
         let floor = self.open()?;
-        py.detach(move || floor.control(id).and_then(what)).map_err(|refusal| refused(id, refusal))
+        py.detach(move || floor.control(id).and_then(what)).map_err(|refusal| refused(&refusal))
     }
 }
 
-fn refused(id: &str, refusal: Refusal) -> PyErr {
+fn refused(refusal: &Refusal) -> PyErr {
+    let text = refusal.to_string();
     match refusal {
-        Refusal::Control(SetError::Unknown) => PyKeyError::new_err(id.to_owned()),
-        Refusal::Control(SetError::WrongType) => PyTypeError::new_err(format!("{id}: {refusal}")),
-        _ => Refused::new_err(format!("{id}: {refusal}")),
+        Refusal::UnknownControl { .. } | Refusal::UnknownPage { .. } => PyKeyError::new_err(text),
+        Refusal::Control { why: SetError::WrongType, .. } => PyTypeError::new_err(text),
+        _ => Refused::new_err(text),
     }
+}
+
+/// A session that listens, before it starts.
+fn listening(
+    address: String,
+    layout: std::path::PathBuf,
+    floor: Option<std::path::PathBuf>,
+) -> PyResult<SessionBuilder> {
+    let mut builder = Session::listen(address);
+    if let Some(path) = floor {
+        builder = builder.floor_file(path).map_err(|problems| PyValueError::new_err(problems.to_string()))?;
+    }
+    builder.layout_file(layout).map_err(|problems| PyValueError::new_err(problems.to_string()))
+}
+
+/// A session on a recording, before it starts.
+fn replaying(recording: std::path::PathBuf, speed: Option<f64>) -> PyResult<SessionBuilder> {
+    let speed = match speed {
+        None => Speed::Max,
+        Some(times) if times > 0.0 && times.is_finite() => Speed::Times(times),
+        Some(_) => {
+            return Err(PyValueError::new_err(
+                "the speed is a number above 0, or None for as fast as can be",
+            ));
+        }
+    };
+    Session::replay(recording, speed).map_err(|error| PyOSError::new_err(error.to_string()))
+}
+
+/// How a control is, as a dictionary; `off` as a tuple of reason and text.
+fn state<'py>(py: Python<'py>, state: &ControlState) -> PyResult<Bound<'py, PyDict>> {
+    let ends = |scale: &underfoot::widget::Scale| (scale.min, scale.max);
+    let dict = PyDict::new(py);
+    dict.set_item("value", state.value.map(|value| to_python(py, value)).transpose()?)?;
+    dict.set_item("label", &*state.label)?;
+    dict.set_item("enabled", state.enabled)?;
+    dict.set_item("off", state.off.as_ref().map(|off| (off.reason.name(), &*off.text)))?;
+    dict.set_item("locked", state.locked)?;
+    dict.set_item("pressed", state.pressed)?;
+    dict.set_item("armed", state.armed)?;
+    dict.set_item("indicator", state.indicator.name())?;
+    match &state.range {
+        Some(ValueRange::Number(scale)) => dict.set_item("range", ends(scale))?,
+        Some(ValueRange::Pair(x, y)) => dict.set_item("range", (ends(x), ends(y)))?,
+        Some(ValueRange::Choices(_)) | None => dict.set_item("range", py.None())?,
+    }
+    let step = match &state.range {
+        Some(ValueRange::Number(scale)) if scale.step > 0.0 => Some(scale.step),
+        _ => None,
+    };
+    let options = match &state.range {
+        Some(ValueRange::Choices(names)) => Some(names.clone()),
+        _ => None,
+    };
+    dict.set_item("step", step)?;
+    dict.set_item("options", options)?;
+    dict.set_item("page", state.page.as_ref().map(|page| page.as_str()))?;
+    Ok(dict)
 }
 
 /// True or False, a number, or two.
@@ -92,27 +158,23 @@ impl From<Given> for Value {
 #[pymethods]
 impl PySession {
     #[new]
-    #[pyo3(signature = (address, layout, *, floor=None, every_change=false))]
+    #[pyo3(signature = (address=None, layout=None, *, floor=None, every_change=false, recording=None, speed=Some(1.0)))]
     fn new(
         py: Python<'_>,
-        address: String,
-        layout: std::path::PathBuf,
+        address: Option<String>,
+        layout: Option<std::path::PathBuf>,
         floor: Option<std::path::PathBuf>,
         every_change: bool,
+        recording: Option<std::path::PathBuf>,
+        speed: Option<f64>,
     ) -> PyResult<Self> {
         let started = py.detach(move || {
-            let mut builder = Session::listen(address);
-            if let Some(path) = floor {
-                builder = builder
-                    .floor_file(path)
-                    .map_err(|problems| PyValueError::new_err(problems.to_string()))?;
-            }
-            builder = builder
-                .layout_file(layout)
-                .map_err(|problems| PyValueError::new_err(problems.to_string()))?;
-            if every_change {
-                builder = builder.every_change();
-            }
+            let builder = match (address, layout, recording) {
+                (Some(address), Some(layout), None) => listening(address, layout, floor)?,
+                (None, None, Some(recording)) if floor.is_none() => replaying(recording, speed)?,
+                _ => return Err(PyTypeError::new_err("a floor has an address and a layout, or a recording")),
+            };
+            let builder = if every_change { builder.every_change() } else { builder };
             builder.start().map_err(|error| PyOSError::new_err(error.to_string()))
         })?;
         Ok(Self { floor: Mutex::new(Some(started)), over: AtomicBool::new(false) })
@@ -120,7 +182,11 @@ impl PySession {
 
     /// The next event within `timeout` seconds; without a number, whenever it comes. `None` when there is none.
     #[pyo3(signature = (timeout=None))]
-    fn next_event(&self, py: Python<'_>, timeout: Option<f64>) -> PyResult<Option<Event>> {
+    fn next_event<'py>(
+        &self,
+        py: Python<'py>,
+        timeout: Option<f64>,
+    ) -> PyResult<Option<Bound<'py, PyTuple>>> {
         let begun = Instant::now();
         let patience = match timeout {
             None => Duration::MAX,
@@ -135,7 +201,7 @@ impl PySession {
                 if matches!(event.kind, Kind::Ended(_)) {
                     self.over.store(true, Ordering::Release);
                 }
-                return Event::of(py, &event).map(Some);
+                return fields(py, &event).map(Some);
             }
             py.check_signals()?;
             if left.is_zero() || self.over.load(Ordering::Acquire) {
@@ -148,14 +214,6 @@ impl PySession {
     #[getter]
     fn over(&self) -> bool {
         self.over.load(Ordering::Acquire) || self.handle().is_none()
-    }
-
-    fn __iter__(this: Py<Self>) -> Py<Self> {
-        this
-    }
-
-    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Event>> {
-        self.next_event(py, None)
     }
 
     fn __enter__(this: Py<Self>) -> Py<Self> {
@@ -185,8 +243,15 @@ impl PySession {
         }
     }
 
-    fn held(&self, id: &str) -> bool {
-        self.handle().is_some_and(|floor| floor.held(id).is_fresh())
+    fn held(&self, id: &str) -> PyResult<bool> {
+        let Some(floor) = self.handle() else { return Ok(false) };
+        Ok(floor.held(id).map_err(|refusal| refused(&refusal))?.is_fresh())
+    }
+
+    /// Where boards send to.
+    #[getter]
+    fn address(&self) -> PyResult<Option<String>> {
+        Ok(self.open()?.local_addr().map(|address| address.to_string()))
     }
 
     #[getter]
@@ -195,8 +260,7 @@ impl PySession {
     }
 
     fn __getitem__(&self, py: Python<'_>, id: &str) -> PyResult<Option<Py<PyAny>>> {
-        let state = self.snapshot()?.control(id).ok_or_else(|| PyKeyError::new_err(id.to_owned()))?;
-        state.value.map(|value| to_python(py, value)).transpose()
+        self.known(id)?.value.map(|value| to_python(py, value)).transpose()
     }
 
     fn __setitem__(&self, py: Python<'_>, id: &str, value: &Bound<'_, PyAny>) -> PyResult<()> {
@@ -216,16 +280,13 @@ impl PySession {
     }
 
     fn state<'py>(&self, py: Python<'py>, id: &str) -> PyResult<Bound<'py, PyDict>> {
-        let state = self.snapshot()?.control(id).ok_or_else(|| PyKeyError::new_err(id.to_owned()))?;
-        let dict = PyDict::new(py);
-        dict.set_item("value", state.value.map(|value| to_python(py, value)).transpose()?)?;
-        dict.set_item("label", &*state.label)?;
-        dict.set_item("enabled", state.enabled)?;
-        dict.set_item("locked", state.locked)?;
-        dict.set_item("pressed", state.pressed)?;
-        dict.set_item("armed", state.armed)?;
-        dict.set_item("indicator", state.indicator.name())?;
-        Ok(dict)
+        state(py, &self.known(id)?)
+    }
+
+    /// The name and the state of each control, in the order of the layout.
+    fn controls<'py>(&self, py: Python<'py>) -> PyResult<Vec<(String, Bound<'py, PyDict>)>> {
+        let snapshot = self.snapshot()?;
+        snapshot.controls().map(|control| Ok((control.id.to_string(), state(py, &control)?))).collect()
     }
 
     fn set_range(&self, py: Python<'_>, id: &str, least: f32, greatest: f32) -> PyResult<()> {
@@ -252,7 +313,7 @@ impl PySession {
 
     fn set_page(&self, py: Python<'_>, page: &str) -> PyResult<()> {
         let floor = self.open()?;
-        py.detach(move || floor.set_page(page)).map_err(|refusal| refused(page, refusal))
+        py.detach(move || floor.set_page(page)).map_err(|refusal| refused(&refusal))
     }
 
     #[getter]
@@ -281,14 +342,32 @@ impl PySession {
         Ok(contacts.iter().map(row).collect())
     }
 
-    /// The force on each tile in newtons, in the order of tile indices.
-    fn forces(&self) -> PyResult<Vec<f32>> {
-        Ok(self.snapshot()?.floor.tiles.iter().map(|tile| tile.force.0).collect())
+    /// Rows and columns of tiles.
+    #[getter]
+    fn shape(&self) -> PyResult<(u16, u16)> {
+        let floor = self.open()?;
+        Ok((floor.geometry().rows(), floor.geometry().columns()))
+    }
+
+    /// The force on each tile in newtons, in the order of tile indices: single-precision numbers of this machine.
+    fn forces<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyBytes>> {
+        let tiles = self.snapshot()?.floor.tiles;
+        let size = tiles.len() * size_of::<f32>();
+        PyBytes::new_with(py, size, |bytes| {
+            for (place, tile) in bytes.chunks_exact_mut(size_of::<f32>()).zip(&tiles) {
+                place.copy_from_slice(&tile.force.0.to_ne_bytes());
+            }
+            Ok(())
+        })
     }
 }
 
 #[pymodule]
 mod _underfoot {
     #[pymodule_export]
-    use super::{Event, PySession, Refused};
+    use super::{PySession, Refused};
+
+    #[pymodule_export]
+    #[allow(non_upper_case_globals, reason = "Python's name")]
+    const __version__: &str = env!("CARGO_PKG_VERSION");
 }

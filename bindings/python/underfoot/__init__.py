@@ -1,28 +1,69 @@
-"""User interfaces on a force-sensing floor; the types and what they do stand in __init__.pyi."""
+"""User interfaces on a force-sensing floor; the types and what they do stand in __init__.pyi and _types.py."""
 
 import asyncio
-from typing import NamedTuple
 
-from ._underfoot import Event, Refused, Session
+from ._types import (
+    AnyEvent,
+    ChangedEvent,
+    Contact,
+    ControlEvent,
+    CrackEvent,
+    EndedEvent,
+    Event,
+    FloorEvent,
+    LinkCauseEvent,
+    LinkEvent,
+    Off,
+    PageEvent,
+    State,
+    StateEvent,
+    SwipedEvent,
+    Value,
+    event_of,
+)
+from ._underfoot import Refused, Session, __version__
 
-__all__ = ["Contact", "Event", "Floor", "Refused", "listen"]
+__all__ = [
+    "AnyEvent",
+    "ChangedEvent",
+    "Contact",
+    "ControlEvent",
+    "CrackEvent",
+    "EndedEvent",
+    "Event",
+    "Floor",
+    "FloorEvent",
+    "LinkCauseEvent",
+    "LinkEvent",
+    "Off",
+    "PageEvent",
+    "Refused",
+    "State",
+    "StateEvent",
+    "SwipedEvent",
+    "Value",
+    "__version__",
+    "listen",
+    "replay",
+]
 
 # How often `async for` looks for events, in seconds: as often as the floor renews what it shows.
 _LOOK_EVERY = 0.005
 
 
-class Contact(NamedTuple):
-    id: int
-    x_m: float
-    y_m: float
-    force_n: float
-    x_velocity_m_s: float
-    y_velocity_m_s: float
-
-
 class Floor(Session):
-    def contacts(self):
-        return [Contact(*foot) for foot in super().contacts()]
+    def next_event(self, timeout=None):
+        fields = super().next_event(timeout)
+        return None if fields is None else event_of(*fields)
+
+    def __iter__(self):
+        return self
+
+    def __next__(self):
+        event = self.next_event()
+        if event is None:
+            raise StopIteration
+        return event
 
     def __aiter__(self):
         return self
@@ -41,6 +82,31 @@ class Floor(Session):
     async def __aexit__(self, *_):
         self.close()
 
+    def contacts(self):
+        return [Contact(*foot) for foot in super().contacts()]
+
+    def forces(self):
+        return memoryview(super().forces()).cast("f")
+
+    def off(self, id):
+        return self.state(id)["off"]
+
+    def state(self, id):
+        return _state(super().state(id))
+
+    def controls(self):
+        return {id: _state(state) for id, state in super().controls()}
+
+
+def _state(state):
+    if state["off"] is not None:
+        state["off"] = Off(*state["off"])
+    return state
+
 
 def listen(address, layout, *, floor=None, every_change=False):
     return Floor(address, layout, floor=floor, every_change=every_change)
+
+
+def replay(recording, *, speed=1.0, every_change=False):
+    return Floor(recording=recording, speed=speed, every_change=every_change)

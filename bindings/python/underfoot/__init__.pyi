@@ -9,59 +9,47 @@ Metres, newtons, seconds; x east and y north from the floor's south-west corner.
 
 from os import PathLike
 from types import TracebackType
-from typing import Literal, NamedTuple, final
+from typing import Literal
 
-Value = bool | float | int | tuple[float, float]
+from ._types import AnyEvent as AnyEvent
+from ._types import ChangedEvent as ChangedEvent
+from ._types import Contact as Contact
+from ._types import ControlEvent as ControlEvent
+from ._types import CrackEvent as CrackEvent
+from ._types import EndedEvent as EndedEvent
+from ._types import Event as Event
+from ._types import FloorEvent as FloorEvent
+from ._types import Lamp, LinkName
+from ._types import LinkCauseEvent as LinkCauseEvent
+from ._types import LinkEvent as LinkEvent
+from ._types import Off as Off
+from ._types import PageEvent as PageEvent
+from ._types import State as State
+from ._types import StateEvent as StateEvent
+from ._types import SwipedEvent as SwipedEvent
+from ._types import Value as Value
+
+__version__: str
 
 class Refused(Exception):
-    """The floor does not do what was asked: locked, in use by a foot, only for feet, out of range, or over."""
-
-@final
-class Event:
-    """One thing that happened. `match event: case Event("zoom", "changed", value)` works."""
-
-    __match_args__ = ("id", "name", "value")
-    t_s: float
-    """When, on the floor's sample clock."""
-    kind: Literal[
-        "control", "state", "page", "link", "link_cause", "health", "device", "mute", "crack", "ended"
-    ]
-    name: str
-    """The word for what happened, as in JSON lines: of a control "pressed", "released", "changed" and so on."""
-    id: str
-    """The control or page it is about; empty where it is about the floor."""
-    value: Value | str | None
-    """The new value of "changed", the direction of "swiped"; None of all others."""
-    force_n: float
-    x_m: float
-    y_m: float
-    contact: int | None
-    """Which foot did it; None if none did."""
-    text: str
-    """Of a link "waiting", "live", "partial" or "lost"; of its cause a name, a colon and a sentence, empty when it is
-    over; of the end why; empty otherwise."""
-
-class Contact(NamedTuple):
-    """A foot on the floor."""
-
-    id: int
-    x_m: float
-    y_m: float
-    force_n: float
-    x_velocity_m_s: float
-    y_velocity_m_s: float
+    """The floor does not do what was asked: locked, in use by a foot, only for feet, not a number, or over."""
 
 class Floor:
-    """A floor at work on a thread of its own. Ends with `with`, with `close`, and when nobody has it any more."""
+    """A floor at work on a thread of its own. Ends with `with`, with `close`, and when nobody has it any more.
+
+    KeyError is a control that the layout does not have, with the nearest name; or a page, with the names of all."""
 
     def __init__(
         self,
-        address: str,
-        layout: str | PathLike[str],
+        address: str | None = None,
+        layout: str | PathLike[str] | None = None,
         *,
         floor: str | PathLike[str] | None = None,
         every_change: bool = False,
-    ) -> None: ...
+        recording: str | PathLike[str] | None = None,
+        speed: float | None = 1.0,
+    ) -> None:
+        """Use `listen` and `replay`."""
     def __enter__(self) -> Floor: ...
     def __exit__(
         self, kind: type[BaseException] | None, value: BaseException | None, trace: TracebackType | None
@@ -69,10 +57,10 @@ class Floor:
     async def __aenter__(self) -> Floor: ...
     async def __aexit__(self, *_: object) -> None: ...
     def __iter__(self) -> Floor: ...
-    def __next__(self) -> Event: ...
+    def __next__(self) -> AnyEvent: ...
     def __aiter__(self) -> Floor: ...
-    async def __anext__(self) -> Event: ...
-    def next_event(self, timeout: float | None = None) -> Event | None:
+    async def __anext__(self) -> AnyEvent: ...
+    def next_event(self, timeout: float | None = None) -> AnyEvent | None:
         """The next event within `timeout` seconds, 0 for now, None for ever; None if there is none.
 
         Other threads run meanwhile, and Ctrl-C ends it."""
@@ -86,35 +74,48 @@ class Floor:
     def held(self, id: str) -> bool:
         """Whether a foot holds the control now, and the floor has said so within the last 100 ms.
 
-        To be asked at least every 20 ms while something acts: silence means released. Not a safety function."""
+        To be asked at least every 20 ms while something acts: silence means released. Not a safety function. False on a
+        floor that is closed; KeyError for a control that the layout does not have, which would never be held."""
+    @property
+    def address(self) -> str | None:
+        """Where boards send to, with the port that the system chose for port 0; None for a recording."""
     @property
     def dropped(self) -> int:
         """Events that were dropped because nobody took them."""
     @property
     def page(self) -> str | None: ...
     @property
-    def link(self) -> Literal["waiting", "live", "partial", "lost"]: ...
+    def link(self) -> LinkName: ...
     @property
     def link_cause(self) -> tuple[str, str] | None:
         """Why boards that send give no usable frame, or why no load was ever seen: a name that never changes, such as
         "rate_low", and a sentence. None if all is well or nothing is sent."""
     def __getitem__(self, id: str) -> Value | None:
-        """What the control holds; None for a button. KeyError for an unknown one."""
+        """What the control holds; None for a button."""
     def __setitem__(self, id: str, value: Value) -> None:
-        """KeyError, TypeError or Refused say why it stays as it was."""
+        """A number beyond the control's range becomes the nearest end of the range, one between two steps the nearer
+        step. KeyError, TypeError or Refused say why it stays as it was; NaN is refused, and so is a choice that a
+        selector does not have."""
     def __contains__(self, id: str) -> bool: ...
     def ids(self) -> list[str]: ...
-    def state(self, id: str) -> dict[str, object]:
-        """value, label, enabled, locked, pressed, armed, indicator."""
+    def controls(self) -> dict[str, State]:
+        """How each control is, in the order of the layout."""
+    def state(self, id: str) -> State: ...
+    def off(self, id: str) -> Off | None:
+        """Why no foot can press the control; None if one can."""
     def set_range(self, id: str, least: float, greatest: float) -> None: ...
     def set_label(self, id: str, label: str) -> None: ...
-    def set_indicator(self, id: str, lamp: Literal["off", "on", "busy", "attention"]) -> None: ...
+    def set_indicator(self, id: str, lamp: Lamp) -> None: ...
     def set_enabled(self, id: str, enabled: bool) -> None: ...
     def set_locked(self, id: str, locked: bool) -> None: ...
     def set_page(self, page: str) -> None: ...
     def contacts(self) -> list[Contact]: ...
-    def forces(self) -> list[float]:
-        """Newtons on each tile, row by row from the south-west; numpy.array(...) takes it as it is."""
+    @property
+    def shape(self) -> tuple[int, int]:
+        """Rows and columns of tiles."""
+    def forces(self) -> memoryview[float]:
+        """Newtons on each tile, row by row from the south-west, as single-precision numbers in one buffer:
+        `numpy.asarray(floor.forces()).reshape(floor.shape)` copies nothing. It does not change afterwards."""
 
 def listen(
     address: str,
@@ -127,3 +128,9 @@ def listen(
 
     `floor` is the floor file; without it, the paper's floor of 6 x 6 tiles. With `every_change` no value of a control
     is left out when the program is slow. ValueError says what is wrong with a file, OSError with the address."""
+
+def replay(
+    recording: str | PathLike[str], *, speed: float | None = 1.0, every_change: bool = False
+) -> Floor:
+    """A floor that was recorded, with its layout: the same events again, `speed` times as fast as they came, or with
+    None as fast as can be. It ends with the recording. OSError says why there is none to be read."""

@@ -73,7 +73,9 @@ impl Guide {
     /// A pair of numbers while a foot holds it, and nobody doubts that it does.
     fn held(&self, snapshot: &Snapshot, id: &str) -> Vec2 {
         match snapshot.value(id) {
-            Some(Value::Pair(pair)) if self.floor.held(id).is_fresh() => vec2(pair.x, pair.y),
+            Some(Value::Pair(pair)) if self.floor.held(id).is_ok_and(|held| held.is_fresh()) => {
+                vec2(pair.x, pair.y)
+            }
             _ => Vec2::ZERO,
         }
     }

@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use underfoot::engine::ValueRange;
 use underfoot::runtime::{Kind, Refusal, Session, Snapshot};
-use underfoot::widget::{SetError, Value};
+use underfoot::widget::Value;
 
 use crate::state::{Hold, OFFERED, State};
 
@@ -48,12 +48,10 @@ impl Guide {
         self.last = now;
         let snapshot = self.floor.snapshot();
         let window = match snapshot.value("window") {
-            Some(Value::Pair(pair)) if self.floor.held("window").is_fresh() => {
-                [pair.x, pair.y].map(f64::from)
-            }
+            Some(Value::Pair(pair)) if self.is_held("window") => [pair.x, pair.y].map(f64::from),
             _ => [0.0; 2],
         };
-        let hold = Hold { window, drag, beam: self.floor.held("beam").is_fresh() };
+        let hold = Hold { window, drag, beam: self.is_held("beam") };
         let rests = self.state.pass(dt.as_secs_f64(), &hold);
         if let Err(refusal) = self.tell(&snapshot, now)
             && !self.has_ended
@@ -124,8 +122,14 @@ impl Guide {
     }
 
     fn enable(&self, snapshot: &Snapshot, id: &str, wanted: bool) -> Result<(), Refusal> {
-        let control = snapshot.control(id).ok_or(SetError::Unknown)?;
-        if control.enabled == wanted { Ok(()) } else { self.floor.control(id)?.set_enabled(wanted) }
+        let control = self.floor.control(id)?;
+        let is_so = snapshot.control(id).is_some_and(|state| state.enabled == wanted);
+        if is_so { Ok(()) } else { control.set_enabled(wanted) }
+    }
+
+    /// Whether a foot holds a control, and nobody doubts that it does.
+    fn is_held(&self, id: &str) -> bool {
+        self.floor.held(id).is_ok_and(|held| held.is_fresh())
     }
 
     /// One line of JSON.

@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use serde_json::json;
+use underfoot::floor::read_address;
 use underfoot::schema;
 use underfoot::serve::{TareFailure, take_tare};
 
@@ -25,7 +26,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     floor: PathBuf,
     /// Where the boards' packets arrive.
-    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000")]
+    #[arg(long, value_name = "ADDR", default_value = "127.0.0.1:9000", value_parser = read_address)]
     listen: SocketAddr,
     #[command(flatten)]
     boards: BoardArgs,

@@ -72,6 +72,10 @@ impl<S: SensorSource> SensorSource for AnnouncingSource<S> {
         Some(layout)
     }
 
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.source.local_addr()
+    }
+
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         self.source.answer(to, datagram);
     }

@@ -17,7 +17,7 @@ use std::thread;
 use std::time::Duration;
 
 use underfoot::feel::Renderer;
-use underfoot::floor::Floor;
+use underfoot::floor::{Floor, read_address};
 use underfoot::layout::Layout;
 use underfoot::preview::{
     self, DesignInput, FootSink, PreviewError, PreviewInput, PreviewOptions, ProgramChannels,
@@ -57,11 +57,11 @@ pub(crate) struct Args {
     #[command(flatten)]
     floor: FloorArgs,
     /// Show a real floor, whose packets arrive here.
-    #[arg(long, value_name = "ADDR", conflicts_with_all = ["scenario", "session"])]
+    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = ["scenario", "session"])]
     listen: Option<SocketAddr>,
     /// Show the floor that `underfoot run --web ADDR` serves at this address, with its layout. Nothing is put out from
     /// here.
-    #[arg(long, value_name = "ADDR", conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
+    #[arg(long, value_name = "ADDR", value_parser = read_address, conflicts_with_all = SERVED_HERE, conflicts_with_all = ["floor", "grid"])]
     join: Option<SocketAddr>,
     /// Show the floor of which the JSON lines in this file tell, `-` for standard input: what
     /// `underfoot-cluster gateway --json --json-contacts` or `underfoot run --json --json-contacts` prints, with the

@@ -7,6 +7,7 @@ use serde_json::{Value, json};
 use underfoot::mirror::Greeting;
 use underfoot::runtime::Snapshot;
 use underfoot::serve::Command;
+use underfoot::sink::control_json;
 
 use super::Shared;
 
@@ -25,25 +26,25 @@ pub(super) fn mirror_greeting(seen: &Snapshot, shared: &Shared) -> String {
     Greeting::line(&floor, &seen.layout, &seen.floor, shared.method, shared.checks.is_some())
 }
 
-/// The floor and its controls as a line.
+/// The floor and its controls as a line: of each control where it is, and all that a line about its state has.
 pub(super) fn greeting(seen: &Snapshot, shared: &Shared) -> String {
     let geometry = &shared.floor.geometry;
-    let pages = &seen.layout.pages;
     let controls: Vec<Value> = seen
         .layout
         .widgets
         .iter()
         .map(|widget| {
-            let state = seen.control(widget.id.as_str());
             let (at, size) = (widget.area.min, widget.area.max - widget.area.min);
-            json!({
-                "id": widget.id.as_str(),
+            let mut control = json!({
                 "kind": widget.kind,
-                "label": state.as_ref().map(|state| &*state.label),
-                "page": widget.page.and_then(|page| pages.get(page)).map(|page| page.id.as_str()),
                 "x_m": at.x, "y_m": at.y, "width_m": size.x, "depth_m": size.y,
-                "value": state.and_then(|state| state.value),
-            })
+            });
+            let state = seen.control(widget.id.as_str()).map(|state| control_json(&state));
+            if let (Some(control), Some(Value::Object(state))) = (control.as_object_mut(), state) {
+                // Those two say that it is a line of its own.
+                control.extend(state.into_iter().filter(|(field, _)| field != "event" && field != "t_s"));
+            }
+            control
         })
         .collect();
     let size = geometry.bounds().max;

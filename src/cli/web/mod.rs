@@ -19,7 +19,7 @@ use std::thread::{self, Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use tracing::warn;
-use underfoot::floor::{Floor, Geometry, Network};
+use underfoot::floor::{Floor, Geometry, Network, read_address};
 use underfoot::mirror::MirrorFeed;
 use underfoot::runtime::Session;
 use underfoot::sense::Method;
@@ -36,7 +36,7 @@ use rooms::{Refusals, Rooms};
 #[derive(clap::Args, Clone, Debug, Default)]
 pub(crate) struct WebArgs {
     /// Show the floor as a web page at this address, such as 127.0.0.1:9002, and tell its events over WebSocket.
-    #[arg(long, value_name = "ADDR")]
+    #[arg(long, value_name = "ADDR", value_parser = read_address)]
     web: Option<SocketAddr>,
     /// Let pages from here connect as well, such as https://app.example.org; several may be given. Without it, pages
     /// of this machine only.

@@ -4,6 +4,8 @@ use std::convert::Infallible;
 use std::net::{IpAddr, SocketAddr};
 use std::str::FromStr;
 
+use underfoot::floor::{canonical, read_address};
+
 /// What a browser calls the place a page comes from: scheme, host and port.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Origin(String);
@@ -30,7 +32,7 @@ pub(super) fn may_connect(origin: Option<&str>, own: SocketAddr, allowed: &[Orig
         return true;
     }
     let ip = host(authority).and_then(|host| host.parse::<IpAddr>().ok()).map(|ip| ip.to_canonical());
-    ip.is_some_and(|ip| ip.is_loopback() || authority.parse() == Ok(own))
+    ip.is_some_and(|ip| ip.is_loopback() || read_address(authority) == Ok(canonical(own)))
 }
 
 /// The host of `host:port` or `[host]:port`.
@@ -74,5 +76,12 @@ mod tests {
             assert!(!may(bad), "{bad}");
         }
         assert!(may_connect(None, own, &[]));
+    }
+
+    #[test]
+    fn the_floor_s_own_page_may_connect_where_one_socket_serves_both_kinds_of_addresses() {
+        let own: SocketAddr = "[::ffff:192.168.1.5]:9002".parse().unwrap();
+        assert!(may_connect(Some("http://192.168.1.5:9002"), own, &[]));
+        assert!(!may_connect(Some("http://192.168.1.6:9002"), own, &[]));
     }
 }

@@ -106,7 +106,7 @@ fn ask(session: &Session, message: ControlMessage) -> Result<(), String> {
         return refused();
     }
     match answered.recv_timeout(PATIENCE) {
-        Ok(done) => done.map_err(|error| error.to_string()),
+        Ok(done) => done.map_err(|refusal| refusal.reason()),
         Err(_) => Err("the floor does not answer".into()),
     }
 }

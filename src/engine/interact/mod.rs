@@ -1,6 +1,7 @@
 //! From cursors to controls: which control gets which foot.
 
 mod belief;
+mod off;
 mod unanswered;
 
 use std::time::Duration;
@@ -8,6 +9,7 @@ use std::time::Duration;
 use glam::Vec2;
 
 use self::belief::{certainly_presses, is_believed, is_certain, is_sensed};
+use self::off::of_calibration;
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
@@ -18,7 +20,7 @@ use crate::floor::Geometry;
 use crate::layout::{CursorRule, HitIndex, Layout, Widget};
 use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
 use crate::units::{Instant, Newtons};
-use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, WidgetEvent};
+use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, OffReason, WidgetEvent};
 
 /// How far beyond its edge a control keeps the foot that presses it (our choice: within the sway of a foot that means
 /// to stay).
@@ -40,6 +42,8 @@ pub(super) struct Interaction {
     /// Whether each control lies on a tile that can't be sensed, and which ones do.
     unsensed: Vec<bool>,
     lost: Vec<usize>,
+    /// The indices of the tiles that each control lies on.
+    tiles_under: Vec<Vec<usize>>,
     /// Controls for which even an empty floor changes something.
     awake: Vec<usize>,
     feet: FootHistories,
@@ -47,8 +51,8 @@ pub(super) struct Interaction {
     ignored: IgnoredPresses,
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
-    /// Whether what acts while it is held is off, since the floor is not calibrated.
-    inhibited: bool,
+    /// Why controls that act while they are held are off on the whole floor; `None` if they are not.
+    inhibited: Option<OffReason>,
 }
 
 /// What happens in one frame.
@@ -81,9 +85,11 @@ impl Interaction {
     pub(super) fn new(layout: &Layout, geometry: &Geometry, page: usize) -> Self {
         let controls: Vec<_> =
             layout.widgets.iter().map(|widget| Control::new(&widget.behaviour, widget.area.size())).collect();
+        let hits = HitIndex::new(layout, geometry);
         Self {
+            tiles_under: tiles_under(layout, geometry, &hits),
             geometry: *geometry,
-            hits: HitIndex::new(layout, geometry),
+            hits,
             page,
             regions: layout.regions.iter().map(|_| RegionState::default()).collect(),
             unsensed: vec![false; controls.len()],
@@ -94,7 +100,7 @@ impl Interaction {
             rises: Rises::default(),
             ignored: IgnoredPresses::default(),
             running: false,
-            inhibited: false,
+            inhibited: None,
         }
     }
 
@@ -351,7 +357,7 @@ impl Interaction {
                     (control.needs_lift(), Ignored::NotSeenUnloaded),
                     (!risen || !enough, Ignored::Unbelieved),
                     (!meant, Ignored::Guard),
-                    (rivals, Ignored::OtherRuns),
+                    (rivals, Ignored::Off(OffReason::OtherHeld)),
                 ];
                 let why = why.into_iter().find(|(is_so, _)| presses && *is_so).map(|(_, why)| why);
                 let may = believed && risen && enough && meant && !rivals;
@@ -455,9 +461,9 @@ impl Interaction {
         self.awake = awake;
     }
 
-    /// What acts for as long as it is held is off on a floor whose forces nobody has calibrated.
+    /// Switches controls that act while they are held off on a floor whose newtons may be wrong.
     fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
-        let inhibited = !at.frame.calibrated;
+        let inhibited = at.frame.calibration_fault.map(of_calibration);
         if std::mem::replace(&mut self.inhibited, inhibited) == inhibited {
             return;
         }
@@ -514,6 +520,22 @@ impl Interaction {
             self.awake.push(widget);
         }
     }
+}
+
+/// For each control of `layout` the indices of the tiles that it lies on.
+fn tiles_under(layout: &Layout, geometry: &Geometry, hits: &HitIndex) -> Vec<Vec<usize>> {
+    let mut under = vec![Vec::new(); layout.widgets.len()];
+    for tile in 0..geometry.tile_count() {
+        let plate = geometry.plate(geometry.tile_at_index(tile));
+        for &widget in hits.on_tile(tile) {
+            if let (Some(spec), Some(tiles)) = (layout.widgets.get(widget), under.get_mut(widget))
+                && plate.overlaps(spec.area)
+            {
+                tiles.push(tile);
+            }
+        }
+    }
+    under
 }
 
 /// What `widget` senses of a foot of somebody of this `weight`; `may` says whether that foot may act on it.

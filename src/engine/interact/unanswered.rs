@@ -3,7 +3,7 @@
 use super::super::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use super::super::ignored::Ignored;
 use super::{Interaction, Moment};
-use crate::widget::Control;
+use crate::widget::{Control, OffReason};
 
 impl Interaction {
     /// Notes the contacts that lie on controls and work none, and closes the visits that are over.
@@ -48,9 +48,6 @@ impl Interaction {
 
 /// Why `control` answers nobody, if it is off.
 pub(super) fn switched_off(control: &Control) -> Option<Ignored> {
-    match (control.is_disabled(), control.is_inhibited()) {
-        (true, _) => Some(Ignored::Disabled),
-        (false, true) => Some(Ignored::Uncalibrated),
-        (false, false) => None,
-    }
+    let disabled = control.is_disabled().then_some(OffReason::Disabled);
+    disabled.or(control.inhibited()).map(Ignored::Off)
 }

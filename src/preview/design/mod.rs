@@ -35,7 +35,7 @@ use crate::layout::Layout;
 use crate::scene::Scene;
 use crate::schema::{Diagnostics, Kinds};
 
-pub use shelf::usual_state;
+pub use crate::schema::usual_state;
 pub(super) use threshold::Threshold;
 
 /// What Design mode begins with.

@@ -11,21 +11,6 @@ const RECENT: usize = 8;
 /// Most drafts of layouts without a file that are kept side by side.
 const SLOTS: usize = 32;
 
-/// Where drafts of layouts without a file and the list of recent files are kept: `underfoot` in the folder that the
-/// system names for the state of programs, or in the one for temporary files.
-#[must_use]
-pub fn usual_state() -> PathBuf {
-    let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
-    let folder = if cfg!(target_os = "windows") {
-        of("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        of("HOME").map(|home| home.join("Library/Application Support"))
-    } else {
-        of("XDG_STATE_HOME").or_else(|| Some(of("HOME")?.join(".local/state")))
-    };
-    folder.unwrap_or_else(std::env::temp_dir).join("underfoot")
-}
-
 /// A folder for the draft of one layout without a file; no other window uses it meanwhile.
 #[derive(Debug)]
 pub(super) struct Slot {

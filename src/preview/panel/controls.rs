@@ -2,11 +2,13 @@
 
 use eframe::egui;
 use eframe::egui::accesskit::Role;
-use eframe::egui::{CollapsingHeader, DragValue, Ui, WidgetInfo};
+use eframe::egui::{CollapsingHeader, DragValue, RichText, Ui, WidgetInfo};
 
 use super::super::app::App;
 use super::super::feed::PreviewCommand;
+use super::super::off_hint::why_off;
 use super::super::style::quiet;
+use crate::egui_painter::color;
 use crate::widget::{Behaviour, Value};
 
 impl App {
@@ -67,6 +69,10 @@ impl App {
                         }
                     });
                 });
+                // That an app has switched it off, the tick says.
+                if let Some(why) = why_off(snapshot, index).filter(|_| !state.disabled) {
+                    ui.label(RichText::new(why).color(color(self.theme.warning)).small());
+                }
             }
         });
         for command in commands {

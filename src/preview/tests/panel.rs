@@ -112,6 +112,40 @@ fn an_apps_part_can_be_played_from_the_panel() {
     assert_eq!(room.commands.try_recv(), Ok(PreviewCommand::Set { id, value: Value::Switch(true) }));
 }
 
+/// The map as it is when the floor file of the hall lacks the calibration of `home`.
+fn home_is_off() -> crate::engine::Snapshot {
+    let page = map();
+    let mut snapshot = at_rest(&page);
+    snapshot.floor_file = crate::floor::FloorFile::new("hall.ron");
+    let home = page.widget_index("home").unwrap();
+    snapshot.widgets[home].off = Some(crate::widget::OffReason::NotCalibrated);
+    snapshot
+}
+
+#[test]
+fn the_panel_says_why_a_control_is_off() {
+    let mut room = Room::simulated();
+    scroll_to(&mut room, "Controls, as an app sets them");
+    room.window.get_by_label("Controls, as an app sets them").click();
+    room.run(20);
+    assert!(!room.says("not calibrated"));
+    room.write(home_is_off());
+    room.run(3);
+    assert!(room.says("not calibrated: hall.ron lacks"));
+}
+
+#[test]
+fn a_control_that_is_off_says_why_under_the_pointer() {
+    let mut room = Room::simulated();
+    room.write(home_is_off());
+    assert!(!room.says("hall.ron"));
+    let home = room.place("Home");
+    room.hover(home);
+    // The pointer rests for longer than egui waits before it shows what it says.
+    room.run(60);
+    assert!(room.says("not calibrated: hall.ron lacks"));
+}
+
 #[test]
 fn an_effect_is_tuned_played_and_saved() {
     let mut room = Room::of(true, 1280.0, 900.0);

@@ -34,8 +34,9 @@ pub(super) struct BoardTrack {
     /// In which buffer its last packet is, and whether that was no news under a load.
     last: Option<usize>,
     repeats: bool,
-    /// Whether it sends counts, whose meaning only the floor's calibration tells.
-    sends_counts: bool,
+    /// Whether any of its packets had counts, which only the floor's calibration makes newtons of. The type of a later
+    /// packet changes nothing: a board that has sent counts once needs calibration.
+    has_sent_counts: bool,
     /// Whether nobody has calibrated some of its sensors.
     has_nominal: bool,
     /// Whether it sends under another board's address.
@@ -106,7 +107,7 @@ impl BoardTrack {
             waits: [false; BUFFERS],
             last: None,
             repeats: false,
-            sends_counts: false,
+            has_sent_counts: false,
             has_nominal,
             is_swapped: false,
             tare,
@@ -140,7 +141,7 @@ impl BoardTrack {
         buffers: &mut Buffers,
         health: &Health,
     ) -> bool {
-        self.sends_counts = matches!(readings, Readings::Counts(_));
+        self.has_sent_counts |= matches!(readings, Readings::Counts(_));
         self.waits[buffer] = true;
         let was_here = buffers.sample_mut(buffer, self.number).replace(readings);
         let sample = |buffer: usize| buffers.sample(buffer, self.number);
@@ -170,16 +171,20 @@ impl BoardTrack {
         std::mem::take(&mut self.waits[buffer])
     }
 
-    /// Number of its sensors that send counts which nobody has calibrated.
+    /// Number of its sensors that have sent counts and have no law in the floor file.
     pub(super) fn uncalibrated(&self) -> usize {
         let nominal = |channel: &&Channel| channel.is_nominal;
-        if self.sends_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
+        if self.has_sent_counts { self.channels.iter().flatten().filter(nominal).count() } else { 0 }
     }
 
-    /// Whether newtons made of what it sends may be wrong: some of its counts are taken for a nominal part's, or it has
-    /// changed places with another board.
-    pub(super) const fn may_be_wrong(&self) -> bool {
-        (self.sends_counts && self.has_nominal) || self.is_swapped
+    /// Whether it has sent counts of sensors that have no law in the floor file.
+    pub(super) const fn lacks_laws(&self) -> bool {
+        self.has_sent_counts && self.has_nominal
+    }
+
+    /// Whether it has changed places with another board.
+    pub(super) const fn is_swapped(&self) -> bool {
+        self.is_swapped
     }
 
     pub(super) const fn set_swapped(&mut self, swapped: bool) {

@@ -25,7 +25,7 @@ use self::clock::{SLOT_NS, SampleClock, nanos};
 use self::presence::SILENT_NS;
 use self::swap::Swaps;
 use super::health::{Health, SensorHealth, Trouble};
-use super::{ForceFrame, Quality};
+use super::{CalibrationFault, ForceFrame, Quality};
 use crate::floor::{Floor, SensorId, TileId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, LinkState, SensorPacket};
@@ -550,12 +550,13 @@ impl Assembler {
         // found of sensors, which two computers that sense the same would else find differently.
         let sampled_ns = slot.max(0).saturating_mul(SLOT_NS);
         self.done = slot;
-        let (mut is_taring, mut may_be_wrong) = (false, false);
+        let (mut is_taring, mut is_swapped, mut lacks_laws) = (false, false, false);
         let Self { boards, buffers, frame, health, counters, .. } = self;
         for board in boards {
             board.apply(buffer, sampled_ns, buffers, frame, health, counters);
             is_taring |= board.stream.awaited && board.is_taring();
-            may_be_wrong |= board.may_be_wrong();
+            is_swapped |= board.is_swapped();
+            lacks_laws |= board.lacks_laws();
         }
         self.started |= !is_taring;
         if self.started {
@@ -563,7 +564,15 @@ impl Assembler {
             self.frame.at = instant(at_ns).max(next);
             self.frame.received = received;
             self.health.inspect(&mut self.frame, instant(sampled_ns));
-            self.frame.calibrated = !self.health.is_foreign() && !may_be_wrong;
+            // Whatever the laws are, on a floor with swapped boards they are those of other sensors.
+            let faults = [
+                (is_swapped, CalibrationFault::BoardsSwapped),
+                // Through nominal laws the empty floor reads otherwise than any tare says.
+                (lacks_laws, CalibrationFault::Missing),
+                (self.health.is_foreign(), CalibrationFault::OtherFloor),
+            ];
+            let fault = faults.into_iter().find(|(is_so, _)| *is_so);
+            self.frame.calibration_fault = fault.map(|(_, fault)| fault);
             if std::mem::take(&mut self.has_news) {
                 self.boards.iter_mut().for_each(|board| board.stream.presence.show());
             }

@@ -5,8 +5,10 @@ use std::time::Duration;
 use tracing::{info, warn};
 
 use super::limited::Limited;
+use crate::floor::FloorFile;
 use crate::sense::{Assembler, TareOutcome};
 use crate::units::Instant;
+use crate::widget::OffReason;
 use crate::wire::{LinkCause, LinkState};
 
 /// How long only some boards must have reported for this to be news; controls on the others are long released.
@@ -53,7 +55,12 @@ impl LinkWatch {
     }
 
     /// Says what has changed; the link's state if it is another one.
-    pub(super) fn update(&mut self, assembler: &Assembler, now: Instant) -> Option<LinkState> {
+    pub(super) fn update(
+        &mut self,
+        assembler: &Assembler,
+        file: &FloorFile,
+        now: Instant,
+    ) -> Option<LinkState> {
         self.note_frozen(assembler);
         self.note_swapped(assembler);
         self.note_tare(assembler);
@@ -72,7 +79,7 @@ impl LinkWatch {
             LinkState::Waiting => {}
         }
         self.state = state;
-        self.note_uncalibrated(assembler);
+        self.note_uncalibrated(assembler, file);
         Some(state)
     }
 
@@ -158,15 +165,15 @@ impl LinkWatch {
         }
     }
 
-    /// Says once how many sensors go by nominal gains.
-    fn note_uncalibrated(&mut self, assembler: &Assembler) {
+    /// Logs once how many sensors count as nominal parts, and which file could say otherwise.
+    fn note_uncalibrated(&mut self, assembler: &Assembler, file: &FloorFile) {
         let uncalibrated = assembler.uncalibrated();
         if uncalibrated > self.uncalibrated {
             self.uncalibrated = uncalibrated;
             warn!(
                 "{uncalibrated} sensors were never calibrated and count as nominal parts: their forces may be off by \
-                 a third; `underfoot calibrate curves` measures them. Until then controls with the guard HoldToRun \
-                 are off"
+                 a third. Controls with the guard HoldToRun are off: {}",
+                OffReason::NotCalibrated.explain(file)
             );
         }
     }

@@ -5,6 +5,7 @@ mod haptics;
 mod heartbeat;
 mod limited;
 mod link;
+mod off;
 mod outputs;
 mod requests;
 mod sensors;
@@ -19,6 +20,7 @@ use triple_buffer::Input;
 
 use self::haptics::Haptics;
 use self::link::LinkWatch;
+use self::off::OffWatch;
 use self::outputs::Outputs;
 use self::requests::Answers;
 use self::sensors::SensorWatch;
@@ -29,11 +31,10 @@ use crate::feel::{CueSender, Effect, FeelCounters, Gesture};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::sense::{Assembler, Method, Tare, TareOutcome};
-use crate::serve::Neighbours;
+use crate::serve::{Neighbours, Refusal};
 use crate::sink::{ActuatorSink, EventSink, LatencyStages, Report};
 use crate::source::{SensorSource, SourceError};
 use crate::units::{Instant, Newtons};
-use crate::widget::SetError;
 use crate::wire::{ControlMessage, LinkCounters, Prefix};
 
 /// How long to wait for a packet before looking after everything else; well within the 100 ms of a lost floor.
@@ -63,7 +64,7 @@ pub enum Command {
     /// What an app may also ask over OSC.
     Control(ControlMessage),
     /// Do what an app may also ask over OSC, but mute, and answer.
-    Ask(ControlMessage, SyncSender<Result<(), SetError>>),
+    Ask(ControlMessage, SyncSender<Result<(), Refusal>>),
     /// Give the tare in use, per tile and corner as in [`Floor::tare`]; `None` where it is the floor's own, or not
     /// known.
     GiveTare(SyncSender<Option<Vec<[Newtons; 4]>>>),
@@ -103,6 +104,7 @@ pub struct Server {
     link_checked: Instant,
     causes: CauseWatch,
     sensors: SensorWatch,
+    off: OffWatch,
     snapshots: Option<Input<Snapshot>>,
     /// When the last frame came in.
     seen: Instant,
@@ -121,7 +123,9 @@ impl Server {
         Self {
             source,
             assembler: Assembler::with_tare(floor, Tare::suited_to(floor)),
-            engine: Engine::new(floor.geometry, layout, method).with_maps(&floor.position_maps),
+            engine: Engine::new(floor.geometry, layout, method)
+                .with_maps(&floor.position_maps)
+                .with_floor_file(floor.file.clone()),
             commands: None,
             commands_looked: Instant::START,
             haptics: Haptics::default(),
@@ -131,6 +135,7 @@ impl Server {
             link_checked: Instant::START,
             causes: CauseWatch::new(floor.boards.iter().map(|board| board.address.clone())),
             sensors: SensorWatch::default(),
+            off: OffWatch::default(),
             snapshots: None,
             seen: Instant::START,
             shown: Instant::START,
@@ -318,7 +323,7 @@ impl Server {
             return;
         }
         self.link_checked = now;
-        let Some(state) = self.link.update(&self.assembler, now) else { return };
+        let Some(state) = self.link.update(&self.assembler, self.engine.floor_file(), now) else { return };
         self.haptics.update_mute(self.link.is_lost());
         self.outputs.report(Report::Link(now, state));
         self.is_stale = true;
@@ -339,6 +344,22 @@ impl Server {
         self.note_cause(&counters, now);
         if let Some(health) = self.sensors.health_news(&self.assembler, link, now) {
             self.outputs.report(Report::Health(now, health));
+        }
+        self.note_off();
+    }
+
+    /// Reports which controls that act while they are held are off, and why, where that has changed.
+    fn note_off(&mut self) {
+        let news = self.off.news(&self.engine, self.engine.layout_revision());
+        if !news.is_empty() {
+            // An app that hears of it finds it in the snapshot.
+            self.show_now();
+        }
+        for index in news {
+            let id = self.engine.layout().widgets.get(index).map(|widget| widget.id.clone());
+            if let Some(state) = id.and_then(|id| self.engine.control_state(id.as_str())) {
+                self.outputs.report(Report::Control(self.source.now(), &state));
+            }
         }
     }
 

@@ -10,7 +10,7 @@ use crate::engine::PageShown;
 use crate::label::{self, MAX_LABEL};
 use crate::outgoing::{write_control, write_error, write_mute, write_page};
 use crate::rate_limit::RateLimit;
-use crate::serve::request;
+use crate::serve::{Refusal, request};
 use crate::sink::Report;
 use crate::widget::{SetError, WidgetId};
 use crate::wire::{ControlMessage, Prefix, Request};
@@ -56,7 +56,7 @@ impl Default for Answers {
 
 impl Server {
     /// Does what the program's own app asks, and gives it the answer.
-    pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), SetError>>) {
+    pub(super) fn answer(&mut self, message: ControlMessage, to: &SyncSender<Result<(), Refusal>>) {
         if message == ControlMessage::GetAll && !self.may_tell_everything() {
             // Everybody is told, so that one report answers all who ask meanwhile.
             self.answers.is_everything_due = true;
@@ -101,10 +101,14 @@ impl Server {
         self.answers.everything.take_many(now, u32::try_from(controls).unwrap_or(u32::MAX)).is_some()
     }
 
-    fn apply(&mut self, message: &ControlMessage) -> Result<(), SetError> {
+    fn apply(&mut self, message: &ControlMessage) -> Result<(), Refusal> {
         match message {
             ControlMessage::CancelAll => self.cancel_all(),
-            ControlMessage::Label { id, text } => return self.apply_label(id, text),
+            ControlMessage::Label { id, text } => {
+                return self
+                    .apply_label(id, text)
+                    .map_err(|why| request::refusal(&self.engine, message, why));
+            }
             _ => {}
         }
         request::apply(&mut self.engine, message)
@@ -131,7 +135,7 @@ impl Server {
             ControlMessage::GetAll if !self.may_tell_everything() => {
                 Err("everything was asked for too often: ask again in a second".into())
             }
-            message => self.apply(message).map_err(|error| error.to_string()),
+            message => self.apply(message).map_err(|refusal| refusal.reason()),
         };
         match done {
             Ok(()) => self.tell(request),

@@ -83,7 +83,7 @@ pub(super) fn choose(
             .collect();
         return refuse(format!(
             "the sound card {name} can't play {asked} samples per second with {channels} channels: it offers {}; \
-             ask for one of these, or for the rate to be converted with `--resample`",
+             ask for one of these, or for the rate to be converted (`resample`)",
             offered.join(", ")
         ));
     };
@@ -128,8 +128,8 @@ fn too_few(name: &str, most: u16, floor: &Floor) -> String {
     let (needed, tiles) = (floor.channel_count(), map.beyond(most.into()).count());
     format!(
         "the sound card {name} has {most} channels and the floor needs {needed}: {tiles} tiles would not be felt. \
-         Connect one with more, give the floor's tiles other channels (`actuators` in the floor file), or ask for \
-         `--sound stereo`. The channel of each tile, from 0:\n{map}"
+         Connect one with more, give the floor's tiles other channels (`actuators` in the floor file), or mix \
+         them into two (`sound`). The channel of each tile, from 0:\n{map}"
     )
 }
 

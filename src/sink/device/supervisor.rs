@@ -176,7 +176,7 @@ impl Supervisor {
             larger if self.said_storm.is_none_or(|said| now >= said + QUIET) => {
                 self.said_storm = Some(now);
                 let advice = match larger {
-                    Some(_) => "ask for longer blocks with `--block`",
+                    Some(_) => "ask for longer blocks (`block`)",
                     None => "it can't have longer blocks, so set them in its server",
                 };
                 tracing::warn!(

@@ -82,8 +82,12 @@ enum Body<'a> {
     State {
         id: &'a str,
         value: Option<Value>,
-        range: Option<JsonRange<'a>>,
+        range: Option<JsonRange>,
+        step: Option<f32>,
+        options: Option<&'a [String]>,
         enabled: bool,
+        off: Option<&'static str>,
+        off_text: Option<&'a str>,
         locked: bool,
         pressed: bool,
         armed: bool,
@@ -120,13 +124,12 @@ struct ContactEntry {
     y_velocity_m_s: f32,
 }
 
-/// Least and greatest of a number, of both numbers of a pair, or the choices.
+/// Least and greatest of a number, or of both numbers of a pair.
 #[derive(Serialize)]
 #[serde(untagged)]
-enum JsonRange<'a> {
+enum JsonRange {
     Number([f32; 2]),
     Pair([[f32; 2]; 2]),
-    Choices(&'a [String]),
 }
 
 #[derive(Serialize)]
@@ -212,19 +215,26 @@ impl<'a> Body<'a> {
     }
 
     fn state(state: &'a ControlState) -> Self {
-        let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } =
+        let ControlState { id, value, range, enabled, off, locked, pressed, armed, indicator, label, page } =
             state;
         let ends = |scale: &Scale| [scale.min, scale.max];
-        let range = range.as_ref().map(|range| match range {
-            ValueRange::Number(scale) => JsonRange::Number(ends(scale)),
-            ValueRange::Pair(x, y) => JsonRange::Pair([ends(x), ends(y)]),
-            ValueRange::Choices(choices) => JsonRange::Choices(choices),
-        });
+        let (range, step, options) = match range {
+            Some(ValueRange::Number(scale)) => {
+                (Some(JsonRange::Number(ends(scale))), (scale.step > 0.0).then_some(scale.step), None)
+            }
+            Some(ValueRange::Pair(x, y)) => (Some(JsonRange::Pair([ends(x), ends(y)])), None, None),
+            Some(ValueRange::Choices(choices)) => (None, None, Some(choices.as_slice())),
+            None => (None, None, None),
+        };
         Self::State {
             id: id.as_str(),
             value: *value,
             range,
+            step,
+            options,
             enabled: *enabled,
+            off: off.as_ref().map(|off| off.reason.name()),
+            off_text: off.as_ref().map(|off| off.text.as_str()),
             locked: *locked,
             pressed: *pressed,
             armed: *armed,

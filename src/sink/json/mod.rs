@@ -18,7 +18,6 @@ use super::periodic::PeriodicSender;
 use super::report::OwnedReport;
 use super::worker::Worker;
 use super::{EventSink, Report, SinkError};
-#[cfg(feature = "record")]
 use crate::engine::ControlState;
 use crate::units::Instant;
 #[cfg(feature = "preview")]
@@ -37,7 +36,7 @@ use crate::wire::LinkState;
 /// {"t_s":9.9,"event":"device","device":"Card","state":"lost","why":"unplugged","channels":36,"sample_rate":96000,"block":64,"underruns":0,"reopened":0,"priority":"real-time"}
 /// {"t_s":9.9,"event":"mute","all":false,"tiles":[[2,1]]}
 /// {"t_s":9.9,"held":["zoom"],"sequence":12}
-/// {"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}
+/// {"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"step":null,"options":null,"enabled":true,"off":null,"off_text":null,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}
 /// {"t_s":9.9,"event":"area","area":"west","state":"lost","why":"nothing new from its node for 100 ms","uncertainty_s":0.0}
 /// {"t_s":9.9,"event":"crack","seed":3,"energy_j":0.4,"x_m":0.61,"y_m":1.2,"skipped":0}
 /// ```
@@ -265,13 +264,16 @@ pub(crate) fn event_line(event: &WidgetEvent) -> String {
     String::from_utf8_lossy(&line).trim_end().to_owned()
 }
 
-/// How a control is, as [`JsonSink`] writes it, without the end of the line.
-#[cfg(feature = "record")]
-pub(crate) fn control_line(at: Instant, state: &ControlState) -> String {
+/// How a control is, as the fields of a line that [`JsonSink`] writes; `t_s` is 0.
+///
+/// Numbers are those of the text: 0.1 is 0.1, not the nearest single-precision number.
+#[must_use]
+pub fn control_json(state: &ControlState) -> serde_json::Value {
     let mut line = Vec::new();
-    // A vector takes everything.
-    let _ = write_line(&Job::Told(OwnedReport::Control(at, Box::new(state.clone()))), &mut line);
-    String::from_utf8_lossy(&line).trim_end().to_owned()
+    let report = OwnedReport::Control(Instant::START, Box::new(state.clone()));
+    // A vector takes everything, and what was written can be read.
+    let _ = write_line(&Job::Told(report), &mut line);
+    serde_json::from_slice(&line).unwrap_or_default()
 }
 
 fn write_line(job: &Job, out: &mut impl Write) -> io::Result<()> {

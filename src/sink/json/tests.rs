@@ -227,6 +227,7 @@ fn a_control_that_an_app_changed_is_a_line_of_its_own() {
         value: Some(Value::Number(0.5)),
         range: Some(crate::engine::ValueRange::Number(crate::widget::Scale::new(0.0, 1.0))),
         enabled: true,
+        off: None,
         locked: false,
         pressed: false,
         armed: false,
@@ -237,6 +238,6 @@ fn a_control_that_an_app_changed_is_a_line_of_its_own() {
     sink.report(Report::Control(Instant::from_millis(9900), &state));
     drop(sink);
     let line: String = lines.iter().collect();
-    let expected = r#"{"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"enabled":true,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}"#;
+    let expected = r#"{"t_s":9.9,"event":"state","id":"zoom","value":0.5,"range":[0.0,1.0],"step":null,"options":null,"enabled":true,"off":null,"off_text":null,"locked":false,"pressed":false,"armed":false,"indicator":"off","label":"Zoom","page":null}"#;
     assert_eq!(line.trim_end(), expected);
 }

@@ -258,6 +258,10 @@ impl<S: SensorSource> SensorSource for FaultInjector<S> {
         self.inner.take_request()
     }
 
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.inner.local_addr()
+    }
+
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         self.inner.answer(to, datagram);
     }

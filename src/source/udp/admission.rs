@@ -58,12 +58,12 @@ impl fmt::Display for Refusal {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Foreign | Self::Packets => {
-                write!(f, "sensor packets are not taken from there; `--allow` with its address takes them")
+                f.write_str("sensor packets are not taken from there, since `allow` does not name its address")
             }
             Self::Requests => {
-                write!(
-                    f,
-                    "requests are not taken from there; `--commands` and `--allow-commands` open a port"
+                f.write_str(
+                    "requests are not taken from there: only from this machine, or on a port of their own from the \
+                     networks named for it",
                 )
             }
             Self::Elsewhere(board, known) => write!(f, "board {board} was first heard from {known}"),

@@ -30,7 +30,7 @@ pub use self::seal::{Seal, Sealed};
 use self::stamped::{Received, Stamped};
 use self::timed::{Timed, delay};
 use super::{SensorSource, SourceError};
-use crate::floor::{Floor, Forwarding, Network};
+use crate::floor::{Floor, Forwarding, Network, canonical};
 use crate::outgoing::write_error;
 use crate::units::{HostClock, Instant};
 use crate::wire::{
@@ -96,7 +96,7 @@ impl UdpSource {
     /// [`SourceError::Socket`] if the port is taken or the address is not this
     /// machine's; its message says what to do.
     pub fn bind(address: SocketAddr, floor: &Floor) -> Result<Self, SourceError> {
-        let (socket, granted) = open(address, "--listen")?;
+        let (socket, granted) = open(canonical(address))?;
         if granted < BUFFER_BYTES {
             tracing::info!(
                 granted,
@@ -201,7 +201,7 @@ impl UdpSource {
         address: SocketAddr,
         networks: impl IntoIterator<Item = Network>,
     ) -> Result<Self, SourceError> {
-        let (socket, _) = open(address, "--commands")?;
+        let (socket, _) = open(canonical(address))?;
         socket.set_nonblocking(true).map_err(failed)?;
         self.admission.set_apps(networks.into_iter().collect());
         self.commands = Some((socket, Instant::START));
@@ -459,6 +459,10 @@ impl SensorSource for UdpSource {
 
     fn take_request(&mut self) -> Option<Request> {
         self.requests.pop_front().or_else(|| self.timed.take(self.now()))
+    }
+
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.socket.local_addr().ok()
     }
 
     /// Whoever asked and went away hears nothing; that is not an error of this end.

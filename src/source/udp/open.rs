@@ -11,8 +11,8 @@ use crate::source::SourceError;
 /// Receive buffer asked for: it holds through half a second of stalled reader on a large floor.
 pub(super) const BUFFER_BYTES: usize = 8 << 20;
 
-/// A socket on `address` and its receive buffer in bytes; `option` is what chooses the address.
-pub(super) fn open(address: SocketAddr, option: &str) -> Result<(UdpSocket, usize), SourceError> {
+/// A socket on `address` and its receive buffer in bytes.
+pub(super) fn open(address: SocketAddr) -> Result<(UdpSocket, usize), SourceError> {
     let opened = || {
         let socket = Socket::new(Domain::for_address(address), Type::DGRAM, Some(Protocol::UDP))?;
         // A smaller buffer than asked for works too; the granted size is reported.
@@ -21,27 +21,24 @@ pub(super) fn open(address: SocketAddr, option: &str) -> Result<(UdpSocket, usiz
         let granted = socket.recv_buffer_size().unwrap_or(0);
         Ok((UdpSocket::from(socket), granted))
     };
-    opened().map_err(|source| SourceError::Socket { message: advice(address, option, &source), source })
+    opened().map_err(|source| SourceError::Socket { message: advice(address, &source), source })
 }
 
 /// One sentence for somebody whose floor program does not start.
-fn advice(address: SocketAddr, option: &str, error: &std::io::Error) -> String {
+fn advice(address: SocketAddr, error: &std::io::Error) -> String {
     let port = address.port();
     match error.kind() {
         ErrorKind::AddrInUse => {
             let owner = proc_net::owner(address).unwrap_or_else(|| "another program".into());
             let other = SocketAddr::new(address.ip(), if port == u16::MAX { port - 1 } else { port + 1 });
-            format!(
-                "UDP port {port} is in use by {owner}: stop it, or listen elsewhere with `{option} {other}` \
-                 and send there"
-            )
+            format!("UDP port {port} is in use by {owner}: stop it, or listen on {other} and send there")
         }
         ErrorKind::AddrNotAvailable => format!(
-            "{ip} is no address of this machine: `{option} 0.0.0.0:{port}` takes packets on all of them",
+            "{ip} is no address of this machine: 0.0.0.0:{port} takes packets on all of them",
             ip = address.ip()
         ),
         ErrorKind::PermissionDenied => {
-            format!("UDP port {port} needs special rights: choose one above 1023 with `{option}`")
+            format!("UDP port {port} needs special rights: choose one above 1023")
         }
         _ => format!("cannot listen on {address}: {error}"),
     }

@@ -5,7 +5,7 @@ use underfoot::glam::Vec2;
 use underfoot::sense::{Quality, Trouble};
 use underfoot::sim::{Sensing, SensorFault, SimConfig, SimFloor};
 use underfoot::units::Newtons;
-use underfoot::widget::EventKind;
+use underfoot::widget::{EventKind, OffReason};
 
 use super::bench::{BUTTON, Bench, foot};
 use super::desk::{at_the_map, clicks, quality, sensor, tile_of, trouble};
@@ -73,7 +73,8 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
     };
     hold(&mut bench);
     let state = bench.snapshot().widgets[0];
-    assert!(bench.events.is_empty() && state.uncalibrated && !state.pressed, "{:?}, {state:?}", bench.events);
+    assert!(bench.events.is_empty() && !state.pressed, "{:?}, {state:?}", bench.events);
+    assert_eq!(state.off, Some(OffReason::NotCalibrated));
     bench.engine.set_enabled("it", true).unwrap();
     bench.lift(BUTTON);
     bench.press(BUTTON, 150.0);
@@ -84,7 +85,8 @@ fn s9_a_floor_nobody_calibrated_starts_degraded_and_runs_nothing_that_must_be_he
     assert_eq!(measured.uncalibrated().count(), 0);
     let mut bench = Bench::with_floor(&measured, sim);
     hold(&mut bench);
-    assert!(bench.snapshot().widgets[0].pressed && !bench.snapshot().widgets[0].uncalibrated);
+    let state = bench.snapshot().widgets[0];
+    assert!(state.pressed && state.off.is_none(), "{state:?}");
     assert_eq!(bench.assembler.uncalibrated(), 0);
     assert_eq!(bench.quality(SensorId { tile: TileId::new(1, 0), corner: Corner::SouthEast }), Quality::Live);
 }

@@ -37,7 +37,7 @@ impl Rows {
                 self.assembler.take(&packet);
             }
             while let Some(frame) = self.assembler.ready() {
-                calibrated = frame.calibrated;
+                calibrated = frame.calibration_fault.is_none();
             }
         }
         (self.assembler.swapped().1.collect(), calibrated)

@@ -141,7 +141,7 @@ fn believed_for(site: &Site, fault: Fault) -> Duration {
         }
         (builder.start().unwrap(), Sender::Thread(Boards::start(site, address)))
     };
-    let drive: Held = session.held("drive");
+    let drive: Held = session.held("drive").unwrap();
     wait_until("the pedal is held", || drive.is_fresh());
     let mut sender = Some(sender);
     let mut session = Some(session);

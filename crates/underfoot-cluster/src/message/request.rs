@@ -2,9 +2,9 @@
 
 use serde::{Deserialize, Serialize};
 use serde_json::Value as Argument;
-use underfoot::engine::{ControlState, ValueRange};
+use underfoot::engine::{ControlState, Off, ValueRange};
 use underfoot::label::MAX_LABEL;
-use underfoot::widget::{Indicator, Scale, WidgetId};
+use underfoot::widget::{Indicator, OffReason, Scale, WidgetId};
 use underfoot::wire::{ControlMessage, read_json, write_json};
 
 use super::NodeValue;
@@ -63,6 +63,9 @@ pub struct NodeState {
     value: Option<NodeValue>,
     range: Option<NodeRange>,
     enabled: bool,
+    /// Why it is off, by name and in a sentence.
+    #[serde(default)]
+    off: Option<(String, String)>,
     locked: bool,
     pressed: bool,
     armed: bool,
@@ -82,7 +85,7 @@ enum NodeRange {
 
 impl From<&ControlState> for NodeState {
     fn from(state: &ControlState) -> Self {
-        let ControlState { id, value, range, enabled, locked, pressed, armed, indicator, label, page } =
+        let ControlState { id, value, range, enabled, off, locked, pressed, armed, indicator, label, page } =
             state;
         let numbers = |scale: &Scale| [scale.min, scale.max, scale.step, scale.detent];
         let range = range.as_ref().map(|range| match range {
@@ -95,6 +98,7 @@ impl From<&ControlState> for NodeState {
             value: value.map(NodeValue::from),
             range,
             enabled: *enabled,
+            off: off.as_ref().map(|off| (off.reason.name().to_owned(), off.text.clone())),
             locked: *locked,
             pressed: *pressed,
             armed: *armed,
@@ -135,6 +139,9 @@ impl NodeState {
             value: self.value.and_then(NodeValue::value),
             range,
             enabled: self.enabled,
+            off: self.off.as_ref().and_then(|(name, text)| {
+                Some(Off { reason: OffReason::from_name(name)?, text: text.clone() })
+            }),
             locked: self.locked,
             pressed: self.pressed,
             armed: self.armed,
@@ -169,7 +176,8 @@ mod tests {
                 id: WidgetId::new("zoom"),
                 value: Some(Value::Number(0.5)),
                 range,
-                enabled: true,
+                enabled: false,
+                off: Some(Off { reason: OffReason::NotCalibrated, text: "not calibrated".into() }),
                 locked: false,
                 pressed: true,
                 armed: false,

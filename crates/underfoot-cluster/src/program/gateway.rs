@@ -8,7 +8,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, sync_channel};
 use std::sync::{Arc, Mutex};
 use std::time::{Duration, Instant as HostInstant};
 
-use underfoot::floor::{Floor, Network};
+use underfoot::floor::{Floor, Network, read_address};
 use underfoot::outgoing::{TuioProfiles, write_control, write_error, write_mute, write_page};
 use underfoot::schema;
 #[cfg(unix)]
@@ -45,22 +45,22 @@ pub(crate) struct Args {
     #[arg(long, value_name = "ENDPOINT")]
     listen: Vec<String>,
     /// Where apps' requests arrive as OSC; without it, none are taken.
-    #[arg(long, value_name = "ADDR", requires = "layout")]
+    #[arg(long, value_name = "ADDR", requires = "layout", value_parser = read_address)]
     commands: Option<SocketAddr>,
     /// Take requests from this address or range; several may be given. Without it, from this machine only.
     #[arg(long, value_name = "CIDR", requires = "commands")]
     allow_commands: Vec<Network>,
     /// Where events and contacts are sent as OSC; may be given several times.
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = read_address)]
     osc: Vec<SocketAddr>,
     /// What OSC addresses begin with.
     #[arg(long, value_name = "PREFIX", default_value_t)]
     osc_prefix: Prefix,
     /// Send contacts as TUIO 1.1; may be given several times.
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = read_address)]
     tuio: Vec<SocketAddr>,
     /// Send contacts as TUIO 2.0 pointers with pressure; may be given several times.
-    #[arg(long, value_name = "HOST:PORT")]
+    #[arg(long, value_name = "HOST:PORT", value_parser = read_address)]
     tuio2: Vec<SocketAddr>,
     /// Print every event as a line of JSON on standard output.
     #[arg(long)]

@@ -8,7 +8,7 @@ use std::sync::mpsc::sync_channel;
 use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
-use underfoot::floor::{Area, Floor};
+use underfoot::floor::{Area, Floor, read_address};
 use underfoot::runtime::{EndReason, Kind, Session};
 use underfoot::schema;
 #[cfg(unix)]
@@ -46,7 +46,7 @@ pub(crate) struct Args {
     area: String,
     /// Where the boards' packets arrive: an address of this machine and a port. Without it, as the floor file says, and
     /// else 127.0.0.1:9000.
-    #[arg(long, value_name = "ADDR")]
+    #[arg(long, value_name = "ADDR", value_parser = read_address)]
     listen: Option<SocketAddr>,
     /// Where the gateway listens; may be given several times, for a second gateway beside the first. Without it, as the
     /// floor file says, and else tcp/127.0.0.1:7447.

@@ -45,6 +45,10 @@ impl SensorSource for SlowedSource {
         self.inner.take_request()
     }
 
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.inner.local_addr()
+    }
+
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         self.inner.answer(to, datagram);
     }

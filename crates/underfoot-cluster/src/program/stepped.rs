@@ -80,6 +80,10 @@ impl SensorSource for SteppedSource {
         self.inner.take_request()
     }
 
+    fn local_addr(&self) -> Option<SocketAddr> {
+        self.inner.local_addr().ok()
+    }
+
     fn answer(&mut self, to: SocketAddr, datagram: &[u8]) {
         self.inner.answer(to, datagram);
     }

@@ -272,6 +272,7 @@ fn check(desk: &mut Desk, prefix: &Prefix, path: &str, verb: &str, args: &[OscTy
             let answer = desk.answer();
             let state = &answer[&prefix.address(&format!("widget/{id}/state"))];
             assert_eq!(state.len(), 6);
+            assert_eq!(answer[&prefix.address(&format!("widget/{id}/off"))].len(), 2);
             assert_eq!(answer.contains_key(&prefix.address(&format!("widget/{id}/value"))), value.is_some());
             return;
         }
@@ -293,9 +294,11 @@ fn reading_back_gives_what_was_set() {
     let answer = desk.answer();
     // Brought to its steps of a half.
     assert_eq!(answer[&widget("slider", "value")], [OscType::Float(3.5)]);
-    let texts = ["attention", "Zoom"].map(|text| OscType::String(text.into()));
+    let text = |text: &str| OscType::String(text.into());
+    let texts = ["attention", "Zoom"].map(text);
     assert_eq!(answer[&widget("slider", "state")], [&[0, 1, 0, 0].map(OscType::Int)[..], &texts].concat());
 
+    assert_eq!(answer[&widget("slider", "off")], ["disabled", "an app has switched it off"].map(text));
     assert_eq!(answer[&widget("slider", "range")], [2.0, 4.0, 0.5].map(OscType::Float));
     assert_eq!(answer[&widget("slider", "page")], [OscType::String(String::new())]);
     desk.send(&widget("selector", "get"), vec![]);

@@ -8,7 +8,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
     let mut desk = Desk::new(layout(EVERYTHING), &Prefix::default());
     let string = |text: &str| vec![OscType::String(text.into())];
     let range = |least, greatest| vec![OscType::Float(least), OscType::Float(greatest)];
-    let cases: [(&str, Vec<OscType>, &str); 18] = [
+    let cases: [(&str, Vec<OscType>, &str); 19] = [
         // Wrong types: refused by the decoder.
         ("widget/slider/set", string("full"), "takes one finite number"),
         ("widget/slider/set", vec![OscType::Float(f32::NAN)], "takes one finite number"),
@@ -20,14 +20,15 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         ("mute/set", vec![OscType::Int(2)], "takes 0 or 1"),
         ("mute/tile", vec![OscType::Int(1), OscType::Int(1)], "takes three numbers"),
         // Understood, and can't be done: refused by the engine.
-        ("widget/nowhere/enable", vec![], "there is no such control"),
+        ("widget/nowhere/enable", vec![], r#"there is no control "nowhere""#),
+        ("widget/slidr/get", vec![], r#"there is no control "slidr"; did you mean "slider"?"#),
         ("widget/button/set", vec![OscType::Int(1)], "does not hold that type of value"),
         ("widget/slider/set", vec![OscType::Bool(true)], "does not hold that type of value"),
         ("widget/run/set", vec![OscType::Int(1)], "only a foot"),
         ("widget/slider/range/set", range(4.0, 2.0), "can't have such a range"),
         ("widget/selector/range/set", range(0.0, 1.0), "does not hold that type of value"),
         ("widget/selector/set", vec![OscType::Int(7)], "no such option"),
-        ("page/set", string("nowhere"), "there is no such"),
+        ("page/set", string("nowhere"), r#"there is no page "nowhere": the layout has "first" and "second""#),
         ("mute/tile", vec![OscType::Int(0), OscType::Int(6), OscType::Int(1)], "the floor has no such tile"),
     ];
     for (path, args, reason) in cases {
@@ -41,7 +42,7 @@ fn what_cannot_be_done_is_answered_with_a_reason_and_counted() {
         assert!(why.contains(reason), "{address}: {why}");
     }
     let counters = desk.server.counters();
-    assert_eq!((counters.wrong_shape, counters.denied), (9, 9));
+    assert_eq!((counters.wrong_shape, counters.denied), (9, 10));
 
     for address in ["/underfoot/widget/slider/explode", "/underfoot/page/hide", "/underfoot/widget/no*"] {
         desk.send(address, vec![]);

@@ -1,0 +1,66 @@
+//! Why controls are off.
+
+use super::belief::is_sensed;
+use super::{Interaction, holds_to_run};
+use crate::layout::Layout;
+use crate::sense::{CalibrationFault, ForceFrame, Quality};
+use crate::widget::OffReason;
+
+impl Interaction {
+    /// Why no foot can press `widget` as of `frame`, the last one taken in; `None` if one can. Without a frame the floor
+    /// has not been sensed yet.
+    pub(in crate::engine) fn off(
+        &self,
+        widget: usize,
+        layout: &Layout,
+        frame: Option<&ForceFrame>,
+    ) -> Option<OffReason> {
+        if self.controls.get(widget)?.is_disabled() {
+            return Some(OffReason::Disabled);
+        }
+        let Some(frame) = frame else { return Some(OffReason::Waiting) };
+        let runs = holds_to_run(layout, widget);
+        if let Some(fault) = frame.calibration_fault.filter(|_| runs) {
+            return Some(of_calibration(fault));
+        }
+        if self.unsensed.get(widget) == Some(&true) {
+            return Some(self.of_silence(widget, frame));
+        }
+        if runs && self.is_suspected(widget, frame) {
+            return Some(OffReason::SensorTrouble);
+        }
+        let is_held = self.held().any(|held| held.widget == widget);
+        (!is_held && self.runs_elsewhere(widget, layout)).then_some(OffReason::OtherHeld)
+    }
+
+    /// Why a control lies on a tile that can't be sensed.
+    fn of_silence(&self, widget: usize, frame: &ForceFrame) -> OffReason {
+        let qualities = self.tiles_under(widget).filter_map(|tile| frame.quality.get(tile));
+        let worst = qualities.filter(|tile| !is_sensed(tile)).flatten().max();
+        match (worst, frame.calibration_fault) {
+            (Some(Quality::Faulty), Some(CalibrationFault::BoardsSwapped)) => OffReason::BoardsSwapped,
+            (Some(Quality::Faulty), _) => OffReason::SensorTrouble,
+            _ => OffReason::LinkLost,
+        }
+    }
+
+    /// Whether a sensor is suspected on every tile under a control that acts while it is held: no force there starts it.
+    fn is_suspected(&self, widget: usize, frame: &ForceFrame) -> bool {
+        let mut tiles = self.tiles_under(widget).peekable();
+        tiles.peek().is_some() && tiles.all(|tile| frame.may_start.get(tile) == Some(&false))
+    }
+
+    /// The indices of the tiles that a control lies on.
+    fn tiles_under(&self, widget: usize) -> impl Iterator<Item = usize> + '_ {
+        self.tiles_under.get(widget).into_iter().flatten().copied()
+    }
+}
+
+/// Why controls that act while they are held are off on the whole floor.
+pub(super) const fn of_calibration(fault: CalibrationFault) -> OffReason {
+    match fault {
+        CalibrationFault::Missing => OffReason::NotCalibrated,
+        CalibrationFault::OtherFloor => OffReason::OtherFloor,
+        CalibrationFault::BoardsSwapped => OffReason::BoardsSwapped,
+    }
+}

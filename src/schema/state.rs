@@ -1,0 +1,18 @@
+//! The folder for what outlives a program.
+
+use std::path::PathBuf;
+
+/// Where the program keeps what outlives it, such as drafts of layouts without a file: `underfoot` in the folder that
+/// the system names for the state of programs, or in the one for temporary files.
+#[must_use]
+pub fn usual_state() -> PathBuf {
+    let of = |name: &str| std::env::var_os(name).filter(|value| !value.is_empty()).map(PathBuf::from);
+    let folder = if cfg!(target_os = "windows") {
+        of("LOCALAPPDATA")
+    } else if cfg!(target_os = "macos") {
+        of("HOME").map(|home| home.join("Library/Application Support"))
+    } else {
+        of("XDG_STATE_HOME").or_else(|| Some(of("HOME")?.join(".local/state")))
+    };
+    folder.unwrap_or_else(std::env::temp_dir).join("underfoot")
+}
