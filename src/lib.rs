@@ -101,6 +101,8 @@ pub mod floor;
 mod format;
 pub mod ground;
 pub mod layout;
+#[cfg(feature = "letters")]
+pub mod letters;
 #[cfg(feature = "record")]
 pub mod mirror;
 #[cfg(feature = "internals")]

@@ -22,6 +22,7 @@ mod fault_args;
 #[cfg(feature = "lab")]
 mod feel;
 mod floor_args;
+mod fonts;
 mod latency;
 mod layout_args;
 mod measure;

@@ -9,6 +9,7 @@ use underfoot::sense::{ForceFrame, Method};
 use underfoot::units::Instant;
 
 use super::failure::Failure;
+use super::fonts::fonts;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
 
@@ -37,7 +38,7 @@ pub(crate) struct Args {
 /// Draws the layout at rest.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = args.floor.load()?.geometry;
-    let layout = args.layout.load(&geometry)?;
+    let layout = args.layout.load_drawn(&geometry)?;
     let mut snapshot = Snapshot::default();
     let mut engine = Engine::new(geometry, layout, Method::default());
     // A floor that has been seen empty for a while: no control waits for a foot to lift.
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut scene = Scene::new();
     let view = View { show, ..View::new(&geometry, engine.layout(), &snapshot, &Theme::LIGHT) };
     scene::draw(&mut scene, &view);
-    picture::write(&scene, &args.out, args.width)?;
+    picture::write(&scene, fonts(), &args.out, args.width)?;
     outln!("{}", args.out.display());
     Ok(())
 }

@@ -23,6 +23,7 @@ use underfoot::units::Instant;
 use underfoot::widget::Value;
 
 use super::failure::Failure;
+use super::fonts::fonts;
 use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
 use super::layout_args::LayoutArgs;
@@ -220,6 +221,6 @@ impl Camera {
             ..View::new(geometry, layout, &snapshot, &Theme::LIGHT)
         };
         scene::draw(&mut scene, &view);
-        Ok(picture::write(&scene, path, PICTURE_WIDTH)?)
+        Ok(picture::write(&scene, fonts(), path, PICTURE_WIDTH)?)
     }
 }

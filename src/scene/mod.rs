@@ -24,6 +24,7 @@ mod icon;
 mod layers;
 mod mark;
 mod outline;
+mod pieces;
 #[cfg(test)]
 pub(crate) mod sample;
 mod strip;
@@ -38,6 +39,7 @@ pub use board::Scene;
 pub use layers::TOLD;
 pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::outline_of;
+pub use pieces::{Direction, Piece, in_drawn_order, pieces};
 #[cfg(feature = "lab")]
 pub(crate) use outline::sole;
 pub use theme::{Faces, Theme};

@@ -40,6 +40,8 @@ mod repeat;
 mod save;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "letters")]
+mod undrawn;
 mod units;
 mod version;
 mod write;

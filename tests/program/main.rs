@@ -13,9 +13,13 @@ mod areas;
 mod calibrate;
 mod clients;
 mod console;
+#[cfg(all(feature = "preview", target_os = "linux"))]
+mod desktop;
 mod end_to_end;
 mod holds;
 mod input;
+#[cfg(target_os = "linux")]
+mod letters;
 mod mirror;
 mod output;
 mod page_commands;
