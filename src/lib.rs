@@ -105,6 +105,8 @@ pub mod label;
 #[cfg(not(feature = "internals"))]
 mod label;
 pub mod layout;
+#[cfg(feature = "letters")]
+pub mod letters;
 #[cfg(feature = "record")]
 pub mod mirror;
 #[cfg(feature = "internals")]

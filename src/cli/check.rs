@@ -8,6 +8,7 @@ use underfoot::schema::{self, Diagnostics};
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
+use super::fonts::fonts;
 use super::layout_args::{LayoutArgs, MisplacedLayout};
 use super::output::{colours, print_json};
 
@@ -92,6 +93,7 @@ fn check(path: &std::path::Path, args: &Args, floor: &Floor) -> Diagnostics {
             }
             let mut problems = loaded.warnings;
             problems.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+            problems.merge(loaded.places.undrawn(|text| fonts().missing(text)));
             problems
         }
         Err(problems) => problems,

@@ -15,6 +15,7 @@ use underfoot::picture;
 use underfoot::sim::FloorQuality;
 
 use super::failure::Failure;
+use super::fonts::fonts;
 use super::output::print_json;
 use super::progress::Progress;
 
@@ -194,7 +195,7 @@ fn pond(args: &PondArgs) -> Result<(), Failure> {
     std::fs::create_dir_all(&args.out).map_err(failed(&args.out))?;
     for (name, scene) in PondWalk::pictures(args.seed.into())? {
         let path = args.out.join(name).with_extension("png");
-        picture::write(&scene, &path, args.width)?;
+        picture::write(&scene, fonts(), &path, args.width)?;
         outln!("{}", path.display());
     }
     let path = args.out.join("pond_walk.csv");
@@ -292,7 +293,7 @@ impl FigureArgs {
         out!("{}", figure.summary());
         for ending in ["png", "svg"] {
             let path = self.out.join(name).with_extension(ending);
-            picture::write(&scene, &path, self.width)?;
+            picture::write(&scene, fonts(), &path, self.width)?;
             outln!("{}", path.display());
         }
         let path = self.out.join(name).with_extension("csv");

@@ -15,6 +15,7 @@ use underfoot::sink::write_mono;
 use underfoot::units::Newtons;
 
 use super::failure::Failure;
+use super::fonts::fonts;
 use super::number::{gesture, number};
 
 /// What `underfoot feel` is asked to do.
@@ -101,7 +102,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
         }
     }
     if let Some(path) = &args.png {
-        picture::write(&sheet.draw(), path, args.width)?;
+        picture::write(&sheet.draw(), fonts(), path, args.width)?;
     }
     if let Some(path) = &args.ron {
         save_text(&schema::write_named_effect(&named), path)?;

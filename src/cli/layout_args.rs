@@ -14,6 +14,7 @@ use underfoot::layout::Layout;
 use underfoot::schema::{self, Diagnostics, Effects, Kinds, Loaded};
 
 use super::failure::Failure;
+use super::fonts::fonts;
 
 /// Which layout it is about.
 #[derive(Args, Clone, Debug, Default)]
@@ -69,13 +70,20 @@ impl LayoutArgs {
         Ok(loaded.layout)
     }
 
+    /// As [`LayoutArgs::load`], for a picture: letters that no font has are told as well.
+    pub(crate) fn load_drawn(&self, geometry: &Geometry) -> Result<Layout, Failure> {
+        let Loaded { layout, mut warnings, places } = self.read(geometry)?;
+        warnings.merge(places.undrawn(|text| fonts().missing(text)));
+        if !warnings.is_empty() {
+            err!("{warnings}");
+        }
+        Ok(layout)
+    }
+
     /// As [`LayoutArgs::load`], with everything that `underfoot check` would warn of, and nothing on standard error.
     #[cfg(feature = "preview")]
     pub(crate) fn reviewed(&self, floor: &Floor) -> Result<(Layout, Diagnostics), Failure> {
-        let is_empty =
-            |path: &&Path| std::fs::metadata(path).is_ok_and(|file| file.is_file() && file.len() == 0);
-        let loaded = match self.path().filter(is_empty) {
-            // What is designed in an empty file begins so.
+        let loaded = match self.begun() {
             Some(path) => {
                 let text = Template::Empty.text(&floor.geometry);
                 schema::parse_layout(&text, &path.display().to_string(), &self.kinds()?, &floor.geometry)?
@@ -84,7 +92,22 @@ impl LayoutArgs {
         };
         let mut warnings = loaded.warnings;
         warnings.merge(loaded.places.locate(&ergonomics::review(&loaded.layout, floor)));
+        warnings.merge(loaded.places.undrawn(|text| fonts().missing(text)));
         Ok((loaded.layout, warnings))
+    }
+
+    /// The file that a window begins: an empty one, or one that is not there but could be made: its name ends in `.ron`,
+    /// and its folder is there. `None` for any other.
+    #[cfg(feature = "preview")]
+    pub(crate) fn begun(&self) -> Option<&Path> {
+        let path = self.path()?;
+        let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty());
+        let can_be_made =
+            path.extension().is_some_and(|ending| ending == "ron") && folder.is_none_or(Path::is_dir);
+        match std::fs::metadata(path) {
+            Ok(file) => (file.is_file() && file.len() == 0).then_some(path),
+            Err(error) => (error.kind() == std::io::ErrorKind::NotFound && can_be_made).then_some(path),
+        }
     }
 
     /// The file to read and to watch; `None` for a built-in layout.

@@ -23,6 +23,7 @@ mod fault_args;
 mod feel;
 mod fitted_floor;
 mod floor_args;
+mod fonts;
 mod latency;
 mod layout_args;
 mod measure;

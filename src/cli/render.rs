@@ -10,6 +10,7 @@ use underfoot::units::Instant;
 
 use super::failure::Failure;
 use super::floor_args::FloorArgs;
+use super::fonts::fonts;
 use super::layout_args::LayoutArgs;
 
 /// How long the floor is empty before the picture is taken, in milliseconds: longer than any control wants to see it
@@ -37,7 +38,7 @@ pub(crate) struct Args {
 /// Draws the layout at rest.
 pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let geometry = args.floor.load()?.geometry;
-    let layout = args.layout.load(&geometry)?;
+    let layout = args.layout.load_drawn(&geometry)?;
     let mut snapshot = Snapshot::default();
     let mut engine = Engine::new(geometry, layout, Method::default());
     // A floor that has been seen empty for a while: no control waits for a foot to lift.
@@ -51,7 +52,7 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
     let mut scene = Scene::new();
     let view = View { show, ..View::new(&geometry, engine.layout(), &snapshot, &Theme::LIGHT) };
     scene::draw(&mut scene, &view);
-    picture::write(&scene, &args.out, args.width)?;
+    picture::write(&scene, fonts(), &args.out, args.width)?;
     outln!("{}", args.out.display());
     Ok(())
 }

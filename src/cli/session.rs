@@ -25,6 +25,7 @@ use underfoot::widget::Value;
 use super::failure::Failure;
 use super::fault_args::FaultArgs;
 use super::floor_args::FloorArgs;
+use super::fonts::fonts;
 use super::layout_args::LayoutArgs;
 use super::output::Results;
 use super::outputs::{PrefixArg, TuioArgs, osc_target};
@@ -227,6 +228,6 @@ impl Camera {
             ..View::new(geometry, layout, &snapshot, &Theme::LIGHT)
         };
         scene::draw(&mut scene, &view);
-        Ok(picture::write(&scene, path, PICTURE_WIDTH)?)
+        Ok(picture::write(&scene, fonts(), path, PICTURE_WIDTH)?)
     }
 }

@@ -28,7 +28,7 @@ pub enum Edit {
     Insert {
         /// Where it will be; behind the last one if that is further on.
         at: Address,
-        /// Its text.
+        /// Its text, with its comments before and behind it.
         text: String,
     },
     /// Take a record out. Comments above it stay; the one behind it on its line goes.
@@ -36,7 +36,12 @@ pub enum Edit {
         /// Which one.
         record: Address,
     },
-    /// Put a record elsewhere in its list.
+    /// Take a record out to put it in elsewhere: the comments directly above it go with it.
+    Take {
+        /// Which one.
+        record: Address,
+    },
+    /// Put a record elsewhere in its list, with its comments.
     Reorder {
         /// Which one.
         record: Address,
@@ -77,10 +82,16 @@ impl Edit {
                 let path: Vec<&str> = field.split('.').collect();
                 lines.unset(find(root, record)?, &path)
             }
-            Self::Insert { at, text } => insert(lines, root, at, &Piece::new(text.trim()))?,
+            Self::Insert { at, text } => {
+                insert(lines, root, at, &Piece::parse(text).ok_or(Refusal::NotARecord)?)?
+            }
             Self::Delete { record } => {
                 let (list, index) = in_list(root, record)?;
                 lines.cut(list, index)
+            }
+            Self::Take { record } => {
+                let (list, index) = in_list(root, record)?;
+                lines.take(list, index)
             }
             Self::Reorder { record, to } => return reorder(lines, root, record, *to),
             Self::Rename { record, id } => rename(root, record, id)?,
@@ -108,8 +119,7 @@ fn insert(lines: Lines<'_>, root: &Outline, at: &Address, piece: &Piece) -> Resu
     if let Some(list) = list_of(parent, list) {
         return Ok(lines.insert(list, index, piece));
     }
-    let entry = piece.text.replace('\n', "\n    ");
-    let list = Piece::new(format!("{}: [\n    {entry},\n]", list.field()));
+    let list = Piece::new(format!("{}: [\n{}]", list.field(), piece.listed("    ")));
     Ok(lines.insert(parent, parent.elements.len(), &list))
 }
 
@@ -119,9 +129,8 @@ fn reorder(lines: Lines<'_>, root: &Outline, record: &Address, to: usize) -> Res
     if to == index {
         return Ok(lines.0.to_owned());
     }
-    let piece = list.elements.get(index).map(|element| lines.piece(element));
-    let piece = piece.ok_or_else(|| Refusal::Missing(record.clone()))?;
-    let without = spliced(lines.0, lines.cut(list, index));
+    let piece = lines.piece(list, index).ok_or_else(|| Refusal::Missing(record.clone()))?;
+    let without = spliced(lines.0, lines.take(list, index));
     let again = Outline::parse(&without).ok_or_else(|| Refusal::Missing(record.clone()))?;
     let (parent, kind, _) = record.split().ok_or_else(|| Refusal::Missing(record.clone()))?;
     let splices = insert(Lines(&without), &again, &parent.entry(kind, to), &piece)?;

@@ -2,21 +2,59 @@
 
 use glam::Vec2;
 
-use super::address::{Address, List};
+use super::address::{Address, List, list_of};
 use super::change::Edit;
 use super::document::Document;
 use super::refusal::Refusal;
-use super::splice::{Lines, spliced};
+use super::splice::{Lines, Piece, spliced};
 use crate::format::outline::Outline;
+use crate::format::source::MAX_BYTES;
 
 impl Document {
+    /// The text of these records with their comments, one below the other, to be kept in a clipboard; those that don't
+    /// exist are left out.
+    #[must_use]
+    pub fn copy(&self, records: &[Address]) -> String {
+        self.listed(records, true)
+    }
+
+    fn listed(&self, records: &[Address], with_comments: bool) -> String {
+        let texts = records.iter().filter_map(|address| {
+            let (parent, list, index) = address.split()?;
+            let list = list_of(parent.find(self.root())?, list)?;
+            let piece = Lines(self.text()).piece(list, index)?;
+            let piece = if with_comments { piece } else { Piece::new(piece.text) };
+            Some(piece.listed(""))
+        });
+        texts.collect()
+    }
+
+    /// What puts the records that `text` holds where such records belong on the page numbered `page`, moved by `by`
+    /// metres, and where they will be: controls and grounds on the page, regions and places to stand in the layout.
+    ///
+    /// # Errors
+    /// As [`Document::pasting`].
+    pub fn pasting_on(
+        &self,
+        text: &str,
+        page: usize,
+        by: Vec2,
+    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        let pages = self.layout().pages.len();
+        let on_page = if page < pages { Address::of(List::Pages, page) } else { Address::LAYOUT };
+        self.pasted(text, by, |record| match list_for(record) {
+            list @ (List::Widgets | List::Grounds) => (on_page.clone(), list),
+            list => (Address::LAYOUT, list),
+        })
+    }
+
     /// What puts the records that `text` holds into `list` of `parent`, moved by `by` metres, and where they will be.
     ///
     /// `text` is what [`Document::copy`] gave, or what a person copied out of a file: records with commas between
     /// them. Ids that are taken get numbers.
     ///
     /// # Errors
-    /// [`Refusal::NotARecord`].
+    /// [`Refusal::NotARecord`], [`Refusal::TooLong`].
     pub fn pasting(
         &self,
         text: &str,
@@ -24,19 +62,34 @@ impl Document {
         list: List,
         by: Vec2,
     ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
-        let text = format!("[{}]", text.trim().trim_end_matches(','));
+        self.pasted(text, by, |_| (parent.clone(), list))
+    }
+
+    /// As [`Document::pasting`], each record into the list that `home` names.
+    fn pasted(
+        &self,
+        text: &str,
+        by: Vec2,
+        home: impl Fn(&Outline) -> (Address, List),
+    ) -> Result<(Vec<Edit>, Vec<Address>), Refusal> {
+        if text.len() > MAX_BYTES {
+            return Err(Refusal::TooLong);
+        }
+        // What ends in a comment must not close the bracket.
+        let text = format!("[\n{}\n]", text.trim());
         let entries = Outline::parse(&text).ok_or(Refusal::NotARecord)?;
-        let begin = parent.find(self.root()).and_then(|parent| super::address::list_of(parent, list));
-        let begin = begin.map_or(0, |list| list.elements.len());
-        let (mut edits, mut places, mut taken) = (Vec::new(), Vec::new(), Vec::new());
-        for element in &entries.elements {
+        let (mut edits, mut places, mut taken) = (Vec::new(), Vec::<Address>::new(), Vec::new());
+        for (number, element) in entries.elements.iter().enumerate() {
             if !super::change::is_record(&element.value) {
                 return Err(Refusal::NotARecord);
             }
-            let mut record = Lines(&text).piece(element).text;
-            self.renew(&mut record, by, &mut taken).ok_or(Refusal::NotARecord)?;
-            let at = parent.entry(list, begin + places.len());
-            edits.push(Edit::Insert { at: at.clone(), text: record });
+            let mut piece = Lines(&text).piece(&entries, number).ok_or(Refusal::NotARecord)?;
+            self.renew(&mut piece.text, by, &mut taken).ok_or(Refusal::NotARecord)?;
+            let (parent, list) = home(&element.value);
+            let is_here = |place: &&Address| place.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
+            let before = places.iter().filter(is_here).count();
+            let at = parent.entry(list, self.count(&parent, list) + before);
+            edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
             places.push(at);
         }
         if edits.is_empty() { Err(Refusal::NotARecord) } else { Ok((edits, places)) }
@@ -69,8 +122,8 @@ impl Document {
         Some(())
     }
 
-    /// What puts a copy of each of `records` behind the last one of its list, moved by `by` metres, and where those
-    /// will be.
+    /// What puts a copy of each of `records`, without comments, behind the last one of its list, moved by `by` metres,
+    /// and where those will be.
     ///
     /// # Errors
     /// As [`Document::pasting`].
@@ -85,7 +138,7 @@ impl Document {
             let is_here =
                 |record: &&Address| record.split().is_some_and(|it| (&it.0, it.1) == (&parent, list));
             let own: Vec<Address> = records.iter().filter(is_here).cloned().collect();
-            let (more, at) = self.pasting(&self.copy(&own), &parent, list, by)?;
+            let (more, at) = self.pasting(&self.listed(&own, false), &parent, list, by)?;
             edits.extend(more);
             places.extend(at);
         }
@@ -95,12 +148,37 @@ impl Document {
     /// What takes `records` out, and what is in them; the last of a list first, so that addresses stay true.
     #[must_use]
     pub fn deleting(&self, records: &[Address]) -> Vec<Edit> {
-        let mut records: Vec<&Address> = records
-            .iter()
-            .filter(|one| !records.iter().any(|other| other != *one && one.is_within(other)))
-            .collect();
-        records.sort_unstable_by(|a, b| b.cmp(a));
-        records.dedup();
-        records.into_iter().map(|record| Edit::Delete { record: record.clone() }).collect()
+        let records = last_first(records).into_iter();
+        records.map(|record| Edit::Delete { record: record.clone() }).collect()
+    }
+
+    /// The same with the comments that belong to them, which are in what [`Document::copy`] gives: to cut them out.
+    #[must_use]
+    pub fn taking(&self, records: &[Address]) -> Vec<Edit> {
+        let records = last_first(records).into_iter();
+        records.map(|record| Edit::Take { record: record.clone() }).collect()
+    }
+}
+
+/// The records that are in none of the others, the last one first.
+fn last_first(records: &[Address]) -> Vec<&Address> {
+    let is_inner = |one: &Address| records.iter().any(|other| other != one && one.is_within(other));
+    let mut outer: Vec<&Address> = records.iter().filter(|one| !is_inner(one)).collect();
+    outer.sort_unstable_by(|a, b| b.cmp(a));
+    outer.dedup();
+    outer
+}
+
+/// The list that a record belongs to, by what is written in it.
+fn list_for(record: &Outline) -> List {
+    let has = |field: &str| record.field(field).is_some();
+    match record.name.as_deref() {
+        Some("Group") => List::Widgets,
+        Some(_) => List::Grounds,
+        None if has("kind") => List::Widgets,
+        None if has("widgets") || has("grounds") => List::Pages,
+        // A place to stand has no id, a region no label.
+        None if has("id") => List::Regions,
+        None => List::Stances,
     }
 }

@@ -7,7 +7,7 @@ use super::address::{Address, List, list_of};
 use super::change::{Edit, is_record};
 use super::history::History;
 use super::refusal::Refusal;
-use super::splice::Lines;
+use super::splice::Piece;
 use crate::ergonomics::{self, Finding};
 use crate::floor::Floor;
 use crate::format::outline::Outline;
@@ -74,6 +74,15 @@ impl Document {
         &self.text
     }
 
+    /// Whether its file is to hold exactly `text`.
+    #[must_use]
+    pub fn is_written_as(&self, text: &str) -> bool {
+        match text.strip_prefix(MARK) {
+            Some(bare) => self.marked && *bare == *self.text,
+            None => !self.marked && *text == *self.text,
+        }
+    }
+
     /// What its file is to hold: the text, behind a byte-order mark if it had one.
     #[must_use]
     pub fn file_text(&self) -> String {
@@ -104,6 +113,12 @@ impl Document {
         let mut all = self.warnings().clone();
         all.merge(self.loaded.places.locate(&self.findings()));
         all
+    }
+
+    /// A warning for each text of which some letters can't be drawn; `missing` tells which those are.
+    #[must_use]
+    pub fn undrawn(&self, missing: impl FnMut(&str) -> Vec<char>) -> Diagnostics {
+        self.loaded.places.undrawn(missing)
     }
 
     /// The kinds that its controls can be made of.
@@ -191,7 +206,8 @@ impl Document {
         let mut root: Option<Outline> = None;
         for edit in edits {
             if let Edit::Insert { text, .. } = edit
-                && !Outline::parse(text).as_ref().is_some_and(is_record)
+                && !Piece::parse(text)
+                    .is_some_and(|piece| Outline::parse(&piece.text).as_ref().is_some_and(is_record))
             {
                 return Err(Refusal::NotARecord);
             }
@@ -254,17 +270,6 @@ impl Document {
         self.history.go_on();
         self.show(text, read);
         Ok(true)
-    }
-
-    /// The text of these records, one below the other, to be kept in a clipboard; those that don't exist are left out.
-    #[must_use]
-    pub fn copy(&self, records: &[Address]) -> String {
-        let texts = records.iter().filter_map(|address| {
-            let (parent, list, index) = address.split()?;
-            let element = list_of(parent.find(&self.root)?, list)?.elements.get(index)?;
-            Some(format!("{},\n", Lines(&self.text).piece(element).text))
-        });
-        texts.collect()
     }
 
     /// How many records the list of `parent` has.

@@ -20,8 +20,10 @@ pub struct LayoutFile {
     path: Option<PathBuf>,
     /// The folder of the draft while there is no name.
     folder: PathBuf,
-    /// What the file held when it was read or written last.
+    /// What the file held when it was read or written last; nothing once it was seen to be gone.
     base: String,
+    /// Whether it is to be written for the first time; `base` is then what it would begin with.
+    is_new: bool,
     /// What the draft holds.
     draft: Option<String>,
 }
@@ -47,7 +49,13 @@ impl LayoutFile {
     /// A layout without a file, such as a shipped one; its draft is in `folder`. `text` is what counts as saved.
     #[must_use]
     pub fn untitled(folder: &Path, text: &str) -> Self {
-        Self { path: None, folder: folder.into(), base: text.into(), draft: None }
+        Self { path: None, folder: folder.into(), base: text.into(), is_new: false, draft: None }
+    }
+
+    /// The file at `path`, which is not there yet, or empty, and begins with `text`; that counts as saved.
+    #[must_use]
+    pub fn begun(path: &Path, text: &str) -> Self {
+        Self { path: Some(path.into()), is_new: true, ..Self::untitled(Path::new(""), text) }
     }
 
     /// The file at `path`, and what it holds; a draft is to be asked for with [`LayoutFile::left_over`].
@@ -64,6 +72,12 @@ impl LayoutFile {
     #[must_use]
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
+    }
+
+    /// Whether it is to be written for the first time.
+    #[must_use]
+    pub fn is_new(&self) -> bool {
+        self.is_new
     }
 
     /// What people call it.
@@ -135,12 +149,19 @@ impl LayoutFile {
     /// What another program has written into the file since it was read or saved last.
     ///
     /// # Errors
-    /// What the system says; a file that is gone has not been written into.
-    pub fn outside(&self) -> io::Result<Option<String>> {
+    /// What the system says; a file that is gone has not been written into, and holds nothing of the layout any more.
+    pub fn outside(&mut self) -> io::Result<Option<String>> {
         let Some(path) = &self.path else { return Ok(None) };
         match read_bounded(path, MAX_BYTES as u64) {
+            // An empty file is a layout that is begun.
+            Ok(text) if self.is_new && text.trim().is_empty() => Ok(None),
             Ok(text) => Ok(Some(text).filter(|text| *text != self.base)),
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+            Err(error) if error.kind() == ErrorKind::NotFound => {
+                if !self.is_new {
+                    self.base.clear();
+                }
+                Ok(None)
+            }
             Err(error) => Err(error),
         }
     }
@@ -150,7 +171,7 @@ impl LayoutFile {
     pub fn take_in(&mut self, mine: &str, theirs: String) -> Saving {
         match merge(&self.base, mine, &theirs) {
             Merge::Merged(text) => {
-                self.base = theirs;
+                (self.base, self.is_new) = (theirs, false);
                 Saving::Merged(text)
             }
             Merge::Conflict(records) => Saving::Conflict { theirs, records },
@@ -159,7 +180,7 @@ impl LayoutFile {
 
     /// Says that what the file holds is known and may be replaced: the person has chosen.
     pub fn know(&mut self, theirs: String) {
-        self.base = theirs;
+        (self.base, self.is_new) = (theirs, false);
     }
 
     /// Writes `text` to the file, unless another program has changed that meanwhile.
@@ -177,7 +198,7 @@ impl LayoutFile {
             return Ok(self.take_in(text, theirs));
         }
         save_text(text, &path)?;
-        self.base = text.into();
+        (self.base, self.is_new) = (text.into(), false);
         self.drop_draft();
         Ok(Saving::Saved)
     }
@@ -189,7 +210,7 @@ impl LayoutFile {
     pub fn save_as(&mut self, text: &str, path: &Path) -> Result<(), SaveError> {
         save_text(text, path)?;
         self.drop_draft();
-        (self.path, self.base) = (Some(path.into()), text.into());
+        (self.path, self.base, self.is_new) = (Some(path.into()), text.into(), false);
         Ok(())
     }
 }
@@ -245,6 +266,41 @@ mod tests {
         assert_eq!(fs::read_to_string(&path).unwrap(), theirs);
         file.know(theirs);
         assert_eq!(file.save(&mine).unwrap(), Saving::Saved);
+    }
+
+    #[test]
+    fn a_file_that_is_begun_counts_as_saved_until_it_is_edited() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new.ron");
+        let mut file = LayoutFile::begun(&path, OLD);
+        assert!(file.is_new() && file.holds(OLD) && file.outside().unwrap().is_none());
+        assert!(!path.exists(), "nothing is written unasked");
+        file.keep_draft(OLD).unwrap();
+        assert!(!file.draft_path().exists());
+        assert_eq!(file.save(OLD).unwrap(), Saving::Saved);
+        assert_eq!(fs::read_to_string(&path).unwrap(), OLD);
+        assert!(!file.is_new());
+    }
+
+    #[test]
+    fn a_file_that_another_program_made_meanwhile_is_not_overwritten() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("new.ron");
+        let mut file = LayoutFile::begun(&path, OLD);
+        fs::write(&path, OLD.replace("a: 1", "a: 9")).unwrap();
+        assert!(matches!(file.save(&OLD.replace("a: 1", "a: 7")).unwrap(), Saving::Conflict { .. }));
+        assert!(fs::read_to_string(&path).unwrap().contains("a: 9"));
+    }
+
+    #[test]
+    fn a_file_that_is_gone_holds_nothing_any_more_and_saving_writes_it_again() {
+        let (_folder, path) = folder_with(OLD);
+        let (mut file, text) = LayoutFile::open(&path).unwrap();
+        fs::remove_file(&path).unwrap();
+        assert_eq!(file.outside().unwrap(), None);
+        assert!(!file.holds(&text));
+        assert_eq!(file.save(&text).unwrap(), Saving::Saved);
+        assert_eq!(fs::read_to_string(&path).unwrap(), OLD);
     }
 
     #[test]

@@ -8,7 +8,7 @@ use super::document::Document;
 use super::item::Item;
 use super::place::{RELATIVE, pair};
 use super::refusal::Refusal;
-use super::splice::{Lines, Piece, spliced};
+use super::splice::{Lines, Piece, comments, spliced};
 use crate::format::outline::Outline;
 
 impl Document {
@@ -34,18 +34,11 @@ impl Document {
             pair(corner.x, corner.y)
         );
         for (item, place) in items.iter().zip(&places) {
-            let piece = self.placed_piece(item, *place - corner)?;
-            text.push_str(&format!("    {},", piece.text.replace('\n', "\n    ")));
-            text.push_str(&if piece.comment.is_empty() {
-                String::new()
-            } else {
-                format!(" {}", piece.comment)
-            });
-            text.push('\n');
+            text.push_str(&self.placed_piece(item, *place - corner)?.listed("    "));
         }
         text.push_str("])");
         let records: Vec<Address> = items.iter().map(|item| item.record.clone()).collect();
-        let mut edits = self.deleting(&records);
+        let mut edits = self.taking(&records);
         let at = home.0.entry(home.1, home.2);
         edits.push(Edit::Insert { at: at.clone(), text });
         Ok((edits, at))
@@ -61,15 +54,41 @@ impl Document {
         let inner = items.iter().filter(|item| {
             item.record.split().is_some_and(|(of, list, _)| of == group.record && list == List::Widgets)
         });
-        let mut edits = vec![Edit::Delete { record: group.record.clone() }];
+        let mut edits = vec![Edit::Take { record: group.record.clone() }];
         let mut places = Vec::new();
-        for item in inner {
+        let pieces = inner.map(|item| self.placed_piece(item, self.place_of(item)? + corner));
+        let mut pieces = pieces.collect::<Result<Vec<Piece>, _>>()?;
+        let left = self.comments_beside(&group.record, &pieces);
+        if let Some(first) = pieces.first_mut() {
+            first.above.splice(0..0, left);
+        }
+        for piece in pieces {
             let at = parent.entry(list, index + places.len());
-            let piece = self.placed_piece(item, self.place_of(item)? + corner)?;
-            edits.push(Edit::Insert { at: at.clone(), text: piece.text });
+            edits.push(Edit::Insert { at: at.clone(), text: piece.listed("") });
             places.push(at);
         }
         if places.is_empty() { Err(Refusal::Apart) } else { Ok((edits, places)) }
+    }
+
+    /// The comments of a group that go with none of the pieces it holds, line by line.
+    fn comments_beside(&self, group: &Address, pieces: &[Piece]) -> Vec<String> {
+        let piece = group.split().and_then(|(parent, list, index)| {
+            Lines(self.text()).piece(list_of(parent.find(self.root())?, list)?, index)
+        });
+        let Some(whole) = piece.map(|piece| piece.listed("")) else { return Vec::new() };
+        let mut all: Vec<&str> = comments(&whole);
+        let inner: Vec<String> = pieces.iter().map(|piece| piece.listed("")).collect();
+        for taken in inner.iter().flat_map(|piece| comments(piece)) {
+            // A comment may have been closed, and further in.
+            let words = |comment: &str| {
+                let words = comment.split(|letter: char| letter.is_whitespace() || "/*".contains(letter));
+                words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join(" ")
+            };
+            if let Some(at) = all.iter().position(|comment| words(comment) == words(taken)) {
+                all.remove(at);
+            }
+        }
+        all.into_iter().flat_map(|comment| comment.lines().map(|line| line.trim().to_owned())).collect()
     }
 
     /// Where it is written to be in its list, or would be if it were written.
@@ -86,7 +105,7 @@ impl Document {
         let missing = || Refusal::Missing(item.record.clone());
         let (parent, list, index) = item.record.split().ok_or_else(missing)?;
         let list = parent.find(self.root()).and_then(|parent| list_of(parent, list)).ok_or_else(missing)?;
-        let mut piece = Lines(self.text()).piece(list.elements.get(index).ok_or_else(missing)?);
+        let mut piece = Lines(self.text()).piece(list, index).ok_or_else(missing)?;
         let had_at = self.written(&item.record, "at").is_some();
         for field in RELATIVE.iter().filter(|_| !had_at) {
             let root = Outline::parse(&piece.text).ok_or_else(missing)?;

@@ -21,6 +21,8 @@ pub enum Origin {
     Kind(String),
     /// Nobody says it: it is the format's default, or nothing.
     Default,
+    /// Of several records each says something else.
+    Several,
 }
 
 /// A field of a record, as an inspector shows it.
@@ -51,6 +53,22 @@ impl Property {
     #[must_use]
     pub fn is_place(&self) -> bool {
         self.name == "at" || self.name == "size"
+    }
+}
+
+/// Fields that each control has for itself.
+const OWN: [&str; 4] = ["id", "label", "at", "size"];
+
+impl Property {
+    /// Becomes what can be said of its own record and another one at once.
+    fn meet(&mut self, other: &Self) {
+        if self.value != other.value {
+            (self.value, self.origin) = (String::new(), Origin::Several);
+        } else if self.origin != other.origin && self.origin != Origin::Several {
+            // As written, it can be left out where it is.
+            let is_written = [&self.origin, &other.origin].contains(&&Origin::Written);
+            self.origin = if is_written { Origin::Written } else { Origin::Default };
+        }
     }
 }
 
@@ -116,6 +134,40 @@ impl Document {
             sections.push(Section { title: name, properties: properties.collect() });
         }
         sections
+    }
+
+    /// What can be said of several controls at once: the fields that all of them have, but for their names and places.
+    /// A field that is not the same in all has [`Origin::Several`] and no value.
+    #[must_use]
+    pub fn common(&self, controls: &[&Item]) -> Vec<Section> {
+        let mut all = controls.iter().map(|item| self.properties(&item.record, Some(item)));
+        let mut common = all.next().unwrap_or_default();
+        for part in &mut common {
+            part.properties.retain(|property| !OWN.contains(&property.name.as_str()));
+        }
+        for other in all {
+            for part in &mut common {
+                let same = other.iter().find(|other| other.title == part.title);
+                let same = same.map_or(&[][..], |same| &same.properties);
+                part.properties.retain_mut(|property| {
+                    let Some(other) = same.iter().find(|other| other.name == property.name) else {
+                        return false;
+                    };
+                    property.meet(other);
+                    other.told == property.told
+                });
+            }
+        }
+        common.retain(|part| !part.properties.is_empty());
+        common
+    }
+
+    /// The controls in a group, also those of groups within; the record itself if it is a control.
+    #[must_use]
+    pub fn controls_in<'i>(&self, items: &'i [Item], record: &Address) -> Vec<&'i Item> {
+        let controls =
+            items.iter().filter(|item| item.record.list() == Some(List::Widgets) && !item.is_group);
+        controls.filter(|item| item.record.is_within(record)).collect()
     }
 
     fn control(&self, record: &Address, widget: &Widget) -> Vec<Section> {

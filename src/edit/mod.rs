@@ -13,6 +13,8 @@ mod address;
 mod arrange;
 mod change;
 mod clipboard;
+#[cfg(test)]
+mod comment_tests;
 mod document;
 mod file;
 mod group;

@@ -17,6 +17,9 @@ pub enum Refusal {
     /// What was to be put in is not a record.
     #[error("this is not a record such as (id: \"home\", kind: \"button\", at: (1, 1), size: (1, 1))")]
     NotARecord,
+    /// What was to be put in is longer than a layout may be.
+    #[error("this is longer than a layout may be")]
+    TooLong,
     /// What is to be one group stands in several lists, such as those of two pages.
     #[error("only what stands in one list can be one group, and regions, places to stand and grounds can't")]
     Apart,

@@ -5,6 +5,7 @@
 use std::ops::Range;
 
 use crate::format::outline::{Element, Outline, OutlineShape};
+use crate::format::scan::scan;
 
 /// What stands deeper by one step.
 const STEP: &str = "    ";
@@ -40,9 +41,11 @@ pub(super) fn spliced(text: &str, mut splices: Vec<Splice>) -> String {
     result
 }
 
-/// An entry that was cut out, to be put in elsewhere.
-#[derive(Clone, Debug, PartialEq, Eq)]
+/// An entry that was cut out, to be put in elsewhere, with the comments that belong to it.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) struct Piece {
+    /// The comments on the lines above it, line by line.
+    pub(super) above: Vec<String>,
     /// Its text; further lines as far from the margin as if it stood there.
     pub(super) text: String,
     /// The comment behind it on its line.
@@ -51,7 +54,66 @@ pub(super) struct Piece {
 
 impl Piece {
     pub(super) fn new(text: impl Into<String>) -> Self {
-        Self { text: text.into(), comment: String::new() }
+        Self { text: text.into(), ..Self::default() }
+    }
+
+    /// The one entry that `text` holds, with the comments before and behind it; `None` for no entry or several.
+    pub(super) fn parse(text: &str) -> Option<Self> {
+        let list = format!("[\n{}\n]", text.trim());
+        let root = Outline::parse(&list)?;
+        let [element] = &root.elements[..] else { return None };
+        let mut piece = Lines(&list).piece(&root, 0)?;
+        let before = list.get(2..element.start())?;
+        let rest = list.get(element.end()..list.len() - 2)?;
+        // All comments, also such as have an empty line between them.
+        piece.above = comments(before).into_iter().flat_map(lines_of).collect();
+        let before_comma = comments(list.get(element.value.span.end..element.end())?);
+        let mut behind: Vec<String> = before_comma.into_iter().map(closed).collect();
+        if let [first @ .., last] = &comments(rest)[..] {
+            behind.extend(first.iter().map(|comment| closed(comment)).chain([(*last).to_owned()]));
+        }
+        piece.comment = behind.join(" ");
+        Some(piece)
+    }
+
+    /// Its lines as they stand in a list of records, comments and all, behind `indent`.
+    pub(super) fn listed(&self, indent: &str) -> String {
+        let mut listed: String = self.above.iter().map(|line| format!("{indent}{line}\n")).collect();
+        let line_break = format!("\n{indent}");
+        listed.push_str(&format!("{indent}{},", self.text.replace('\n', &line_break)));
+        if !self.comment.is_empty() {
+            listed.push_str(&format!(" {}", self.comment));
+        }
+        listed.push('\n');
+        listed
+    }
+
+    /// Its comments for an entry that shares its line with others, before and behind it: none may end the line.
+    fn inline(&self) -> (String, String) {
+        let all_closed = |text: &str| -> Vec<String> { comments(text).into_iter().map(closed).collect() };
+        let above = all_closed(&self.above.join("\n"));
+        let above: String = above.iter().map(|comment| format!("{} ", comment.replace('\n', " "))).collect();
+        let behind: String = all_closed(&self.comment).iter().map(|comment| format!(" {comment}")).collect();
+        (above, behind)
+    }
+}
+
+/// The comments of a text, in order.
+pub(super) fn comments(text: &str) -> Vec<&str> {
+    let found = scan(text, usize::MAX).comments;
+    found.into_iter().filter_map(|at| text.get(at)).collect()
+}
+
+/// The lines of a comment.
+fn lines_of(comment: &str) -> Vec<String> {
+    comment.lines().map(|line| line.trim_end().to_owned()).collect()
+}
+
+/// A comment that does not end its line.
+fn closed(comment: &str) -> String {
+    match comment.strip_prefix("//") {
+        Some(line) => format!("/* {} */", line.trim().replace("*/", "* /").replace("/*", "/ *")),
+        None => comment.to_owned(),
     }
 }
 
@@ -85,11 +147,15 @@ impl<'t> Lines<'t> {
         self.0[self.start(at)..at].trim().is_empty()
     }
 
-    /// The comment that is all that follows `at` on its line, or nothing; `None` if something else follows.
+    /// The comments that are all that follows `at` on its line, or nothing; `None` if something else follows.
     fn only_comment(self, at: usize) -> Option<&'t str> {
         let rest = self.0[at..self.end(at)].trim();
-        let closes = || rest.find("*/").is_some_and(|close| close + 2 == rest.len());
-        (rest.is_empty() || rest.starts_with("//") || (rest.starts_with("/*") && closes())).then_some(rest)
+        let mut left = 0;
+        for comment in scan(rest, usize::MAX).comments {
+            let is_blank = rest.get(left..comment.start).is_some_and(|between| between.trim().is_empty());
+            left = if is_blank { comment.end } else { return None };
+        }
+        rest.get(left..).is_some_and(|after| after.trim().is_empty()).then_some(rest)
     }
 
     /// Whether `element` has its lines to itself, but for a comment behind it.
@@ -97,10 +163,12 @@ impl<'t> Lines<'t> {
         self.only_comment(element.end()).filter(|_| self.is_first(element.start()))
     }
 
-    /// The text of `element`, as a piece.
-    pub(super) fn piece(self, element: &Element) -> Piece {
+    /// The element number `index` of `parent` with the comments that belong to it: those on the lines directly above
+    /// it, and the one behind it. `None` if there is no such element.
+    pub(super) fn piece(self, parent: &Outline, index: usize) -> Option<Piece> {
+        let element = parent.elements.get(index)?;
         let indent = self.indent(element.start());
-        let text = &self.0[element.start()..element.value.span.end];
+        let text = self.0.get(element.start()..element.value.span.end)?;
         let mut lines = text.split('\n');
         let mut dedented = lines.next().unwrap_or_default().to_owned();
         for line in lines {
@@ -108,8 +176,36 @@ impl<'t> Lines<'t> {
             dedented
                 .push_str(line.strip_prefix(indent).unwrap_or_else(|| line.trim_start_matches([' ', '\t'])));
         }
-        let comment = self.owns_lines(element).unwrap_or_default().to_owned();
-        Piece { text: dedented.replace("\r\n", "\n"), comment }
+        let before_comma = self.0.get(element.value.span.end..element.end()).unwrap_or_default();
+        let mut behind: Vec<String> = comments(before_comma).into_iter().map(closed).collect();
+        behind.extend(self.owns_lines(element).filter(|comment| !comment.is_empty()).map(str::to_owned));
+        let above = self.0.get(self.above(parent, index)..element.start()).unwrap_or_default().trim_end();
+        let line =
+            |line: &str| line.strip_prefix(indent).unwrap_or_else(|| line.trim_start()).trim_end().to_owned();
+        let above = above.lines().map(line).collect();
+        Some(Piece { above, text: dedented.replace("\r\n", "\n"), comment: behind.join(" ") })
+    }
+
+    /// Where the comments begin that belong to the element number `index` of `parent`: those before it on its line, and
+    /// those on the lines directly above, without an empty line between; where it begins itself if there are none.
+    fn above(self, parent: &Outline, index: usize) -> usize {
+        let Some(element) = parent.elements.get(index) else { return 0 };
+        let before = index.checked_sub(1).and_then(|before| parent.elements.get(before));
+        let limit = before.map(Element::end).or(parent.inside.as_ref().map(|inside| inside.start));
+        let limit = limit.unwrap_or(element.start());
+        // What is behind the entry before, on its line, belongs to that; but on one line, to what follows.
+        let rest = self.0.get(limit..element.start()).unwrap_or_default();
+        let limit = limit + rest.find('\n').map_or(0, |line_break| line_break + 1);
+        let Some(between) = self.0.get(limit..element.start()) else { return element.start() };
+        let mut begin = between.len();
+        for comment in scan(between, usize::MAX).comments.into_iter().rev() {
+            let gap = between.get(comment.end..begin).unwrap_or_default();
+            if !gap.trim().is_empty() || gap.matches('\n').count() > 1 {
+                break;
+            }
+            begin = comment.start;
+        }
+        limit + begin
     }
 
     fn indented(self, text: &str, indent: &str) -> String {
@@ -127,18 +223,19 @@ impl<'t> Lines<'t> {
 
     /// Puts `piece` in as the element number `index` of `parent`, a record or a list, written as its neighbours are.
     pub(super) fn insert(self, parent: &Outline, index: usize, piece: &Piece) -> Vec<Splice> {
-        let comment = if piece.comment.is_empty() { String::new() } else { format!(" {}", piece.comment) };
         let own_line = |indent: &str| {
+            let line_break = self.line_break();
+            let above: String =
+                piece.above.iter().map(|line| format!("{line_break}{indent}{line}")).collect();
             let text = self.indented(&piece.text, indent);
-            format!("{}{indent}{text},{comment}", self.line_break())
+            let comment =
+                if piece.comment.is_empty() { String::new() } else { format!(" {}", piece.comment) };
+            format!("{above}{line_break}{indent}{text},{comment}")
         };
         let inline = || {
             let indent = self.indent(parent.span.start);
-            let comment = match piece.comment.strip_prefix("//") {
-                Some(line) => format!(" /* {} */", line.trim().replace("*/", "* /")),
-                None => comment.clone(),
-            };
-            (self.indented(&piece.text, indent), comment)
+            let (above, comment) = piece.inline();
+            (format!("{above}{}", self.indented(&piece.text, indent)), comment)
         };
         let Some(inside) = &parent.inside else {
             // A name alone gets brackets.
@@ -161,7 +258,11 @@ impl<'t> Lines<'t> {
             (None, Some(first))
                 if self.is_first(first.start()) && self.only_comment(inside.start).is_some() =>
             {
-                vec![Splice::insert(self.end(inside.start), own_line(self.indent(first.start())))]
+                // Above the comments that belong to the first one, and below any others.
+                let line = own_line(self.indent(first.start()));
+                let line = line.trim_start_matches(['\r', '\n']);
+                let place = self.start(self.above(parent, 0));
+                vec![Splice::insert(place, format!("{line}{}", self.line_break()))]
             }
             (None, Some(first)) => {
                 let (text, comment) = inline();
@@ -205,6 +306,28 @@ impl<'t> Lines<'t> {
         let comma = before.comma.clone().filter(|comma| element.comma.is_none() && comma.end == start);
         let start = comma.map_or(start, |comma| comma.start);
         vec![Splice::new(start..element.end(), "")]
+    }
+
+    /// Takes the element number `index` of `parent` out as [`Lines::cut`] does, with the comments above it: they go where
+    /// it goes.
+    pub(super) fn take(self, parent: &Outline, index: usize) -> Vec<Splice> {
+        let mut splices = self.cut(parent, index);
+        let above = self.above(parent, index);
+        if let [splice] = &mut splices[..] {
+            splice.at.start = splice.at.start.min(above);
+            // A line with nothing else goes as a whole.
+            let start = self.start(splice.at.start);
+            let is_begin_blank = self.0[start..splice.at.start].trim().is_empty();
+            let (end, is_whole) = (self.end(splice.at.end), splice.at.end == self.start(splice.at.end));
+            let is_end_blank = is_whole || self.0[splice.at.end..end].trim().is_empty();
+            if is_begin_blank && is_end_blank && start < above {
+                splice.at.start = start;
+                if !is_whole {
+                    splice.at.end = end + self.0[end..].find('\n').map_or(0, |at| at + 1);
+                }
+            }
+        }
+        splices
     }
 
     /// Writes `value` for the field at `path` of `record`: what is written already is replaced, as little as will do.

@@ -133,7 +133,9 @@ fn random_edit(rng: &mut Pcg32, document: &Document) -> Option<(Vec<Edit>, Range
         9 if controls.len() > 1 => document.deleting(std::slice::from_ref(record)),
         10 => {
             let to = rng.random_range(0..=index + 1);
-            return Some((vec![Edit::Reorder { record: record.clone(), to }], whole(document)?));
+            // Comments above records go along.
+            let parent = document.span(&parent)?;
+            return Some((vec![Edit::Reorder { record: record.clone(), to }], parent));
         }
         _ if controls.len() < 40 => {
             let by = Vec2::new(rng.random_range(-1.5..1.5), rng.random_range(-1.5..1.5));

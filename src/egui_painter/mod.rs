@@ -13,6 +13,7 @@ pub use warped::paint_warped;
 use egui::epaint::{self, CircleShape, EllipseShape, Mesh, PathShape, PathStroke, TextShape};
 use egui::{Color32, FontFamily, FontId, Pos2, Rect, Shape, pos2, vec2};
 use glam::Vec2;
+use smallvec::SmallVec;
 
 use self::fields::Fields;
 use self::fine_line::FineLine;
@@ -20,7 +21,7 @@ use self::patches::{Look, Patches};
 use self::rounded::{Rounded, on_pixels};
 use crate::floor;
 use crate::layout::Colour;
-use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke, outline_of};
+use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Piece, Scene, Stroke, outline_of, pieces};
 
 /// Radius up to which egui has pictures of discs, in points: two triangles each.
 const LARGEST_DISC: f32 = 8.0;
@@ -276,28 +277,98 @@ impl Brush<'_> {
         }
         let color = ink_color(lettering.ink);
         let font = FontId::new(size, FontFamily::Proportional);
-        let galley = self.painter.layout_no_wrap(letters.to_owned(), font, color);
-        let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |glyph| glyph.pos.y);
-        let start = match lettering.anchor {
+        let set = |piece: Piece<'_>| {
+            let galley = self.painter.layout_no_wrap(piece.text.into_owned(), font.clone(), color);
+            // Each piece may have a font of its own; they share a base line.
+            let base = galley.rows.first().and_then(|row| row.glyphs.first()).map_or(size, |it| it.pos.y);
+            (galley, base)
+        };
+        let pieces: SmallVec<[_; 1]> = pieces(letters, lettering.direction).into_iter().map(set).collect();
+        let width: f32 = pieces.iter().map(|(galley, _)| galley.size().x).sum();
+        let mut along = match lettering.anchor {
             Anchor::Start => 0.0,
-            Anchor::Middle => 0.5,
-            Anchor::End => 1.0,
+            Anchor::Middle => -0.5 * width,
+            Anchor::End => -width,
         };
         // egui turns clockwise and about the upper left corner.
         let turn = epaint::emath::Rot2::from_angle(-lettering.turn_rad);
-        let corner = turn * vec2(-start * galley.size().x, -base);
-        let at = self.map.point(lettering.at) + corner;
-        let mut shape = TextShape::new(at, galley, color);
-        shape.angle = -lettering.turn_rad;
-        let area = shape.visual_bounding_rect();
-        if lettering.strong {
-            // The font has one weight; printed twice, its soft edges get heavier.
-            self.texts.push((area, shape.clone()));
+        for (galley, base) in pieces {
+            let corner = turn * vec2(along, -base);
+            along += galley.size().x;
+            let mut shape = TextShape::new(self.map.point(lettering.at) + corner, galley, color);
+            shape.angle = -lettering.turn_rad;
+            let area = shape.visual_bounding_rect();
+            if lettering.strong {
+                // The font has one weight; printed twice, its soft edges get heavier.
+                self.texts.push((area, shape.clone()));
+            }
+            self.texts.push((area, shape));
         }
-        self.texts.push((area, shape));
     }
 }
 
 fn fill(paint: &Paint) -> Color32 {
     paint.fill.map_or(Color32::TRANSPARENT, ink_color)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The texts that are painted for one line, from left to right, and the places of their base lines.
+    fn painted(text: &str, lettering: Lettering) -> Vec<(String, Pos2)> {
+        let mut scene = Scene::new();
+        scene.clear(floor::Rect::from_min_size(Vec2::ZERO, Vec2::ONE), Colour::rgb(0, 0, 0));
+        scene.add_text(lettering, format_args!("{text}"));
+        let screen = Rect::from_min_size(Pos2::ZERO, egui::Vec2::splat(1000.0));
+        let map = ScreenFromFloor::fit(scene.bounds(), screen);
+        let mut palette = Palette::default();
+        let input = egui::RawInput { screen_rect: Some(screen), ..Default::default() };
+        let mut output = egui::Context::default().run_ui(input, |ui| {
+            paint(ui.painter(), &mut palette, &scene, map);
+        });
+        output.textures_delta.clear();
+        let texts = output.shapes.iter().filter_map(|shape| match &shape.shape {
+            Shape::Text(text) => {
+                let base = text.galley.rows.first()?.glyphs.first()?.pos.y;
+                Some((text.galley.job.text.clone(), text.pos + vec2(0.0, base)))
+            }
+            _ => None,
+        });
+        let mut texts: Vec<_> = texts.collect();
+        texts.sort_by(|one, other| one.1.x.total_cmp(&other.1.x));
+        texts
+    }
+
+    fn lettering(anchor: Anchor) -> Lettering {
+        Lettering::new(Vec2::splat(0.5), anchor, 0.04, Ink::solid(Colour::rgb(255, 255, 255)))
+    }
+
+    #[test]
+    fn words_from_the_right_are_painted_so_with_numbers_as_they_are() {
+        let texts = painted("חדר בית 12", lettering(Anchor::Middle));
+        let words: Vec<&str> =
+            texts.iter().map(|(text, _)| text.trim()).filter(|text| !text.is_empty()).collect();
+        assert_eq!(words, ["12", "בית", "חדר"]);
+        assert!(
+            texts.iter().all(|(_, at)| (at.y - texts[0].1.y).abs() < 0.01),
+            "on one base line: {texts:?}"
+        );
+        assert!((texts[0].1.y - 500.0).abs() < 1.0, "at the place asked for: {texts:?}");
+    }
+
+    #[test]
+    fn a_line_of_several_pieces_is_anchored_as_a_whole() {
+        let start = painted("Go בית now", lettering(Anchor::Start));
+        let end = painted("Go בית now", lettering(Anchor::End));
+        let width = start[0].1.x - end[0].1.x;
+        assert!((start[0].1.x - 500.0).abs() < 1.0 && width > 100.0, "{start:?} {end:?}");
+        let middle = painted("Go בית now", lettering(Anchor::Middle));
+        assert!((middle[0].1.x - (500.0 - 0.5 * width)).abs() < 1.0, "{middle:?}");
+    }
+
+    #[test]
+    fn a_latin_line_is_one_text() {
+        assert_eq!(painted("Zoom 12 %", lettering(Anchor::Start)).len(), 1);
+    }
 }

@@ -118,6 +118,15 @@ pub const RULES: &[Rule] = &[
         source: "Feet have no habit of the place of a control that they use seldom: people look.",
         remedy: "add a label, or an icon: look: (icon: Home)",
     },
+    Rule {
+        code: "U304",
+        title: "letters that no font has",
+        limits: "warning: a text of the layout holds a letter that neither the program's own fonts have, which are \
+                 Latin, Greek, Cyrillic, arrows and emoji, nor those of the computer that checks it",
+        source: "A box is drawn in place of such a letter. Fonts differ from computer to computer: check on the one \
+                 that shows the layout.",
+        remedy: "install a font that has them where the layout is shown (Debian: fonts-noto-core, fonts-noto-cjk)",
+    },
 ];
 
 /// The rule of this code; `None` if there is none.

@@ -67,7 +67,8 @@ impl Page {
     /// Sets one line of text and gives its width.
     pub(super) fn text(&mut self, at: Vec2, kind: Type, text: fmt::Arguments<'_>) -> f32 {
         let Type { anchor, size_m, strong, colour, turn_rad } = kind;
-        let lettering = Lettering { at, anchor, size_m, strong, turn_rad, ink: Ink::solid(colour) };
+        let lettering =
+            Lettering { strong, turn_rad, ..Lettering::new(at, anchor, size_m, Ink::solid(colour)) };
         self.scene.add_text(lettering, text)
     }
 

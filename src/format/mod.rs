@@ -28,14 +28,15 @@ pub(crate) mod file;
 pub(crate) mod hand;
 pub(crate) mod node;
 pub(crate) mod number;
-#[cfg(feature = "edit")]
+#[cfg(any(feature = "edit", feature = "letters"))]
+#[cfg_attr(not(feature = "edit"), expect(dead_code, reason = "only edits ask where commas and brackets are"))]
 pub(crate) mod outline;
 pub(crate) mod pairs;
 pub(crate) mod problem;
 pub(crate) mod reader;
 pub(crate) mod record;
 mod remedy;
-mod scan;
+pub(crate) mod scan;
 pub(crate) mod source;
 pub(crate) mod suggest;
 mod syntax;

@@ -5,6 +5,8 @@
 //! also refuses every text that the parser might cut into tokens differently,
 //! so that what [`super::pairs`] finds out about brackets holds for the parser too.
 
+use std::ops::Range;
+
 use super::diagnostic::Diagnostics;
 use super::pairs::Mark;
 use super::problem::Problem;
@@ -16,6 +18,9 @@ pub(crate) struct Scan {
     pub(crate) problems: Vec<Problem>,
     /// Its brackets and commas, those in texts and comments left out.
     pub(crate) marks: Vec<Mark>,
+    /// Its comments.
+    #[cfg_attr(not(feature = "edit"), expect(dead_code, reason = "only edits move comments"))]
+    pub(crate) comments: Vec<Range<usize>>,
     /// Number of its words, numbers, texts, opening brackets and commas: what a parser makes values of.
     pub(crate) tokens: usize,
     /// Whether `marks` can be relied upon in spite of `problems`.
@@ -64,7 +69,11 @@ impl Scanner<'_> {
                 Some(prefix) => self.string(prefix),
                 None => self.word(),
             },
-            '/' if rest.starts_with("//") => self.at += rest.find('\n').unwrap_or(rest.len()),
+            '/' if rest.starts_with("//") => {
+                let line = rest.lines().next().unwrap_or_default().len();
+                self.scan.comments.push(self.at..self.at + line);
+                self.at += line;
+            }
             '/' if rest.starts_with("/*") => self.block_comment(),
             '(' | '[' | ')' | ']' | ',' => {
                 self.scan.marks.push(Mark { at: self.at, character: first as u8 });
@@ -179,6 +188,7 @@ impl Scanner<'_> {
             }
             self.at += 2;
             if depth == 0 {
+                self.scan.comments.push(start..self.at);
                 return;
             }
         }

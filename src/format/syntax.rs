@@ -31,7 +31,7 @@ pub(crate) struct Syntax<'t> {
 
 /// Parses `text`, which is expected to hold one `kind` of thing, such as a `Layout`.
 pub(crate) fn parse<'t>(text: &'t str, kind: &str, limits: Limits) -> Syntax<'t> {
-    let Scan { mut problems, marks, tokens, certain } = scan(text, limits.tokens);
+    let Scan { mut problems, marks, tokens, certain, .. } = scan(text, limits.tokens);
     if certain {
         let mispaired = pairs::check(text, &marks, limits);
         if mispaired.is_empty() {

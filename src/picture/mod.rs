@@ -1,19 +1,20 @@
-//! Drawings as files: SVG, and PNG without a display or a system font.
+//! Drawings as files, without a display: SVG with all text as outlines, and PNG.
 
 mod svg;
 #[cfg(test)]
 mod tests;
+mod text;
 
 pub use svg::svg;
 
 use std::ops::RangeInclusive;
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, LazyLock};
 
 use resvg::tiny_skia::{Pixmap, Transform};
-use resvg::usvg::{self, Tree, fontdb::Database};
+use resvg::usvg::{Options, Tree};
 use thiserror::Error;
 
+use crate::letters::Fonts;
 use crate::scene::Scene;
 
 /// Widths that a picture may have, in pixels.
@@ -46,13 +47,13 @@ pub enum PictureError {
 
 /// The drawing as a PNG file's bytes, `width_px` pixels wide and as high as its shape asks.
 ///
-/// The same drawing gives the same bytes on every machine: letters come from
-/// fonts within the program.
+/// The same drawing gives the same bytes on every computer, unless it has letters that only the fonts of one computer
+/// have.
 ///
 /// # Errors
 /// [`PictureError::Size`] for a width outside [`WIDTHS`] or a height above them,
 /// [`PictureError::Drawing`] for a scene that was never drawn.
-pub fn png(scene: &Scene, width_px: u32) -> Result<Vec<u8>, PictureError> {
+pub fn png(scene: &Scene, fonts: &Fonts, width_px: u32) -> Result<Vec<u8>, PictureError> {
     let size = scene.bounds().size();
     let height = (width_px as f32 * size.y / size.x).round();
     let fits = WIDTHS.contains(&width_px) && (1.0..=*WIDTHS.end() as f32).contains(&height);
@@ -64,10 +65,8 @@ pub fn png(scene: &Scene, width_px: u32) -> Result<Vec<u8>, PictureError> {
     if !fits {
         return Err(too_large);
     }
-    let options =
-        usvg::Options { font_family: FAMILY.into(), fontdb: Arc::clone(&FONTS), ..usvg::Options::default() };
-    let tree =
-        Tree::from_str(&svg(scene), &options).map_err(|error| PictureError::Drawing(error.to_string()))?;
+    let tree = Tree::from_str(&svg(scene, fonts), &Options::default())
+        .map_err(|error| PictureError::Drawing(error.to_string()))?;
     let mut pixels = Pixmap::new(width_px, height_px).ok_or(too_large)?;
     let scale =
         Transform::from_scale(width_px as f32 / tree.size().width(), height_px as f32 / tree.size().height());
@@ -79,22 +78,8 @@ pub fn png(scene: &Scene, width_px: u32) -> Result<Vec<u8>, PictureError> {
 ///
 /// # Errors
 /// Those of [`png`], and [`PictureError::File`] if the file cannot be written.
-pub fn write(scene: &Scene, path: &Path, width_px: u32) -> Result<(), PictureError> {
+pub fn write(scene: &Scene, fonts: &Fonts, path: &Path, width_px: u32) -> Result<(), PictureError> {
     let is_svg = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("svg"));
-    let bytes = if is_svg { svg(scene).into_bytes() } else { png(scene, width_px)? };
+    let bytes = if is_svg { svg(scene, fonts).into_bytes() } else { png(scene, fonts, width_px)? };
     std::fs::write(path, bytes).map_err(|source| PictureError::File { path: path.to_path_buf(), source })
 }
-
-const FAMILY: &str = "Ubuntu";
-
-/// The program's own letters, and nothing of the machine's, so that pictures are the same everywhere.
-static FONTS: LazyLock<Arc<Database>> = LazyLock::new(|| {
-    let mut fonts = Database::new();
-    fonts.load_font_data(epaint_default_fonts::UBUNTU_LIGHT.to_vec());
-    // Stands in for signs that Ubuntu lacks: arrows, box drawing, mathematics.
-    fonts.load_font_data(epaint_default_fonts::HACK_REGULAR.to_vec());
-    fonts.set_sans_serif_family(FAMILY);
-    fonts.set_serif_family(FAMILY);
-    fonts.set_monospace_family("Hack");
-    Arc::new(fonts)
-});

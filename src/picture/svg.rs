@@ -4,21 +4,25 @@ use std::fmt::{self, Write};
 
 use glam::Vec2;
 
+use super::text::{Placing, escape};
 use crate::floor::Rect;
+use crate::letters::Fonts;
 use crate::scene::{Anchor, Ink, Lettering, Mark, Paint, Scene, Stroke};
 
 /// The drawing as a stand-alone SVG document, one user unit to a millimetre of floor.
 ///
-/// Printed at its own size it is as large as the floor. The letters are meant
-/// for Ubuntu Light; a viewer without it takes its own sans serif.
+/// Printed at its own size it is as large as the floor. Text is drawn as outlines of `fonts`, so that it looks the same
+/// in every viewer; the words are in `aria-label` for screen readers and search.
 #[must_use]
-pub fn svg(scene: &Scene) -> String {
+pub fn svg(scene: &Scene, fonts: &Fonts) -> String {
     let size = mm(scene.bounds().size());
     // A mark takes about 120 bytes.
     let mut page = Page {
         out: String::with_capacity(400 + 130 * scene.marks().len()),
         bounds: scene.bounds(),
+        fonts,
         gradients: 0,
+        signs: 0,
     };
     // Writing to a `String` cannot fail.
     let _ = page.document(scene, size);
@@ -30,11 +34,14 @@ fn mm(metres: Vec2) -> Vec2 {
     metres * 1000.0
 }
 
-struct Page {
+struct Page<'f> {
     out: String,
     bounds: Rect,
+    fonts: &'f Fonts,
     /// Gradients so far, each of which needs a name.
     gradients: u32,
+    /// Signs with colours of their own so far; names in them begin with their number.
+    signs: usize,
 }
 
 /// Height of the strips that a field is made of, in millimetres: what changes from one to the next is not seen.
@@ -43,13 +50,13 @@ const STRIP_MM: f32 = 5.0;
 /// Layers that make a band fade out.
 const LAYERS: u16 = 4;
 
-impl Page {
+impl Page<'_> {
     fn document(&mut self, scene: &Scene, size: Vec2) -> fmt::Result {
         let Vec2 { x, y } = size;
         write!(
             self.out,
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{x:.1}mm\" height=\"{y:.1}mm\" \
-             viewBox=\"0 0 {x:.1} {y:.1}\" font-family=\"Ubuntu Light, Ubuntu, sans-serif\" font-weight=\"300\">\n\
+             viewBox=\"0 0 {x:.1} {y:.1}\">\n\
              <rect width=\"100%\" height=\"100%\" fill=\"{}\"/>\n",
             scene.background()
         )?;
@@ -219,39 +226,40 @@ impl Page {
 
     fn text(&mut self, letters: &str, lettering: &Lettering) -> fmt::Result {
         let at = self.place(lettering.at);
-        let size = lettering.size_m * 1000.0;
-        let anchor = match lettering.anchor {
-            Anchor::Start => "start",
-            Anchor::Middle => "middle",
-            Anchor::End => "end",
+        let em = lettering.size_m * 1000.0;
+        let line = self.fonts.line(letters, lettering.direction);
+        let before = match lettering.anchor {
+            Anchor::Start => 0.0,
+            Anchor::Middle => 0.5,
+            Anchor::End => 1.0,
         };
-        let colour = lettering.ink.colour;
-        write!(
-            self.out,
-            "<text x=\"{:.2}\" y=\"{:.2}\" font-size=\"{size:.2}\" text-anchor=\"{anchor}\" fill=\"{colour}\"",
-            at.x, at.y
-        )?;
-        self.opacity("fill-opacity", lettering.ink.opacity)?;
-        if lettering.strong {
-            // The font has one weight; an outline makes it heavier.
-            write!(self.out, " stroke=\"{colour}\" stroke-width=\"{:.2}\"", STRONG_EM * size)?;
-            self.opacity("stroke-opacity", lettering.ink.opacity)?;
-        }
+        let placing = Placing { start: at - Vec2::new(before * line.width() * em, 0.0), em };
+        self.out.write_str("<g role=\"img\" aria-label=\"")?;
+        escape(&mut self.out, letters)?;
+        self.out.write_str("\"")?;
         if lettering.turn_rad != 0.0 {
             // The page's y axis points down: what is counter-clockwise on the floor is negative here.
             let degrees = -lettering.turn_rad.to_degrees();
             write!(self.out, " transform=\"rotate({degrees:.1} {:.2} {:.2})\"", at.x, at.y)?;
         }
-        self.out.write_str(" xml:space=\"preserve\">")?;
-        for letter in letters.chars() {
-            match letter {
-                '&' => self.out.write_str("&amp;")?,
-                '<' => self.out.write_str("&lt;")?,
-                '>' => self.out.write_str("&gt;")?,
-                other => self.out.write_char(other)?,
-            }
+        let colour = lettering.ink.colour;
+        write!(self.out, "><path fill=\"{colour}\"")?;
+        self.opacity("fill-opacity", lettering.ink.opacity)?;
+        if lettering.strong {
+            // The font has one weight; an outline makes it heavier.
+            write!(self.out, " stroke=\"{colour}\" stroke-width=\"{:.2}\"", STRONG_EM * em)?;
+            self.opacity("stroke-opacity", lettering.ink.opacity)?;
         }
-        self.out.write_str("</text>\n")
+        self.out.write_str(" d=\"")?;
+        let mut written = Ok(());
+        line.outline(|step| written = written.and(placing.step(&mut self.out, step)));
+        written?;
+        self.out.write_str("\"/>")?;
+        for sign in line.signs() {
+            placing.sign(&mut self.out, sign, self.signs)?;
+            self.signs += 1;
+        }
+        self.out.write_str("</g>\n")
     }
 }
 
@@ -277,7 +285,7 @@ mod tests {
         let north_east = Rect::from_min_size(Vec2::ZERO, Vec2::new(0.5, 0.25));
         scene.add_box(north_east, 0.01, Paint::fill(ink));
         scene.add_line(Vec2::ZERO, Vec2::X, Paint::stroke(Stroke::new(0.002, ink).dashed(0.01, 0.02)));
-        let text = svg(&scene);
+        let text = svg(&scene, &Fonts::built_in());
         assert!(text.contains("viewBox=\"0 0 2000.0 2000.0\""), "{text}");
         assert!(
             text.contains(
@@ -291,10 +299,14 @@ mod tests {
     }
 
     #[test]
-    fn letters_that_mean_something_in_xml_are_escaped() {
+    fn text_is_outlines_with_its_words_beside_them() {
         let mut scene = scene();
         let lettering = Lettering::new(Vec2::ZERO, Anchor::Start, 0.05, Ink::solid(Colour::rgb(0, 0, 0)));
         scene.add_text(lettering, format_args!("<Salt & \"Pepper\">"));
-        assert!(svg(&scene).contains(">&lt;Salt &amp; \"Pepper\"&gt;</text>"));
+        let text = svg(&scene, &Fonts::built_in());
+        assert!(text.contains("aria-label=\"&lt;Salt &amp; &quot;Pepper&quot;&gt;\"><path fill"), "{text}");
+        // A viewer with other fonts, or none, shows the same.
+        assert!(!text.contains("<text") && !text.contains("font-family"), "{text}");
+        assert!(text.matches('Z').count() >= 15, "{text}");
     }
 }

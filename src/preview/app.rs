@@ -10,6 +10,7 @@ use eframe::egui::Ui;
 use super::PreviewOptions;
 use super::appearance::Appearance;
 use super::bars::TELL_S;
+use super::closing::Closing;
 use super::design::Designer;
 use super::feed::{FootSink, PreviewCommand, PreviewInput, ServerFeed, ServerState, ShoeFeed};
 use super::feet::MouseFeet;
@@ -91,6 +92,10 @@ pub(super) struct App {
     pub(super) floor_check: Option<FloorCheck>,
     /// `None` where nothing can be designed.
     pub(super) designer: Option<Designer>,
+    pub(super) closing: Closing,
+    /// The program's name in the window's title, and the title that the window has.
+    pub(super) name: String,
+    pub(super) titled: Option<String>,
     commands: SyncSender<PreviewCommand>,
     /// The window's clock, in seconds.
     pub(super) now_s: f64,
@@ -121,7 +126,7 @@ impl App {
             theme: appearance.theme(),
             appearance,
             selection: Selection::new(&input.floor.geometry),
-            presses: Presses::default(),
+            presses: if input.playback.is_some() { Presses::recorded() } else { Presses::default() },
             plots: Plots::default(),
             scopes: Scopes::new(input.scopes, &input.floor),
             messages,
@@ -139,6 +144,9 @@ impl App {
             choices: input.choices,
             floor_check: input.packets.map(FloorCheck::new),
             tuner: Tuner::new(input.effects),
+            closing: Closing::default(),
+            name: options.title.clone(),
+            titled: None,
             commands: input.commands,
             grip: Grip::default(),
             zoom: Zoom::default(),
@@ -172,8 +180,11 @@ impl App {
         self.follow_check(ui);
         self.handle_text_keys(ui);
         self.appearance.enlarge(ui.ctx());
+        self.handle_file_keys(ui);
         self.handle_mute_key(ui);
         self.handle_mode_key(ui);
+        self.show_title(ui.ctx());
+        self.ask_before_closing(ui.ctx());
         self.handle_undo_key(ui);
         self.handle_plots_key(ui);
         self.handle_walk_key(ui);
@@ -186,6 +197,7 @@ impl App {
             self.design(ui);
             return self.request_next_frame(ui);
         }
+        self.ask_for_path(ui);
         if self.is_checking() {
             self.check_panel(ui);
         } else {
@@ -263,6 +275,10 @@ impl App {
 }
 
 impl eframe::App for App {
+    fn logic(&mut self, ctx: &egui::Context, _frame: &mut eframe::Frame) {
+        self.handle_close(ctx);
+    }
+
     fn ui(&mut self, ui: &mut Ui, _frame: &mut eframe::Frame) {
         self.show(ui);
     }

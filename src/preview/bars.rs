@@ -12,7 +12,7 @@ use super::feed::{LayoutCause, PreviewCommand};
 use super::rehearsal::Rehearsal;
 use super::style::{panel_colour, panel_frame, pill, quiet, selectable, toggle};
 use crate::egui_painter::color;
-use crate::scene::{Show, Theme};
+use crate::scene::{Show, Theme, in_drawn_order};
 use crate::wire::LinkState;
 
 /// Width of the window below which the top bar takes two lines, in points.
@@ -56,11 +56,11 @@ impl App {
     fn heading(&mut self, ui: &mut Ui) {
         let title = self.messages.layout.title.clone();
         if self.choices.is_empty() {
-            let text = RichText::new(&title).size(17.0).strong().color(color(self.theme.ink));
+            let text = RichText::new(in_drawn_order(&title)).size(17.0).strong().color(color(self.theme.ink));
             ui.add(egui::Label::new(text).truncate());
         } else {
             let mut chosen = None;
-            let text = RichText::new(&title).size(15.0).color(color(self.theme.ink));
+            let text = RichText::new(in_drawn_order(&title)).size(15.0).color(color(self.theme.ink));
             let menu = egui::ComboBox::from_id_salt("layout").selected_text(text).width(150.0);
             let response = menu.show_ui(ui, |ui| {
                 for (index, choice) in self.choices.iter().enumerate() {
@@ -75,6 +75,7 @@ impl App {
                 self.design_choice(index);
             }
         }
+        self.file_name(ui);
         // The drawing board has its own count, which leads to each.
         let count = self.messages.warnings.count;
         if count > 0 && !self.is_designing() {
@@ -94,6 +95,7 @@ impl App {
                 };
                 pill(ui, self.theme.good, &self.theme, &format!("{}: {what}", file.name));
             }
+            _ if self.designer.is_some() => {}
             Some(file) => {
                 ui.add(egui::Label::new(quiet(&self.theme, &file.name)).truncate());
             }
@@ -122,9 +124,21 @@ impl App {
         }
     }
 
+    /// Whether the floor is there; of a recording, how it was.
     fn link_state(&self, ui: &mut Ui) {
-        let (text, colour) = link(self.snapshots.output_buffer().link, &self.theme);
-        pill(ui, colour, &self.theme, text);
+        let theme = &self.theme;
+        let state = self.snapshots.output_buffer().link;
+        let (text, colour) = link(state, theme);
+        match (&self.time_line, state) {
+            (None, _) => drop(pill(ui, colour, theme, text)),
+            (Some(_), LinkState::Live) => {
+                pill(ui, theme.accent, theme, "replay").on_hover_text("A recording is shown");
+            }
+            (Some(_), _) => {
+                let hint = "A recording is shown, in which the floor was so";
+                pill(ui, colour, theme, &format!("replay: {text}")).on_hover_text(hint);
+            }
+        }
     }
 
     fn buttons(&mut self, ui: &mut Ui) {

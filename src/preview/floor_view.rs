@@ -11,6 +11,7 @@ use glam::Vec2;
 use super::app::App;
 use super::feet::{Hand, MouseFeet, Move};
 use super::off_hint::why_off;
+use super::pointer::{pressed_at, way_while_down};
 use super::touches::Touch;
 use super::watch::{Banner, Weight};
 use super::zoom::Zoom;
@@ -108,10 +109,9 @@ impl App {
             return;
         };
         let (by, panned) = ui.input(|i| {
-            let is_panned = i.pointer.button_down(PointerButton::Middle);
             // Fingers on the floor are feet, also two of them.
             let zoomed = if i.any_touches() { 1.0 } else { i.zoom_delta() };
-            (zoomed, if is_panned { i.pointer.delta() } else { egui::Vec2::ZERO })
+            (zoomed, way_while_down(i, PointerButton::Middle))
         });
         let screen = canvas.rect.shrink(6.0);
         let extent = scene::extent(&self.floor.geometry, show);
@@ -316,13 +316,17 @@ fn stand_and_drag(
     let alt = ui.input(|i| i.modifiers.alt);
     let reach = if alt { 0.5 * shoe.length_m * map.scale() } else { HANDLE };
     let over = pointer.is_some_and(|pointer| near(pointer, reach)) && !feet.is_pressing();
-    let (began, down) = ui.input(|i| (i.pointer.primary_pressed(), i.pointer.primary_down()));
+    let began = ui.input(|i| pressed_at(i, PointerButton::Primary));
+    let began = began.is_some_and(|at| near(at, reach) && canvas.rect.contains(at) && !feet.is_pressing());
     grip.handle = Some(middle).filter(|_| grip.held || pointer.is_some_and(|at| near(at, 5.0 * HANDLE)));
-    grip.held = (grip.held || (over && began)) && down;
-    let drag = if grip.held { map.floor_vector(ui.input(|i| i.pointer.delta())) } else { Vec2::ZERO };
+    grip.held |= began;
+    let way = ui.input(|i| way_while_down(i, PointerButton::Primary));
+    let drag = if grip.held { map.floor_vector(way) } else { Vec2::ZERO };
+    let was_held = grip.held;
+    grip.held &= ui.input(|i| i.pointer.primary_down());
     // Its middle stays on the floor, however far the mouse goes.
     let drag = (shoe.position + drag).clamp(floor.min, floor.max) - shoe.position;
-    (over || grip.held, drag)
+    (over || was_held, drag)
 }
 
 fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
@@ -351,8 +355,7 @@ fn read_hand(ui: &Ui, canvas: &Response, map: ScreenFromFloor) -> Hand {
         let down = i.pointer.primary_down();
         // A press that began on the floor goes on beyond its edge, as a foot would.
         let pointer = i.pointer.latest_pos().filter(|_| inside || down);
-        let turned =
-            if i.pointer.button_down(PointerButton::Secondary) && inside { i.pointer.delta().x } else { 0.0 };
+        let turned = if inside { way_while_down(i, PointerButton::Secondary).x } else { 0.0 };
         let key = |key: Key| f32::from(u8::from(keys && i.key_down(key)));
         let turning_s = i.stable_dt.clamp(0.0, 0.1);
         Hand {

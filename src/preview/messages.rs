@@ -40,6 +40,16 @@ pub(super) enum Happened {
     },
 }
 
+impl Happened {
+    fn at(&self) -> Instant {
+        match self {
+            Self::Event(event) => event.at,
+            Self::Ignored(press) => press.at,
+            Self::GroundEvent { at, .. } => *at,
+        }
+    }
+}
+
 /// What other threads said, sorted.
 pub(super) struct Messages {
     events: Receiver<EventNews>,
@@ -49,7 +59,8 @@ pub(super) struct Messages {
     pub(super) recent: VecDeque<Happened>,
     /// What each ground had counted at the last frame.
     counted: Vec<u64>,
-    /// Events since the window opened.
+    /// Events since the window opened: those of controls, presses that no control answered, and grounds that began to
+    /// give way.
     pub(super) event_count: u64,
     /// The layout that snapshots belong to.
     pub(super) layout: Arc<Layout>,
@@ -184,6 +195,7 @@ impl Messages {
                 }
                 _ => {
                     let material = ground.spec.material.name();
+                    self.event_count += 1;
                     self.recent.truncate(KEPT - 1);
                     self.recent.push_front(Happened::GroundEvent {
                         ground: index,
@@ -196,11 +208,13 @@ impl Messages {
         }
     }
 
-    /// Lists presses that no control answered.
+    /// Lists presses that no control answered, each behind what happened after it: events may have come before.
     pub(super) fn note_ignored(&mut self, presses: Vec<IgnoredPress>) {
         for press in presses {
+            self.event_count += 1;
             self.recent.truncate(KEPT - 1);
-            self.recent.push_front(Happened::Ignored(press));
+            let older = self.recent.iter().position(|happened| happened.at() <= press.at);
+            self.recent.insert(older.unwrap_or(self.recent.len()), Happened::Ignored(press));
         }
     }
 
@@ -309,6 +323,26 @@ mod tests {
         assert_eq!(messages.event_count, 2000);
         assert_eq!(event_of(&messages.recent[0]).at, Instant::from_millis(1999), "newest first");
         assert_eq!(messages.notes, ["no sound card"]);
+    }
+
+    #[test]
+    fn every_line_of_the_list_is_counted_and_stands_in_the_order_of_time() {
+        let (event, events) = channel();
+        let mut messages = Messages::new(named("it"), events, channel().1, channel().1);
+        for at in [100, 300] {
+            event.send(EventNews::Event(crate::preview::tests::event(at, "home"))).unwrap();
+        }
+        messages.receive(1.0, 0);
+        let press = IgnoredPress {
+            at: Instant::from_millis(200),
+            id: crate::widget::WidgetId::new("zoom"),
+            contact: crate::sense::ContactId(4),
+            force: crate::units::Newtons(24.0),
+            why: crate::engine::Ignored::TooLight,
+        };
+        messages.note_ignored(vec![press]);
+        let at: Vec<_> = messages.recent.iter().map(|line| line.at().micros() / 1000).collect();
+        assert_eq!((at, messages.event_count), (vec![300, 200, 100], 3));
     }
 
     #[test]

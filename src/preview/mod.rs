@@ -8,6 +8,7 @@ mod app;
 mod appearance;
 mod bars;
 mod channels;
+mod closing;
 mod design;
 #[cfg(test)]
 mod drags;
@@ -22,6 +23,7 @@ mod off_hint;
 mod panel;
 mod playback;
 mod plots;
+mod pointer;
 mod presses;
 mod projection;
 mod rate;
@@ -109,6 +111,8 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
         viewport,
         renderer: eframe::Renderer::Glow,
         dithering: false,
+        // Ours chooses the same fonts for pictures, and does without any.
+        system_font_fallback: false,
         ..Default::default()
     };
     keep_memory();
@@ -116,6 +120,9 @@ pub fn run(input: PreviewInput, options: &PreviewOptions) -> Result<(), PreviewE
     let start = Box::new(move |context: &eframe::CreationContext<'_>| {
         let app = app::App::new(lookout::start(input, &context.egui_ctx), &options);
         style::apply(&context.egui_ctx, &app.theme);
+        context.egui_ctx.set_fonts(crate::letters::definitions());
+        // What they lack comes from the fonts of this computer, as pictures have it.
+        context.egui_ctx.add_font_provider(std::sync::Arc::new(crate::letters::Installed::new()));
         // The size of the text is the window's own: it is remembered.
         context.egui_ctx.options_mut(|options| options.zoom_with_keyboard = false);
         Ok(Box::new(app) as Box<dyn eframe::App>)

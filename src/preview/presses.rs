@@ -1,6 +1,6 @@
 //! How hard people have pressed each control, answered or not.
 
-use std::collections::VecDeque;
+use std::collections::{HashMap, VecDeque};
 
 use crate::engine::{AnsweredPress, Ignored, IgnoredPress, Snapshot};
 use crate::sense::ContactId;
@@ -42,6 +42,14 @@ impl Press {
 pub(super) struct Presses {
     /// Oldest first.
     all: VecDeque<Press>,
+    /// Whether they are recorded ones, which come again each time an earlier moment is shown.
+    are_recorded: bool,
+    /// The last that made room for another, and the moment up to which those of a control were forgotten: recorded
+    /// presses up to then have been counted.
+    dropped_at: Option<Instant>,
+    forgotten_at: HashMap<WidgetId, Instant>,
+    /// The last snapshot's moment.
+    seen_at: Instant,
     /// What the last snapshot had listed.
     ignored: Vec<IgnoredPress>,
     answered: Vec<AnsweredPress>,
@@ -51,8 +59,19 @@ pub(super) struct Presses {
 }
 
 impl Presses {
-    /// Takes in what a snapshot lists that was not listed before; gives back the new presses that were ignored.
+    /// Those of a recording, each of which is noted once, however often its moment is shown.
+    pub(super) fn recorded() -> Self {
+        Self { are_recorded: true, ..Self::default() }
+    }
+
+    /// Takes in what a snapshot lists that was not listed before; gives back the newly listed presses that were
+    /// ignored. After a snapshot of an earlier moment, all of them are newly listed.
     pub(super) fn update(&mut self, snapshot: &Snapshot) -> Vec<IgnoredPress> {
+        if snapshot.at < self.seen_at {
+            self.ignored.clear();
+            self.answered.clear();
+        }
+        self.seen_at = snapshot.at;
         for foot in &snapshot.feet {
             if !self.people.iter().any(|(contact, _)| *contact == foot.contact) {
                 self.people.truncate(CONTACTS - 1);
@@ -80,14 +99,31 @@ impl Presses {
 
     fn note(&mut self, at: Instant, id: &WidgetId, contact: ContactId, force: Newtons, why: Option<Ignored>) {
         let person = self.people.iter().find(|(other, _)| *other == contact).map(|(_, person)| *person);
-        if self.all.len() == KEPT {
-            self.all.pop_front();
-        }
         let counts = Press::is_meant(why) && force.is_finite();
-        self.all.push_back(Press { at, id: id.clone(), force, why, person, counts });
+        let press = Press { at, id: id.clone(), force, why, person, counts };
+        if self.are_recorded && self.is_noted(&press) {
+            return;
+        }
+        if self.all.len() == KEPT {
+            self.dropped_at = self.all.pop_front().map(|oldest| oldest.at);
+        }
+        // Between the others, where a recording is shown from an earlier moment than before.
+        let place = if self.are_recorded {
+            self.all.partition_point(|other| other.at <= press.at)
+        } else {
+            self.all.len()
+        };
+        self.all.insert(place, press);
         if self.told.as_ref().is_some_and(|(told, _)| told == id) {
             self.told = None;
         }
+    }
+
+    fn is_noted(&self, press: &Press) -> bool {
+        let is_it = |other: &Press| (other.at, &other.id, other.why) == (press.at, &press.id, press.why);
+        self.dropped_at.is_some_and(|dropped| press.at <= dropped)
+            || self.forgotten_at.get(&press.id).is_some_and(|forgotten| press.at <= *forgotten)
+            || self.all.iter().any(is_it)
     }
 
     /// The control that was pressed last.
@@ -120,6 +156,8 @@ impl Presses {
 
     /// Forgets the presses of one control: another person begins.
     pub(super) fn forget(&mut self, id: &WidgetId) {
+        let latest = self.of(id).next().map(|latest| latest.at);
+        self.forgotten_at.extend(latest.map(|at| (id.clone(), at)));
         self.all.retain(|press| press.id != *id);
         self.told = None;
     }
@@ -168,6 +206,58 @@ mod tests {
         presses.update(&snapshot);
         assert_eq!(presses.of(&id("home")).count(), 5);
         assert_eq!(presses.of(&id("zoom")).count(), 0);
+    }
+
+    /// What the window sees of a recording, moment by moment.
+    fn shown(at_ms: u64, answered_so_far: Vec<AnsweredPress>, ignored_so_far: Vec<IgnoredPress>) -> Snapshot {
+        let at = Instant::from_millis(at_ms);
+        Snapshot { at, answered: answered_so_far, ignored: ignored_so_far, ..Snapshot::default() }
+    }
+
+    #[test]
+    fn a_recorded_press_is_counted_once_however_often_it_is_shown() {
+        let mut presses = Presses::recorded();
+        let early = || answered(100, 1, 120.0);
+        let light = || ignored(150, 2, 40.0, Ignored::TooLight);
+        let late = || answered(200, 3, 90.0);
+        presses.update(&shown(120, vec![early()], vec![]));
+        presses.update(&shown(300, vec![early(), late()], vec![light()]));
+        presses.let_count(&id("home"), 0, false);
+        let counted = presses.counted(&id("home"));
+        // Back to the beginning and through it again, which lists the light press again.
+        presses.update(&shown(10, vec![], vec![]));
+        assert_eq!(presses.update(&shown(160, vec![early()], vec![light()])).len(), 1);
+        presses.update(&shown(300, vec![early(), late()], vec![light()]));
+        assert_eq!(presses.of(&id("home")).count(), 3);
+        assert_eq!(presses.counted(&id("home")), counted, "one that was left out stays so");
+    }
+
+    #[test]
+    fn a_recorded_press_that_was_jumped_over_is_counted_when_it_is_shown() {
+        let mut presses = Presses::recorded();
+        presses.update(&shown(900, vec![answered(800, 3, 90.0)], vec![]));
+        presses.update(&shown(10, vec![], vec![]));
+        presses.update(&shown(200, vec![answered(100, 1, 120.0)], vec![]));
+        let forces: Vec<f32> = presses.of(&id("home")).map(|press| press.force.0).collect();
+        assert_eq!(forces, [90.0, 120.0], "the latest first");
+    }
+
+    #[test]
+    fn recorded_presses_that_were_forgotten_or_made_room_do_not_come_back() {
+        let mut presses = Presses::recorded();
+        presses.update(&shown(200, vec![answered(100, 1, 120.0)], vec![]));
+        presses.forget(&id("home"));
+        presses.update(&shown(10, vec![], vec![]));
+        presses.update(&shown(200, vec![answered(100, 1, 120.0)], vec![]));
+        assert_eq!(presses.of(&id("home")).count(), 0);
+        for number in 1..=KEPT as u64 + 1 {
+            let at = 1000 * number;
+            presses.update(&shown(at, vec![answered(at, 1, 100.0)], vec![]));
+        }
+        presses.update(&shown(10, vec![], vec![]));
+        presses.update(&shown(1000, vec![answered(1000, 1, 100.0)], vec![]));
+        let first = presses.of(&id("home")).last().unwrap();
+        assert_eq!((presses.of(&id("home")).count(), first.at), (KEPT, Instant::from_millis(2000)));
     }
 
     #[test]

@@ -136,6 +136,12 @@ pub(super) fn pill(ui: &mut Ui, colour: Colour, theme: &Theme, text: &str) -> eg
     frame.show(ui, |ui| ui.label(RichText::new(text).color(color(colour)))).inner
 }
 
+/// Whether Enter has just ended the typing in `field`: what the dialog is for shall be done. To be asked before the field
+/// is given the keyboard again.
+pub(super) fn is_entered(ui: &Ui, field: &egui::Response) -> bool {
+    field.lost_focus() && ui.input(|i| i.key_pressed(egui::Key::Enter))
+}
+
 /// One line of a table: texts at the given places (shares of the width), numbers right-aligned there.
 pub(super) struct Row<'a> {
     pub(super) ui: &'a Ui,

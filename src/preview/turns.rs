@@ -15,8 +15,8 @@ pub(super) struct Turns {
 impl Turns {
     /// Leaves in `events` what one frame can take, in the order in which it came; whether some is left for the next.
     ///
-    /// With `parts_clicks` a button's way down and up are two turns: what is done with a pointer between frames is
-    /// looked at where it began and where it ended. Simulated feet follow the whole path themselves.
+    /// With `parts_clicks` a turn ends where a button goes down or up, and the pointer is there when that is looked at.
+    /// Simulated feet follow the whole path themselves.
     pub(super) fn take(&mut self, events: &mut Vec<Event>, parts_clicks: bool) -> bool {
         self.waiting.append(events);
         let count = first_turn(&self.waiting, parts_clicks);
@@ -35,7 +35,8 @@ fn first_turn(events: &[Event], parts_clicks: bool) -> usize {
         let is_next = match () {
             () if leads => has_input,
             () if clicks => parts_clicks && has_input,
-            () => types && has_click,
+            () if types => has_click,
+            () => parts_clicks && has_click && matches!(event, Event::PointerMoved(_)),
         };
         if is_next {
             return at;
@@ -139,7 +140,9 @@ mod tests {
         let (here, there) = (pos2(1.0, 2.0), pos2(30.0, 2.0));
         let click = [button(here, true), button(there, false)].concat();
         assert_eq!(turns(click.clone(), false), vec![click.clone()]);
-        assert_eq!(turns(click.clone(), true).len(), 2, "where it began is seen");
+        let parted = turns([click.clone(), vec![Event::PointerMoved(here)]].concat(), true);
+        assert_eq!(parted.len(), 3, "where it began is seen, and where it ended");
+        assert_eq!(parted[1], click[2..], "it came from where it began");
         let typed = [click, text("4")].concat();
         assert_eq!(turns(typed, false).len(), 2, "the field that is clicked on is typed into");
     }

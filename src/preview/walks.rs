@@ -11,6 +11,7 @@ use super::app::App;
 use crate::egui_painter::{ScreenFromFloor, color};
 use crate::floor::Geometry;
 use crate::layout::Layout;
+use crate::scene::in_drawn_order;
 use crate::sim::{ArrivalHandle, DrawnWalk, Script};
 use crate::widget::WidgetId;
 
@@ -173,8 +174,8 @@ impl App {
         if let Some(widget) = layout.widgets.iter().find(|widget| Some(&widget.id) == aimed.as_ref()) {
             let area = map.rect(widget.area).expand(3.0);
             painter.rect_stroke(area, 7.0, Stroke::new(2.5, ink), eframe::egui::StrokeKind::Outside);
-            let words =
-                format!("uses {}", if widget.label.is_empty() { widget.id.as_str() } else { &widget.label });
+            let name = if widget.label.is_empty() { widget.id.as_str() } else { &widget.label };
+            let words = format!("uses {}", in_drawn_order(name));
             painter.text(
                 area.center_top() - vec2(0.0, 5.0),
                 Align2::CENTER_BOTTOM,

@@ -254,6 +254,7 @@ fn is_noncharacter(letter: char) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use super::super::Direction;
     use super::*;
 
     fn lettering() -> Lettering {
@@ -264,6 +265,7 @@ mod tests {
             strong: false,
             turn_rad: 0.0,
             ink: Ink::solid(Colour::rgb(0, 0, 0)),
+            direction: Direction::OfItsLetters,
         }
     }
 

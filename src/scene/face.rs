@@ -6,7 +6,7 @@ use super::fit::{Fitted, fit};
 use super::mark::{Anchor, Ink, Lettering, Paint, Stroke};
 use super::theme::{contrast, readable};
 use super::widths::{CAP_HEIGHT, LINE_HEIGHT};
-use super::{Scene, Theme, icon, outline};
+use super::{Direction, Scene, Theme, icon, outline};
 use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
@@ -364,6 +364,7 @@ fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, f
         Anchor::End => room.max.x,
     };
     let top = room.centre().y + 0.5 * fitted.height_m();
+    let direction = Direction::of(text);
     for (line, bytes) in fitted.lines.iter().enumerate() {
         let middle = top - (line as f32 + 0.5) * LINE_HEIGHT * fitted.size_m;
         let lettering = Lettering::new(
@@ -372,7 +373,8 @@ fn set(scene: &mut Scene, text: &str, room: Rect, anchor: Anchor, ink: Colour, f
             fitted.size_m,
             Ink::solid(ink),
         )
-        .strong();
+        .strong()
+        .reading(direction);
         let last = line + 1 == fitted.lines.len();
         let end = if fitted.shortened && last { "…" } else { "" };
         scene.add_text(lettering, format_args!("{}{end}", &text[bytes.clone()]));

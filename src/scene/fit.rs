@@ -4,6 +4,8 @@ use std::ops::Range;
 
 use arrayvec::ArrayVec;
 use glam::Vec2;
+use unicode_linebreak::linebreaks;
+use unicode_segmentation::UnicodeSegmentation;
 
 use super::widths::{LINE_HEIGHT, width};
 
@@ -30,7 +32,8 @@ impl Fitted {
 
 /// The largest setting of `text` within `room` metres, between the two sizes.
 ///
-/// Lines break at white space. One line is preferred over more if it is nearly
+/// Lines break where the Unicode algorithm of line breaks allows it: at white space, and between Chinese and Japanese
+/// letters. One line is preferred over more if it is nearly
 /// as large. What does not fit even at `smallest_m` is cut off with an ellipsis.
 pub(super) fn fit(text: &str, room: Vec2, largest_m: f32, smallest_m: f32) -> Fitted {
     let mut size_m = largest_m;
@@ -124,14 +127,14 @@ fn shorten(text: &str, room: Vec2, size_m: f32) -> Fitted {
     Fitted { size_m, lines, shortened: !left.is_empty() }
 }
 
-/// The bytes of the longest beginning of `text` that is at most `room` em wide.
+/// The bytes of the longest beginning of `text` that is at most `room` em wide; letters keep their marks.
 fn prefix(text: &str, room: f32) -> usize {
     let mut used = 0.0;
-    let fits = |(_, letter): &(usize, char)| {
-        used += width(letter.encode_utf8(&mut [0; 4]));
+    let fits = |(_, cluster): &(usize, &str)| {
+        used += width(cluster);
         used <= room
     };
-    text.char_indices().take_while(fits).last().map_or(0, |(at, letter)| at + letter.len_utf8())
+    text.grapheme_indices(true).take_while(fits).last().map_or(0, |(at, cluster)| at + cluster.len())
 }
 
 fn trimmed(text: &str) -> Range<usize> {
@@ -139,10 +142,13 @@ fn trimmed(text: &str) -> Range<usize> {
     start..start + text.trim().len()
 }
 
+/// What no line break divides, without the white space around it.
 fn words(text: &str) -> impl Iterator<Item = Range<usize>> {
-    text.split_whitespace().map(|word| {
-        let start = word.as_ptr() as usize - text.as_ptr() as usize;
-        start..start + word.len()
+    let mut begin = 0;
+    linebreaks(text).filter_map(move |(end, _)| {
+        let part = std::mem::replace(&mut begin, end)..end;
+        let word = trimmed(text.get(part.clone())?);
+        (!word.is_empty()).then(|| part.start + word.start..part.start + word.end)
     })
 }
 
@@ -172,6 +178,23 @@ mod tests {
     }
 
     #[test]
+    fn chinese_breaks_between_its_letters_before_it_shrinks_much() {
+        let text = "地図を拡大する";
+        let fitted = fit(text, Vec2::new(0.2, 0.2), 0.05, 0.02);
+        assert_eq!(lines(text, &fitted).len(), 2, "{fitted:?}");
+        assert!(fitted.size_m > 0.04, "{fitted:?}");
+        assert_eq!(lines(text, &fitted).concat(), text);
+    }
+
+    #[test]
+    fn a_letter_is_not_cut_off_from_its_marks() {
+        // 3.5 cm hold one letter of 2 cm with an ellipsis; each of the first two has two marks.
+        let text = "ที่นี่ดี";
+        let fitted = fit(text, Vec2::new(0.035, 0.02), 0.02, 0.02);
+        assert_eq!(lines(text, &fitted), ["ที่"], "{fitted:?}");
+    }
+
+    #[test]
     fn what_cannot_fit_is_cut_off_visibly() {
         // 15 cm hold about nine letters of 3 cm, 5 cm one line of them.
         let name = "Donaudampfschifffahrt";
@@ -187,7 +210,7 @@ mod tests {
     proptest! {
         #[test]
         fn every_line_fits_its_room(
-            text in "[ a-zA-ZäöüÄÖß\\-…靴👟]{0,60}",
+            text in "[ a-zA-ZäöüÄÖß\\-…靴を👟א-ת\u{5b0}\u{627}-\u{64a}ก-ู]{0,60}",
             across in 0.0_f32..1.0,
             down in 0.0_f32..0.5,
         ) {

@@ -2,6 +2,7 @@
 
 use glam::Vec2;
 
+use super::pieces::Direction;
 use crate::floor::Rect;
 use crate::layout::Colour;
 
@@ -125,13 +126,21 @@ pub struct Lettering {
     pub turn_rad: f32,
     /// Its colour.
     pub ink: Ink,
+    /// The way in which its parts follow each other.
+    pub direction: Direction,
 }
 
 impl Lettering {
     /// A level line, set no heavier than usual.
     #[must_use]
     pub const fn new(at: Vec2, anchor: Anchor, size_m: f32, ink: Ink) -> Self {
-        Self { at, anchor, size_m, strong: false, turn_rad: 0.0, ink }
+        Self { at, anchor, size_m, strong: false, turn_rad: 0.0, ink, direction: Direction::OfItsLetters }
+    }
+
+    /// The same with its parts in this order: a line of a longer text follows the whole.
+    #[must_use]
+    pub const fn reading(self, direction: Direction) -> Self {
+        Self { direction, ..self }
     }
 
     /// The same, set heavier.

@@ -24,6 +24,7 @@ mod icon;
 mod layers;
 mod mark;
 mod outline;
+mod pieces;
 #[cfg(test)]
 pub(crate) mod sample;
 mod strip;
@@ -40,6 +41,7 @@ pub use mark::{Anchor, Ink, Lettering, Mark, Paint, Span, Stroke};
 pub use outline::outline_of;
 #[cfg(feature = "lab")]
 pub(crate) use outline::sole;
+pub use pieces::{Direction, Piece, in_drawn_order, pieces};
 pub use theme::{Faces, Theme};
 pub use view::{Layer, Shoe, Show, Trail, View};
 

@@ -42,6 +42,8 @@ mod save;
 mod state;
 #[cfg(test)]
 mod tests;
+#[cfg(feature = "letters")]
+mod undrawn;
 mod units;
 mod version;
 mod write;

@@ -15,11 +15,15 @@ mod areas;
 mod calibrate;
 mod clients;
 mod console;
+#[cfg(all(feature = "preview", target_os = "linux"))]
+mod desktop;
 mod end_to_end;
 mod faults;
 mod holds;
 mod hostile_pages;
 mod input;
+#[cfg(target_os = "linux")]
+mod letters;
 mod mirror;
 mod output;
 mod page_commands;

@@ -1,4 +1,5 @@
 //! `underfoot calibrate curves`: each sensor's law from load-cell measurements.
+use super::super::fonts::fonts;
 
 use std::path::PathBuf;
 
@@ -68,7 +69,7 @@ pub(super) fn run(args: &Args) -> Result<(), Failure> {
     let dropped = mapped - maps(&floor);
     if let Some(path) = &args.plot {
         let scene = plot::draw(&judged);
-        picture::write(&scene, path, PLOT_PX)?;
+        picture::write(&scene, fonts(), path, PLOT_PX)?;
     }
     let saved = match &out {
         Some(out) => Some((out.path(), out.save(&floor)?)),

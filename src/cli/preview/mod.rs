@@ -401,6 +401,7 @@ impl Args {
         let path = self.layout.path().map(std::path::Path::to_path_buf);
         let name = self.layout.layout.as_deref().and_then(std::path::Path::to_str).unwrap_or(DEFAULT_LAYOUT);
         let text = match &path {
+            Some(_) if self.layout.begun().is_some() => Some(String::new()),
             Some(path) => std::fs::read_to_string(path).ok(),
             None => schema::builtin_layout(name).map(str::to_owned),
         };

@@ -10,7 +10,7 @@ use super::{Ask, Asking, Designer, shelf};
 use crate::edit::{Address, Align, Template, align, distribute};
 use crate::egui_painter::color;
 use crate::floor::Rect;
-use crate::preview::style::{panel_colour, panel_frame, pill, quiet, toggle};
+use crate::preview::style::{is_entered, panel_colour, panel_frame, pill, quiet, toggle};
 use crate::scene::Theme;
 use crate::schema;
 
@@ -57,7 +57,7 @@ impl Designer {
                 }
                 toggle(ui, &mut self.text.is_open, "Text", "The layout as text, beside the floor");
                 self.count(ui, theme);
-                if let Some(message) = &self.message {
+                if let Some(message) = self.message() {
                     let colour = if message.is_bad { theme.fault } else { theme.good };
                     pill(ui, colour, theme, &message.text);
                 }
@@ -66,7 +66,6 @@ impl Designer {
     }
 
     fn files(&mut self, ui: &mut Ui, choices: &[String]) {
-        let is_saved = self.is_saved();
         ui.menu_button("File", |ui| {
             ui.menu_button("New", |ui| {
                 let geometry = self.document.floor().geometry;
@@ -112,12 +111,10 @@ impl Designer {
                 }
             }
         });
-        let save = ui.add_enabled(!is_saved || self.file.path().is_none(), egui::Button::new("Save"));
-        if save.on_hover_text("Ctrl+S").clicked() {
+        let can_save = !self.is_saved() || self.file.path().is_none() || self.file.is_new();
+        if ui.add_enabled(can_save, egui::Button::new("Save")).on_hover_text("Ctrl+S").clicked() {
             self.save();
         }
-        let name = self.file.name();
-        ui.label(if is_saved { name } else { format!("{name} (not saved)") });
     }
 
     fn arrange(&mut self, ui: &mut Ui) {
@@ -181,9 +178,9 @@ impl Designer {
             .findings
             .iter()
             .filter_map(|finding| self.document.found_in(finding))
-            .chain(self.document.warnings().iter().filter_map(|problem| self.document.told_of(problem)))
+            .chain(self.told().filter_map(|problem| self.document.told_of(problem)))
             .collect();
-        let count = self.findings.len() + self.document.warnings().len();
+        let count = self.findings.len() + self.told().count();
         if count == 0 {
             ui.label(quiet(theme, "no warnings"));
             return;
@@ -244,10 +241,12 @@ impl Designer {
                 });
             });
         }
-        self.ask(ui, frame);
     }
 
-    fn ask(&mut self, ui: &mut Ui, frame: egui::Frame) {
+    /// Asks for a path, where one is needed.
+    pub(in crate::preview) fn ask(&mut self, ui: &mut Ui, theme: &Theme) {
+        let ground = color(panel_colour(theme).mix(theme.warning, 0.12));
+        let frame = egui::Frame::new().fill(ground).inner_margin(Margin::symmetric(14, 5));
         let Some(mut asking) = self.asking.take() else { return };
         let mut goes_on = true;
         Panel::top("path").frame(frame).resizable(false).show(ui, |ui| {
@@ -256,10 +255,11 @@ impl Designer {
                 ui.label(name);
                 let field = ui.add(egui::TextEdit::singleline(&mut asking.path).desired_width(420.0));
                 field.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Path"));
+                // Before it gets the keyboard again: then nothing would have been lost.
+                let entered = is_entered(ui, &field);
                 if ui.memory(|memory| memory.focused().is_none()) {
                     field.request_focus();
                 }
-                let entered = field.lost_focus() && ui.input(|i| i.key_pressed(Key::Enter));
                 if ui.button(format!("{name} it")).clicked() || entered {
                     goes_on = !self.answer(&asking);
                 }

@@ -1,9 +1,10 @@
 //! What is done to what is selected.
 
+use eframe::egui;
 use glam::Vec2;
 
 use super::Designer;
-use crate::edit::{Address, Edit, Item, List, Refusal};
+use crate::edit::{Address, Edit, Item, Refusal};
 use crate::floor::Rect;
 
 impl Designer {
@@ -63,13 +64,34 @@ impl Designer {
         self.put_beside(bounds.size(), text);
     }
 
+    /// Puts in what a clipboard holds, or says why that is nothing for a layout.
     pub(super) fn paste(&mut self, pasted: &str) {
-        let parent = self.layout().pages.get(self.page).map(|_| Address::of(List::Pages, self.page));
-        let parent = parent.unwrap_or(Address::LAYOUT);
-        let list = if pasted.contains("kind") { List::Widgets } else { List::Stances };
-        self.put_beside(Vec2::splat(0.16), |designer, by| {
-            designer.document.pasting(pasted, &parent, list, by)
-        });
+        let page = self.page;
+        if let Err(refusal) = self.document.pasting_on(pasted, page, Vec2::ZERO) {
+            return self.complain(format!("Nothing is pasted: {}", refusal.short()));
+        }
+        self.put_beside(Vec2::splat(0.16), |designer, by| designer.document.pasting_on(pasted, page, by));
+    }
+
+    /// Copies what is selected; what was copied before stays if nothing is.
+    pub(super) fn copy(&self, ctx: &egui::Context) -> bool {
+        let text = self.document.copy(&self.selected);
+        let is_any = !text.is_empty();
+        if is_any {
+            ctx.copy_text(text);
+        }
+        is_any
+    }
+
+    /// Copies what is selected and takes it out, with its comments.
+    pub(super) fn cut(&mut self, ctx: &egui::Context) {
+        if self.holds_locked() || !self.copy(ctx) {
+            return;
+        }
+        let edits = self.document.taking(&self.selected);
+        if self.edit(&edits) {
+            self.selected.clear();
+        }
     }
 
     /// Tries places one `size` and 6 cm away, and further, until one will do.

@@ -77,7 +77,7 @@ impl Designer {
             return edit;
         }
         if let Some(edit) = edit {
-            self.edit_in(&[edit], Some(self.stroke));
+            self.edit_shared(edit, Some(self.stroke));
         }
         None
     }

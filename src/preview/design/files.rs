@@ -1,6 +1,6 @@
 //! The file that is designed: opened, saved, changed by others, kept as a draft.
 
-use std::borrow::Cow;
+use std::io;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -94,7 +94,7 @@ impl Designer {
 
     /// Opens a file; whether that could be done.
     pub(super) fn open(&mut self, path: &Path) -> bool {
-        match LayoutFile::open(path) {
+        match opened(path, self.document.floor(), false) {
             Ok((file, text)) => {
                 let is_open = self.begin(&path.display().to_string(), &text, file, None);
                 if is_open {
@@ -125,15 +125,18 @@ impl Designer {
     ) -> bool {
         let floor = Arc::clone(self.document.floor());
         let read = (self.kinds_of)(file.path());
-        match read.and_then(|kinds| Document::read(name, &begun(text, &floor), &kinds, &floor)) {
+        match read.and_then(|kinds| Document::read(name, text, &kinds, &floor)) {
             Ok(document) => {
                 self.message = None;
+                let mut kept = None;
                 if !self.is_saved() && self.left_over.is_none() {
                     match self.file.keep_draft(&self.document.file_text()) {
-                        Ok(()) => self.say(format!(
-                            "{} was not saved: its draft is kept and will be offered again",
-                            self.file.name()
-                        )),
+                        Ok(()) => {
+                            let name = self.file.name();
+                            kept = Some(format!(
+                                "{name} was not saved: its draft is kept and will be offered again"
+                            ));
+                        }
                         Err(error) => {
                             self.complain(format!("{} is not saved, and {error}", self.file.name()));
                             return false;
@@ -143,6 +146,9 @@ impl Designer {
                 let revision = self.document.revision() + 1;
                 self.document = document;
                 self.document.begin_at(revision);
+                if let Some(kept) = kept {
+                    self.say(kept);
+                }
                 self.left_over = file.left_over().ok().flatten();
                 (self.file, self.slot, self.seen, self.conflict) = (file, slot, None, None);
                 self.selected.clear();
@@ -167,16 +173,27 @@ impl Designer {
 pub(super) fn untitled(state: &Path, text: &str, left_over: bool) -> (LayoutFile, Option<shelf::Slot>) {
     let file = |slot: &shelf::Slot| LayoutFile::untitled(&slot.folder, text);
     let has_draft = |slot: &shelf::Slot| file(slot).draft_path().exists();
-    let mut older = left_over.then(|| shelf::slots(state)).into_iter().flatten();
-    let slot = older
-        .find(|slot| file(slot).left_over().ok().flatten().is_some())
-        .or_else(|| shelf::slots(state).find(|slot| !has_draft(slot)));
+    let older = left_over.then(|| shelf::left_slots(state)).into_iter().flatten();
+    // All are looked at: empty ones go by that.
+    let mut older: Vec<shelf::Slot> = older.filter(has_draft).collect();
+    let at = older.iter().position(|slot| file(slot).left_over().ok().flatten().is_some());
+    let slot = at.map(|at| older.swap_remove(at));
+    let slot = slot.or_else(|| shelf::slots(state).find(|slot| !has_draft(slot)));
     // Without such a folder keeping a draft fails, and says so.
     let folder = slot.as_ref().map_or_else(|| state.join("untitled"), |slot| slot.folder.clone());
     (LayoutFile::untitled(&folder, text), slot)
 }
 
-/// What is designed in a file that says this: an empty one begins with an empty floor.
-pub(super) fn begun<'t>(text: &'t str, floor: &Floor) -> Cow<'t, str> {
-    if text.trim().is_empty() { Template::Empty.text(&floor.geometry).into() } else { text.into() }
+/// The layout in the file at `path`; an empty one begins with an empty floor, and with `begins` one that is not there.
+pub(super) fn opened(path: &Path, floor: &Floor, begins: bool) -> io::Result<(LayoutFile, String)> {
+    let read = LayoutFile::open(path);
+    let begins = match &read {
+        Ok((_, text)) => text.trim().is_empty(),
+        Err(error) => begins && error.kind() == io::ErrorKind::NotFound,
+    };
+    if begins {
+        let text = Template::Empty.text(&floor.geometry);
+        return Ok((LayoutFile::begun(path, &text), text));
+    }
+    read
 }

@@ -9,6 +9,7 @@ use crate::edit::{Address, Edges, Grid, Guide, Item, List};
 use crate::egui_painter::ScreenFromFloor;
 use crate::floor::Rect;
 use crate::layout::Layout;
+use crate::preview::pointer::way_while_down;
 
 /// Half the side of a handle, and how near the pointer must be to it, in points.
 pub(super) const HANDLE: f32 = 5.0;
@@ -47,23 +48,26 @@ impl Designer {
         map: ScreenFromFloor,
         screen: egui::Rect,
     ) -> Trial {
-        let (pointer, pressed, released, middle, space, shift, alt, delta) = ui.input(|i| {
+        let (pointer, pressed, released, space, shift, alt) = ui.input(|i| {
             (
                 i.pointer.interact_pos().or(i.pointer.hover_pos()),
                 i.pointer.primary_pressed(),
                 i.pointer.primary_released(),
-                i.pointer.button_down(PointerButton::Middle),
                 i.key_down(Key::Space),
                 i.modifiers.shift,
                 i.modifiers.alt,
-                i.pointer.delta(),
             )
         });
         let Some(pointer) = pointer else { return Trial::default() };
         let inside = canvas.contains_pointer() || canvas.rect.contains(pointer) && self.placing.is_some();
         let at = map.floor(pointer);
-        if middle && inside || matches!(self.gesture, Gesture::Panning) {
-            self.view.pan(delta, screen);
+        let button = match self.gesture {
+            Gesture::Panning => Some(PointerButton::Primary),
+            _ => Some(PointerButton::Middle).filter(|_| inside),
+        };
+        let panned = button.map_or(egui::Vec2::ZERO, |button| ui.input(|i| way_while_down(i, button)));
+        if panned != egui::Vec2::ZERO {
+            self.view.pan(panned, screen);
             ui.ctx().set_cursor_icon(CursorIcon::Grabbing);
         }
         if let Some(thing) = self.placing.clone() {

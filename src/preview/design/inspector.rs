@@ -8,23 +8,32 @@ use eframe::egui::accesskit::Role;
 use eframe::egui::{Margin, Panel, RichText, ScrollArea, Ui, WidgetInfo};
 
 use super::{Designer, Pane};
-use crate::edit::{Address, Edit, Origin, Property, Section};
+use crate::edit::{Address, Edit, Item, Origin, Property, Section};
 use crate::egui_painter::color;
 use crate::feel::{Effect, Feel, Gesture};
 use crate::format::diagnostic::Severity;
 use crate::layout::Widget;
 use crate::preview::PreviewCommand;
 use crate::preview::style::{panel_frame, quiet, section};
-use crate::scene::Theme;
+use crate::scene::{Theme, in_drawn_order};
 
 /// The inspector's own memory.
 #[derive(Default)]
 pub(super) struct Inspector {
     /// Fields in which something is being typed.
     pub(super) typed: HashMap<String, String>,
-    /// What is shown, and for which record and revision.
-    shown: Vec<Section>,
-    of: Option<(Address, u64)>,
+    /// What is shown of one record, and what several have in common.
+    own: Shown,
+    common: Shown,
+    /// The records that an edit of the first one is for, while a common field is shown.
+    shared: Vec<Address>,
+}
+
+/// Fields that are shown, and for which records and revision.
+#[derive(Default)]
+struct Shown {
+    sections: Vec<Section>,
+    of: Option<(Vec<Address>, u64)>,
 }
 
 /// Its width, in points.
@@ -54,18 +63,23 @@ impl Designer {
     }
 
     fn inspector(&mut self, ui: &mut Ui, theme: &Theme) {
+        // What it remembers belongs to a revision, and so must the records that it is made from.
+        self.refresh();
+        let is_led = self.leads_to(Pane::Fields);
         let record = match &self.selected[..] {
             [] => Address::LAYOUT,
             [record] => record.clone(),
-            more => {
-                section(ui, theme, &format!("{} selected", more.len()), |_| {});
+            several => {
+                section(ui, theme, &format!("{} selected", several.len()), |_| {});
                 ui.label(quiet(theme, "Arrange, move, duplicate or delete them together."));
-                return;
+                let several = several.to_vec();
+                return self.common_fields(ui, theme, &several, is_led);
             }
         };
         let item = self.item(&record).cloned();
         let title = match (&item, record.split()) {
-            (Some(item), _) if !item.name.is_empty() => item.name.clone(),
+            (Some(item), _) if item.is_group => format!("Group {}", item.name),
+            (Some(item), _) if !item.name.is_empty() => in_drawn_order(&item.name).into(),
             (_, Some(_)) => record.to_string(),
             _ => "The layout".to_owned(),
         };
@@ -76,36 +90,113 @@ impl Designer {
             ui.label(quiet(theme, text));
         }
         self.problems_of(ui, theme, &record);
-        let revision = self.document.revision();
-        if self.inspector.of != Some((record.clone(), revision)) {
-            self.inspector.shown = self.document.properties(&record, item.as_ref());
-            self.inspector.of = Some((record.clone(), revision));
+        let key = (vec![record.clone()], self.document.revision());
+        if self.inspector.own.of.as_ref() != Some(&key) {
+            let sections = self.document.properties(&record, item.as_ref());
+            self.inspector.own = Shown { sections, of: Some(key) };
             self.inspector.typed.clear();
         }
-        let shown = std::mem::take(&mut self.inspector.shown);
-        let mut wanted = None;
-        let mut is_led = self.leads_to(Pane::Fields);
-        for (number, part) in shown.iter().enumerate() {
-            let heading = RichText::new(&part.title).strong().color(color(theme.ink));
-            egui::CollapsingHeader::new(heading).id_salt(("part", number)).default_open(number < 2).show(
-                ui,
-                |ui| {
-                    for property in &part.properties {
-                        let is_led = std::mem::take(&mut is_led);
-                        // What has the keyboard keeps it, also when a warning comes or goes above.
-                        let id = egui::Id::unique(("field", record.to_string(), &property.name));
-                        let row = ui.scope_builder(egui::UiBuilder::new().scope_id(id), |ui| {
-                            self.property(ui, theme, &record, property, is_led)
-                        });
-                        wanted = row.inner.or(wanted.take());
-                    }
-                },
-            );
-        }
-        self.inspector.shown = shown;
+        let shown = std::mem::take(&mut self.inspector.own.sections);
+        let wanted = self.sections(ui, theme, &record, &shown, is_led);
+        self.inspector.own.sections = shown;
         if let Some(edit) = wanted {
             self.edit_in(&[edit], None);
+        } else if item.is_some_and(|item| item.is_group) {
+            self.members(ui, theme, &record);
         }
+    }
+
+    /// What is in a group, and what its controls have in common.
+    fn members(&mut self, ui: &mut Ui, theme: &Theme, group: &Address) {
+        let is_member = |item: &&Item| item.record.split().is_some_and(|(parent, ..)| parent == *group);
+        let members: Vec<Item> = self.items.iter().filter(is_member).cloned().collect();
+        let count = members.len();
+        section(ui, theme, &if count == 1 { "1 member".into() } else { format!("{count} members") }, |_| {});
+        let mut chosen = None;
+        for item in members {
+            let what = if item.is_group { "Group" } else { "Control" };
+            let name = format!("{what} {}", item.name);
+            let row = ui.add(egui::Button::selectable(false, &name).truncate());
+            row.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Member: {name}")));
+            if row.on_hover_text("Select it alone").clicked() {
+                chosen = Some(item.record);
+            }
+        }
+        section(ui, theme, "In common", |_| {});
+        self.common_fields(ui, theme, std::slice::from_ref(group), false);
+        if let Some(record) = chosen {
+            self.select_only(record);
+        }
+    }
+
+    /// The fields that all controls of `records` have, also those in groups; what is done to one is done to all.
+    fn common_fields(&mut self, ui: &mut Ui, theme: &Theme, records: &[Address], is_led: bool) {
+        let mut controls: Vec<&Item> =
+            records.iter().flat_map(|record| self.document.controls_in(&self.items, record)).collect();
+        controls.dedup();
+        let all: Vec<Address> = controls.iter().map(|item| item.record.clone()).collect();
+        let Some(first) = all.first().cloned() else {
+            ui.label(quiet(theme, "Nothing: none of these is a control."));
+            return;
+        };
+        let key = (all.clone(), self.document.revision());
+        if self.inspector.common.of.as_ref() != Some(&key) {
+            let sections = self.document.common(&controls);
+            self.inspector.common = Shown { sections, of: Some(key) };
+            self.inspector.typed.clear();
+        }
+        let shown = std::mem::take(&mut self.inspector.common.sections);
+        self.inspector.shared = all;
+        let wanted = self.sections(ui, theme, &first, &shown, is_led);
+        if let Some(edit) = wanted {
+            self.edit_shared(edit, None);
+        }
+        self.inspector.shared.clear();
+        self.inspector.common.sections = shown;
+    }
+
+    /// Does an edit of what is shown, for each of the records that it stands for.
+    pub(super) fn edit_shared(&mut self, edit: Edit, stroke: Option<u64>) {
+        let shared = &self.inspector.shared;
+        let edits: Vec<Edit> = match &edit {
+            Edit::Set { field, value, .. } if !shared.is_empty() => {
+                shared.iter().map(|record| Edit::set(record, field, value.clone())).collect()
+            }
+            Edit::Unset { field, .. } if !shared.is_empty() => {
+                shared.iter().map(|record| Edit::unset(record, field)).collect()
+            }
+            _ => vec![edit],
+        };
+        self.edit_in(&edits, stroke);
+    }
+
+    /// Sections of fields; what shall be done to one.
+    fn sections(
+        &mut self,
+        ui: &mut Ui,
+        theme: &Theme,
+        record: &Address,
+        shown: &[Section],
+        mut is_led: bool,
+    ) -> Option<Edit> {
+        let is_common = !self.inspector.shared.is_empty();
+        let mut wanted = None;
+        for (number, part) in shown.iter().enumerate() {
+            let heading = RichText::new(&part.title).strong().color(color(theme.ink));
+            let id = ("part", number, is_common);
+            egui::CollapsingHeader::new(heading).id_salt(id).default_open(number < 2).show(ui, |ui| {
+                for property in &part.properties {
+                    let is_led = std::mem::take(&mut is_led);
+                    // What has the keyboard keeps it, also when a warning comes or goes above.
+                    let id = egui::Id::unique(("field", record.to_string(), &property.name, is_common));
+                    let row = ui.scope_builder(egui::UiBuilder::new().scope_id(id), |ui| {
+                        self.property(ui, theme, record, property, is_led)
+                    });
+                    wanted = row.inner.or(wanted.take());
+                }
+            });
+        }
+        wanted
     }
 
     /// What is wrong with the record, in centimetres, and what mends it.
@@ -127,7 +218,7 @@ impl Designer {
                 mend = Some(edits);
             }
         }
-        for problem in self.document.warnings().iter() {
+        for problem in self.told() {
             if self.document.told_of(problem).as_ref() == Some(record) {
                 let text = format!("{}: {}", problem.message, problem.expected);
                 ui.add(egui::Label::new(RichText::new(text).color(color(theme.warning))).wrap());
@@ -155,6 +246,7 @@ impl Designer {
                 Origin::Written => "written here".to_owned(),
                 Origin::Kind(kind) => format!("from the kind \"{kind}\""),
                 Origin::Default => "not written".to_owned(),
+                Origin::Several => "not the same in all of them".to_owned(),
             };
             let name =
                 if property.is_place() { format!("{short} ({})", self.unit_name()) } else { short.into() };
@@ -193,6 +285,9 @@ impl Designer {
                 }
                 Origin::Default if !property.value.is_empty() => {
                     ui.label(quiet(theme, "default").size(11.5));
+                }
+                Origin::Several => {
+                    ui.label(quiet(theme, "differs").size(11.5)).on_hover_text(source);
                 }
                 _ => {}
             }

@@ -25,6 +25,11 @@ impl Designer {
             self.pane = panes.get((at + on + back * (count - 1)) % count).copied();
             self.focus = self.pane;
         }
+        self.keys_to_save(ui);
+    }
+
+    /// The keys that save, while the layout is designed or tried.
+    pub(in crate::preview) fn keys_to_save(&mut self, ui: &Ui) {
         let is_typing = ui.ctx().text_edit_focused();
         if ui.input_mut(|i| i.consume_key(Modifiers::COMMAND | Modifiers::SHIFT, Key::S)) {
             self.ask_for(Ask::SaveAs);
@@ -130,11 +135,8 @@ impl Designer {
         }
         for event in ui.input(|i| i.events.clone()) {
             match event {
-                egui::Event::Copy => ui.ctx().copy_text(self.document.copy(&self.selected)),
-                egui::Event::Cut => {
-                    ui.ctx().copy_text(self.document.copy(&self.selected));
-                    self.delete();
-                }
+                egui::Event::Copy => drop(self.copy(ui.ctx())),
+                egui::Event::Cut => self.cut(ui.ctx()),
                 egui::Event::Paste(text) => self.paste(&text),
                 _ => {}
             }

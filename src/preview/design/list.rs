@@ -11,7 +11,7 @@ use super::{Designer, Pane};
 use crate::edit::{Address, List};
 use crate::egui_painter::color;
 use crate::preview::style::quiet;
-use crate::scene::Theme;
+use crate::scene::{Theme, in_drawn_order};
 
 impl Designer {
     /// What there is on the shown page, to be selected by name.
@@ -58,8 +58,11 @@ impl Designer {
                     }
                     ui.with_layout(egui::Layout::left_to_right(egui::Align::Center), |ui| {
                         ui.add_space(if is_inner { 12.0 } else { 0.0 });
-                        let row = egui::Button::selectable(is_selected, format!("{what} {name}")).truncate();
-                        let row = ui.add(row);
+                        let text = format!("{what} {}", in_drawn_order(&name));
+                        let row = ui.add(egui::Button::selectable(is_selected, text).truncate());
+                        row.widget_info(|| {
+                            WidgetInfo::selected(Role::Button, true, is_selected, format!("{what} {name}"))
+                        });
                         if take(&mut is_led) {
                             row.request_focus();
                         }

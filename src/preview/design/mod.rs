@@ -15,6 +15,7 @@ mod list;
 mod marks;
 mod modes;
 mod palette;
+mod saving;
 mod shelf;
 mod shielded;
 #[cfg(test)]
@@ -26,14 +27,17 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use eframe::egui;
+
 use super::feed::PreviewCommand;
 use super::zoom::Zoom;
 use crate::edit::{Address, Document, Edit, Item, LayoutFile, Refusal};
 use crate::ergonomics::Finding;
 use crate::floor::Floor;
 use crate::layout::Layout;
+use crate::letters;
 use crate::scene::Scene;
-use crate::schema::{Diagnostics, Kinds};
+use crate::schema::{Diagnostic, Diagnostics, Kinds};
 
 pub use crate::schema::usual_state;
 pub(super) use threshold::Threshold;
@@ -42,9 +46,9 @@ pub(super) use threshold::Threshold;
 pub struct DesignInput {
     /// What messages call the layout.
     pub name: String,
-    /// Its text.
+    /// Its text; none for a file that is to be begun.
     pub text: String,
-    /// Its file; `None` for a layout that has none, such as a shipped one.
+    /// Its file, which is there unless it is to be begun; `None` for a layout that has none, such as a shipped one.
     pub path: Option<PathBuf>,
     /// The kinds that controls can be made of.
     pub kinds_of: KindsOf,
@@ -64,6 +68,9 @@ pub(super) struct Designer {
     seen: Option<u64>,
     items: Vec<Item>,
     findings: Vec<Finding>,
+    /// Letters that the window can't draw, and the revision that they belong to.
+    undrawn: Diagnostics,
+    undrawn_of: Option<u64>,
     selected: Vec<Address>,
     /// The number of the page that is shown.
     page: usize,
@@ -124,6 +131,8 @@ enum Pane {
 struct Message {
     text: String,
     is_bad: bool,
+    /// The revision of the layout that it is about.
+    of: u64,
 }
 
 /// A path that is being typed.
@@ -144,17 +153,24 @@ impl Designer {
         let DesignInput { name, text, path, kinds_of, state } = input;
         let kinds = kinds_of(path.as_deref()).ok()?;
         let (file, text, slot) = match &path {
-            Some(path) => LayoutFile::open(path).map(|(file, text)| (file, text, None)).ok()?,
+            Some(path) => files::opened(path, floor, text.trim().is_empty())
+                .map(|(file, text)| (file, text, None))
+                .ok()?,
             None => {
                 let (file, slot) = files::untitled(&state, &text, true);
                 (file, text, slot)
             }
         };
-        let document = Document::read(&name, &files::begun(&text, floor), &kinds, floor).ok()?;
+        let document = Document::read(&name, &text, &kinds, floor).ok()?;
         let left_over = file.left_over().ok().flatten();
-        if let Some(path) = &path {
+        if let Some(path) = path.as_deref().filter(|_| !file.is_new()) {
             shelf::note_recent(&state, path);
         }
+        let new = file.is_new().then(|| Message {
+            text: format!("{} is new: F2 designs it, Ctrl+S writes it", file.name()),
+            is_bad: false,
+            of: document.revision(),
+        });
         Some(Self {
             is_open: false,
             document,
@@ -162,6 +178,8 @@ impl Designer {
             seen: None,
             items: Vec::new(),
             findings: Vec::new(),
+            undrawn: Diagnostics::default(),
+            undrawn_of: None,
             selected: Vec::new(),
             page: 0,
             gesture: gestures::Gesture::None,
@@ -169,7 +187,7 @@ impl Designer {
             view: Zoom::default(),
             scene: Scene::new(),
             stroke: 0,
-            message: None,
+            message: new,
             text: text::Editor::default(),
             asking: None,
             left_over,
@@ -195,22 +213,44 @@ impl Designer {
         self.document.layout()
     }
 
+    /// What is odd about the text, and the letters that can't be drawn.
+    fn told(&self) -> impl Iterator<Item = &Diagnostic> {
+        self.document.warnings().iter().chain(self.undrawn.iter())
+    }
+
+    /// Everything that the reader and the rules warn of, with its places.
+    fn review(&self) -> Diagnostics {
+        let mut all = self.document.review();
+        all.merge(self.undrawn.clone());
+        all
+    }
+
     #[cfg(test)]
     pub(super) fn text_of_layout(&self) -> &str {
         self.document.text()
     }
 
     /// Whether everything is in the file.
-    fn is_saved(&self) -> bool {
-        self.file.holds(&self.document.file_text())
+    pub(super) fn is_saved(&self) -> bool {
+        self.document.is_written_as(self.file.known())
+    }
+
+    /// What people call the layout: its file, or what it was begun with.
+    pub(super) fn name(&self) -> String {
+        if self.file.path().is_some() { self.file.name() } else { self.document.name().to_owned() }
     }
 
     fn say(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), is_bad: false });
+        self.message = Some(Message { text: text.into(), is_bad: false, of: self.document.revision() });
     }
 
     fn complain(&mut self, text: impl Into<String>) {
-        self.message = Some(Message { text: text.into(), is_bad: true });
+        self.message = Some(Message { text: text.into(), is_bad: true, of: self.document.revision() });
+    }
+
+    /// The last message, unless the layout has changed since then.
+    fn message(&self) -> Option<&Message> {
+        self.message.as_ref().filter(|message| message.of == self.document.revision())
     }
 
     /// Does `edits`, or says why not; whether they were done.
@@ -241,6 +281,17 @@ impl Designer {
         self.findings = self.document.findings();
         self.selected.retain(|address| self.document.span(address).is_some());
         self.page = self.page.min(self.layout().pages.len().saturating_sub(1));
+    }
+
+    /// Looks for letters of the present text that the window's fonts lack.
+    fn refresh_undrawn(&mut self, ctx: &egui::Context) {
+        if self.undrawn_of == Some(self.document.revision()) {
+            return;
+        }
+        self.undrawn_of = Some(self.document.revision());
+        let font = egui::FontId::proportional(12.0);
+        let has = |letter: char| ctx.fonts_mut(|fonts| fonts.has_glyph(&font, letter));
+        self.undrawn = self.document.undrawn(|text| letters::missing_by(text, has));
     }
 
     fn item(&self, record: &Address) -> Option<&Item> {

@@ -64,8 +64,11 @@ impl App {
         if std::mem::take(&mut self.messages.files_changed) {
             self.take_in_files();
         }
+        let is_closing = self.is_closing();
         let Some(designer) = &mut self.designer else { return };
-        designer.keep(self.now_s);
+        if !is_closing {
+            designer.keep(self.now_s);
+        }
         let path = designer.file.path().map(Path::to_path_buf);
         if path != designer.watched {
             designer.watched.clone_from(&path);
@@ -122,7 +125,7 @@ impl App {
         let Some(designer) = &self.designer else { return };
         let layout = Arc::new(designer.layout().clone());
         let name = designer.file.name();
-        let warnings = Warnings::from(&designer.document.review());
+        let warnings = Warnings::from(&designer.review());
         self.command(PreviewCommand::Try { layout, name, warnings, cause });
     }
 
@@ -130,11 +133,15 @@ impl App {
     pub(in crate::preview) fn design(&mut self, ui: &mut Ui) {
         let Some(mut designer) = self.designer.take() else { return };
         designer.refresh();
+        designer.refresh_undrawn(ui.ctx());
         let before = designer.document.revision();
         let theme = self.theme;
         designer.keys(ui);
         designer.bar(ui, &theme, &self.choices);
         designer.questions(ui, &theme);
+        designer.ask(ui, &theme);
+        // What was done so far in this frame is shown in it: records may have changed places.
+        designer.refresh();
         designer.palette_panel(ui, &theme, &mut self.palette);
         self.problems(ui);
         designer.side_panel(ui, &theme);

@@ -11,7 +11,8 @@ const RECENT: usize = 8;
 /// Most drafts of layouts without a file that are kept side by side.
 const SLOTS: usize = 32;
 
-/// A folder for the draft of one layout without a file; no other window uses it meanwhile.
+/// A folder for the draft of one layout without a file; no other window uses it meanwhile. Without a draft it is removed
+/// at the end.
 #[derive(Debug)]
 pub(super) struct Slot {
     pub(super) folder: PathBuf,
@@ -19,15 +20,60 @@ pub(super) struct Slot {
     _lock: File,
 }
 
-/// Folders for drafts that no window uses, each taken when it is asked for.
+impl Slot {
+    fn folder(state: &Path, number: usize) -> PathBuf {
+        state.join(format!("untitled-{number}"))
+    }
+
+    /// The slot in a folder that is there; `None` while another window uses it.
+    fn take(folder: PathBuf) -> Option<Self> {
+        let path = folder.join(LOCK);
+        let lock = File::options().create(true).append(true).open(&path).ok()?;
+        lock.try_lock().ok()?;
+        // Another window may have removed it since it was opened: what is locked then is nobody's.
+        is_at(&lock, &path).then_some(Self { folder, _lock: lock })
+    }
+}
+
+impl Drop for Slot {
+    fn drop(&mut self) {
+        // A folder with a draft is not empty, and stays.
+        let _ = fs::remove_file(self.folder.join(LOCK));
+        let _ = fs::remove_dir(&self.folder);
+    }
+}
+
+const LOCK: &str = "lock";
+
+/// Whether the open file is the one at `path`.
+fn is_at(file: &File, path: &Path) -> bool {
+    let (Ok(open), Ok(there)) = (file.metadata(), fs::metadata(path)) else { return false };
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        (open.dev(), open.ino()) == (there.dev(), there.ino())
+    }
+    // Elsewhere a file that is open is not removed.
+    #[cfg(not(unix))]
+    {
+        let _ = (open, there);
+        true
+    }
+}
+
+/// Folders for drafts that no window uses, each made when it is asked for.
 pub(super) fn slots(state: &Path) -> impl Iterator<Item = Slot> {
     (1..=SLOTS).filter_map(move |number| {
-        let folder = state.join(format!("untitled-{number}"));
+        let folder = Slot::folder(state, number);
         fs::create_dir_all(&folder).ok()?;
-        let lock = File::options().create(true).append(true).open(folder.join("lock")).ok()?;
-        lock.try_lock().ok()?;
-        Some(Slot { folder, _lock: lock })
+        Slot::take(folder)
     })
+}
+
+/// Those of them that earlier windows have left; what has no draft is gone once it was looked at.
+pub(super) fn left_slots(state: &Path) -> impl Iterator<Item = Slot> {
+    let there = (1..=SLOTS).map(move |number| Slot::folder(state, number)).filter(|folder| folder.is_dir());
+    there.filter_map(Slot::take)
 }
 
 fn list(state: &Path) -> PathBuf {
@@ -69,6 +115,38 @@ mod tests {
         let folder = first.folder.clone();
         drop(first);
         assert_eq!(slots(state.path()).next().unwrap().folder, folder);
+    }
+
+    #[test]
+    fn a_window_leaves_nothing_behind_but_its_draft() {
+        let state = tempfile::tempdir().unwrap();
+        for _ in 0..20 {
+            drop(slots(state.path()).next().unwrap());
+        }
+        assert_eq!(fs::read_dir(state.path()).unwrap().count(), 0);
+        let kept = slots(state.path()).next().unwrap();
+        fs::write(kept.folder.join("draft"), "Layout()").unwrap();
+        let folder = kept.folder.clone();
+        drop(kept);
+        assert_eq!(fs::read_dir(&folder).unwrap().count(), 1, "the draft");
+        // Empty folders of older versions go when they are looked at.
+        for number in 2..=SLOTS {
+            fs::create_dir(Slot::folder(state.path(), number)).unwrap();
+        }
+        assert_eq!(left_slots(state.path()).count(), SLOTS);
+        assert_eq!(fs::read_dir(state.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn a_lock_that_another_window_has_removed_locks_nothing() {
+        let state = tempfile::tempdir().unwrap();
+        let path = state.path().join(LOCK);
+        let lock = File::create(&path).unwrap();
+        assert!(is_at(&lock, &path));
+        fs::remove_file(&path).unwrap();
+        assert!(!is_at(&lock, &path));
+        File::create(&path).unwrap();
+        assert!(!is_at(&lock, &path) || cfg!(not(unix)));
     }
 
     #[test]

@@ -6,7 +6,7 @@ use eframe::egui::{
 };
 
 use super::super::app::App;
-use super::super::style::{panel_frame, quiet, section, selectable};
+use super::super::style::{is_entered, panel_frame, quiet, section, selectable};
 use super::{Walk, felt_words};
 use crate::egui_painter::color;
 use crate::layout::Colour;
@@ -169,11 +169,12 @@ impl App {
         ui.horizontal(|ui| {
             let label = ui.label("Floor file");
             let edit = ui.add(TextEdit::singleline(&mut check.path).desired_width(170.0));
+            let is_entered = is_entered(ui, &edit);
             edit.labelled_by(label.id);
             let can = !check.path.trim().is_empty();
             let hint =
                 "Keep the floor with the boards where they were found; what the file held before is kept too";
-            if ui.add_enabled(can, Button::new("Save")).on_hover_text(hint).clicked() {
+            if ui.add_enabled(can, Button::new("Save")).on_hover_text(hint).clicked() || (can && is_entered) {
                 *wish = Some(Wish::Save);
             }
         });

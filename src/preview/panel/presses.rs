@@ -12,7 +12,7 @@ use super::super::presses::Press;
 use super::super::style::{panel_colour, plot_button, quiet, row, section};
 use crate::egui_painter::color;
 use crate::ergonomics::{PressSpread, propose_press};
-use crate::scene::Theme;
+use crate::scene::{Theme, in_drawn_order};
 use crate::units::Newtons;
 use crate::widget::{Thresholds, WidgetId};
 
@@ -49,7 +49,8 @@ impl App {
         let layout = &self.messages.layout;
         let Some(widget) = self.selection.control_of(layout) else { return };
         let (id, thresholds) = (widget.id.clone(), widget.behaviour.thresholds());
-        let title = if widget.label.is_empty() { id.to_string() } else { widget.label.clone() };
+        let title =
+            if widget.label.is_empty() { id.to_string() } else { in_drawn_order(&widget.label).into() };
         let mut is_plotted = false;
         section(ui, &theme, &format!("Control {title}"), |ui| {
             is_plotted = plot_button(ui, id.as_str());

@@ -10,7 +10,7 @@ use eframe::egui::{
 
 use super::super::app::App;
 use super::super::feed::PreviewCommand;
-use super::super::style::{panel_frame, quiet, section};
+use super::super::style::{is_entered, panel_frame, quiet, section};
 use super::super::trace::Trace;
 use crate::egui_painter::color;
 use crate::feel::{Effect, EffectKind, Gesture, Knob};
@@ -190,6 +190,7 @@ impl Tuner {
             let edit = ui.add(TextEdit::singleline(&mut self.name).desired_width(172.0).char_limit(64));
             edit.widget_info(|| WidgetInfo::labeled(Role::TextInput, true, "Name to save as"));
             let save = ui.add_enabled(is_name, Button::new("Save as RON"));
+            wishes.save |= is_name && is_entered(ui, &edit);
             wishes.save |= save
                 .on_hover_text("Into the folder `effects`: layouts and kinds can name it at once")
                 .on_disabled_hover_text("A name is made of a-z, 0-9 and _")

@@ -13,8 +13,8 @@ use std::path::PathBuf;
 use eframe::egui;
 use eframe::egui::accesskit::Role;
 use eframe::egui::{
-    Align2, Color32, CursorIcon, FontId, Key, Pos2, Rect, Sense, Stroke, Ui, ViewportBuilder,
-    ViewportCommand, ViewportId, WidgetInfo, pos2, vec2,
+    Align2, Color32, CursorIcon, Event, FontId, Key, PointerButton, Pos2, Rect, Sense, Stroke, Ui,
+    ViewportBuilder, ViewportCommand, ViewportId, WidgetInfo, pos2, vec2,
 };
 use glam::{DVec2, Vec2};
 
@@ -55,6 +55,8 @@ pub(super) struct Projection {
     is_set: bool,
     /// The corner that keys move, while corners are adjusted.
     adjusting: Option<usize>,
+    /// The corner that the mouse holds, and where it is from the pointer, in points.
+    held: Option<(usize, egui::Vec2)>,
     scene: Scene,
     palette: Palette,
     keeps_awake: bool,
@@ -76,6 +78,7 @@ impl Projection {
             is_set: placement.is_some(),
             placement,
             adjusting: None,
+            held: None,
             scene: Scene::new(),
             palette: Palette::default(),
             keeps_awake: options.keeps_awake,
@@ -153,34 +156,24 @@ impl Projection {
 
     /// Handles at the corners; the answer is whether one was let go elsewhere.
     fn adjust(&mut self, ui: &mut Ui, theme: &Theme, picture: Rect, size: Vec2) -> bool {
-        let (Some(placement), Some(selected)) = (&mut self.placement, &mut self.adjusting) else {
+        if self.adjusting.is_none() || self.placement.is_none() {
+            self.held = None;
             return false;
-        };
-        let mut let_go = false;
+        }
+        let let_go = self.drag_corners(&ui.input(|i| i.events.clone()), picture, size);
+        let (Some(placement), Some(selected)) = (&self.placement, &self.adjusting) else { return let_go };
         let on_picture = |corner: Vec2| picture.min + vec2(corner.x, corner.y) * picture.size();
-        for index in 0..4 {
-            // A corner beyond the picture is taken hold of at its edge.
-            let at = on_picture(placement.corners[index]);
-            let shown = picture.shrink(HANDLE).clamp(at);
-            let area = Rect::from_center_size(shown, egui::Vec2::splat(2.0 * HANDLE));
+        for (index, corner) in placement.corners.into_iter().enumerate() {
+            let area = handle_of(on_picture(corner), picture);
             let handle = ui.interact(area, ui.scope_id().with(("corner", index)), Sense::drag());
             handle.widget_info(|| WidgetInfo::labeled(Role::Button, true, format!("Corner {}", index + 1)));
-            if handle.drag_started() {
-                *selected = index;
-            }
-            let drag = handle.drag_delta();
-            if drag != egui::Vec2::ZERO {
-                let to = placement.corners[index] + Vec2::new(drag.x, drag.y) / size;
-                *placement = placement.moved(index, to);
-            }
-            let_go |= handle.drag_stopped();
         }
         let painter = ui.painter();
         let line = color(theme.cursor);
         let corners = placement.corners.map(on_picture);
         for (index, &corner) in corners.iter().enumerate() {
             painter.line_segment([corner, corners[(index + 1) % 4]], Stroke::new(2.0, line));
-            let shown = picture.shrink(HANDLE).clamp(corner);
+            let shown = handle_of(corner, picture).center();
             let fill = if index == *selected { line } else { Color32::BLACK };
             painter.circle(shown, HANDLE - 2.0, fill, Stroke::new(2.0, line));
             let number = format!("{}", index + 1);
@@ -189,6 +182,56 @@ impl Projection {
         help(ui, picture);
         let_go
     }
+
+    /// Moves corners as the mouse does, event by event: a window that draws seldom gets press, drag and release at
+    /// once. The answer is whether one was let go.
+    fn drag_corners(&mut self, events: &[Event], picture: Rect, size: Vec2) -> bool {
+        let mut let_go = false;
+        for event in events {
+            let (to, is_release) = match event {
+                Event::PointerMoved(to) => (*to, false),
+                Event::PointerButton { pos, button: PointerButton::Primary, pressed, .. } => {
+                    if *pressed {
+                        self.take_corner(*pos, picture);
+                    }
+                    (*pos, !*pressed)
+                }
+                _ => continue,
+            };
+            let (Some(placement), Some((index, beside))) = (&mut self.placement, self.held) else { continue };
+            let corner = (to + beside - picture.min) / picture.size();
+            let before = placement.corners.get(index).copied();
+            let to = Vec2::new(corner.x, corner.y);
+            // A corner that is only touched stays where it is, to the bit.
+            if before.is_some_and(|before| ((to - before) * size).length() > 1e-3) {
+                *placement = placement.moved(index, to);
+            }
+            if is_release {
+                (let_go, self.held) = (true, None);
+            }
+        }
+        let_go
+    }
+
+    /// Takes hold of the corner whose handle is at `pointer`, the topmost one.
+    fn take_corner(&mut self, pointer: Pos2, picture: Rect) {
+        let Some(placement) = &self.placement else { return };
+        let corners = placement.corners.map(|corner| picture.min + vec2(corner.x, corner.y) * picture.size());
+        let touched = corners
+            .into_iter()
+            .enumerate()
+            .rev()
+            .find(|(_, corner)| handle_of(*corner, picture).contains(pointer));
+        if let Some((index, corner)) = touched {
+            self.held = Some((index, corner - pointer));
+            self.adjusting = Some(index);
+        }
+    }
+}
+
+/// Where a corner is taken hold of: one beyond the picture at its edge.
+fn handle_of(corner: Pos2, picture: Rect) -> Rect {
+    Rect::from_center_size(picture.shrink(HANDLE).clamp(corner), egui::Vec2::splat(2.0 * HANDLE))
 }
 
 /// How to adjust the corners, in the middle of the picture.

@@ -95,6 +95,7 @@ impl Room {
     fn recorded(playback: Box<dyn Playback>) -> Self {
         let mut room = Self::of(false, 1280.0, 800.0);
         room.window.state_mut().time_line = Some(TimeLine::new(playback));
+        room.window.state_mut().presses = super::presses::Presses::recorded();
         room.run(2);
         room
     }
@@ -159,6 +160,12 @@ impl Room {
 
     fn hover(&mut self, at: Pos2) {
         self.window.event(Event::PointerMoved(at));
+        self.run(1);
+    }
+
+    /// All within one frame, as a window that draws seldom gets them.
+    fn at_once(&mut self, events: impl IntoIterator<Item = Event>) {
+        self.window.input_mut().events.extend(events);
         self.run(1);
     }
 
@@ -267,6 +274,44 @@ fn a_projection_that_nobody_has_adjusted_keeps_the_floors_shape_when_its_window_
         let home = room.window.get_by_label("Projected Home").rect().size();
         assert!((home.x / home.y - 1.0).abs() < 0.01, "a round button is round: {home}");
     }
+}
+
+#[test]
+fn a_corner_follows_the_mouse_from_where_it_was_pressed_however_seldom_the_window_draws() {
+    let mut room = Room::simulated();
+    room.window.get_by_label("Project").click();
+    room.run(3);
+    room.window.key_press(Key::C);
+    room.run(3);
+    let button = |pos: Pos2, pressed: bool| Event::PointerButton {
+        pos,
+        button: PointerButton::Primary,
+        pressed,
+        modifiers: Modifiers::NONE,
+    };
+    // The way to the corner, the press and half of the drag within one frame; the rest within the next.
+    let (first, far) = (room.place("Corner 1"), room.place("Corner 3"));
+    let on = first + vec2(5.0, -4.0);
+    room.window.event(Event::PointerMoved(far));
+    room.run(1);
+    room.at_once([Event::PointerMoved(on), button(on, true), Event::PointerMoved(on + vec2(20.0, 10.0))]);
+    let moved = room.place("Corner 1") - first;
+    assert!((moved - vec2(20.0, 10.0)).length() < 0.5, "{moved}");
+    room.at_once([button(on + vec2(40.0, 20.0), false), Event::PointerMoved(far)]);
+    room.run(1);
+    let moved = room.place("Corner 1") - first;
+    assert!((moved - vec2(40.0, 20.0)).length() < 0.5, "{moved}");
+    // A whole drag within one frame, and a touch that moves nothing.
+    let third = room.place("Corner 3");
+    let to = third - vec2(30.0, 15.0);
+    let touch = [button(room.place("Corner 2"), true), button(room.place("Corner 2"), false)];
+    let drag = [button(third, true), Event::PointerMoved(to), button(to, false), Event::PointerMoved(first)];
+    let second = room.place("Corner 2");
+    room.at_once(touch.into_iter().chain(drag));
+    room.run(1);
+    assert!((room.place("Corner 3") - to).length() < 0.5);
+    assert_eq!(room.place("Corner 2"), second);
+    assert!(room.folder.path().join("projection.txt").exists(), "what was let go is kept");
 }
 
 #[test]

@@ -6,7 +6,13 @@ use eframe::egui::{Event, Key, Modifiers, PointerButton, pos2};
 use egui_kittest::kittest::Queryable;
 
 use super::{EventNews, Room, event, map};
+use crate::engine::{Ignored, IgnoredPress, Snapshot};
 use crate::preview::{MarkWeight, Playback, PlaybackMark, PlaybackOrder, PlaybackState};
+use crate::scene::sample::at_rest;
+use crate::sense::ContactId;
+use crate::units::{Instant, Newtons};
+use crate::widget::WidgetId;
+use crate::wire::LinkState;
 
 /// A recording of 20 s that stands where it was led.
 #[derive(Clone, Default)]
@@ -101,4 +107,44 @@ fn events_of_the_way_before_are_gone_when_a_recording_begins_anew() {
     room.happen(event(50, "zoom"));
     room.run(2);
     assert!(room.says("zoom pressed") && !room.says("home pressed") && room.says("1 so far"));
+}
+
+#[test]
+fn a_recording_is_not_called_live() {
+    let mut room = Room::recorded(Box::new(Reel::paused()));
+    room.write(Snapshot { link: LinkState::Live, ..at_rest(&map()) });
+    assert!(room.window.query_by_label("replay").is_some() && room.window.query_by_label("live").is_none());
+    // How the floor was then is told all the same.
+    room.write(Snapshot { link: LinkState::Partial, ..at_rest(&map()) });
+    assert!(room.says("replay: partial"));
+    let mut room = Room::simulated();
+    room.write(Snapshot { link: LinkState::Live, ..at_rest(&map()) });
+    assert!(room.window.query_by_label("live").is_some());
+}
+
+#[test]
+fn a_press_is_counted_once_when_its_moment_is_shown_again() {
+    let mut room = Room::recorded(Box::new(Reel::paused()));
+    let press = |at_ms: u64| IgnoredPress {
+        at: Instant::from_millis(at_ms),
+        id: WidgetId::new("home"),
+        contact: ContactId(1),
+        force: Newtons(40.0),
+        why: Ignored::TooLight,
+    };
+    let moment = |at_ms: u64, ignored: Vec<IgnoredPress>| Snapshot {
+        at: Instant::from_millis(at_ms),
+        ignored,
+        ..at_rest(&map())
+    };
+    let counted = |room: &Room| room.window.state().presses.of(&WidgetId::new("home")).count();
+    room.write(moment(6000, vec![press(5000)]));
+    assert_eq!(counted(&room), 1);
+    assert!(room.says("1 so far"), "what is listed is counted");
+    // Back to before it, and there again.
+    room.events.send(EventNews::Restarted(Arc::new(map()))).unwrap();
+    room.write(moment(4000, vec![]));
+    room.write(moment(6000, vec![press(5000)]));
+    assert_eq!(counted(&room), 1);
+    assert!(room.says("home ignored") && room.says("1 so far"));
 }

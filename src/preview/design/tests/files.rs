@@ -86,6 +86,41 @@ fn a_template_is_begun_with_and_saved_under_a_path_that_is_typed() {
 }
 
 #[test]
+fn enter_in_a_path_does_what_it_was_asked_for_and_escape_does_not() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("new.ron");
+    let mut desk = Desk::map();
+    let type_path = |desk: &mut Desk, modifiers, key| {
+        desk.command(modifiers, key);
+        // It has the keyboard at once.
+        desk.command(Modifiers::COMMAND, Key::A);
+        desk.window.event(Event::Text(path.display().to_string()));
+        desk.window.run_steps(2);
+    };
+    type_path(&mut desk, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    desk.key(Key::Escape);
+    assert!(!path.exists() && desk.window.query_by_label("Path").is_none());
+    type_path(&mut desk, Modifiers::COMMAND | Modifiers::SHIFT, Key::S);
+    desk.key(Key::Enter);
+    assert_eq!(std::fs::read_to_string(&path).unwrap(), desk.text());
+    assert!(desk.window.query_by_label("Path").is_none());
+    let text = desk.text().replace("\"Home\"", "\"Start\"");
+    std::fs::write(&path, &text).unwrap();
+    let mut desk = Desk::map();
+    type_path(&mut desk, Modifiers::COMMAND, Key::O);
+    desk.key(Key::Enter);
+    assert_eq!(desk.text(), text);
+    // What can't be opened is told, and can be typed anew.
+    desk.command(Modifiers::COMMAND, Key::O);
+    desk.command(Modifiers::COMMAND, Key::A);
+    desk.window.event(Event::Text("/nonexistent/it.ron".into()));
+    desk.window.run_steps(2);
+    desk.key(Key::Enter);
+    assert!(desk.says("can't be opened") && desk.window.query_by_label("Path").is_some());
+    assert_eq!(desk.text(), text);
+}
+
+#[test]
 fn of_two_changes_to_the_same_lines_a_person_chooses() {
     let text = builtin_layout("map").unwrap();
     for (answer, kept) in [("Keep mine", "\"Mine\""), ("Take theirs", "\"Theirs\"")] {

@@ -1,7 +1,10 @@
 //! Design mode without a display: found by name, worked by mouse and keyboard, judged by the text that comes of it.
 
+mod clipboard;
 mod files;
+mod groups;
 mod keyboard;
+mod saving;
 
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, SyncSender};
@@ -32,7 +35,17 @@ impl Desk {
         Self::with(text, path, tempfile::tempdir().unwrap())
     }
 
+    /// On a file that is not there yet.
+    fn begun(shown: &str, path: &Path) -> Self {
+        Self::of(shown, "", Some(path.into()), tempfile::tempdir().unwrap())
+    }
+
     fn with(text: &str, path: Option<PathBuf>, state: TempDir) -> Self {
+        Self::of(text, text, path, state)
+    }
+
+    /// With the layout of `text` on the floor, and `designed` given to be designed.
+    fn of(text: &str, designed: &str, path: Option<PathBuf>, state: TempDir) -> Self {
         let floor = Arc::new(Floor::default());
         let kinds = Arc::new(Kinds::builtin());
         let layout = Arc::new(parse_layout(text, "it", &kinds, &floor.geometry).unwrap().layout);
@@ -42,7 +55,7 @@ impl Desk {
             choices: vec!["map".into()],
             design: Some(DesignInput {
                 name: "it.ron".into(),
-                text: text.into(),
+                text: designed.into(),
                 path,
                 kinds_of: Box::new(move |_| Ok(Arc::clone(&kinds))),
                 state: state.path().into(),
@@ -50,10 +63,18 @@ impl Desk {
             ..PreviewInput::new(floor, layout, "simulated floor", snapshots, channels)
         };
         let app = App::new(input, &PreviewOptions::default());
-        let window = Harness::builder()
-            .with_size(vec2(1400.0, 860.0))
-            .with_step_dt(1.0 / 60.0)
-            .build_ui_state(|ui, app: &mut App| app.show(ui), app);
+        let mut builder = Harness::builder().with_size(vec2(1400.0, 860.0)).with_step_dt(1.0 / 60.0);
+        // Chinese, which is not among the program's own letters.
+        if text.chars().any(|letter| letter >= '\u{4e00}') {
+            builder = builder.allow_missing_glyphs();
+        }
+        let window = builder.build_ui_state(
+            |ui, app: &mut App| {
+                app.handle_close(ui.ctx());
+                app.show(ui);
+            },
+            app,
+        );
         let mut desk = Self { window, commands, news, state };
         desk.key(Key::F2);
         desk
@@ -78,6 +99,11 @@ impl Desk {
     fn key(&mut self, key: Key) {
         self.window.key_press(key);
         self.window.run_steps(3);
+    }
+
+    /// Whether this is written somewhere in the window.
+    fn says(&self, text: &str) -> bool {
+        self.window.query_all_by_label_contains(text).next().is_some()
     }
 
     fn command(&mut self, modifiers: Modifiers, key: Key) {
@@ -208,6 +234,18 @@ fn the_inspector_says_where_a_value_comes_from_and_warnings_can_be_mended() {
         (press.value.as_str(), &press.origin),
         ("60", &crate::edit::Origin::Kind("round_button".into()))
     );
+}
+
+#[test]
+fn letters_that_no_font_has_are_a_warning_at_their_control() {
+    // Tests have the program's own fonts, and none of the computer's.
+    let text = builtin_layout("map").unwrap().replace("\"Home\"", "\"首页\"");
+    let mut desk = Desk::on(&text, None);
+    desk.click("1 warning");
+    assert_eq!(desk.designer().document.id_of(&desk.designer().selected[0]), Some("home"));
+    assert!(desk.says("no font has 首 (U+9996) and 页 (U+9875)"));
+    let home = builtin_layout("map").unwrap().replace("\"Home\"", "\"Дом\"");
+    assert!(Desk::on(&home, None).says("no warnings"));
 }
 
 #[test]

@@ -1,0 +1,261 @@
+//! A line of text in pieces of one direction and one script, from left to right as they are drawn.
+//!
+//! Letters are kept in the order in which they are read. A painter that shapes each piece and puts the pieces beside
+//! each other, from the left on, draws Arabic and Hebrew as they are written, also with numbers and Latin words among
+//! them.
+//!
+//! # Source
+//! Unicode Standard Annex #9 (bidirectional algorithm), by the crate `unicode-bidi`; Annex #24 (scripts).
+
+use std::borrow::Cow;
+use std::ops::Range;
+
+use unicode_bidi::{BidiClass, BidiInfo, Level, bidi_class, get_base_direction};
+use unicode_bidi_mirroring::get_mirrored;
+use unicode_script::{Script, UnicodeScript};
+use unicode_segmentation::UnicodeSegmentation;
+
+/// The way in which the parts of a line follow each other.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Direction {
+    /// That of the line's first letter that has one; left to right without any.
+    #[default]
+    OfItsLetters,
+    /// As Latin is written.
+    LeftToRight,
+    /// As Arabic and Hebrew are written.
+    RightToLeft,
+}
+
+impl Direction {
+    /// The direction of `text`, which may be one line of several: that of its first letter that has one.
+    #[must_use]
+    pub fn of(text: &str) -> Self {
+        match get_base_direction(text) {
+            unicode_bidi::Direction::Rtl => Self::RightToLeft,
+            _ => Self::LeftToRight,
+        }
+    }
+
+    fn level(self) -> Option<Level> {
+        match self {
+            Self::OfItsLetters => None,
+            Self::LeftToRight => Some(Level::ltr()),
+            Self::RightToLeft => Some(Level::rtl()),
+        }
+    }
+}
+
+/// Letters that are shaped together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Piece<'t> {
+    /// The letters in the order in which they are read; brackets are already turned as they are seen.
+    pub text: Cow<'t, str>,
+    /// Whether the first letter is the rightmost one.
+    pub right_to_left: bool,
+}
+
+/// The least code point that is not written from left to right: Hebrew begins there. What is below is Latin, Greek,
+/// Cyrillic and Armenian.
+const FIRST_RIGHT_TO_LEFT: char = '\u{590}';
+
+/// The pieces of one line, the leftmost first; none for an empty one.
+#[must_use]
+pub fn pieces(line: &str, direction: Direction) -> Vec<Piece<'_>> {
+    if direction != Direction::RightToLeft && line.chars().all(|letter| letter < FIRST_RIGHT_TO_LEFT) {
+        let whole = Piece { text: line.into(), right_to_left: false };
+        return if line.is_empty() { Vec::new() } else { vec![whole] };
+    }
+    let bidi = BidiInfo::new(line, direction.level());
+    let mut pieces = Vec::new();
+    for paragraph in &bidi.paragraphs {
+        let (levels, runs) = bidi.visual_runs(paragraph, paragraph.range.clone());
+        for run in runs {
+            let is_rightwards = levels.get(run.start).is_none_or(Level::is_ltr);
+            let text = line.get(run).unwrap_or_default();
+            if is_rightwards { rightwards(text, &mut pieces) } else { leftwards(text, &mut pieces) }
+        }
+    }
+    pieces
+}
+
+/// The same line as a text whose parts are in the order in which they are drawn, for a painter that turns each word of
+/// Arabic or Hebrew by itself and leaves the order of words as it is.
+#[must_use]
+pub fn in_drawn_order(line: &str) -> Cow<'_, str> {
+    let mut pieces = pieces(line, Direction::OfItsLetters);
+    match pieces.len() {
+        0 | 1 => pieces.pop().map_or(Cow::Borrowed(""), |piece| piece.text),
+        _ => pieces.iter().map(|piece| &*piece.text).collect::<String>().into(),
+    }
+}
+
+/// A run from left to right, divided where the script changes.
+fn rightwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
+    let mut begin = 0;
+    let mut script = None;
+    for (at, letter) in run.char_indices() {
+        let Some(own) = script_of(letter) else { continue };
+        if script.is_some_and(|script| script != own) {
+            pieces.push(piece(run, begin..at, false));
+            begin = at;
+        }
+        script = Some(own);
+    }
+    if begin < run.len() {
+        pieces.push(piece(run, begin..run.len(), false));
+    }
+}
+
+/// A run from right to left: words, and what is between them sign by sign, the last one first.
+fn leftwards<'t>(run: &'t str, pieces: &mut Vec<Piece<'t>>) {
+    let mut parts: Vec<(Range<usize>, Option<Script>)> = Vec::new();
+    for (at, cluster) in run.grapheme_indices(true) {
+        let end = at + cluster.len();
+        let letter = cluster.chars().next().filter(|letter| is_letter(*letter));
+        let script = letter.map(|letter| script_of(letter).unwrap_or(Script::Common));
+        match parts.last_mut() {
+            // The lengthening stroke and marks have no script of their own.
+            Some((part, Some(before)))
+                if script.is_some_and(|script| script == *before || script == Script::Common) =>
+            {
+                part.end = end;
+            }
+            _ => parts.push((at..end, script)),
+        }
+    }
+    for (part, script) in parts.into_iter().rev() {
+        if script.is_some() {
+            pieces.push(piece(run, part, true));
+        } else {
+            let text = run.get(part).unwrap_or_default();
+            pieces.push(Piece { text: mirrored(text), right_to_left: false });
+        }
+    }
+}
+
+fn piece(run: &str, part: Range<usize>, right_to_left: bool) -> Piece<'_> {
+    Piece { text: run.get(part).unwrap_or_default().into(), right_to_left }
+}
+
+/// Whether it is written from right to left by itself, and so joins its neighbours.
+fn is_letter(letter: char) -> bool {
+    matches!(bidi_class(letter), BidiClass::R | BidiClass::AL)
+}
+
+/// The script of a letter; `None` for what belongs to several.
+fn script_of(letter: char) -> Option<Script> {
+    match letter.script() {
+        Script::Common | Script::Inherited | Script::Unknown => None,
+        // Japanese mixes three, which have one font.
+        Script::Hiragana | Script::Katakana => Some(Script::Han),
+        script => Some(script),
+    }
+}
+
+fn mirrored(text: &str) -> Cow<'_, str> {
+    if text.chars().any(|letter| get_mirrored(letter).is_some()) {
+        text.chars().map(|letter| get_mirrored(letter).unwrap_or(letter)).collect::<String>().into()
+    } else {
+        text.into()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    /// Pieces as they are drawn from left to right, those that are read from right to left in brackets.
+    fn drawn(line: &str, direction: Direction) -> Vec<String> {
+        let show = |piece: &Piece<'_>| {
+            if piece.right_to_left { format!("<{}>", piece.text) } else { piece.text.to_string() }
+        };
+        pieces(line, direction).iter().map(show).collect()
+    }
+
+    fn by_itself(line: &str) -> Vec<String> {
+        drawn(line, Direction::OfItsLetters)
+    }
+
+    #[test]
+    fn a_line_without_foreign_letters_is_one_piece() {
+        assert_eq!(by_itself("Zoom 12 %"), ["Zoom 12 %"]);
+        assert_eq!(by_itself("Žluť, Дом"), ["Žluť, Дом"]);
+        assert_eq!(by_itself(""), Vec::<String>::new());
+    }
+
+    #[test]
+    fn the_first_word_of_hebrew_and_arabic_is_the_rightmost_one() {
+        assert_eq!(by_itself("בית חדש"), ["<חדש>", " ", "<בית>"]);
+        assert_eq!(by_itself("منزل جديد"), ["<جديد>", " ", "<منزل>"]);
+    }
+
+    #[test]
+    fn numbers_and_latin_words_among_them_keep_their_own_order() {
+        // "Room 12 B" in Hebrew: the number is left of the word, its digits as they are.
+        assert_eq!(by_itself("חדר 12"), ["12", " ", "<חדר>"]);
+        assert_eq!(by_itself("تكبير Zoom 2x"), ["Zoom 2x", " ", "<تكبير>"]);
+        // Within a Latin line only the Hebrew words change places.
+        assert_eq!(by_itself("Go בית חדש now"), ["Go ", "<חדש>", " ", "<בית>", " now"]);
+    }
+
+    #[test]
+    fn brackets_and_signs_at_the_end_are_where_readers_expect_them() {
+        assert_eq!(by_itself("בית (2)!"), ["!", "(", "2", ")", " ", "<בית>"]);
+        assert_eq!(by_itself("«بيت»"), ["«", "<بيت>", "»"]);
+        assert_eq!(by_itself("בית…"), ["…", "<בית>"]);
+    }
+
+    #[test]
+    fn a_line_of_a_longer_text_follows_the_direction_of_the_whole() {
+        let whole = "הגדל Zoom פי 2";
+        assert_eq!(Direction::of(whole), Direction::RightToLeft);
+        assert_eq!(drawn("Zoom פי 2", Direction::of(whole)), ["2", " ", "<פי>", " ", "Zoom"]);
+        assert_eq!(drawn("12 %", Direction::RightToLeft), ["%", " ", "12"]);
+        assert_eq!(Direction::of("12 %"), Direction::LeftToRight);
+    }
+
+    #[test]
+    fn scripts_from_left_to_right_are_told_apart() {
+        assert_eq!(by_itself("घर Home"), ["घर ", "Home"]);
+        assert_eq!(by_itself("Đường, Дом"), ["Đường, ", "Дом"]);
+        assert_eq!(by_itself("บ้าน 2"), ["บ้าน 2"]);
+        assert_eq!(by_itself("地図ホームへ"), ["地図ホームへ"]);
+        assert_eq!(by_itself("🏠 首页"), ["🏠 首页"]);
+    }
+
+    #[test]
+    fn marks_and_joining_signs_stay_with_their_letters() {
+        assert_eq!(by_itself("שָׁלוֹם"), ["<שָׁלוֹם>"]);
+        assert_eq!(by_itself("بـيـت"), ["<بـيـت>"]);
+        // Persian, with a sign that keeps letters from joining.
+        assert_eq!(by_itself("می\u{200c}روم"), ["<می\u{200c}روم>"]);
+    }
+
+    #[test]
+    fn a_text_in_drawn_order_is_one_string() {
+        assert_eq!(in_drawn_order("Zoom"), "Zoom");
+        assert!(matches!(in_drawn_order("Zoom"), Cow::Borrowed(_)));
+        assert_eq!(in_drawn_order("חדר 12"), "12 חדר");
+        assert_eq!(in_drawn_order(""), "");
+    }
+
+    proptest! {
+        #[test]
+        fn every_letter_is_in_one_piece(line in "[ a-z0-9()«»،א-ת\u{5b0}-\u{5bd}\u{627}-\u{64a}\u{64b}-\u{652}ก-ู\u{915}-\u{94d}首页ホ🏠‍…]{0,40}") {
+            let sorted = |text: &mut dyn Iterator<Item = char>| {
+                let mut all: Vec<char> = text.map(|letter| get_mirrored(letter).map_or(letter, |it| it.min(letter))).collect();
+                all.sort_unstable();
+                all
+            };
+            for direction in [Direction::OfItsLetters, Direction::LeftToRight, Direction::RightToLeft] {
+                let pieces = pieces(&line, direction);
+                let mut drawn = pieces.iter().flat_map(|piece| piece.text.chars());
+                prop_assert_eq!(sorted(&mut drawn), sorted(&mut line.chars()));
+                prop_assert!(pieces.iter().all(|piece| !piece.text.is_empty()));
+            }
+        }
+    }
+}
