@@ -13,6 +13,7 @@ mod areas;
 mod calibrate;
 mod clients;
 mod console;
+mod earlier_files;
 mod end_to_end;
 mod holds;
 mod input;
