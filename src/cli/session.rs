@@ -9,6 +9,7 @@ use std::time::Duration;
 
 use underfoot::engine::Snapshot;
 use underfoot::feel::{RendererConfig, renderer};
+use underfoot::floor::Floor;
 use underfoot::layout::Layout;
 use underfoot::picture;
 use underfoot::recording::{Recorded, Recorder, WhenBehind};
@@ -108,7 +109,9 @@ pub(crate) fn run(args: &Args) -> Result<(), Failure> {
             .map_err(|error| Failure::File(described, error))?;
         (sim, floor)
     } else {
-        (SimFloor::new(&floor, args.sim.config(), args.sim.seed), floor)
+        let sim = SimFloor::new(&floor, args.sim.config(), args.sim.seed);
+        let noiseless = floor.noiseless || sim.is_noiseless();
+        (sim, Floor { noiseless, ..floor })
     };
     let (picture, sound, log) = (file("floor.png"), file("actuators.wav"), file("events.jsonl"));
 

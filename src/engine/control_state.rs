@@ -71,7 +71,7 @@ impl ControlState {
             range: range
                 .map(|(_, scale)| ValueRange::Number(*scale))
                 .or_else(|| ValueRange::of(&widget.behaviour)),
-            enabled: !state.disabled && !state.uncalibrated,
+            enabled: !state.disabled && !state.uncalibrated && state.hold_doubt.is_none(),
             locked: state.locked,
             pressed: state.pressed,
             armed: state.armed,

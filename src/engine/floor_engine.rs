@@ -330,13 +330,14 @@ impl Engine {
         snapshot.widgets.clear();
         let page = self.interaction.page();
         let controls = self.interaction.controls().iter().zip(&self.layout.widgets);
-        snapshot.widgets.extend(controls.map(|(control, widget)| WidgetState {
+        snapshot.widgets.extend(controls.enumerate().map(|(number, (control, widget))| WidgetState {
             pressed: control.is_engaged(),
             value: control.value(),
             press_share: control.press_share(),
             needs_lift: control.needs_lift(),
             disabled: control.is_disabled(),
-            uncalibrated: control.is_inhibited(),
+            uncalibrated: self.interaction.is_uncalibrated(number),
+            hold_doubt: self.interaction.hold_doubt(number),
             hidden: !widget.is_on(page),
             locked: control.is_locked(),
             armed: control.is_armed(),
@@ -439,11 +440,12 @@ impl Engine {
 
 /// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
-    let ForceFrame { at, received, forces, quality, may_start, calibrated } = frame;
+    let ForceFrame { at, received, forces, quality, may_start, hold_doubts, calibrated } = frame;
     (kept.at, kept.received, kept.calibrated) = (*at, *received, *calibrated);
     kept.forces.clone_from(forces);
     kept.quality.clone_from(quality);
     kept.may_start.clone_from(may_start);
+    kept.hold_doubts.clone_from(hold_doubts);
 }
 
 fn has_like(layout: &Layout, id: &str, behaviour: &Behaviour) -> bool {

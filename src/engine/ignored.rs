@@ -12,7 +12,7 @@
 use std::collections::VecDeque;
 use std::fmt;
 
-use crate::sense::ContactId;
+use crate::sense::{ContactId, HoldDoubt};
 use crate::units::{Instant, Newtons};
 use crate::widget::WidgetId;
 
@@ -54,6 +54,8 @@ pub enum Ignored {
     Disabled,
     /// The control acts while it is held, and the floor is not calibrated.
     Uncalibrated,
+    /// The control acts while it is held, and the readings under it may not hold it.
+    Doubted(HoldDoubt),
     /// The force never came up to the control's threshold.
     TooLight,
     /// The force was enough, but not for long enough.
@@ -62,7 +64,8 @@ pub enum Ignored {
 
 impl fmt::Display for Ignored {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
+        let text = match self {
+            Self::Doubted(doubt) => return doubt.fmt(f),
             Self::Step => "the foot walks, stands or rests there",
             Self::Object => "it has kept still for a minute and counts as an object",
             Self::Stance => "the foot stands in a stance zone",
@@ -77,7 +80,8 @@ impl fmt::Display for Ignored {
             Self::Uncalibrated => "the floor is not calibrated",
             Self::TooLight => "too light",
             Self::TooShort => "too short",
-        })
+        };
+        f.write_str(text)
     }
 }
 

@@ -7,7 +7,7 @@ use glam::Vec2;
 use super::ignored::{AnsweredPress, IgnoredPress};
 use crate::feel::{DeviceStatus, FeelCounters, Muted};
 use crate::ground::GroundState;
-use crate::sense::{Contact, ContactId, Cursor, Quality, SensorHealth};
+use crate::sense::{Contact, ContactId, Cursor, HoldDoubt, Quality, SensorHealth};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Indicator, Scale, Value, WidgetId};
 use crate::wire::{LinkCounters, LinkState};
@@ -96,6 +96,8 @@ pub struct WidgetState {
     pub disabled: bool,
     /// Whether it is off because it acts for as long as it is held, and this floor is not calibrated.
     pub uncalibrated: bool,
+    /// Why it is off because it acts for as long as it is held, and the readings of its tiles may not hold it.
+    pub hold_doubt: Option<HoldDoubt>,
     /// Whether an app has locked it.
     pub locked: bool,
     /// Whether a first press has armed it.
@@ -108,6 +110,14 @@ pub struct WidgetState {
     pub pending: Option<Value>,
     /// Whether it is on another page than the one that is shown.
     pub hidden: bool,
+}
+
+impl WidgetState {
+    /// Whether it reacts to no foot, for whatever reason.
+    #[must_use]
+    pub const fn is_off(&self) -> bool {
+        self.disabled || self.uncalibrated || self.hold_doubt.is_some()
+    }
 }
 
 /// What one contact is to the controls.

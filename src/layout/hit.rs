@@ -60,7 +60,7 @@ impl HitIndex {
 }
 
 /// The tiles whose cells (plate and gap) share ground with `area`.
-fn cells_under(area: Rect, geometry: &Geometry) -> impl Iterator<Item = TileId> {
+pub(crate) fn cells_under(area: Rect, geometry: &Geometry) -> impl Iterator<Item = TileId> {
     // Casts cut what is negative to zero.
     let first = (area.min / geometry.pitch_m()).floor().as_u16vec2();
     let end = (area.max / geometry.pitch_m()).ceil().as_u16vec2();

@@ -23,6 +23,8 @@ internal! {
 
 use glam::Vec2;
 
+pub(crate) use hit::cells_under;
+
 use crate::feel::Feel;
 use crate::floor::{Area, Geometry, Rect};
 use crate::widget::{Behaviour, WidgetId};

@@ -12,13 +12,13 @@ use mcap::sans_io::linear_reader::{LinearReadEvent, LinearReader, LinearReaderOp
 use super::entry::{self, Entry};
 use super::recorder::read_layout;
 use super::replay::{ReplaySource, Speed};
-use super::{EVENTS, FLOOR, LAYOUT, METADATA, RecordingError, VERSION};
+use super::{EVENTS, FLOOR, LAYOUT, LEARNT, METADATA, NOISE, RecordingError, VERSION};
 use crate::floor::Floor;
 use crate::layout::Layout;
 use crate::schema;
 use crate::sense::Method;
 use crate::units::Instant;
-use crate::wire::Decoder;
+use crate::wire::{Decoder, Readings};
 
 /// The longest record that is read: a chunk, or a layout with thousands of controls.
 const LONGEST: usize = 64 << 20;
@@ -49,12 +49,15 @@ impl Recording {
         let file = File::open(path).map_err(|source| RecordingError::File { path: path.into(), source })?;
         let mut messages = Messages::new(file, path);
         let [mut floor, mut layout, mut method] = [None, None, None];
+        let mut learnt = false;
         while floor.is_none() || layout.is_none() || method.is_none() {
             match messages.next_part() {
                 Part::Attachment(name, text) if name == FLOOR => floor = Some(text),
                 Part::Attachment(name, text) if name == LAYOUT => layout = Some(text),
-                Part::Metadata(version, of) if version == VERSION => method = Some(of),
-                Part::Metadata(version, _) => {
+                Part::Metadata { version, method: of, noise } if version == VERSION => {
+                    (method, learnt) = (Some(of), noise == LEARNT);
+                }
+                Part::Metadata { version, .. } => {
                     return Err(unreadable(format!(
                         "it is of version {version}, this program reads {VERSION}"
                     )));
@@ -70,7 +73,9 @@ impl Recording {
                 }
             }
         }
-        let floor = schema::parse_floor(&floor.unwrap_or_default(), FLOOR)?;
+        let mut floor = schema::parse_floor(&floor.unwrap_or_default(), FLOOR)?;
+        // Versions that did not learn noise took newtons as they came.
+        floor.noiseless |= !learnt && begins_with_newtons(path);
         let layout = read_layout(&layout.unwrap_or_default(), &floor.geometry)?;
         let method = if method.as_deref() == Some("eq4") { Method::Eq4 } else { Method::Tracker };
         Ok(Self { floor, layout, method, messages })
@@ -124,6 +129,21 @@ impl Recording {
     }
 }
 
+/// Whether the first packet of the recording at `path` holds newtons.
+fn begins_with_newtons(path: &Path) -> bool {
+    let Ok(file) = File::open(path) else { return false };
+    let mut messages = Messages::new(file, path);
+    loop {
+        match messages.next_part() {
+            Part::Entry(_, Entry::Packet(packet)) => {
+                return matches!(packet.readings, Readings::Newtons(_));
+            }
+            Part::Whole | Part::Broken(_) => return false,
+            _ => {}
+        }
+    }
+}
+
 /// What stands in the file, one after the other.
 #[expect(
     clippy::large_enum_variant,
@@ -132,8 +152,8 @@ impl Recording {
 pub(super) enum Part {
     /// Its name and text.
     Attachment(String, String),
-    /// The version and how feet were told apart.
-    Metadata(String, String),
+    /// The version, how feet were told apart, and whether noise was learnt.
+    Metadata { version: String, method: String, noise: String },
     /// When the server took it, and what.
     Entry(Instant, Entry),
     /// A line.
@@ -202,7 +222,7 @@ impl Messages {
                 }
                 Ok(Record::Metadata(metadata)) if metadata.name == METADATA => {
                     let of = |key: &str| metadata.metadata.get(key).cloned().unwrap_or_default();
-                    return Part::Metadata(of("version"), of("method"));
+                    return Part::Metadata { version: of("version"), method: of("method"), noise: of(NOISE) };
                 }
                 Ok(Record::DataEnd(_)) => return Part::Whole,
                 Ok(_) => {}

@@ -133,7 +133,7 @@ impl ReplaySource {
                     *self.progress.broken.lock().unwrap_or_else(PoisonError::into_inner) = Some(why);
                     self.progress.is_over.store(true, Ordering::Relaxed);
                 }
-                Part::Event(_) | Part::Attachment(..) | Part::Metadata(..) => {}
+                Part::Event(_) | Part::Attachment(..) | Part::Metadata { .. } => {}
             }
         }
         next

@@ -47,7 +47,7 @@ impl Recording {
         let (mut messages, mut timeline) = (self.into_messages(), Timeline::default());
         for round in 1_usize.. {
             match messages.next_part() {
-                Part::Entry(_, Entry::Gap(_)) | Part::Attachment(..) | Part::Metadata(..) => {}
+                Part::Entry(_, Entry::Gap(_)) | Part::Attachment(..) | Part::Metadata { .. } => {}
                 Part::Entry(taken, _) => {
                     let begins = timeline.span.map_or(taken, |(begins, _)| begins);
                     timeline.span = Some((begins, taken.max(begins)));

@@ -12,7 +12,9 @@ use mcap::records::{MessageHeader, Metadata};
 use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
 use super::entry::Entry;
-use super::{END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, METADATA, PACKETS, REQUESTS, SILENCE, VERSION};
+use super::{
+    END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, LEARNT, METADATA, NOISE, PACKETS, REQUESTS, SILENCE, VERSION,
+};
 use crate::sense::Method;
 use crate::sink::Disk;
 use crate::units::Instant;
@@ -70,8 +72,8 @@ impl RecordingFile {
             Method::Eq4 => "eq4",
             Method::Tracker => "tracker",
         };
-        let metadata =
-            [("version", VERSION), ("method", method)].map(|(key, value)| (key.into(), value.into()));
+        let metadata = [("version", VERSION), ("method", method), (NOISE, LEARNT)]
+            .map(|(key, value)| (key.into(), value.into()));
         writer.write_metadata(&Metadata { name: METADATA.into(), metadata: metadata.into() })?;
         for (name, text) in [(FLOOR, floor), (LAYOUT, layout)] {
             let data = text.as_bytes().into();

@@ -10,6 +10,7 @@ use super::{Scene, Theme, icon, outline};
 use crate::engine::WidgetState;
 use crate::floor::Rect;
 use crate::layout::{Colour, Shape, Widget};
+use crate::sense::HoldDoubt;
 use crate::widget::{Guard, Indicator};
 
 /// Largest letters of a label, in metres: read easily from standing height.
@@ -51,13 +52,12 @@ impl<'a> Face<'a> {
         let (rest, lit_up, ink) =
             theme.faces.map_or((look.face, look.lit, look.ink), |all| (all.rest, all.lit, all.ink));
         let at_rest = rest.mix(lit_up, lit);
-        let out_of_use = state.disabled || state.uncalibrated || state.needs_lift;
+        let out_of_use = state.is_off() || state.needs_lift;
         let colour = if out_of_use { at_rest.mix(theme.plate, 0.72) } else { at_rest };
         let ink = readable(ink, colour);
         // Words of what does not work just now step back, but stay legible.
         let faded = ink.mix(colour, 0.4);
-        let is_off = state.disabled || state.uncalibrated;
-        let ink = if is_off && contrast(faded, colour) >= 3.0 { faded } else { ink };
+        let ink = if state.is_off() && contrast(faded, colour) >= 3.0 { faded } else { ink };
         let area = widget.area.grown(if state.pressed { -SINK_M } else { 0.0 });
         let shape = widget.look.shape;
         let radius_m = match shape {
@@ -74,7 +74,7 @@ impl<'a> Face<'a> {
 
     /// Whether it does not work just now.
     pub(super) fn is_out_of_use(&self) -> bool {
-        self.state.disabled || self.state.uncalibrated || self.state.needs_lift
+        self.state.is_off() || self.state.needs_lift
     }
 
     /// What its face turns to.
@@ -97,7 +97,7 @@ impl<'a> Face<'a> {
             self.shadow(scene);
         }
         let edge = self.colour.mix(self.theme.ink, 0.28);
-        let stroke = match (self.state.needs_lift, self.state.disabled || self.state.uncalibrated) {
+        let stroke = match (self.state.needs_lift, self.state.is_off()) {
             (true, _) => Stroke::new(0.005, Ink::solid(self.theme.warning)).dashed(0.018, 0.012),
             (_, true) => Stroke::new(0.003, Ink::solid(self.theme.quiet)).dashed(0.010, 0.010),
             _ if self.state.warned => Stroke::new(0.008, Ink::solid(self.theme.warning)),
@@ -237,6 +237,8 @@ impl<'a> Face<'a> {
         let room = self.widget.area.size();
         let text = match self.state {
             WidgetState { uncalibrated: true, .. } => "calibrate",
+            WidgetState { hold_doubt: Some(HoldDoubt::Repeats), .. } => "frozen",
+            WidgetState { hold_doubt: Some(_), .. } => "coarse",
             WidgetState { needs_lift: true, .. } => "lift foot",
             WidgetState { disabled: true, .. } => "disabled",
             WidgetState { locked: true, .. } => "locked",
@@ -263,9 +265,9 @@ impl<'a> Face<'a> {
         self.lamp(scene);
         let Some(text) = self.badge() else { return };
         let ground = match self.state {
-            WidgetState { uncalibrated: true, .. } | WidgetState { needs_lift: true, .. } => {
-                self.theme.warning
-            }
+            WidgetState { uncalibrated: true, .. }
+            | WidgetState { hold_doubt: Some(_), .. }
+            | WidgetState { needs_lift: true, .. } => self.theme.warning,
             WidgetState { disabled: true, .. } | WidgetState { locked: true, .. } => self.theme.quiet,
             WidgetState { warned: true, .. } => self.theme.warning,
             _ => self.theme.accent,

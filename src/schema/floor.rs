@@ -17,7 +17,7 @@ use super::source::{Source, read_text};
 use super::version::{self, FORMAT_VERSION, VERSION};
 use crate::floor::{ADDRESS, Corner, DAY, Day, Drive, Floor, Geometry, Loudspeaker, NETWORK, Network};
 use crate::format::codec::Distinct;
-use crate::format::{Flat, Opt, Rec, Record, list, record};
+use crate::format::{Flag, Flat, Opt, Rec, Record, list, record};
 
 /// The floor that the file at `path` describes.
 ///
@@ -73,6 +73,9 @@ record! {
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
     pub(super) allow: Vec<Network> = "allow", list("network", MAX_NETWORKS, NETWORK) => Vec::new();
+    /// Whether the readings have no noise of their own, as those of an app or of a simulation without noise: that they
+    /// repeat says nothing then, and `HoldToRun` works all the same.
+    pub(super) noiseless: bool = "noiseless", Flag => false;
     /// When the floor was tared.
     pub(super) tared: Option<Day> = "tared", Opt(DAY) => None;
     /// What is known of sensors; those that are not listed are nominal.
@@ -160,6 +163,7 @@ impl FloorRecord {
             }
         }
         floor.gateway = self.gateway;
+        floor.noiseless = self.noiseless;
         floor.tared = self.tared;
         floor.allow.clone_from(&self.allow);
         floor.drive = self.drive;
@@ -183,6 +187,7 @@ impl FloorRecord {
             gateway: floor.gateway,
             boards,
             allow: floor.allow.clone(),
+            noiseless: floor.noiseless,
             tared: floor.tared,
             sensors: SensorRecord::all(floor),
             maps: MapEntry::all(floor),

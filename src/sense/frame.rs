@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::Quality;
+use super::{HoldDoubt, Quality};
 use crate::floor::{Corner, Geometry};
 use crate::units::{Instant, Newtons};
 
@@ -24,6 +24,8 @@ pub struct ForceFrame {
     /// the end of its range, where the force is "at least", or with one that reads a load to
     /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
     pub may_start: Vec<bool>,
+    /// Per tile, why its readings may not hold a control with the guard `HoldToRun`; `None` where they may.
+    pub hold_doubts: Vec<Option<HoldDoubt>>,
     /// Whether the newtons come of calibrations of this floor. They may be off by a third where a
     /// sensor was never calibrated or the floor file is another floor's; what acts for as long
     /// as it is held is off then.
@@ -41,6 +43,7 @@ impl ForceFrame {
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
             may_start: vec![true; tiles],
+            hold_doubts: vec![None; tiles],
             calibrated: true,
         }
     }

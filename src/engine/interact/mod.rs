@@ -7,7 +7,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use self::belief::{certainly_presses, is_believed, is_certain, is_sensed};
+use self::belief::{certainly_presses, is_believed, is_certain, is_sensed, is_unlearned};
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
 use super::ignored::{Ignored, IgnoredPresses};
@@ -15,8 +15,8 @@ use super::region::{Finger, Held, RegionState};
 use super::rise::Rises;
 use super::snapshot::FootState;
 use crate::floor::Geometry;
-use crate::layout::{CursorRule, HitIndex, Layout, Widget};
-use crate::sense::{Contact, ContactId, Cursor, ForceFrame, Quality};
+use crate::layout::{CursorRule, HitIndex, Layout, Widget, cells_under};
+use crate::sense::{Contact, ContactId, Cursor, ForceFrame, HoldDoubt, Quality};
 use crate::units::{Instant, Newtons};
 use crate::widget::{Behaviour, Control, Emitted, EventKind, Guard, Input, WidgetEvent};
 
@@ -48,7 +48,9 @@ pub(super) struct Interaction {
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
     /// Whether what acts while it is held is off, since the floor is not calibrated.
-    inhibited: bool,
+    uncalibrated: bool,
+    /// Per control, why the readings under it may not hold it; always `None` for what does not act while it is held.
+    hold_doubts: Vec<Option<HoldDoubt>>,
 }
 
 /// What happens in one frame.
@@ -87,6 +89,7 @@ impl Interaction {
             page,
             regions: layout.regions.iter().map(|_| RegionState::default()).collect(),
             unsensed: vec![false; controls.len()],
+            hold_doubts: vec![None; controls.len()],
             lost: Vec::with_capacity(controls.len()),
             awake: (0..controls.len()).collect(),
             controls,
@@ -94,7 +97,7 @@ impl Interaction {
             rises: Rises::default(),
             ignored: IgnoredPresses::default(),
             running: false,
-            inhibited: false,
+            uncalibrated: false,
         }
     }
 
@@ -112,6 +115,16 @@ impl Interaction {
 
     pub(super) fn control_mut(&mut self, widget: usize) -> Option<&mut Control> {
         self.controls.get_mut(widget)
+    }
+
+    /// Whether `widget` is off because it acts while it is held, and the floor is not calibrated.
+    pub(super) fn is_uncalibrated(&self, widget: usize) -> bool {
+        self.uncalibrated && self.controls.get(widget).is_some_and(Control::is_inhibited)
+    }
+
+    /// Why the readings under `widget` may not hold it, where it acts while it is held.
+    pub(super) fn hold_doubt(&self, widget: usize) -> Option<HoldDoubt> {
+        self.hold_doubts.get(widget).copied().flatten()
     }
 
     /// Presses that no control answered.
@@ -335,7 +348,9 @@ impl Interaction {
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let presses = contact.force >= thresholds.press;
         let believed = is_believed(contact, thresholds.guard, at.frame);
-        let unbelieved = presses && !believed;
+        // Noise that is not known yet soon will be: the foot may stay.
+        let waits = matches!(thresholds.guard, Guard::HoldToRun { .. }) && is_unlearned(contact, at.frame);
+        let unbelieved = presses && !believed && !waits;
         let (input, why) =
             if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
                 let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
@@ -349,7 +364,7 @@ impl Interaction {
                 let enough = !presses || certainly_presses(contact, &thresholds, at.frame);
                 let why = [
                     (control.needs_lift(), Ignored::NotSeenUnloaded),
-                    (!risen || !enough, Ignored::Unbelieved),
+                    (!risen || !enough || waits, Ignored::Unbelieved),
                     (!meant, Ignored::Guard),
                     (rivals, Ignored::OtherRuns),
                 ];
@@ -357,7 +372,8 @@ impl Interaction {
                 let may = believed && risen && enough && meant && !rivals;
                 (self::foot(contact, spec, at.frame, weight, may), why)
             };
-        let why = switched_off(control).or(why);
+        let doubt = self.hold_doubts.get(widget).copied().flatten();
+        let why = switched_off(control, doubt).or(why);
         let emitted = control.step(now, input);
         if contact.force.0 >= AS_GOOD_AS_LIFTED_N {
             self.ignored.note(contact.id, widget, contact.force, why);
@@ -411,7 +427,7 @@ impl Interaction {
                     let acts = matches!(mode, PressMode::Follow | PressMode::Stand)
                         || matches!(guard, Guard::HoldToRun { .. });
                     let believed = if acts {
-                        is_certain(contact, at.frame)
+                        is_certain(contact, guard, at.frame)
                     } else {
                         is_believed(contact, guard, at.frame)
                     };
@@ -455,16 +471,33 @@ impl Interaction {
         self.awake = awake;
     }
 
-    /// What acts for as long as it is held is off on a floor whose forces nobody has calibrated.
+    /// What acts for as long as it is held is off on a floor whose forces nobody has calibrated, and where the readings
+    /// under it may not hold it.
     fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
-        let inhibited = !at.frame.calibrated;
-        if std::mem::replace(&mut self.inhibited, inhibited) == inhibited {
-            return;
+        self.uncalibrated = !at.frame.calibrated;
+        for widget in 0..self.controls.len() {
+            if !holds_to_run(at.layout, widget) {
+                continue;
+            }
+            let doubt = self.doubt_under(widget, at);
+            if let Some(known) = self.hold_doubts.get_mut(widget) {
+                *known = doubt;
+            }
+            let inhibited = self.uncalibrated || doubt.is_some();
+            if self.controls.get(widget).is_some_and(|control| control.is_inhibited() != inhibited) {
+                let switch = |control: &mut Control| control.set_inhibited(inhibited);
+                self.change(widget, switch, at.layout, at.now(), events);
+            }
         }
-        for widget in (0..self.controls.len()).filter(|&widget| holds_to_run(at.layout, widget)) {
-            let switch = |control: &mut Control| control.set_inhibited(inhibited);
-            self.change(widget, switch, at.layout, at.now(), events);
-        }
+    }
+
+    /// Why the readings of some tile under `widget` may not hold it. That their noise is not known yet keeps a foot
+    /// waiting, and switches nothing off.
+    fn doubt_under(&self, widget: usize, at: &Moment<'_>) -> Option<HoldDoubt> {
+        let area = at.layout.widgets.get(widget)?.area;
+        let tiles = cells_under(area, &self.geometry).filter_map(|tile| self.geometry.index(tile));
+        let mut doubts = tiles.filter_map(|tile| *at.frame.hold_doubts.get(tile)?);
+        doubts.find(|doubt| *doubt != HoldDoubt::Unlearned)
     }
 
     /// Controls on a tile that can't be sensed are lost.

@@ -3,6 +3,7 @@
 use super::super::feet::{AS_GOOD_AS_LIFTED_N, FootHistory, PressMode};
 use super::super::ignored::Ignored;
 use super::{Interaction, Moment};
+use crate::sense::HoldDoubt;
 use crate::widget::Control;
 
 impl Interaction {
@@ -35,7 +36,7 @@ impl Interaction {
             } else {
                 Ignored::OtherFoot
             };
-            let why = switched_off(control).unwrap_or(why);
+            let why = switched_off(control, self.hold_doubt(widget)).unwrap_or(why);
             self.ignored.note(contact.id, widget, contact.force, Some(why));
         }
         let press = |widget: usize| {
@@ -46,11 +47,11 @@ impl Interaction {
     }
 }
 
-/// Why `control` answers nobody, if it is off.
-pub(super) fn switched_off(control: &Control) -> Option<Ignored> {
+/// Why `control` answers nobody, if it is off; `doubt` says why the readings under it may not hold it.
+pub(super) fn switched_off(control: &Control, doubt: Option<HoldDoubt>) -> Option<Ignored> {
     match (control.is_disabled(), control.is_inhibited()) {
         (true, _) => Some(Ignored::Disabled),
-        (false, true) => Some(Ignored::Uncalibrated),
+        (false, true) => Some(doubt.map_or(Ignored::Uncalibrated, Ignored::Doubted)),
         (false, false) => None,
     }
 }

@@ -101,7 +101,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 21] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
@@ -122,6 +122,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 20] {
         ("dropped by the system", counters.overflowed, true),
         ("sensors found in trouble", counters.sensor_troubles, true),
         ("boards that stood still", counters.frozen, true),
+        ("tiles that repeated readings", counters.repeats, true),
         ("loads that jumped", counters.jumps, true),
     ]
 }
