@@ -472,11 +472,12 @@ impl Engine {
 
 /// Makes `kept` the same as `frame` in the memory it has; a derived `clone_from` would ask for new memory.
 fn keep(kept: &mut ForceFrame, frame: &ForceFrame) {
-    let ForceFrame { at, received, forces, quality, may_start, calibration_fault } = frame;
+    let ForceFrame { at, received, forces, quality, may_start, hold_doubts, calibration_fault } = frame;
     (kept.at, kept.received, kept.calibration_fault) = (*at, *received, *calibration_fault);
     kept.forces.clone_from(forces);
     kept.quality.clone_from(quality);
     kept.may_start.clone_from(may_start);
+    kept.hold_doubts.clone_from(hold_doubts);
 }
 
 fn has_like(layout: &Layout, id: &str, behaviour: &Behaviour) -> bool {

@@ -114,11 +114,13 @@ impl Rig {
     #[must_use]
     pub fn over(sim: SimFloor, floor: &Floor) -> Self {
         let geometry = floor.geometry;
+        let mut floor = floor.clone();
+        floor.noiseless |= sim.is_noiseless();
         Self {
             sim,
             geometry,
             maps: floor.position_maps.clone(),
-            assembler: Assembler::new(floor),
+            assembler: Assembler::new(&floor),
             now: Instant::START,
             sequence: 0,
         }

@@ -1,6 +1,7 @@
 //! What goes from the sensing thread to the renderer: clicks, tones and what lasts, and where they are felt.
 
 use arrayvec::ArrayVec;
+use glam::Vec2;
 
 use super::{Click, Lasting, Manner, Tone};
 use crate::units::{Instant, Newtons};
@@ -38,8 +39,10 @@ pub struct Cue {
     pub tone: Option<Tone>,
     /// How it gets along with what else is felt there.
     pub manner: Manner,
-    /// How much of it is also heard, from the loudspeakers nearest to its spots: 0 (not at all) to 1.
+    /// How much of it is also heard, from the loudspeakers nearest to `heard_at`: 0 (not at all) to 1.
     pub audio_gain: f32,
+    /// Where it is heard, in floor metres; from the middle of its spots if `None`.
+    pub heard_at: Option<Vec2>,
 }
 
 /// Something felt for as long as a foot slides, presses or pushes, as it is now.

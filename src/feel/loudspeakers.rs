@@ -41,7 +41,8 @@ impl Loudspeakers {
         Self { all: all.collect(), centres: centres.into() }
     }
 
-    /// Where something on these spots is heard, of which `audio_gain` (0 to 1) is to be heard at all.
+    /// Where something on these spots is heard, of which `audio_gain` (0 to 1) is to be heard at all. It comes from `at`,
+    /// in floor metres, or from the middle of the spots.
     ///
     /// The three nearest loudspeakers share it, the nearer the more, with the same
     /// power together wherever it is. The share of the third falls to nothing
@@ -49,7 +50,7 @@ impl Loudspeakers {
     ///
     /// # Real-time
     /// No allocation.
-    pub(super) fn pan(&self, spots: &[Spot], audio_gain: f32) -> Panned {
+    pub(super) fn pan(&self, spots: &[Spot], audio_gain: f32, at: Option<Vec2>) -> Panned {
         let mut heard = Panned::new();
         if audio_gain.is_nan() || audio_gain <= 0.0 || self.all.is_empty() {
             return heard;
@@ -68,7 +69,7 @@ impl Loudspeakers {
         if level < FAINT || !sum.is_finite() {
             return heard;
         }
-        let place = place / sum;
+        let place = at.filter(|at| at.is_finite()).unwrap_or(place / sum);
         let mut near: ArrayVec<(f32, Output), { Loudspeaker::MOST }> =
             self.all.iter().map(|(at, output)| (at.distance(place).max(NEAR_M), *output)).collect();
         near.sort_unstable_by(|a, b| a.0.total_cmp(&b.0));
@@ -113,7 +114,7 @@ mod tests {
         let speakers = corners();
         let mut last: Option<[f32; 4]> = None;
         for tile in 0..200 {
-            let gains = gains(&speakers.pan(&[Spot { tile, weight: 1.0 }], 1.0));
+            let gains = gains(&speakers.pan(&[Spot { tile, weight: 1.0 }], 1.0, None));
             let power: f32 = gains.iter().map(|gain| gain * gain).sum();
             assert!((power - 1.0).abs() < 1e-4, "tile {tile}: {power}");
             if let Some(last) = last {
@@ -127,13 +128,27 @@ mod tests {
     #[test]
     fn the_nearest_is_the_loudest_and_a_cue_on_two_tiles_lies_between_them() {
         let speakers = corners();
-        let west = gains(&speakers.pan(&[Spot { tile: 0, weight: 1.0 }], 0.5));
+        let west = gains(&speakers.pan(&[Spot { tile: 0, weight: 1.0 }], 0.5, None));
         assert!(west[0] > 0.49 && west[0] <= 0.5, "{west:?}");
-        let between = speakers.pan(&[Spot { tile: 20, weight: 0.5 }, Spot { tile: 60, weight: 0.5 }], 1.0);
-        let middle = speakers.pan(&[Spot { tile: 40, weight: 1.0 }], 1.0);
+        let two = [Spot { tile: 20, weight: 0.5 }, Spot { tile: 60, weight: 0.5 }];
+        let between = speakers.pan(&two, 1.0, None);
+        let middle = speakers.pan(&[Spot { tile: 40, weight: 1.0 }], 1.0, None);
         for (a, b) in gains(&between).iter().zip(gains(&middle)) {
             assert!((a - b).abs() < 1e-4);
         }
+    }
+
+    #[test]
+    fn what_has_a_place_is_heard_from_there_and_as_loudly() {
+        let speakers = corners();
+        let east = Some(Vec2::new(1.9, 0.1));
+        let heard = gains(&speakers.pan(&[Spot { tile: 0, weight: 1.0 }], 1.0, east));
+        assert!(heard[1] > 0.9, "the south-east loudspeaker is the nearest: {heard:?}");
+        let power: f32 = heard.iter().map(|gain| gain * gain).sum();
+        assert!((power - 1.0).abs() < 1e-4, "{power}");
+        let nowhere = Some(Vec2::new(f32::NAN, 0.0));
+        let west = gains(&speakers.pan(&[Spot { tile: 0, weight: 1.0 }], 1.0, nowhere));
+        assert!(west[0] > 0.9, "{west:?}");
     }
 
     #[test]
@@ -148,10 +163,12 @@ mod tests {
             (999, 1.0, 1.0),
             (0, 1e-35, 1.0),
         ] {
-            assert!(speakers.pan(&[Spot { tile, weight }], audio_gain).is_empty());
+            assert!(speakers.pan(&[Spot { tile, weight }], audio_gain, None).is_empty());
         }
         assert!(
-            Loudspeakers::new(&[], vec![Vec2::ZERO], 4).pan(&[Spot { tile: 0, weight: 1.0 }], 1.0).is_empty()
+            Loudspeakers::new(&[], vec![Vec2::ZERO], 4)
+                .pan(&[Spot { tile: 0, weight: 1.0 }], 1.0, None)
+                .is_empty()
         );
         let far = Loudspeaker { at: Vec2::ZERO, channel: 4, gain_db: 0.0 };
         assert!(Loudspeakers::new(&[far], vec![Vec2::ZERO], 4).all.is_empty());

@@ -374,7 +374,7 @@ impl Renderer {
                 }
             }
             if !cue.click.modes.is_empty() {
-                for output in self.loudspeakers.pan(&cue.spots, cue.audio_gain) {
+                for output in self.loudspeakers.pan(&cue.spots, cue.audio_gain, cue.heard_at) {
                     strike(1.0, output);
                     if cue.manner.duck_db > 0.0 {
                         self.voices.duck(output.channel, &cue.manner, 0.5 * cue.click.length_s());

@@ -103,6 +103,7 @@ impl Floor {
             position_maps: of(&self.position_maps, &indices)?,
             calibration_records: of(&self.calibration_records, &indices)?,
             map_records: of(&self.map_records, &indices)?,
+            noiseless: self.noiseless,
             tared: self.tared,
             allow: self.allow.clone(),
             areas: Vec::new(),

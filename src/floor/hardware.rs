@@ -36,6 +36,9 @@ pub struct Floor {
     pub calibration_records: Vec<[Option<CalibrationRecord>; 4]>,
     /// When each of `position_maps` was measured and how well it fits; `None` where nobody said.
     pub map_records: Vec<Option<MapRecord>>,
+    /// Whether the readings have no noise of their own, as those of an app or of a simulation without noise. Sensors that
+    /// repeat themselves are then not found, and controls with the guard `HoldToRun` work all the same.
+    pub noiseless: bool,
     /// When `tare` was measured; `None` where nobody said.
     pub tared: Option<Day>,
     /// Where the boards' packets come from, on the network; nowhere but this machine if it is empty.
@@ -69,6 +72,7 @@ impl Floor {
             position_maps: vec![None; tiles],
             calibration_records: vec![[None; 4]; tiles],
             map_records: vec![None; tiles],
+            noiseless: false,
             tared: None,
             allow: Vec::new(),
             areas: Vec::new(),

@@ -49,6 +49,16 @@ impl Material {
         }
     }
 
+    /// How much of what is felt of it is also heard, 0 to 1.
+    #[must_use]
+    pub const fn sound(&self) -> f32 {
+        match self {
+            Self::Ice(spec) => spec.sound,
+            Self::Grain(spec) => spec.sound,
+            Self::Wood(spec) => spec.sound,
+        }
+    }
+
     /// The elastic sheet that its tiles are.
     #[must_use]
     pub const fn body(&self) -> Body {
@@ -77,6 +87,8 @@ record! {
     pub cracks: CrackRules = "cracks", Rec;
     /// How the sheet is broken through.
     pub sheet: Sheet = "sheet", Rec;
+    /// How much of each crack is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
 impl IceSpec {
@@ -155,6 +167,8 @@ record! {
     pub packed: f32 = "packed", num(0.0..=1.0);
     /// How long the ground takes to lie loose again, in seconds; `None`: for ever.
     pub renew_s: Option<f32> = "renew_s", Opt(num(1.0..=1_000_000.0));
+    /// How much of each collision is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
 record! {
@@ -174,6 +188,8 @@ record! {
     pub slip: f32 = "slip", num(0.05..=1.0);
     /// How slips ring.
     pub ring: Ring = "ring", Rec;
+    /// How much of each slip is also heard, from the loudspeakers nearest to it: 0 (not at all) to 1.
+    pub sound: f32 = "sound", num(0.0..=1.0) => 0.0;
 }
 
 const WHITE_SPRUCE: Ring =
@@ -205,6 +221,7 @@ impl IceSpec {
             refreeze_s: Some(90.0),
         },
         sheet: Sheet { depth_per_j: 0.035, reach_m: 0.11, weakening: 0.6, refreeze_s: Some(90.0) },
+        sound: 0.0,
     };
 }
 
@@ -229,6 +246,7 @@ impl GrainSpec {
         reach_m: 0.075,
         packed: 0.25,
         renew_s: Some(240.0),
+        sound: 0.0,
     };
 
     /// Gravel: few hard knocks, always loose.
@@ -251,6 +269,7 @@ impl GrainSpec {
         reach_m: 0.07,
         packed: 0.85,
         renew_s: Some(600.0),
+        sound: 0.0,
     };
 
     /// Sand: a hiss of very many small grains that soon lie still.
@@ -273,6 +292,7 @@ impl GrainSpec {
         reach_m: 0.08,
         packed: 0.6,
         renew_s: Some(300.0),
+        sound: 0.0,
     };
 }
 
@@ -286,5 +306,6 @@ impl WoodSpec {
         scatter: 0.5,
         slip: 0.4,
         ring: WHITE_SPRUCE,
+        sound: 0.0,
     };
 }

@@ -289,6 +289,7 @@ mod tests {
             tiles: [load].into_iter().collect(),
             covariance: Covariance::isotropic(0.003),
             ambiguous: false,
+            split: false,
             quality: Quality::Live,
             difference: None,
         };

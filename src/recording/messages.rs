@@ -13,7 +13,7 @@ use super::parts::{Attachment, Message, channel, metadata, statistics};
 use super::records::{RawRecord, Records, State};
 use super::{EVENTS, FLOOR, LAYOUT, METADATA, TOPICS};
 use crate::units::Instant;
-use crate::wire::Decoder;
+use crate::wire::{Decoder, Readings};
 
 /// One after the other, what stands in the file.
 #[expect(
@@ -87,6 +87,23 @@ impl Messages {
     /// Name of the file.
     pub(super) fn path(&self) -> &Path {
         &self.path
+    }
+
+    pub(super) fn into_records(self) -> Records {
+        self.records
+    }
+
+    /// Whether the first packet to come holds newtons; false without one.
+    pub(super) fn begin_with_newtons(&mut self) -> bool {
+        loop {
+            match self.next() {
+                Numbered::Entry(_, _, Entry::Packet(packet)) => {
+                    return matches!(packet.readings, Readings::Newtons(_));
+                }
+                Numbered::Part(Part::Whole | Part::Broken(_)) => return false,
+                Numbered::Entry(..) | Numbered::Part(_) => {}
+            }
+        }
     }
 
     /// Messages of others so far: on topics that are not ours.

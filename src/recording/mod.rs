@@ -57,6 +57,11 @@ const TOPICS: [&str; 7] = [PACKETS, SILENCE, REQUESTS, LAYOUTS, GAPS, END, EVENT
 const METADATA: &str = "underfoot";
 const VERSION: &str = "1";
 
+/// The key of the metadata that says that the sensors' noise was learnt, and what it says. Recordings of versions that
+/// did not learn it lack it.
+const NOISE: &str = "noise";
+const LEARNT: &str = "learnt";
+
 /// The attachments.
 const FLOOR: &str = "floor.ron";
 const LAYOUT: &str = "layout.ron";

@@ -12,7 +12,7 @@ use super::parts::{Attachment, metadata};
 use super::recorder::read_layout;
 use super::records::{RawRecord, RecordingBytes, Records, State};
 use super::replay::{ReplaySource, Speed};
-use super::{FLOOR, LAYOUT, METADATA, RecordingError, VERSION};
+use super::{FLOOR, LAYOUT, LEARNT, METADATA, NOISE, RecordingError, VERSION};
 use crate::floor::{Floor, FloorFile};
 use crate::format::file::open_ordinary;
 use crate::layout::Layout;
@@ -34,6 +34,10 @@ pub(super) struct Opening {
     floor: Option<String>,
     layout: Option<String>,
     method: Option<Method>,
+    /// Whether the sensors' noise was learnt when it was made; earlier versions took newtons as they came.
+    learnt: bool,
+    /// Whether repetitions in its readings say nothing.
+    noiseless: bool,
     /// Checksums by name, so that others of the same name are noticed later.
     checksums: HashMap<&'static str, u32>,
 }
@@ -64,7 +68,8 @@ impl Recording {
     pub fn read(bytes: Box<dyn RecordingBytes>, name: &Path) -> Result<Self, RecordingError> {
         let (opening, parts) = Opening::read(bytes, name)?;
         let floor = schema::parse_floor(&opening.floor.unwrap_or_default(), FLOOR)?;
-        let floor = Floor { file: FloorFile::new("the recording's floor"), ..floor };
+        let noiseless = floor.noiseless || opening.noiseless;
+        let floor = Floor { file: FloorFile::new("the recording's floor"), noiseless, ..floor };
         let layout = read_layout(&opening.layout.unwrap_or_default(), &floor.geometry)?;
         let method = opening.method.unwrap_or_default();
         Ok(Self { floor, layout, method, parts })
@@ -131,6 +136,12 @@ impl Opening {
         };
         let mut opening = Self::find(&mut records).map_err(failed)?.map_err(unreadable)?;
         records.rewind().map_err(failed)?;
+        if !opening.learnt {
+            let mut messages = Messages::new(records, name, opening.checksums.clone());
+            opening.noiseless = messages.begin_with_newtons();
+            records = messages.into_records();
+            records.rewind().map_err(failed)?;
+        }
         let messages = Messages::new(records, name, std::mem::take(&mut opening.checksums));
         Ok((opening, Ordered::new(messages)))
     }
@@ -202,6 +213,7 @@ impl Opening {
                     known
                         .ok_or_else(|| format!("feet were told apart by {method:.32?}, which is unknown"))?,
                 );
+                self.learnt = entries.get(NOISE) == Some(&LEARNT);
                 self.checksums.insert(METADATA, crc32fast::hash(data));
                 Ok(())
             }

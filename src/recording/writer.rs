@@ -13,7 +13,9 @@ use mcap::{Attachment, McapResult, WriteOptions, Writer};
 
 use super::entry::Entry;
 use super::reader::known_as;
-use super::{END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, METADATA, PACKETS, REQUESTS, SILENCE, VERSION};
+use super::{
+    END, EVENTS, FLOOR, GAPS, LAYOUT, LAYOUTS, LEARNT, METADATA, NOISE, PACKETS, REQUESTS, SILENCE, VERSION,
+};
 use crate::sense::Method;
 use crate::sink::Disk;
 use crate::units::Instant;
@@ -69,7 +71,7 @@ impl RecordingFile {
             .profile("underfoot")
             .library(concat!("underfoot ", env!("CARGO_PKG_VERSION")));
         let mut writer = options.create(BufWriter::new(file))?;
-        let metadata = [("version", VERSION), ("method", known_as(method))]
+        let metadata = [("version", VERSION), ("method", known_as(method)), (NOISE, LEARNT)]
             .map(|(key, value)| (key.into(), value.into()));
         writer.write_metadata(&Metadata { name: METADATA.into(), metadata: metadata.into() })?;
         for (name, text) in [(FLOOR, floor), (LAYOUT, layout)] {

@@ -50,6 +50,7 @@ pub struct SessionBuilder {
     wake: Option<Box<dyn FnMut() + Send>>,
     every_change: bool,
     realtime: bool,
+    noiseless: bool,
     stop: Arc<AtomicBool>,
     #[cfg(feature = "threads")]
     sensing_threads: NonZeroUsize,
@@ -117,6 +118,7 @@ impl SessionBuilder {
             wake: None,
             every_change: false,
             realtime: false,
+            noiseless: false,
             stop: Arc::default(),
             #[cfg(feature = "threads")]
             sensing_threads: NonZeroUsize::MIN,
@@ -251,6 +253,17 @@ impl SessionBuilder {
         self
     }
 
+    /// Says that the source's readings have no noise of their own, as those that an app makes: that they repeat says
+    /// nothing then, and controls with the guard `HoldToRun` work all the same. The same as `noiseless` in the floor
+    /// file.
+    ///
+    /// Without it, readings that repeat under a foot end what it holds, and sensors that always do hold no such control.
+    #[must_use]
+    pub fn noiseless(mut self) -> Self {
+        self.noiseless = true;
+        self
+    }
+
     /// Asks the system to let the sensing thread go before others, as `underfoot run` does.
     #[must_use]
     pub fn realtime(mut self) -> Self {
@@ -283,6 +296,7 @@ impl SessionBuilder {
     pub fn start(mut self) -> Result<Session, StartError> {
         let given = self.layout.take().filter(|(_, geometry)| *geometry == self.floor.geometry);
         let (layout, _) = given.ok_or(StartError::NoLayout)?;
+        self.floor.noiseless |= self.noiseless;
         let (source, clock, floor) = self.feed.open(self.floor, &self.prefix)?;
         let (local_addr, geometry) = (source.local_addr(), floor.geometry);
         #[cfg(feature = "record")]

@@ -199,6 +199,7 @@ pub(crate) fn step_on(snapshot: &mut Snapshot, id: u32, at: Vec2, force: f32, ve
         tiles: smallvec![load],
         covariance: Covariance::isotropic(0.003),
         ambiguous: false,
+        split: false,
         quality: Quality::Live,
         difference: None,
     });

@@ -19,7 +19,7 @@ use crate::floor::{
     ADDRESS, Corner, DAY, Day, Drive, Floor, FloorFile, Geometry, Loudspeaker, NETWORK, Network,
 };
 use crate::format::codec::{Distinct, Text};
-use crate::format::{Flat, Opt, Rec, Record, list, record};
+use crate::format::{Flag, Flat, Opt, Rec, Record, list, record};
 
 /// The floor that the file at `path` describes.
 ///
@@ -77,6 +77,9 @@ record! {
     pub(super) boards: Option<Vec<BoardRecord>> = "boards", Opt(BOARDS) => None;
     /// Networks that the boards' packets come from; this machine alone if there are none.
     pub(super) allow: Vec<Network> = "allow", list("network", MAX_NETWORKS, NETWORK) => Vec::new();
+    /// Whether the readings have no noise of their own, as those of an app or of a simulation without noise: that they
+    /// repeat says nothing then, and `HoldToRun` works all the same.
+    pub(super) noiseless: bool = "noiseless", Flag => false;
     /// When the floor was tared.
     pub(super) tared: Option<Day> = "tared", Opt(DAY) => None;
     /// What is known of sensors; those that are not listed are nominal.
@@ -168,6 +171,7 @@ impl FloorRecord {
         }
         floor.gateway = self.gateway;
         floor.key.clone_from(&self.key);
+        floor.noiseless = self.noiseless;
         floor.tared = self.tared;
         floor.allow.clone_from(&self.allow);
         floor.drive = self.drive;
@@ -192,6 +196,7 @@ impl FloorRecord {
             key: floor.key.clone(),
             boards,
             allow: floor.allow.clone(),
+            noiseless: floor.noiseless,
             tared: floor.tared,
             sensors: SensorRecord::all(floor),
             maps: MapEntry::all(floor),

@@ -6,7 +6,7 @@ use crate::format::Record;
 use crate::format::text::Text;
 
 /// What is said above a field, and in place of one that is not written.
-const COMMENTS: [(&str, &[&str], Option<&str>); 11] = [
+const COMMENTS: [(&str, &[&str], Option<&str>); 12] = [
     ("areas", &["The parts of the floor that a computer of its own serves."], None),
     ("gateway", &["Where the computer that joins them listens."], None),
     (
@@ -15,6 +15,7 @@ const COMMENTS: [(&str, &[&str], Option<&str>); 11] = [
         Some("Each row of tiles has its own boards, up to eight tiles a board."),
     ),
     ("allow", &["Where the boards' packets come from."], None),
+    ("noiseless", &["The readings have no noise of their own: that they repeat says nothing."], None),
     ("tared", &[], None),
     (
         "sensors",

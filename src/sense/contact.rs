@@ -89,6 +89,9 @@ pub struct Contact {
     /// Whether it shares its tiles with another contact in a way the forces cannot
     /// tell apart: the sum of the two is sure, each one's part is a guess.
     pub ambiguous: bool,
+    /// Whether it was taken out of what another contact carried, and has carried no tile by itself since: it may not be a
+    /// foot. It is `ambiguous` as well, and works no control that has a guard.
+    pub split: bool,
     /// The worst quality among the tiles that carry it; never worse than
     /// [`Quality::Degraded`], since tiles of which less is known carry no contact.
     pub quality: Quality,

@@ -2,7 +2,7 @@
 
 use glam::Vec2;
 
-use super::{CalibrationFault, Quality};
+use super::{CalibrationFault, HoldDoubt, Quality};
 use crate::floor::{Corner, Geometry};
 use crate::units::{Instant, Newtons};
 
@@ -24,6 +24,8 @@ pub struct ForceFrame {
     /// the end of its range, where the force is "at least", or with one that reads a load to
     /// which the rest of its plate does not answer. Keeping and ending one is always allowed.
     pub may_start: Vec<bool>,
+    /// Per tile, why its readings may not hold a control with the guard `HoldToRun`; `None` where they may.
+    pub hold_doubts: Vec<Option<HoldDoubt>>,
     /// Why the newtons may be wrong all over the floor; `None` where they come from this floor's calibration.
     /// With a fault, controls with the guard `HoldToRun` are off.
     pub calibration_fault: Option<CalibrationFault>,
@@ -40,6 +42,7 @@ impl ForceFrame {
             forces: vec![[0.0; 4]; tiles],
             quality: vec![[Quality::Live; 4]; tiles],
             may_start: vec![true; tiles],
+            hold_doubts: vec![None; tiles],
             calibration_fault: None,
         }
     }

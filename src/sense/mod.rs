@@ -27,6 +27,7 @@ mod eq4;
 mod force_table;
 mod frame;
 mod health;
+mod hold_doubt;
 #[cfg(any(feature = "internals", test))]
 mod law_choice;
 #[cfg(any(feature = "internals", test))]
@@ -54,6 +55,7 @@ pub use cursor::Cursor;
 pub use force_table::ForceTable;
 pub use frame::ForceFrame;
 pub use health::{SensorHealth, Trouble};
+pub use hold_doubt::HoldDoubt;
 #[cfg(any(feature = "internals", test))]
 pub use law_choice::{Candidate, Comparison};
 #[cfg(any(feature = "internals", test))]

@@ -40,6 +40,7 @@ impl ContactPool {
         contact.tiles.clear();
         contact.covariance = Covariance::default();
         contact.ambiguous = false;
+        contact.split = false;
         contact.quality = Quality::Live;
         contact.difference = None;
         contact

@@ -283,6 +283,12 @@ impl SimFloor {
         }
     }
 
+    /// Whether its readings have no noise of their own, so that they repeat under a load that keeps still.
+    #[must_use]
+    pub fn is_noiseless(&self) -> bool {
+        self.noise_v() == 0.0
+    }
+
     /// How this floor senses.
     #[must_use]
     pub const fn sensing(&self) -> Sensing {

@@ -45,13 +45,14 @@ pub struct CalibrationError {
 /// a load cell that is wrong by 0.5 %, and the law fitted; then the empty floor
 /// is read for the tare. The same `seed` gives the same calibration; faults are
 /// not on the bench. A floor whose boards send newtons needs no calibration
-/// and comes back with its tare zero.
+/// and comes back with its tare zero. A floor without noise comes back as [`Floor::noiseless`].
 ///
 /// # Errors
 /// [`CalibrationError`] names the first sensor that no law fits.
 pub fn calibrated(floor: &Floor, sim: &SimFloor, seed: u64) -> Result<Floor, CalibrationError> {
     let mut floor = floor.clone();
     floor.tare.fill([Newtons::ZERO; 4]);
+    floor.noiseless |= sim.is_noiseless();
     if !matches!(sim.readings().first(), Some(Readings::Counts(_))) {
         return Ok(floor);
     }
@@ -199,7 +200,7 @@ mod tests {
     fn boards_that_send_newtons_need_none() {
         let floor = Floor::default();
         let sim = SimFloor::new(&floor, SimConfig::ideal(), 3);
-        assert_eq!(calibrated(&floor, &sim, 5), Ok(floor));
+        assert_eq!(calibrated(&floor, &sim, 5), Ok(Floor { noiseless: true, ..floor }));
     }
 
     #[test]

@@ -30,6 +30,8 @@ pub struct LinkCounters {
     pub restarts: u64,
     /// Times a board's readings stood still for 100 ms, all of them and under a load, while its packets went on.
     pub frozen: u64,
+    /// Times two or more sensors of a tile repeated what they had read, for 100 ms and under a load.
+    pub repeats: u64,
     /// Times the load of a tile changed faster than a body changes it.
     pub jumps: u64,
     /// Samples left out or repeated because a board's crystal runs faster or slower than the others'.
@@ -82,6 +84,7 @@ impl Add for LinkCounters {
             out_of_order: self.out_of_order + other.out_of_order,
             restarts: self.restarts + other.restarts,
             frozen: self.frozen + other.frozen,
+            repeats: self.repeats + other.repeats,
             jumps: self.jumps + other.jumps,
             slips: self.slips + other.slips,
             malformed: self.malformed + other.malformed,

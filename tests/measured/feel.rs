@@ -85,6 +85,8 @@ fn cue(n: u64, at: Instant) -> Cue {
         }),
         manner: Manner { duck_db: 6.0, ..Manner::PLAIN },
         audio_gain: 0.5,
+        // Every third is heard from a place of its own, as what cracks underfoot.
+        heard_at: n.is_multiple_of(3).then(|| Vec2::new((n % 18) as f32 * 0.1, 0.9)),
     }
 }
 

@@ -17,6 +17,7 @@ mod clients;
 mod console;
 #[cfg(all(feature = "preview", target_os = "linux"))]
 mod desktop;
+mod earlier_files;
 mod end_to_end;
 mod faults;
 mod holds;

@@ -134,7 +134,7 @@ impl FootHistory {
             stepped: person.steps_to(place, now),
             has_support: false,
             in_stance: false,
-            ambiguous: contact.ambiguous.then_some(now),
+            ambiguous: may_be_two(contact).then_some(now),
             step: false,
             watch: StepWatch::default(),
             still: Stillness::new(force, place, now),
@@ -179,7 +179,7 @@ impl FootHistory {
 
     pub(super) fn update(&mut self, contact: &Contact, now: Instant) {
         (self.place, self.force) = (contact.centroid, contact.force.0);
-        if contact.ambiguous {
+        if may_be_two(contact) {
             self.ambiguous = Some(now);
         }
         self.still.update(self.force, self.place, now);
@@ -345,4 +345,8 @@ impl FootHistory {
             FootRole::Free
         }
     }
+}
+/// Whether `contact` may be two feet. One that was split from another may be none.
+fn may_be_two(contact: &Contact) -> bool {
+    contact.ambiguous && !contact.split
 }

@@ -1,18 +1,24 @@
 //! How far the forces of a contact are to be believed.
 
-use crate::sense::{Contact, ForceFrame, Quality, TileLoad};
+use crate::sense::{Contact, ForceFrame, HoldDoubt, Quality, TileLoad};
 use crate::units::Newtons;
 use crate::widget::{Guard, Thresholds};
+
+/// Whether a control with this `guard` takes `contact` for something else than a foot, whatever its sensors say.
+fn is_doubtful_foot(contact: &Contact, guard: Guard) -> bool {
+    contact.split && guard != Guard::Free
+}
 
 /// How much of the force of `contact` would be left if a sensor erred that is suspected to.
 ///
 /// `Degraded` tiles count: one with a dead sensor, whose force the other three tell, and one that loses packets. A tile
 /// with a saturated sensor, or one that reads what its plate does not bear, is suspected; see
-/// [`ForceFrame::may_start`]. A shoe that laps over onto a tile, or a foot over the meeting of tiles, presses there at
+/// [`ForceFrame::may_start`]. Of what runs while it is held, so is one whose readings may not hold it; see
+/// [`ForceFrame::hold_doubts`]. A shoe that laps over onto a tile, or a foot over the meeting of tiles, presses there at
 /// one sensor alone, as an erring sensor reads: one of these tiles is taken for wrong, and all of them where what runs
 /// while it is held depends on it.
 fn certain_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons {
-    let forces = suspected(contact, frame).map(|load| load.force.0);
+    let forces = suspected(contact, guard, frame).map(|load| load.force.0);
     let wrong: f32 = match guard {
         Guard::HoldToRun { .. } => forces.sum(),
         Guard::Free | Guard::Confirm { .. } => forces.fold(0.0, f32::max),
@@ -21,18 +27,30 @@ fn certain_force(contact: &Contact, guard: Guard, frame: &ForceFrame) -> Newtons
 }
 
 /// The tiles under `contact` at which a sensor is suspected.
-fn suspected<'a>(contact: &'a Contact, frame: &'a ForceFrame) -> impl Iterator<Item = &'a TileLoad> {
-    contact.tiles.iter().filter(|load| frame.may_start.get(load.index) != Some(&true))
+fn suspected<'a>(
+    contact: &'a Contact,
+    guard: Guard,
+    frame: &'a ForceFrame,
+) -> impl Iterator<Item = &'a TileLoad> {
+    let runs = matches!(guard, Guard::HoldToRun { .. });
+    let may_hold = move |index: usize| !runs || frame.hold_doubts.get(index).is_none_or(Option::is_none);
+    let may_start = |index: usize| frame.may_start.get(index) == Some(&true);
+    contact.tiles.iter().filter(move |load| !may_start(load.index) || !may_hold(load.index))
 }
 
-/// Whether no sensor under `contact` is suspected.
-pub(super) fn is_certain(contact: &Contact, frame: &ForceFrame) -> bool {
-    suspected(contact, frame).next().is_none()
+/// Whether `contact` is a foot, and no sensor under it is suspected.
+pub(super) fn is_certain(contact: &Contact, guard: Guard, frame: &ForceFrame) -> bool {
+    !is_doubtful_foot(contact, guard) && suspected(contact, guard, frame).next().is_none()
+}
+
+/// Whether the noise of the sensors under `contact` is all that is not known of them: it soon will be.
+pub(super) fn is_unlearned(contact: &Contact, frame: &ForceFrame) -> bool {
+    contact.tiles.iter().any(|load| frame.hold_doubts.get(load.index) == Some(&Some(HoldDoubt::Unlearned)))
 }
 
 /// Whether `contact` is a foot whatever a suspected sensor reads: most of its force would be left without it.
 pub(super) fn is_believed(contact: &Contact, guard: Guard, frame: &ForceFrame) -> bool {
-    certain_force(contact, guard, frame) * 2.0 >= contact.force
+    !is_doubtful_foot(contact, guard) && certain_force(contact, guard, frame) * 2.0 >= contact.force
 }
 
 /// Whether a foot of this force may press: without a suspected sensor it would still keep the control pressed, and

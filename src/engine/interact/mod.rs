@@ -8,7 +8,7 @@ use std::time::Duration;
 
 use glam::Vec2;
 
-use self::belief::{certainly_presses, is_believed, is_certain, is_sensed};
+use self::belief::{certainly_presses, is_believed, is_certain, is_sensed, is_unlearned};
 use self::off::of_calibration;
 use self::unanswered::switched_off;
 use super::feet::{AS_GOOD_AS_LIFTED_N, FootHistories, FootHistory, PressMode};
@@ -51,8 +51,6 @@ pub(super) struct Interaction {
     ignored: IgnoredPresses,
     /// Whether a control of the region that is being stepped acts while it is held.
     running: bool,
-    /// Why controls that act while they are held are off on the whole floor; `None` if they are not.
-    inhibited: Option<OffReason>,
 }
 
 /// What happens in one frame.
@@ -100,7 +98,6 @@ impl Interaction {
             rises: Rises::default(),
             ignored: IgnoredPresses::default(),
             running: false,
-            inhibited: None,
         }
     }
 
@@ -341,7 +338,9 @@ impl Interaction {
         // A foot whose force could not be believed when it pressed is not believed once it lightens.
         let presses = contact.force >= thresholds.press;
         let believed = is_believed(contact, thresholds.guard, at.frame);
-        let unbelieved = presses && !believed;
+        // Noise that is not known yet soon will be: the foot may stay.
+        let waits = matches!(thresholds.guard, Guard::HoldToRun { .. }) && is_unlearned(contact, at.frame);
+        let unbelieved = presses && !believed && !waits;
         let (input, why) =
             if let Some(foot) = foot.filter(|foot| foot.is_step_on(mode, now) || foot.is_object()) {
                 let why = if foot.is_object() { Ignored::Object } else { Ignored::Step };
@@ -355,7 +354,7 @@ impl Interaction {
                 let enough = !presses || certainly_presses(contact, &thresholds, at.frame);
                 let why = [
                     (control.needs_lift(), Ignored::NotSeenUnloaded),
-                    (!risen || !enough, Ignored::Unbelieved),
+                    (!risen || !enough || waits, Ignored::Unbelieved),
                     (!meant, Ignored::Guard),
                     (rivals, Ignored::Off(OffReason::OtherHeld)),
                 ];
@@ -417,7 +416,7 @@ impl Interaction {
                     let acts = matches!(mode, PressMode::Follow | PressMode::Stand)
                         || matches!(guard, Guard::HoldToRun { .. });
                     let believed = if acts {
-                        is_certain(contact, at.frame)
+                        is_certain(contact, guard, at.frame)
                     } else {
                         is_believed(contact, guard, at.frame)
                     };
@@ -461,15 +460,16 @@ impl Interaction {
         self.awake = awake;
     }
 
-    /// Switches controls that act while they are held off on a floor whose newtons may be wrong.
+    /// Switches controls that act while they are held off on a floor whose newtons may be wrong, and where the readings
+    /// under them may not hold them.
     fn inhibit(&mut self, at: &Moment<'_>, events: &mut Vec<WidgetEvent>) {
-        let inhibited = at.frame.calibration_fault.map(of_calibration);
-        if std::mem::replace(&mut self.inhibited, inhibited) == inhibited {
-            return;
-        }
+        let fault = at.frame.calibration_fault.map(of_calibration);
         for widget in (0..self.controls.len()).filter(|&widget| holds_to_run(at.layout, widget)) {
-            let switch = |control: &mut Control| control.set_inhibited(inhibited);
-            self.change(widget, switch, at.layout, at.now(), events);
+            let inhibited = fault.or_else(|| self.of_readings(widget, at.frame));
+            if self.controls.get(widget).is_some_and(|control| control.inhibited() != inhibited) {
+                let switch = |control: &mut Control| control.set_inhibited(inhibited);
+                self.change(widget, switch, at.layout, at.now(), events);
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 use super::belief::is_sensed;
 use super::{Interaction, holds_to_run};
 use crate::layout::Layout;
-use crate::sense::{CalibrationFault, ForceFrame, Quality};
+use crate::sense::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
 use crate::widget::OffReason;
 
 impl Interaction {
@@ -29,6 +29,9 @@ impl Interaction {
         if runs && self.is_suspected(widget, frame) {
             return Some(OffReason::SensorTrouble);
         }
+        if let Some(doubt) = self.of_readings(widget, frame).filter(|_| runs) {
+            return Some(doubt);
+        }
         let is_held = self.held().any(|held| held.widget == widget);
         (!is_held && self.runs_elsewhere(widget, layout)).then_some(OffReason::OtherHeld)
     }
@@ -40,8 +43,24 @@ impl Interaction {
         match (worst, frame.calibration_fault) {
             (Some(Quality::Faulty), Some(CalibrationFault::BoardsSwapped)) => OffReason::BoardsSwapped,
             (Some(Quality::Faulty), _) => OffReason::SensorTrouble,
+            _ if self.of_readings(widget, frame) == Some(OffReason::RepeatedReadings) => {
+                OffReason::RepeatedReadings
+            }
             _ => OffReason::LinkLost,
         }
+    }
+
+    /// Why the readings of some tile under `widget` may not hold it. That their noise is not known yet keeps a foot
+    /// waiting, and switches nothing off.
+    pub(super) fn of_readings(&self, widget: usize, frame: &ForceFrame) -> Option<OffReason> {
+        let doubts = self.tiles_under(widget).filter_map(|tile| *frame.hold_doubts.get(tile)?);
+        let reasons = doubts.filter_map(|doubt| match doubt {
+            HoldDoubt::Unlearned => None,
+            HoldDoubt::Repeats => Some(OffReason::RepeatedReadings),
+            HoldDoubt::Coarse => Some(OffReason::CoarseReadings),
+        });
+        // Readings that repeat are found before coarse ones are.
+        reasons.min_by_key(|reason| *reason == OffReason::CoarseReadings)
     }
 
     /// Whether a sensor is suspected on every tile under a control that acts while it is held: no force there starts it.

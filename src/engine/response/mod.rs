@@ -173,7 +173,7 @@ impl Responses {
     }
 
     /// Appends the cues of ground events: felt on the tiles under the contact that did it, by its
-    /// weights, or on the tile alone where the contact is not known any more.
+    /// weights, or on the tile alone where the contact is not known any more; heard from where they happened.
     pub(super) fn give_way(&self, broken: &[GroundEvent], now: Now<'_>, cues: &mut Vec<Cue>) {
         for event in broken {
             let here = event.contact.and_then(|id| now.contact(id)).map(spots);
@@ -182,7 +182,10 @@ impl Responses {
                 Spots::from_iter([Spot { tile, weight: 1.0 }])
             });
             let (at, received, click) = (event.at, now.received, event.click.clone());
-            cues.push(Cue { at, received, spots, click, ..Cue::default() });
+            let ground = now.layout.grounds.get(event.ground);
+            let audio_gain = ground.map_or(0.0, |ground| ground.spec.material.sound());
+            let heard_at = Some(event.place);
+            cues.push(Cue { at, received, spots, click, audio_gain, heard_at, ..Cue::default() });
         }
     }
 

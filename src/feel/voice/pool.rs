@@ -87,7 +87,7 @@ impl Voices {
             started.unfelt += self.voices[number].follow(
                 sustained_cue,
                 wiring,
-                &air.pan(&sustained_cue.spots, sustained_cue.audio_gain),
+                &air.pan(&sustained_cue.spots, sustained_cue.audio_gain, None),
             );
         }
         started
@@ -101,7 +101,7 @@ impl Voices {
         wiring: &Wiring,
         air: &Loudspeakers,
     ) -> Started {
-        let heard = air.pan(&cue.spots, cue.audio_gain);
+        let heard = air.pan(&cue.spots, cue.audio_gain, cue.heard_at);
         let (voice, unfelt) = Voice::sounding(tone, cue.manner, &cue.spots, wiring, &heard);
         let mut started = Started { unfelt, stolen: 0 };
         if let Some(number) = self.claim(Model::Hiss, cue.manner, tone.level.0, &mut started) {

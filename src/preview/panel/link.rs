@@ -105,7 +105,7 @@ fn details(ui: &mut Ui, theme: &Theme, counters: &LinkCounters) {
 }
 
 /// Name, count, and whether anything but zero is a fault.
-fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 21] {
+fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 22] {
     [
         ("datagrams", counters.datagrams, false),
         ("sensor packets", counters.packets, false),
@@ -127,6 +127,7 @@ fn lines(counters: &LinkCounters) -> [(&'static str, u64, bool); 21] {
         ("dropped by the system", counters.overflowed, true),
         ("sensors found in trouble", counters.sensor_troubles, true),
         ("boards that stood still", counters.frozen, true),
+        ("tiles that repeated readings", counters.repeats, true),
         ("loads that jumped", counters.jumps, true),
     ]
 }

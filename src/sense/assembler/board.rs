@@ -129,11 +129,11 @@ impl BoardTrack {
 
     /// Keeps `readings` until the frame of `buffer`'s slot is made; true if they are news.
     ///
-    /// They are not if they are, count for count, those of the packet before, although something rests on the
-    /// board: a converter that works is noisy, and a foot never keeps still to a count.
+    /// They are not if they are, bit for bit, those of the packet before, although something rests on the board: a
+    /// converter that works is noisy, and a foot never keeps still to a count.
     ///
-    /// Nothing is said of an empty board, whose coarse converters may well rest, of sensors at the
-    /// end of their range, nor of boards that send newtons, which may have smoothed them.
+    /// That holds only where a sensor under load has shown so much noise that a repetition is improbable. An empty board
+    /// may repeat itself.
     pub(super) fn store(
         &mut self,
         buffer: usize,
@@ -159,11 +159,12 @@ impl BoardTrack {
         self.repeats
     }
 
+    /// Whether a sensor whose noise is known carries something.
     fn bears_load(&self, sample: &Sample, health: &Health) -> bool {
-        let zero = |tile, corner| health.zero(tile, corner);
+        let zero = |tile, corner| health.tells(tile, corner).then(|| health.zero(tile, corner));
         let wide = self.wide.iter().flat_map(|window| window.net(sample, zero));
         let mut all = wide.chain(self.narrow.iter().flat_map(|window| window.net(sample, zero)));
-        matches!(sample, Sample::Counts(_)) && all.any(|force| force > LOUD_N)
+        all.any(|force| force > LOUD_N)
     }
 
     /// Forgets what waits in `buffer`; true if there was something.

@@ -25,7 +25,7 @@ use self::clock::{SLOT_NS, SampleClock, nanos};
 use self::presence::SILENT_NS;
 use self::swap::Swaps;
 use super::health::{Health, SensorHealth, Trouble};
-use super::{CalibrationFault, ForceFrame, Quality};
+use super::{CalibrationFault, ForceFrame, HoldDoubt, Quality};
 use crate::floor::{Floor, SensorId, TileId};
 use crate::units::{Instant, Newtons};
 use crate::wire::{LinkCounters, LinkState, SensorPacket};
@@ -84,9 +84,10 @@ const FAST_NS: i64 = 20 * SLOT_NS;
 /// 20 ms on its way, is dropped and counted.
 ///
 /// **Trust.** A board without a usable sample for 100 ms becomes
-/// [`Quality::Stale`], and so does one that rebooted, for at least one frame. Counts that
-/// repeat those of the packet before, all of them and under a load, are not usable: the
-/// converters stand still ([`BoardStatus::frozen`]).
+/// [`Quality::Stale`], and so does one that rebooted, for at least one frame. Readings that
+/// repeat those of the packet before, all of them and under a load, are not usable where the sensors'
+/// noise makes that improbable: the converters stand still ([`BoardStatus::frozen`]). The sensors of a tile become
+/// [`Quality::Stale`] as well if two of them do so by themselves ([`Assembler::repeating`]).
 /// It returns with its next sample, but only after a clean second if outages
 /// follow each other within two seconds. More than 10 % of lost packets within
 /// a second, or a sensor at 98 % of its range, or one that sends counts and was never
@@ -181,6 +182,9 @@ impl Assembler {
             (0..floor.boards.len()).map(|number| BoardTrack::new(floor, number, tare)).collect();
         let mut frame = ForceFrame::empty(&floor.geometry);
         frame.quality.fill([Quality::Stale; 4]);
+        if !floor.noiseless {
+            frame.hold_doubts.fill(Some(HoldDoubt::Unlearned));
+        }
         Self {
             floor_tiles: floor.geometry.tile_count(),
             delays: Vec::with_capacity(boards.len()),
@@ -394,7 +398,12 @@ impl Assembler {
     /// What came in and what was dropped; datagrams and refusals are counted by the source.
     #[must_use]
     pub fn counters(&self) -> LinkCounters {
-        LinkCounters { sensor_troubles: self.health.found(), jumps: self.jumps().0, ..self.counters }
+        LinkCounters {
+            sensor_troubles: self.health.found(),
+            jumps: self.jumps().0,
+            repeats: self.repeating().0,
+            ..self.counters
+        }
     }
 
     /// How often the load of a tile changed faster than a body changes it (by 300 N in a millisecond), and the
@@ -402,6 +411,13 @@ impl Assembler {
     #[must_use]
     pub fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
         self.health.jumps()
+    }
+
+    /// How often two or more sensors of a tile have repeated, for 100 ms and under a load, what they had read before,
+    /// although their noise makes that improbable; and the tiles whose sensors do so now or did in the last 100 ms. These
+    /// are [`Quality::Stale`].
+    pub fn repeating(&self) -> (u64, impl Iterator<Item = TileId> + '_) {
+        self.health.repeating()
     }
 
     /// Moves time on and notices silence, at most once a millisecond.

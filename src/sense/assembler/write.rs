@@ -67,7 +67,7 @@ impl<const LANES: usize> Window<LANES> {
         }
         let is_nominal = self.is_nominal(0) & !read.by_board;
         let own = if is_nominal | trust.is_foreign { Quality::Degraded } else { Quality::Live };
-        (*into.forces, *into.ends) = (forces, read.ends);
+        (*into.forces, *into.ends, *into.raws) = (forces, read.ends, read.raws);
         *into.quality = [own.max(trust.quality); LANES];
         *into.news = [true; LANES];
         if is_nominal {
@@ -96,6 +96,10 @@ impl<const LANES: usize> Window<LANES> {
         // One loop for each list: what does much at once becomes no vector instructions.
         for lane in 0..LANES {
             ends[lane] = if is_used[lane] { read.ends[lane] } else { ends[lane] };
+        }
+        let mut raws = *into.raws;
+        for lane in 0..LANES {
+            raws[lane] = if is_used[lane] { read.raws[lane] } else { raws[lane] };
         }
         let mut is_high = [false; LANES];
         for lane in 0..LANES {
@@ -129,7 +133,7 @@ impl<const LANES: usize> Window<LANES> {
             found.is_used |= is_used[lane];
             found.is_any_loud |= loud[lane];
         }
-        (*into.forces, *into.quality, *into.ends) = (forces, quality, ends);
+        (*into.forces, *into.quality, *into.ends, *into.raws) = (forces, quality, ends, raws);
         (*into.guessed, *into.news) = (guessed, news);
         found
     }

@@ -10,6 +10,8 @@ pub(in crate::sense) struct Lanes<'a, const LANES: usize> {
     pub forces: &'a mut [f32; LANES],
     pub quality: &'a mut [Quality; LANES],
     pub ends: &'a mut [End; LANES],
+    /// The readings as the boards sent them.
+    pub raws: &'a mut [u16; LANES],
     /// Whether each goes by the nominal law.
     pub guessed: &'a mut [bool; LANES],
     /// Whether each has been read for the frame in the making.
@@ -29,6 +31,7 @@ impl Health {
             forces: frame.forces.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             quality: frame.quality.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             ends: self.ends.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
+            raws: self.raws.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             guessed: self.guessed.as_flattened_mut().get_mut(first..)?.first_chunk_mut()?,
             news: self.jumps.news().get_mut(first..)?.first_chunk_mut()?,
         })

@@ -69,6 +69,11 @@ impl Jumps {
         self.news.as_flattened_mut()
     }
 
+    /// Which sensors have been read for the frame in the making, tile by tile.
+    pub(super) fn read(&self) -> &[[bool; 4]] {
+        &self.news
+    }
+
     /// Takes from tiles whose load has jumped, for a while, whatever quality they had.
     ///
     /// Sensors known to be out do not count: a short is found by its plate, which goes on with the other three.

@@ -8,7 +8,7 @@
 //!
 //! [`plate`] knows what a rigid plate allows, [`averages`] are those of each tile over
 //! 64 ms, in which [`slow`] looks for what takes seconds, [`drift`] follows the zero, [`creep`] what
-//! lingers of a load, [`jump`] what no body does. What must be known before a control could be pressed is decided here,
+//! lingers of a load, [`jump`] finds what no body does, [`repeats`] what no converter does that works. What must be known before a control could be pressed is decided here,
 //! in the same frame.
 
 mod averages;
@@ -17,6 +17,7 @@ mod drift;
 mod intake;
 mod jump;
 mod plate;
+mod repeats;
 mod report;
 mod slow;
 mod trouble;
@@ -35,6 +36,7 @@ use self::averages::{Averages, SHARES};
 use self::creep::{Creep, Memory, Parts};
 use self::jump::Jumps;
 use self::plate::Twist;
+use self::repeats::{Heard, Repeats};
 use self::slow::{GAP_S, Slow};
 use self::trouble::Sensor;
 
@@ -97,6 +99,8 @@ pub(super) struct Health {
     /// How far each may be followed: 20 % of the sensor's range.
     limits: Vec<[f32; 4]>,
     ends: Vec<[End; 4]>,
+    /// What each has read as its board sent it, 0 for nothing; of newtons a digest of their bits.
+    raws: Vec<[u16; 4]>,
     /// Sensors that go by the nominal law: what a plate allows cannot be held against forces that may be off by a
     /// third.
     guessed: Vec<[bool; 4]>,
@@ -129,6 +133,7 @@ pub(super) struct Health {
     by_boards: bool,
     is_foreign: bool,
     jumps: Jumps,
+    repeats: Repeats,
 }
 
 /// How much a sensor may read at first, in newtons, on a floor that is the file's: far more than zeros drift in a day.
@@ -160,6 +165,7 @@ impl Health {
             visited: [None; SHARES],
             limits: (0..tiles).map(limits).collect(),
             ends: vec![[End::Within; 4]; tiles],
+            raws: vec![[0; 4]; tiles],
             guessed: vec![[false; 4]; tiles],
             sensors: vec![[Sensor::default(); 4]; tiles],
             averages: Averages::new(tiles),
@@ -181,6 +187,7 @@ impl Health {
             by_boards: false,
             is_foreign: false,
             jumps: Jumps::new(tiles),
+            repeats: Repeats::new(tiles, floor.noiseless),
         }
     }
 
@@ -211,8 +218,20 @@ impl Health {
         }
         self.loud = loud;
         self.watched = std::mem::replace(&mut self.spare, watched);
+        self.look_for_repeats(frame, sampled);
         self.visit_share(frame, sampled);
         self.jumps.mark(frame, &self.sensors, sampled);
+    }
+
+    /// Finds the plates whose readings repeat, and learns what the noise of every [`SHARES`]th part of the floor leaves
+    /// to chance.
+    fn look_for_repeats(&mut self, frame: &mut ForceFrame, sampled: Instant) {
+        let share = self.number as usize % SHARES;
+        let tiles = self.shares[share]..self.shares[share + 1];
+        let Self { repeats, raws, ends, sensors, jumps, .. } = self;
+        let heard = Heard { raws, ends, news: jumps.read(), sensors };
+        repeats.compare(frame, heard, sampled);
+        repeats.visit(tiles, frame, heard, self.number / SHARES as u32);
     }
 
     /// Looks at one tile; true if it must be examined again in the next frame.
@@ -372,6 +391,16 @@ impl Health {
     pub(super) fn jumps(&self) -> (u64, Option<(TileId, f32)>) {
         let (count, last) = self.jumps.found();
         (count, last.map(|(tile, newtons)| (self.geometry.tile_at_index(tile), newtons)))
+    }
+
+    /// Whether a repetition of this sensor's readings shows that it stands still.
+    pub(super) fn tells(&self, tile: usize, corner: usize) -> bool {
+        self.repeats.tells(tile, corner)
+    }
+
+    /// How often the readings of a plate have repeated, and the plates whose do now.
+    pub(super) fn repeating(&self) -> (u64, impl Iterator<Item = TileId> + '_) {
+        (self.repeats.count(), self.repeats.repeating().map(|tile| self.geometry.tile_at_index(tile)))
     }
 
     /// Whether most tiles read what no empty tile of the file's floor should, at the start.

@@ -95,6 +95,28 @@ impl Tracker {
         self.tracks[successor].inherit(&left);
     }
 
+    /// Confirms tracks that were split from another one: those that carry a tile by themselves which no shoe reaches that
+    /// is where the other one is, and those whose other one is gone.
+    pub(super) fn confirm_split(&mut self, tiles: &LoadedTiles) {
+        for which in 0..self.tracks.len() {
+            let Some(from) = self.tracks[which].split_from else { continue };
+            let other = self.tracks.iter().position(|track| track.id == from);
+            if other.is_none_or(|other| self.is_apart(which, other, tiles.list())) {
+                self.tracks[which].split_from = None;
+            }
+        }
+    }
+
+    /// Whether track `which` presses a tile by itself that is out of reach of track `other`.
+    fn is_apart(&self, which: usize, other: usize, list: &[LoadedTile]) -> bool {
+        let (track, other) = (&self.tracks[which], &self.tracks[other]);
+        track.tiles.iter().any(|position| {
+            let centroid = list[*position as usize].centroid.as_dvec2();
+            let is_own = self.mates(track).all(|mate| !mate.tiles.contains(position));
+            is_own && !other.tiles.contains(position) && other.centre().distance(centroid) > OWN_M
+        })
+    }
+
     /// The other feet of its group.
     fn mates(&self, foot: &Track) -> impl Iterator<Item = &Track> {
         let id = foot.id;

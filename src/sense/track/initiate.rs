@@ -65,8 +65,9 @@ impl Tracker {
                 continue;
             }
             let stood = foot.anchored_s >= STANDS_S && foot.bears();
+            let from = foot.id;
             let touchdown = (stood || foot.is_slow()).then_some(Touchdown {
-                existing: foot.id,
+                existing: from,
                 from: if stood { foot.anchor } else { foot.rest_point },
             });
             let mut new_track = Track::new(
@@ -78,6 +79,7 @@ impl Tracker {
             new_track.covariance[FORCE][FORCE] = (0.3 * candidate.force + 5.0).powi(2);
             new_track.covariance[FORCE + 1][FORCE + 1] = 8000.0_f64.powi(2);
             new_track.touchdown = touchdown;
+            new_track.split_from = Some(from);
             new_track.reach(tiles, &self.cells);
             for &position in &candidate.tiles {
                 if !new_track.tiles.contains(&position) {

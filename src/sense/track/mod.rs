@@ -222,6 +222,7 @@ impl Tracker {
         self.delete_without_tiles();
         self.group(tiles.list().len());
         self.estimate(tiles, &elapsed);
+        self.confirm_split(tiles);
         self.delete_empty(tiles, dt);
         self.let_sleep(tiles, dt);
         self.learn(tiles, &elapsed);

@@ -56,6 +56,7 @@ impl Dormant {
         contact.force = Newtons((REPORTED * existing.force()) as f32);
         contact.velocity = Vec2::ZERO;
         contact.ambiguous = true;
+        contact.split = self.foot.split_from.is_some();
         contact.covariance = Covariance::isotropic(PLACE_M as f32);
         contact.tiles.extend(existing.tiles.iter().map(|&position| {
             let tile = &list[position as usize];
@@ -108,7 +109,8 @@ impl Track {
         // Of two feet of which one was taken to stand still, neither is where it is said to be if the loads do not
         // fit. That is told; the filter goes on by its own uncertainty.
         let strayed_m = if self.misfit > FITS { STRAYED_M * (self.misfit - FITS).sqrt().sqrt() } else { 0.0 };
-        contact.ambiguous = self.ambiguous;
+        contact.split = self.split_from.is_some();
+        contact.ambiguous = self.ambiguous || contact.split;
         let mut covariance = Covariance::default();
         if self.shared {
             contact.ambiguous |= self.inflated().sqrt().hypot(strayed_m) > AMBIGUOUS_M;

@@ -64,6 +64,8 @@ pub(super) struct Track {
     pub ambiguous: bool,
     /// Whether other feet share its tiles.
     pub shared: bool,
+    /// The track that it was split from, until it has carried a tile by itself: it may not be a foot.
+    pub split_from: Option<ContactId>,
     /// How its shape differs from the model patch, as last seen alone.
     pub residuals: SmallVec<[Residual; 8]>,
     /// The lowest and the highest column and row on which these say that it has borne something.
@@ -135,6 +137,7 @@ impl Track {
             beyond_filter: false,
             ambiguous: false,
             shared: false,
+            split_from: None,
             residuals: SmallVec::new(),
             borne: NOTHING_BORNE,
             nis: 0.0,

@@ -23,8 +23,9 @@ pub(super) struct LinkWatch {
     tare: TareOutcome,
     /// Sensors without calibration.
     uncalibrated: usize,
-    /// Boards that stood still, and changes of boards that are swapped.
+    /// Boards that stood still, tiles whose sensors repeated themselves, and changes of boards that are swapped.
     frozen: u64,
+    repeats: u64,
     swaps: u64,
     notices: Limited,
 }
@@ -37,6 +38,7 @@ impl Default for LinkWatch {
             tare: TareOutcome::FromFloor,
             uncalibrated: 0,
             frozen: 0,
+            repeats: 0,
             swaps: 0,
             notices: Limited::new(10, Duration::from_secs(10)),
         }
@@ -62,6 +64,7 @@ impl LinkWatch {
         now: Instant,
     ) -> Option<LinkState> {
         self.note_frozen(assembler);
+        self.note_repeats(assembler, now);
         self.note_swapped(assembler);
         self.note_tare(assembler);
         let state = self.settled(assembler.link_state(), now);
@@ -163,6 +166,26 @@ impl LinkWatch {
                  that works; what was held on its tiles is cancelled. Look at its converters and their clock"
             );
         }
+    }
+
+    /// Says which tiles' sensors read the same over and over under a load.
+    fn note_repeats(&mut self, assembler: &Assembler, now: Instant) {
+        let (count, tiles) = assembler.repeating();
+        if std::mem::replace(&mut self.repeats, count) == count {
+            return;
+        }
+        let tiles: Vec<String> = tiles.map(|tile| tile.to_string()).collect();
+        if tiles.is_empty() {
+            return;
+        }
+        self.notices.warn(now, || {
+            format!(
+                "tile {}: two or more sensors have repeated for 100 ms, under a load, what they had read before, which no \
+                 converter does that works; what was held there is cancelled. Look at the converter that they share. \
+                 Readings without noise of their own need `noiseless: true` in the floor file",
+                tiles.join(", ")
+            )
+        });
     }
 
     /// Logs once how many sensors count as nominal parts, and which file could say otherwise.

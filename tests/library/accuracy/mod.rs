@@ -1,6 +1,7 @@
 //! How well feet are found: seeded tables, and the bounds that underfoot promises.
 
 mod people;
+mod phantom;
 mod position_map;
 mod spot;
 mod taps;

@@ -13,6 +13,7 @@ mod loop_gain;
 mod lost;
 mod nemesis;
 mod people;
+mod repeating;
 mod replayed;
 mod scenes;
 mod suspect;

@@ -1,5 +1,6 @@
 //! Materials underfoot, through packets, assembler and engine.
 
+mod heard;
 mod laws;
 mod materials;
 mod walks;

@@ -45,6 +45,7 @@ fn foot(x: f32) -> Contact {
         tiles: [load].into_iter().collect(),
         covariance: Covariance::isotropic(0.003),
         ambiguous: false,
+        split: false,
         quality: Quality::Live,
         difference: None,
     }

@@ -8,6 +8,8 @@ pub mod site;
 use std::process::Command;
 use std::time::{Duration, Instant};
 
+use underfoot::wire::SensorFormat;
+
 use self::client::Client;
 use self::site::{BoardFault, Boards, Run, Site};
 
@@ -57,6 +59,27 @@ fn believed_for(
     (took, client)
 }
 
+/// How long a client believes that the pedal is held after sensors under it begin to stand still and the foot to leave.
+fn pedal_believed_for(site: &Site, fault: BoardFault) -> Duration {
+    let mut client = Client::new();
+    let run = site.run(&client, &[]);
+    let boards = Boards::start(site, run.address);
+    client.wait_until("both are held", |client| client.holds() == ["drive", "zoom"]);
+    let begun = Instant::now();
+    boards.suffer(fault);
+    client.wait_until("the pedal is let go", |client| !client.holds().contains(&"drive".to_owned()));
+    let took = begun.elapsed();
+    drop(boards);
+    run.end();
+    took
+}
+
+/// Faults in which sensors stand still and the foot leaves.
+const STANDING_STILL: [BoardFault; 3] =
+    [BoardFault::TwoCorners, BoardFault::FourCorners, BoardFault::AllButOneBit];
+
+const FORMATS: [SensorFormat; 3] = [SensorFormat::Counts, SensorFormat::Newtons, SensorFormat::Blob];
+
 /// As [`believed_for`], until it is soon; the last of the clients.
 fn soon(site: &Site, more: &[&str], then: Then, end: impl Fn(&Run, &Boards)) -> Client {
     let mut times = Vec::new();
@@ -99,6 +122,38 @@ fn a_panic_in_the_sensing_thread_cancels_what_is_held_and_fails() {
     client.expect_an_orderly_end("panic");
     let chatter = client.chatter.take().unwrap();
     assert!(chatter.iter().any(|line| line.contains("a part of the program failed")), "{chatter:?}");
+}
+
+/// Whatever the boards send, and whichever sensors stand still.
+#[test]
+fn sensors_that_stand_still_keep_no_pedal() {
+    for format in FORMATS {
+        let site = Site::sending(format);
+        for fault in STANDING_STILL {
+            let mut times = Vec::new();
+            while times.last().is_none_or(|took| *took > SOON) {
+                assert!(times.len() < TRIES, "{format:?}, {fault:?}: never within {SOON:?}: {times:?}");
+                times.push(pedal_believed_for(&site, fault));
+            }
+        }
+    }
+}
+
+/// `cargo nextest run --release --test program --run-ignored all twenty_rounds_of_sensors --no-capture`
+#[test]
+#[ignore = "a measurement of minutes; figures of a machine that is busy say nothing"]
+fn twenty_rounds_of_sensors_that_stand_still() {
+    let mut late = Vec::new();
+    for format in FORMATS {
+        let site = Site::sending(format);
+        for fault in [BoardFault::Frozen].into_iter().chain(STANDING_STILL) {
+            let mut times: Vec<Duration> = (0..20).map(|_| pedal_believed_for(&site, fault)).collect();
+            times.sort();
+            println!("{format:?}, {fault:?}: median {:?}, longest {:?}", times[10], times[19]);
+            late.extend((times[19] > SOON).then(|| format!("{format:?}, {fault:?}: {times:?}")));
+        }
+    }
+    assert!(late.is_empty(), "{late:#?}");
 }
 
 /// Twenty rounds of each end, the longest time of each: for an idle machine, in release form.

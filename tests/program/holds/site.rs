@@ -12,7 +12,7 @@ use std::time::{Duration, Instant as HostInstant};
 use underfoot::floor::Floor;
 use underfoot::glam::Vec2;
 use underfoot::schema::save_floor;
-use underfoot::sim::{self, Foot, SimFloor};
+use underfoot::sim::{self, Foot, PartConfig, Sensing, SimConfig, SimFloor};
 use underfoot::units::{Instant, Newtons};
 use underfoot::wire::{Readings, SensorEncoder, SensorFormat, SensorPacket};
 
@@ -41,17 +41,29 @@ pub struct Site {
     pub folder: tempfile::TempDir,
     pub floor: Floor,
     sim: SimFloor,
+    format: SensorFormat,
 }
 
 impl Site {
     pub fn new() -> Self {
+        Self::sending(SensorFormat::Counts)
+    }
+
+    /// As [`Site::new`], with boards that send this.
+    pub fn sending(format: SensorFormat) -> Self {
         let folder = tempfile::tempdir().unwrap();
         let wired = small_floor();
-        let sim = simulated(&wired);
+        let sim = match format {
+            SensorFormat::Newtons => {
+                let sensing = Sensing::Newtons(PartConfig::default());
+                SimFloor::new(&wired, SimConfig { sensing, ..SimConfig::default() }, 7)
+            }
+            SensorFormat::Counts | SensorFormat::Blob => simulated(&wired),
+        };
         let floor = sim::calibrated(&wired, &sim, 7).unwrap();
         save_floor(&floor, &folder.path().join("floor.ron")).unwrap();
         std::fs::write(folder.path().join("page.ron"), PAGE).unwrap();
-        Self { folder, floor, sim }
+        Self { folder, floor, sim, format }
     }
 
     /// Where its files are: `page.ron` and `floor.ron`.
@@ -123,6 +135,40 @@ pub enum BoardFault {
     Frozen,
     /// A row reads 60,000 counts from one millisecond to the next.
     Jumped,
+    /// Two corners of the plate under the pedal stand still, and the foot leaves.
+    TwoCorners,
+    /// All four do.
+    FourCorners,
+    /// The converters stand still but for one bit, which toggles, and the foot leaves.
+    AllButOneBit,
+}
+
+impl BoardFault {
+    /// Whether the foot on the pedal leaves meanwhile.
+    fn foot_leaves(self) -> bool {
+        matches!(self, Self::TwoCorners | Self::FourCorners | Self::AllButOneBit)
+    }
+
+    /// Whether this channel of the first board goes on with what it read when the fault struck.
+    fn holds(self, channel: usize) -> bool {
+        match self {
+            Self::TwoCorners => [0, 3].contains(&channel),
+            Self::FourCorners => channel < 4,
+            Self::AllButOneBit => true,
+            _ => false,
+        }
+    }
+
+    const ALL: [Self; 8] = [
+        Self::Well,
+        Self::Silent,
+        Self::OneSilent,
+        Self::Frozen,
+        Self::Jumped,
+        Self::TwoCorners,
+        Self::FourCorners,
+        Self::AllButOneBit,
+    ];
 }
 
 /// The boards: real datagrams, a millisecond's every millisecond, until dropped.
@@ -138,28 +184,37 @@ impl Boards {
     pub fn start(site: &Site, target: SocketAddr) -> Self {
         let fault = Arc::new(AtomicU8::new(BoardFault::Well as u8));
         let (floor, mut sim, suffered) = (site.floor.clone(), site.sim.clone(), Arc::clone(&fault));
+        let format = site.format;
         let thread = thread::spawn(move || {
-            let mut encoder = SensorEncoder::new(&floor, SensorFormat::Counts);
+            let mut encoder = SensorEncoder::new(&floor, format);
             let socket = any_port();
             let begun = HostInstant::now();
             let mut frozen: Option<Vec<Readings>> = None;
+            let mut left_at = None;
             for sequence in 0.. {
-                let fault = suffered.load(Ordering::Relaxed);
-                if fault == OVER {
+                let suffers = suffered.load(Ordering::Relaxed);
+                if suffers == OVER {
                     return;
                 }
-                let mut all: Vec<Readings> = sim.step(&feet(sequence)).to_vec();
-                if fault == BoardFault::Frozen as u8 {
+                let fault = BoardFault::ALL[usize::from(suffers)];
+                if fault.foot_leaves() {
+                    left_at.get_or_insert(sequence);
+                }
+                let mut all: Vec<Readings> = sim.step(&feet(sequence, left_at)).to_vec();
+                if fault == BoardFault::Frozen {
                     all.clone_from(frozen.get_or_insert(all.clone()));
-                } else if fault == BoardFault::Jumped as u8
+                } else if fault == BoardFault::Jumped
                     && let Some(Readings::Counts(counts)) = all.first_mut()
                 {
                     counts.fill(Some(60_000));
+                } else if fault.foot_leaves() {
+                    let before = frozen.get_or_insert(all.clone());
+                    hold_still(&mut all[0], &before[0], fault, sequence);
                 }
                 for (board, readings) in (0..).zip(all) {
                     let packet = SensorPacket { board, sequence, received: Instant::START, readings };
-                    let is_cut = fault == BoardFault::Silent as u8
-                        || (fault == BoardFault::OneSilent as u8 && board == 1);
+                    let is_cut =
+                        fault == BoardFault::Silent || (fault == BoardFault::OneSilent && board == 1);
                     if !is_cut {
                         // Whoever listened may be gone.
                         let _ = socket.send_to(encoder.encode(&packet).unwrap(), target);
@@ -186,10 +241,32 @@ impl Drop for Boards {
     }
 }
 
-/// One foot lands on the pedal, then one on the slider, which it drags to the right and stays there.
-fn feet(ms: u32) -> Vec<Foot> {
-    let on = |at: Vec2, since: u32, newtons: f32| {
-        let share = (ms.saturating_sub(since) as f32 / 60.0).min(1.0);
+/// Lets the channels that stand still read what they read `before`.
+fn hold_still(now: &mut Readings, before: &Readings, fault: BoardFault, sequence: u32) {
+    let toggles = |channel| fault == BoardFault::AllButOneBit && channel == 1;
+    match (now, before) {
+        (Readings::Counts(now), Readings::Counts(before)) => {
+            for channel in (0..now.len()).filter(|channel| fault.holds(*channel)) {
+                let bit = u16::from(toggles(channel)) & sequence as u16;
+                now[channel] = before[channel].map(|count| count ^ bit);
+            }
+        }
+        (Readings::Newtons(now), Readings::Newtons(before)) => {
+            for channel in (0..now.len()).filter(|channel| fault.holds(*channel)) {
+                let bit = u32::from(toggles(channel)) & sequence;
+                now[channel] = f32::from_bits(before[channel].to_bits() ^ bit);
+            }
+        }
+        _ => unreachable!("a board does not change what it sends"),
+    }
+}
+
+/// One foot lands on the pedal, then one on the slider, which it drags to the right and stays there. The first leaves
+/// at `left_at`.
+fn feet(ms: u32, left_at: Option<u32>) -> Vec<Foot> {
+    let on = |at: Vec2, since: u32, until: Option<u32>, newtons: f32| {
+        let left = until.map_or(1.0, |until| 1.0 - ms.saturating_sub(until) as f32 / 60.0);
+        let share = (ms.saturating_sub(since) as f32 / 60.0).min(left).clamp(0.0, 1.0);
         let mut foot = Foot {
             position: Vec2::ZERO,
             heading: 0.0,
@@ -203,7 +280,7 @@ fn feet(ms: u32) -> Vec<Foot> {
     };
     let dragged = (ms.saturating_sub(LANDING_MS + 900) as f32 / 500.0).min(1.0);
     let zoom = Vec2::new(0.62 + 0.2 * dragged, 0.14);
-    [on(Vec2::new(0.14, 0.14), LANDING_MS, 150.0), on(zoom, LANDING_MS + 600, 120.0)]
+    [on(Vec2::new(0.14, 0.14), LANDING_MS, left_at, 150.0), on(zoom, LANDING_MS + 600, None, 120.0)]
         .into_iter()
         .flatten()
         .collect()

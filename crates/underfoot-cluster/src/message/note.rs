@@ -103,6 +103,7 @@ impl NoteCue {
             tone: self.tone.clone(),
             manner: self.manner,
             audio_gain: 0.0,
+            heard_at: None,
         }
     }
 }

@@ -1,0 +1,68 @@
+//! What the sensors of one plate have read of late, and whether they go through the same readings again and again.
+
+/// Readings kept of each sensor: twice the longest repetition that is looked for.
+const KEPT: usize = 256;
+
+/// How many readings must be those that came a fixed time before them.
+const REPEATED: usize = 100;
+
+/// The longest time, in readings, after which a sensor that replays a buffer begins anew.
+pub(super) const MOST_LAG: usize = KEPT - REPEATED;
+
+/// The last [`KEPT`] readings of each sensor of one plate.
+#[derive(Clone, Debug)]
+pub(super) struct History {
+    readings: [[u16; KEPT]; 4],
+    /// How many have been read of each, counted on beyond [`KEPT`].
+    read: [usize; 4],
+}
+
+impl History {
+    pub(super) const EMPTY: Self = Self { readings: [[0; KEPT]; 4], read: [0; 4] };
+
+    /// Takes in a reading of the sensor at `corner`.
+    pub(super) fn read(&mut self, corner: usize, raw: u16) {
+        self.readings[corner][self.read[corner] % KEPT] = raw;
+        self.read[corner] += 1;
+    }
+
+    /// How many of the last readings of the sensor at `corner` are those that came a fixed time before them:
+    /// [`REPEATED`], or 0 if it is fewer for every time of 2 to [`MOST_LAG`] readings.
+    pub(super) fn cycle(&self, corner: usize) -> u32 {
+        let (readings, read) = (&self.readings[corner], self.read[corner]);
+        let Some(most) = read.min(KEPT).checked_sub(REPEATED) else { return 0 };
+        let at = |back: usize| readings[(read - 1 - back) % KEPT];
+        let repeats = |lag: usize| (0..REPEATED).all(|back| at(back) == at(back + lag));
+        if (2..=most).any(repeats) { REPEATED as u32 } else { 0 }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn history(readings: impl Iterator<Item = u16>) -> History {
+        let mut history = History::EMPTY;
+        readings.for_each(|raw| history.read(2, raw));
+        history
+    }
+
+    /// Readings without any order.
+    fn noise(at: u32) -> u16 {
+        (at.wrapping_mul(2_654_435_761) >> 16) as u16
+    }
+
+    #[test]
+    fn a_buffer_that_is_replayed_is_found_whatever_its_length() {
+        for length in [2, 3, 7, 64, 128, MOST_LAG as u32] {
+            let played = history((0..300).map(noise).chain((0..400).map(|at| noise(at % length))));
+            assert!(played.cycle(2) > 0, "{length}");
+            assert_eq!(played.cycle(0), 0, "the sensor beside it");
+        }
+    }
+
+    #[test]
+    fn readings_that_come_once_are_no_cycle() {
+        assert_eq!(history((0..1000).map(noise)).cycle(2), 0);
+    }
+}

@@ -1,0 +1,252 @@
+//! Plates whose readings repeat: their converters stand still, or give again what they have read before.
+//!
+//! A converter that works is noisy, and a foot never keeps still to a count. How probable it is that a sensor repeats
+//! itself by chance is learnt while its tile is idle ([`noise`]). Under a load each reading is compared with those before
+//! it ([`run`], [`history`]): the same value, the same two values, or the same readings in the same order count as a
+//! repetition. A plate repeats if two of its sensors, or all that can tell, have done so for 100 ms and
+//!
+//! ```text
+//! L = -sum over these sensors of (readings / 8) ln q > 30
+//! ```
+//!
+//! with q the probability that the sensor reads the same 8 ms later. Two sensors with noise of one count reach that in
+//! 100 ms. By chance it happens once in 10^13 times.
+//!
+//! ```text
+//! Unlearned --noise known--> trusted or Coarse
+//! trusted   --repeats-->     Repeats --100 ms without--> trusted
+//! ```
+
+mod history;
+mod noise;
+mod run;
+
+use std::ops::Range;
+
+use self::history::{History, MOST_LAG};
+use self::noise::{Grain, Noise, Seen, is_within};
+use self::run::{REPEATED_FOR, Run};
+use super::End;
+use super::trouble::Sensor;
+use crate::sense::{ForceFrame, HoldDoubt, Quality};
+use crate::units::Instant;
+
+/// Negative log likelihood from which on a repetition is not chance, in nats.
+const IMPROBABLE: f32 = 30.0;
+
+/// Load of a tile from which on its readings are compared, and below which they no longer are, in newtons: below the
+/// least that counts as a loaded tile.
+const LOADED_N: f32 = 4.0;
+const EMPTY_N: f32 = 2.0;
+
+/// Load of a tile up to which its sensors show their own noise, in newtons: a zero that has drifted may read so much,
+/// and what does is no foot that works (our choice).
+const IDLE_N: f32 = 12.0;
+
+/// Visits without load after which a tile's readings are no longer compared.
+const EMPTY_VISITS: u8 = 8;
+
+/// Tiles that can be compared at once.
+const MOST_WATCHED: usize = 4096;
+
+/// Marks a tile that is not watched.
+const NONE: u32 = u32::MAX;
+
+/// Watches the plates of one floor for readings that repeat. Allocates nothing after its making.
+#[derive(Clone, Debug)]
+pub(super) struct Repeats {
+    /// Whether the readings have no noise of their own, so that repetitions say nothing.
+    noiseless: bool,
+    noise: Noise,
+    /// Which tiles were all but empty at their last visit.
+    idle: Vec<[bool; 4]>,
+    watched: Vec<Watch>,
+    /// Position in `watched` of each tile, or [`NONE`].
+    place: Vec<u32>,
+    count: u64,
+}
+
+/// A plate under load.
+#[derive(Clone, Debug)]
+struct Watch {
+    tile: u32,
+    runs: [Run; 4],
+    history: History,
+    /// What its sensors read when it was visited last.
+    raws: [u16; 4],
+    newtons: [f32; 4],
+    /// For how many visits it has been empty.
+    empty: u8,
+    /// Until when its readings are doubted.
+    until: Option<Instant>,
+}
+
+/// What the sensors of all tiles have read, in the frame in the making.
+#[derive(Clone, Copy)]
+pub(super) struct Heard<'a> {
+    /// The readings as the boards sent them; 0 for a reading of nothing.
+    pub raws: &'a [[u16; 4]],
+    pub ends: &'a [[End; 4]],
+    /// Which of them came with this frame.
+    pub news: &'a [[bool; 4]],
+    pub sensors: &'a [[Sensor; 4]],
+}
+
+impl Repeats {
+    pub(super) fn new(tiles: usize, noiseless: bool) -> Self {
+        Self {
+            noiseless,
+            noise: Noise::new(tiles),
+            idle: vec![[true; 4]; tiles],
+            watched: Vec::with_capacity(tiles.min(MOST_WATCHED)),
+            place: vec![NONE; tiles],
+            count: 0,
+        }
+    }
+
+    /// How often a plate was found to repeat its readings.
+    pub(super) const fn count(&self) -> u64 {
+        self.count
+    }
+
+    /// Whether a repetition of this sensor's readings is improbable.
+    pub(super) fn tells(&self, tile: usize, corner: usize) -> bool {
+        !self.noiseless && self.noise.is_fine(tile, corner)
+    }
+
+    /// The plates whose readings repeat, by their index.
+    pub(super) fn repeating(&self) -> impl Iterator<Item = usize> + '_ {
+        self.watched.iter().filter(|watch| watch.until.is_some()).map(|watch| watch.tile as usize)
+    }
+
+    /// Compares the readings of the plates under load, and marks in `frame` those that repeat.
+    pub(super) fn compare(&mut self, frame: &mut ForceFrame, heard: Heard<'_>, now: Instant) {
+        let Self { noise, watched, count, .. } = self;
+        for watch in watched {
+            let tile = watch.tile as usize;
+            watch.read(heard.raws[tile], heard.news[tile], now);
+            if watch.repeats(noise, heard.ends[tile], &heard.sensors[tile], now) {
+                *count += u64::from(watch.until.is_none());
+                watch.until = Some(now + REPEATED_FOR);
+            } else if watch.until.is_some_and(|until| now >= until) {
+                watch.until = None;
+                frame.hold_doubts[tile] = doubt(noise, tile, &heard.sensors[tile]);
+            }
+            if watch.until.is_some() {
+                frame.hold_doubts[tile] = Some(HoldDoubt::Repeats);
+                for quality in &mut frame.quality[tile] {
+                    *quality = (*quality).max(Quality::Stale);
+                }
+            }
+        }
+    }
+
+    /// Visits `tiles` for the time numbered `visit`, as each is every 8 ms: learns the noise of those that are all but
+    /// empty, finds readings that come in the same order again, and begins and ends to watch plates.
+    pub(super) fn visit(
+        &mut self,
+        tiles: Range<usize>,
+        frame: &mut ForceFrame,
+        heard: Heard<'_>,
+        visit: u32,
+    ) {
+        if self.noiseless {
+            return;
+        }
+        for tile in tiles.clone() {
+            let load = frame.forces[tile].iter().sum::<f32>().abs();
+            let place = self.place[tile];
+            self.idle[tile] = [load < IDLE_N; 4];
+            if place != NONE {
+                self.visit_watched(place as usize, load, &frame.forces[tile], heard);
+            } else if load >= LOADED_N {
+                self.watch(tile, &frame.forces[tile], heard.raws[tile]);
+            }
+        }
+        let seen = Seen { raws: heard.raws, ends: heard.ends, news: heard.news, idle: &self.idle };
+        self.noise.look(tiles.clone(), seen, visit);
+        for tile in tiles {
+            if frame.hold_doubts[tile] != Some(HoldDoubt::Repeats) {
+                frame.hold_doubts[tile] = doubt(&mut self.noise, tile, &heard.sensors[tile]);
+            }
+        }
+    }
+
+    fn watch(&mut self, tile: usize, newtons: &[f32; 4], raws: [u16; 4]) {
+        if self.watched.len() < self.watched.capacity() {
+            self.place[tile] = self.watched.len() as u32;
+            let (tile, newtons) = (tile as u32, *newtons);
+            let (runs, history) = ([Run::default(); 4], History::EMPTY);
+            self.watched.push(Watch { tile, runs, history, raws, newtons, empty: 0, until: None });
+        }
+    }
+
+    fn visit_watched(&mut self, place: usize, load: f32, newtons: &[f32; 4], heard: Heard<'_>) {
+        let watch = &mut self.watched[place];
+        let tile = watch.tile as usize;
+        watch.empty = if load < EMPTY_N { watch.empty + 1 } else { 0 };
+        for corner in 0..4 {
+            watch.runs[corner].note_cycle(watch.history.cycle(corner));
+            let raws = [heard.raws[tile][corner], watch.raws[corner]];
+            let is_known = heard.news[tile][corner] && is_within(heard.ends[tile][corner], raws[0]);
+            if load >= IDLE_N && is_known && watch.until.is_none() {
+                let newtons = [newtons[corner], watch.newtons[corner]];
+                self.noise.look_under_load((tile, corner), raws, newtons);
+            }
+        }
+        (watch.raws, watch.newtons) = (heard.raws[tile], *newtons);
+        if watch.empty >= EMPTY_VISITS && watch.until.is_none() {
+            self.watched.swap_remove(place);
+            self.place[tile] = NONE;
+            if let Some(moved) = self.watched.get(place) {
+                self.place[moved.tile as usize] = place as u32;
+            }
+        }
+    }
+}
+
+impl Watch {
+    fn read(&mut self, raws: [u16; 4], news: [bool; 4], now: Instant) {
+        for corner in (0..4).filter(|&corner| news[corner]) {
+            self.runs[corner].read(raws[corner], now);
+            self.history.read(corner, raws[corner]);
+        }
+    }
+
+    /// Whether two of its sensors, or all that can tell, repeat themselves against all odds.
+    fn repeats(&self, noise: &Noise, ends: [End; 4], sensors: &[Sensor; 4], now: Instant) -> bool {
+        let (mut told, mut repeated, mut nats) = (0, 0, 0.0);
+        let tile = self.tile as usize;
+        for corner in 0..4 {
+            let can_tell = is_within(ends[corner], self.runs[corner].value())
+                && !sensors[corner].is_out()
+                && noise.is_fine(tile, corner);
+            if can_tell {
+                let found = self.runs[corner].nats(noise.same(tile, corner), MOST_LAG as u32, now);
+                told += 1;
+                repeated += u8::from(found > 0.0);
+                nats += found;
+            }
+        }
+        nats > IMPROBABLE && (repeated >= 2 || repeated == told)
+    }
+}
+
+/// Why the sensors of this tile may not hold a control by what is known of their noise: three of them must be fine, as
+/// many as a tile goes on with.
+fn doubt(noise: &mut Noise, tile: usize, sensors: &[Sensor; 4]) -> Option<HoldDoubt> {
+    let (mut fine, mut unknown) = (0, 0);
+    for (corner, sensor) in sensors.iter().enumerate() {
+        match noise.grain(tile, corner) {
+            _ if sensor.is_out() => {}
+            Grain::Fine => fine += 1,
+            Grain::Unknown => unknown += 1,
+            Grain::Coarse => {}
+        }
+    }
+    match (fine, unknown) {
+        (3.., _) => None,
+        _ if fine + unknown >= 3 => Some(HoldDoubt::Unlearned),
+        _ => Some(HoldDoubt::Coarse),
+    }
+}
