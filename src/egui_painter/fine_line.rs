@@ -88,7 +88,7 @@ fn strip(profile: TextureId, points: &[Pos2], Stroke { width, color }: Stroke) -
 }
 
 /// The offset from a corner to its edge, for edges at distance 1 from both directions: of length 1 / cos(half the
-/// turn), at most [`MITRE`].
+/// turn), at most `MITRE`.
 fn mitre(before: Vec2, after: Vec2) -> Vec2 {
     let along = (before + after).normalized();
     let across = vec2(-along.y, along.x);

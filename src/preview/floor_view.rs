@@ -281,7 +281,7 @@ impl App {
     }
 }
 
-/// Places the standing foot at the pointer on Space, and drags it by its handle or, with Alt, by its sole.
+/// Places or lifts the standing foot at the pointer on Space, and drags it by its handle or, with Alt, by its sole.
 fn stand_and_drag(
     ui: &mut Ui,
     canvas: &Response,

@@ -30,8 +30,8 @@ pub(super) struct Press {
 }
 
 impl Press {
-    /// Whether the press was intended, judging from its end: reasons other than force and time mean that the foot did
-    /// not mean to press, or that its force was unknown.
+    /// Whether the press was intended, judging from its end: any reason other than force or time indicates that the
+    /// foot pressed for another purpose, or that its force was unknown.
     fn is_meant(why: Option<Ignored>) -> bool {
         matches!(why, None | Some(Ignored::TooLight | Ignored::TooShort))
     }

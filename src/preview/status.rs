@@ -48,7 +48,7 @@ impl Latency {
         Self { stages, ..Self::default() }
     }
 
-    /// Summarises the measurements at the interval of [`EVERY_S`].
+    /// Summarises the measurements at the interval of `EVERY_S`.
     pub(super) fn update(&mut self, now_s: f64) {
         let Some(stages) = &self.stages else { return };
         if self.summed_s.is_some_and(|at| (0.0..EVERY_S).contains(&(now_s - at))) {

@@ -82,7 +82,7 @@ impl Designer {
         Ok(())
     }
 
-    /// Saves a draft at the interval of [`DRAFT_S`].
+    /// Saves a draft at the interval of `DRAFT_S`.
     pub(super) fn keep(&mut self, now_s: f64) {
         if now_s - self.drafted_s >= DRAFT_S && self.left_over.is_none() {
             self.drafted_s = now_s;

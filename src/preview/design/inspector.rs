@@ -49,7 +49,7 @@ pub(super) const ROW_PX: f32 = 24.0;
 const KEPT: [&str; 3] = ["id", "kind", "at"];
 
 impl Designer {
-    /// The inspector.
+    /// Shows the inspector.
     pub(super) fn side_panel(&mut self, ui: &mut Ui, theme: &Theme) {
         let frame = panel_frame(theme, Margin { left: 14, right: 6, top: 0, bottom: 6 });
         // A fixed width, whatever the content: the floor beside the panel must not move under the pointer.

@@ -17,7 +17,7 @@ pub(in crate::preview) enum Series {
     Value(WidgetId),
     /// The second number of a pad.
     SecondValue(WidgetId),
-    /// The sum of a tile.
+    /// The force on a tile.
     Tile(TileId),
     /// One of its sensors.
     Sensor(TileId, Corner),
