@@ -222,7 +222,7 @@ impl App {
     }
 }
 
-/// The boards that are interchanged, and what to do.
+/// The boards that are interchanged, and the remedy.
 fn moved_words(moved: &[(usize, usize)]) -> String {
     if let &[(one, other), (back, again)] = moved
         && (one, other) == (again, back)

@@ -11,7 +11,7 @@ use crate::sim::{SensorFault, SimConfig, SimFloor};
 use crate::source::{SensorSource, SourceError};
 use crate::wire::SensorPacket;
 
-/// A floor whose boards the test reads; two of them may be interchanged.
+/// A floor with boards that the test reads; two of them may be interchanged.
 struct Boards {
     sim: SimFloor,
     feet: Arc<Mutex<Vec<crate::sim::Foot>>>,

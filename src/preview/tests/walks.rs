@@ -1,4 +1,4 @@
-//! People who walk along lines drawn with the mouse.
+//! People on walks drawn with the mouse.
 
 use super::*;
 use crate::preview::walks::Walks;
